@@ -1,11 +1,11 @@
-//! The box about the bow in which no other real boat may be.
+//! The box around the bow that must be free of other real boats.
 
 use crate::config::Halt;
 use messages::picture::Nav;
 use primitives::SimTime;
 use primitives::frame::{Ned, Rotation, body_from_ned};
 
-/// The box about the bow.
+/// The box around the bow.
 #[derive(Clone, Debug)]
 pub struct BowWatch {
     rules: Halt,
@@ -15,7 +15,7 @@ pub struct BowWatch {
 }
 
 impl BowWatch {
-    /// The box of a boat of this length.
+    /// The box for a boat of this length.
     #[must_use]
     pub fn new(rules: Halt, length_m: f64) -> BowWatch {
         BowWatch { rules, half_length_m: 0.5 * length_m, blocked_at: SimTime::LONG_AGO }
@@ -23,15 +23,15 @@ impl BowWatch {
 
     /// Whether another boat is in the box, or was within the last `clear_s`.
     pub fn is_blocked(&mut self, now: SimTime, nav: &Nav, others: &[Ned]) -> bool {
-        // A box of no length switches the check off: fleets that keep clear by themselves do
-        // without it.
+        // A box of zero length disables the check: fleets that keep clear by themselves do not need
+        // it.
         if self.rules.ahead_m <= 0.0 {
             return false;
         }
         let rotation = Rotation::from_heading(nav.psi_rad);
-        // The box is given for 2 m/s, as in Aquaticus' collision filter (7 m by 3 m), and grows
-        // with the speed. It is never shorter than the boat: one that lies still may be started
-        // by the next order.
+        // The box is specified for 2 m/s, as in Aquaticus' collision filter (7 m by 3 m), and grows
+        // with the speed. It is never shorter than the boat: the next order may start a boat at
+        // rest.
         let ahead_m = (self.rules.ahead_m * 0.5 * nav.surge_m_s).max(2.0 * self.half_length_m);
         let is_in = |other: &Ned| {
             let seen = body_from_ned(rotation, *other - nav.at());
@@ -40,8 +40,8 @@ impl BowWatch {
         if others.iter().any(is_in) {
             self.blocked_at = now;
         }
-        // Not a latched failsafe: boats of a game often come near each other, and go on when
-        // the box has been empty for a moment.
+        // Not a latched failsafe: boats in a game often come close, and continue when the box has
+        // been empty for a moment.
         (now - self.blocked_at).as_s() < self.rules.clear_s || self.blocked_at == now
     }
 }

@@ -1,40 +1,43 @@
-//! Checks a compass against the course over the ground: does the boat move where it points, leeway and current apart?
+//! Checks a compass against the course over the ground: does the boat move where it points, apart
+//! from leeway and current?
 //!
-//! On one heading nobody can tell a compass that is off from a current across. On several one can: a current is the same on all of
-//! them, an offset turns with the boat. With the velocity over the ground V, the heading psi that the compass shows and the speed
-//! through the water m that the orders should give, V = k m exp(i psi) + c, where the drift c (current, leeway) is the same on all
-//! headings, |k| is how much of the speed the boat makes, and the angle of k is how far the compass is off: complex linear least squares.
+//! On one heading, a compass offset cannot be distinguished from a cross current. On several
+//! headings it can: a current is the same on all of them, an offset turns with the boat. With the
+//! velocity over the ground V, the compass heading psi and the speed through the water m expected
+//! from the orders, V = k m exp(i psi) + c. The drift c (current, leeway) is the same on all
+//! headings, |k| is the fraction of the speed that the boat makes, and the angle of k is the
+//! compass offset: complex linear least squares.
 
 use primitives::angle::wrap_pi;
 use primitives::frame::{Ned, Rotation};
 use primitives::{SimTime, math};
 use std::collections::VecDeque;
 
-/// A straight run is made of this many pieces of this length, s; the first is left for the boat to settle.
+/// Number and duration, s, of the pieces of a straight run; the first lets the boat settle.
 const PIECES: usize = 4;
 const PIECE_S: f64 = 1.5;
-/// The headings of its pieces are this close to each other, rad.
+/// Maximum spread of the headings of its pieces, rad.
 const STRAIGHT_RAD: f64 = 0.3;
-/// The speed that is ordered on it, m/s, at least.
+/// Minimum ordered speed of a run, m/s.
 const SPEED_FROM_M_S: f64 = 0.7;
-/// A boat takes up speed with about this lag, s.
+/// A boat reaches its speed with about this lag, s.
 const SPEED_LAG_S: f64 = 2.0;
-/// Orders and velocities with a longer gap between them are of another run, s.
+/// Orders and velocities with a longer gap between them belong to different runs, s.
 const GAP_MAX_S: f64 = 1.5;
-/// Runs that are kept, and how long, s: currents change.
+/// Maximum number and age, s, of the runs: currents change.
 const RUNS_MAX: usize = 40;
 const RUN_AGE_MAX_S: f64 = 240.0;
-/// How many there must be.
+/// Minimum number of runs.
 const RUNS_MIN: usize = 6;
-/// Velocities of runs scatter by this much at least, m/s, though a few may agree by chance.
+/// Minimum scatter of the runs' velocities, m/s, because a few may agree by chance.
 const SCATTER_MIN_M_S: f64 = 0.15;
-/// An offset is a fault when it is larger than this by so many standard deviations, rad: runs that follow each other are alike.
-/// By a simulated day in a gale (`tests/gale`) 4.5 are too few.
+/// An offset is a fault if it exceeds this angle, rad, by this many standard deviations:
+/// consecutive runs are alike. In a simulated day in a gale (`tests/gale`) 4.5 were too few.
 const OFFSET_MAX_RAD: f64 = 0.25;
 const SIGMAS: f64 = 5.0;
-/// The mean of the headings of all runs, as unit vectors, is at most this long: they are about 60 degrees apart.
+/// Maximum length of the mean of all headings as unit vectors: they are about 60 degrees apart.
 const MEAN_HEADING_MAX: f64 = 0.88;
-/// A boat that makes less of its ordered speed than this shows nothing of its compass.
+/// A boat that makes a smaller fraction of its ordered speed reveals nothing about its compass.
 const SHARE_MIN: f64 = 0.2;
 
 /// Sums over a piece of a run.
@@ -43,13 +46,14 @@ struct Piece {
     count: f64,
     /// Where the bow points.
     ahead: Ned,
-    /// The speed that is ordered, along the bow, m/s.
+    /// The ordered speed, along the bow, m/s.
     ordered: Ned,
-    /// Over the ground, m/s.
+    /// Velocity over the ground, m/s.
     velocity: Ned,
 }
 
-/// A straight run: the mean velocity that was ordered, by the compass, and the one over the ground, m/s.
+/// A straight run: the mean ordered velocity, by the compass, and the mean velocity over the
+/// ground, m/s.
 #[derive(Clone, Copy, Debug)]
 struct Run {
     at: SimTime,
@@ -57,20 +61,20 @@ struct Run {
     velocity: Ned,
 }
 
-/// What is known of a boat's compass.
+/// The data on a boat's compass.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct CompassCheck {
-    /// Since when the piece that grows has done so, and when it last did.
+    /// Start of the current piece, and its last update.
     began: Option<(SimTime, SimTime)>,
     piece: Piece,
     pieces: VecDeque<Piece>,
-    /// The speed that is ordered, as slowly as a boat takes it up, m/s.
+    /// The ordered speed with the boat's lag, m/s.
     speed_m_s: f64,
     runs: VecDeque<Run>,
 }
 
 impl CompassCheck {
-    /// Takes what the compass shows, rad, the velocity over the ground and the speed ahead that is ordered.
+    /// Adds the compass heading, rad, the velocity over the ground and the ordered speed ahead.
     pub(crate) fn observe(&mut self, now: SimTime, psi_rad: f64, velocity: Ned, ordered_m_s: f64) {
         let gap_s = self.began.map_or(f64::INFINITY, |(_, last)| (now - last).as_s());
         // The sums of a piece assume steady flow: across a gap the boat may have turned.
@@ -97,7 +101,7 @@ impl CompassCheck {
         }
     }
 
-    /// What comes next is another run: the boat was stopped, or its receiver jumped.
+    /// Starts another run: the boat was stopped, or its receiver jumped.
     pub(crate) fn interrupt(&mut self) {
         (self.began, self.piece) = (None, Piece::default());
         self.pieces.clear();
@@ -113,8 +117,8 @@ impl CompassCheck {
         let first_rad = angle_rad(self.pieces[0].ahead);
         let is_straight =
             self.pieces.iter().all(|piece| wrap_pi(angle_rad(piece.ahead) - first_rad).abs() < STRAIGHT_RAD);
-        // After a turn the boat still slides: the first 1.5 s would show as leeway that turns
-        // with the heading, which is what an offset looks like.
+        // After a turn the boat still slides: the first 1.5 s would show as leeway that turns with
+        // the heading, like an offset.
         let settled = self.pieces.iter().skip(1);
         let [mut ordered, mut velocity] = [Ned::default(); 2];
         let count = settled.fold(0.0, |count, piece| {
@@ -134,7 +138,8 @@ impl CompassCheck {
         }
     }
 
-    /// How far the compass is off, rad, with its standard deviation: what it shows and this are where the boat points.
+    /// The compass offset, rad, with its standard deviation: add it to the compass heading to get
+    /// the true one.
     pub(crate) fn offset_rad(&self) -> Option<(f64, f64)> {
         if self.runs.len() < RUNS_MIN {
             return None;
@@ -143,8 +148,8 @@ impl CompassCheck {
         let mean =
             |of: fn(&Run) -> Ned| self.runs.iter().fold(Ned::default(), |sum, run| sum + of(run)).scaled(1.0 / count);
         let heading = mean(|run| run.ordered.scaled(1.0 / run.ordered.length()));
-        // On one heading an offset and a current across are the same. A plain limit for the
-        // angle between heading and course either misses 30 degrees or fails in a current.
+        // On one heading an offset and a cross current are the same. A plain limit for the angle
+        // between heading and course either misses 30 degrees or fails in a current.
         if heading.length() > MEAN_HEADING_MAX {
             return None;
         }
@@ -169,11 +174,11 @@ impl CompassCheck {
         (share.length() >= SHARE_MIN && sigma_rad.is_finite()).then(|| (angle_rad(share), sigma_rad))
     }
 
-    /// How far the compass is off, rad, if that is a fault.
+    /// The compass offset, rad, if it is a fault.
     pub(crate) fn fault_rad(&self) -> Option<f64> {
         let (offset_rad, sigma_rad) = self.offset_rad()?;
-        // Deviations of up to 14 degrees count as none: a boat with them can be driven, and a
-        // compass swing finds them.
+        // Deviations of up to 14 degrees are not a fault: such a boat can be driven, and a compass
+        // swing finds them.
         (offset_rad.abs() - SIGMAS * sigma_rad > OFFSET_MAX_RAD).then_some(offset_rad)
     }
 }
@@ -197,7 +202,8 @@ fn over(a: Ned, b: Ned) -> Ned {
 mod tests {
     use super::*;
 
-    /// Runs of 24 s on these headings at 1.5 m/s, of which the boat makes so much, with a compass that is off and a current.
+    /// Runs of 24 s on these headings at 1.5 m/s, of which the boat makes this fraction, with a
+    /// compass offset and a current.
     fn sailed(headings_deg: &[f64], off_deg: f64, share: f64, current: Ned) -> CompassCheck {
         let mut check = CompassCheck::default();
         for i in 0..240 * headings_deg.len() {

@@ -1,58 +1,59 @@
-//! The game's time as a gateway knows it: from the sim's answer when it joins, from the stamps of orders, and its own clock.
+//! The game time as known to a gateway: from the sim's answer to a join, from the stamps of orders,
+//! and from its own clock.
 
 use messages::external::ExternalOrder;
 use primitives::SimTime;
 
-/// Tells orders that come from a time the game cannot have come to, and from before the boat joined it.
+/// Detects orders with a time that the game cannot have reached, or from before the boat joined.
 ///
-/// The game goes no faster than the gateway's clock, so the difference of the two can only shrink: by delays, pauses, and a
-/// sim that does not keep up. The largest that was seen is the best that is known. When the boat joins, the difference is no
-/// larger than that of the time in the sim's answer and of our own when it was asked.
+/// The game runs no faster than the gateway's clock, so their difference can only shrink: by
+/// delays, pauses, and a sim that does not keep up. The largest observed difference is the best
+/// estimate. When the boat joins, the difference is at most that between the time in the sim's
+/// answer and our own time of the request.
 #[derive(Clone, Copy, Debug)]
 pub struct GameClock {
     ahead_max: SimTime,
     joined: Option<Joined>,
 }
 
-/// What is known of a game that the boat has joined.
+/// The state of a game that the boat has joined.
 #[derive(Clone, Copy, Debug)]
 struct Joined {
-    /// Time of the game then.
+    /// Game time then.
     since: SimTime,
-    /// Time of the game less our own, at most and as far as orders have shown it.
+    /// Game time minus our own: the maximum, as far as orders have shown it.
     most: SimTime,
     seen: Option<SimTime>,
 }
 
-/// What the time of an order says of it.
+/// The verdict on the time of an order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OrderTime {
-    /// It may be what the sim wants now.
+    /// The order may be current.
     Plausible,
-    /// The game has not come to it, or not to the picture that it answers.
+    /// The game has not reached it, or not the picture that it answers.
     Ahead,
-    /// It is from before the boat joined, or the boat has not.
+    /// It is from before the boat joined, or the boat has not joined.
     BeforeJoining,
 }
 
 impl GameClock {
-    /// One that knows no game yet, and takes stamps that are ahead of it by this much at most.
+    /// A clock without a game yet, which accepts stamps ahead of it by at most this much.
     #[must_use]
     pub fn new(ahead_max: SimTime) -> GameClock {
         GameClock { ahead_max, joined: None }
     }
 
-    /// The boat, which asked at the time `asked` of our own, has joined a game whose time was `since` at some moment after
-    /// that.
+    /// Notes that the boat, which asked at our own time `asked`, has joined a game whose time was
+    /// `since` at some moment after that.
     pub fn join(&mut self, asked: SimTime, since: SimTime) {
-        // The answer was made after it was asked for, so the game cannot be further ahead of
-        // our clock than this; how long the answer travelled is unknown, and only makes the
-        // bound safer.
+        // The answer was created after the request, so the game cannot be further ahead of our
+        // clock than this. The answer's travel time is unknown, and only makes the bound safer.
         let most = SimTime(since.0.saturating_sub(asked.0));
         self.joined = Some(Joined { since, most, seen: None });
     }
 
-    /// Checks the time of an order that came at `now`.
+    /// Checks the time of an order that arrived at `now`.
     pub fn check(&mut self, now: SimTime, order: &ExternalOrder) -> OrderTime {
         let (stamp, given) = (order.stamp.valid_ns, order.given_ns);
         let Some(joined) = &mut self.joined else { return OrderTime::BeforeJoining };
@@ -62,13 +63,13 @@ impl GameClock {
         // Anybody may have sent it, with any number.
         let difference = SimTime(stamp.0.saturating_sub(now.0));
         let known = joined.seen.unwrap_or(joined.most);
-        // An order far in the future would count as newer than all real ones that follow, and
-        // silence the sim until then.
+        // An order far in the future would count as newer than all later real ones, and silence the
+        // sim until then.
         if given > stamp || stamp >= SimTime::NEVER || difference.0.saturating_sub(known.0) > self.ahead_max.0 {
             return OrderTime::Ahead;
         }
-        // Only the largest difference is kept: a game that pauses or slows down falls behind
-        // our clock, which makes nothing suspicious.
+        // Only the largest difference is kept: a game that pauses or slows down falls behind our
+        // clock, which is not suspicious.
         joined.seen = Some(joined.seen.map_or(difference, |seen| seen.max(difference)));
         OrderTime::Plausible
     }
@@ -108,7 +109,7 @@ mod tests {
             assert_eq!(take(100.1, far_s, 6.9), OrderTime::Ahead, "{far_s}");
         }
         assert_eq!(take(100.1, 7.1, 7.2), OrderTime::Ahead, "it answers a picture that there is not yet");
-        // Late ones and those that came on time after them; a pause of the game, and going on.
+        // Late orders, punctual ones after them, a pause of the game, and its continuation.
         for (now_s, stamp_s) in [(100.1, 7.1), (103.0, 7.2), (103.1, 10.1), (200.0, 10.2), (200.1, 10.3)] {
             assert_eq!(take(now_s, stamp_s, stamp_s - 0.1), OrderTime::Plausible, "{now_s} {stamp_s}");
         }

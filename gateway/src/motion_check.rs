@@ -1,7 +1,9 @@
-//! Checks the instruments of a boat against each other: its compass against its course, its reported speed against its positions.
+//! Checks a boat's instruments against each other: its compass against its course, its reported
+//! speed against its positions.
 //!
-//! What is checked cannot be so on any sea: a compass that shows the same to the last digit while the boat's course turns far, and
-//! positions that go away faster than the speed that is reported with them. Leeway and current cause neither.
+//! The checked faults are impossible on any sea: a compass that does not change in any digit while
+//! the course turns far, and positions that move faster than the reported speed. Leeway and current
+//! cause neither.
 
 use crate::supervisor::NavFault;
 use primitives::angle::wrap_pi;
@@ -9,38 +11,39 @@ use primitives::frame::Ned;
 use primitives::{SimTime, math};
 use std::collections::VecDeque;
 
-/// Positions of this long make a speed, s; with less than that there is none.
+/// The time over which positions yield a speed, s; less is not enough.
 const WINDOW_S: f64 = 4.0;
 const WINDOW_MIN_S: f64 = 2.0;
-/// The most positions that are kept: 20 a second.
+/// Maximum number of positions stored: 20 a second.
 const FIXES_MAX: usize = 80;
-/// A reported speed may be this much less than that of the positions, m/s, for this long, s: a fix may step by some metres.
-// The limits are those at which no sea, wind or step of a fix alone triggers them: a false
-// alarm stops a boat in a game.
+/// The reported speed may be lower than the speed from positions by this much, m/s, for this long,
+/// s: a fix may step by some metres.
+// At these limits no sea, wind or step of a fix alone triggers them: a false alarm stops a boat in
+// a game.
 const SPEED_GAP_M_S: f64 = 1.2;
 const SPEED_GAP_S: f64 = 2.5;
-/// A boat has a course from this speed on, m/s.
+/// Minimum speed for a course, m/s.
 const COURSE_FROM_M_S: f64 = 0.8;
-/// Courses of fixes that are farther apart than this, s, are not compared.
+/// Courses of fixes farther apart than this, s, are not compared.
 const COURSE_GAP_MAX_S: f64 = 1.0;
-/// A course that turns so far while the compass shows the same, rad.
+/// A turn of the course by this much without any change of the compass is a fault, rad.
 const TURN_MAX_RAD: f64 = std::f64::consts::FRAC_PI_3;
 
-/// What is known of a boat's motion by each instrument.
+/// A boat's motion according to each instrument.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct MotionCheck {
     /// Positions, the newest last.
     fixes: VecDeque<(SimTime, Ned)>,
-    /// Since when the reported speed has been less than that of the positions.
+    /// Since when the reported speed has been lower than that of the positions.
     slow_since: Option<SimTime>,
-    /// What the compass shows, rad, and how far the course has turned since it began to show that, rad.
+    /// The compass heading, rad, and the turn of the course since it last changed, rad.
     shown: Option<(f64, f64)>,
-    /// The course that was seen last, rad, when, and whether it was a reported one.
+    /// The last course, rad, its time, and whether it was a reported one.
     course: Option<(SimTime, bool, f64)>,
 }
 
 impl MotionCheck {
-    /// Takes a position with the velocity that is reported with it, if one is.
+    /// Adds a position, with its reported velocity if any.
     pub(crate) fn take_fix(&mut self, now: SimTime, place: Ned, reported: Option<Ned>) {
         while self.fixes.front().is_some_and(|(at, _)| (now - *at).as_s() > WINDOW_S) || self.fixes.len() >= FIXES_MAX {
             self.fixes.pop_front();
@@ -51,7 +54,7 @@ impl MotionCheck {
             .zip(measured)
             .is_some_and(|(reported, measured)| measured.length() - reported.length() > SPEED_GAP_M_S);
         self.slow_since = is_slow.then(|| self.slow_since.unwrap_or(now));
-        // A fix that steps has a course of its own; that of the reported velocity comes first.
+        // A fix that steps has a course of its own, so the reported velocity takes precedence.
         self.take_course(
             now,
             reported.is_some(),
@@ -61,39 +64,42 @@ impl MotionCheck {
 
     fn take_course(&mut self, now: SimTime, is_reported: bool, velocity: Option<Ned>) {
         let course_rad = velocity.map(|velocity| math::atan2(velocity.east, velocity.north));
-        // Between fixes that are far apart a boat may have gone astern, and positions step where the reported velocity does not.
+        // Between distant fixes a boat may have gone astern, and positions step where the reported
+        // velocity does not.
         let is_like = |at: SimTime, reported: bool| (now - at).as_s() <= COURSE_GAP_MAX_S && reported == is_reported;
         let before = self.course.filter(|(at, reported, _)| is_like(*at, *reported));
         if let (Some((_, turned_rad)), Some((.., before_rad)), Some(now_rad)) = (&mut self.shown, before, course_rad) {
-            // Summed with its sign: waves swing the course to and fro by more than 60 degrees
-            // in all, a turn leads away.
+            // Summed with its sign: waves swing the course back and forth by more than 60 degrees
+            // in total, whereas a turn leads away.
             *turned_rad += wrap_pi(now_rad - before_rad);
         }
         self.course = course_rad.map(|course_rad| (now, is_reported, course_rad));
     }
 
-    /// Takes what the compass shows, rad.
+    /// Adds a compass heading, rad.
     pub(crate) fn take_heading(&mut self, psi_rad: f64) {
-        // Exactly the same value: a compass that works changes its last digit all the time.
+        // Exactly the same value: the last digit of a working compass changes all the time.
         if self.shown.is_none_or(|(shown_rad, _)| shown_rad != psi_rad) {
             self.shown = Some((psi_rad, 0.0));
         }
     }
 
-    /// The receiver's position has jumped: what went before says nothing of the boat's speed.
+    /// Notes that the receiver's position has jumped: older positions no longer yield the boat's
+    /// speed.
     pub(crate) fn jump(&mut self) {
         self.fixes.clear();
         (self.slow_since, self.course) = (None, None);
     }
 
-    /// Velocity over the ground by positions alone, m/s: from the middle of the older ones to that of the newer.
+    /// Velocity over the ground from positions alone, m/s: from the centre of the older ones to
+    /// that of the newer.
     pub(crate) fn velocity_m_s(&self) -> Option<Ned> {
         let ((first, _), (last, _)) = (self.fixes.front()?, self.fixes.back()?);
         if (*last - *first).as_s() < WINDOW_MIN_S {
             return None;
         }
-        // The means of both halves and not the first and last fix: one step of the receiver
-        // would be a speed.
+        // The means of both halves, not the first and last fix: a single step of the receiver would
+        // count as a speed.
         let half = self.fixes.len() / 2;
         let middle = |fixes: &mut dyn Iterator<Item = &(SimTime, Ned)>| {
             let (mut count, mut time_s, mut place) = (0.0, 0.0, Ned::default());
@@ -107,7 +113,7 @@ impl MotionCheck {
         Some((newer - older).scaled(1.0 / (newer_s - older_s)))
     }
 
-    /// What is wrong now.
+    /// The present fault.
     pub(crate) fn fault(&self, now: SimTime) -> Option<NavFault> {
         let turned = self.shown.map(|(_, turned_rad)| turned_rad.abs()).filter(|turned_rad| *turned_rad > TURN_MAX_RAD);
         let is_slow = self.slow_since.is_some_and(|since| (now - since).as_s() > SPEED_GAP_S);
@@ -121,7 +127,8 @@ impl MotionCheck {
 mod tests {
     use super::*;
 
-    /// A boat that sails a circle at this speed and rate of turn for 20 s, with what its instruments make of that; the fault.
+    /// Sails a circle at this speed and rate of turn for 20 s, with the readings of its
+    /// instruments; returns the fault.
     fn circle(
         speed_m_s: f64,
         turn_deg_s: f64,
@@ -146,7 +153,8 @@ mod tests {
         for turn_deg_s in [5.0, -5.0, 30.0] {
             assert!(is_frozen(circle(2.6, turn_deg_s, |_| 90.0, Some)), "{turn_deg_s}");
         }
-        // One that is off by much and turns is not, nor one of a boat that goes straight, nor of one that lies still.
+        // A compass with a large offset that turns is not stuck, nor that of a boat that goes
+        // straight or lies still.
         assert_eq!(circle(2.6, 20.0, |course_deg| course_deg + 70.0, Some), None);
         assert_eq!(circle(2.6, 0.0, |_| 90.0, Some), None);
         assert_eq!(circle(0.3, 20.0, |_| 90.0, Some), None);

@@ -21,16 +21,16 @@ use primitives::frame::{Body, LatLon, Ned, Rotation, body_from_ned};
 const JUMP_MEMORY_S: f64 = 2.0;
 /// A reported velocity is used for this long; then it is computed from the change of position, s.
 const VELOCITY_AGE_MAX_S: f64 = 1.5;
-/// What a compass may show, degrees; anything else is as if it had said nothing.
+/// Valid compass readings, degrees; other values count as missing.
 pub(crate) const HEADINGS_DEG: std::ops::RangeInclusive<f64> = -180.0..=360.0;
 /// The boat counts as under thrust for this long after the last command with thrust, s.
 const THRUST_MEMORY_S: f64 = 0.5;
-/// From this speed on that a command should give the position must change, m/s.
+/// From this speed of a command on, the position must change, m/s.
 const THRUST_FROM_M_S: f64 = 0.5;
-/// A command counts for this long, s.
+/// A command is valid for this long, s.
 const ORDERED_MEMORY_S: f64 = 1.5;
 
-/// A fix that was good.
+/// A valid fix.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Fix {
     at: SimTime,
@@ -51,13 +51,13 @@ struct Heading {
 pub struct NavEstimator {
     frame: LocalFrame,
     watch: NavWatch,
-    /// Magnetic (or whatever the boat's compass shows) to true, rad.
+    /// From magnetic (or whatever the boat's compass shows) to true, rad.
     compass_to_true_rad: f64,
     speed_max_m_s: f64,
     known: Known,
 }
 
-/// What changes.
+/// The variable state.
 #[derive(Clone, Debug, Default)]
 struct Known {
     fix: Option<Fix>,
@@ -65,41 +65,42 @@ struct Known {
     velocity: Option<(Option<SimTime>, Ned)>,
     /// Heading (true) and rate of turn.
     heading: Option<Heading>,
-    /// What was wrong with the receiver's last fix, if anything.
+    /// The fault of the receiver's last fix, if any.
     doubt: Option<NavFault>,
-    /// Quality and dilution of the last fix that told them.
+    /// Quality and dilution of the last fix that reported them.
     told: Option<(Option<FixQuality>, Option<f64>)>,
     jumped: Option<(SimTime, f64)>,
     time_of_fix: Option<TimeOfDay>,
-    /// Since when the position is the same to the last digit under thrust.
+    /// Since when the position has been the same to the last digit under thrust.
     still_since: Option<SimTime>,
     motion: MotionCheck,
     compass: CompassCheck,
     thrust: ThrustCheck,
-    /// What the boat was last sent, and when; when last a command with thrust.
+    /// The boat's last command and its time; the time of the last command with thrust.
     ordered: Option<(SimTime, Ordered)>,
     thrust_at: Option<SimTime>,
 }
 
 impl NavEstimator {
-    /// Without any data yet.
+    /// An estimate without data.
     #[must_use]
     pub fn new(frame: LocalFrame, watch: NavWatch, compass_to_true_rad: f64, speed_max_m_s: f64) -> NavEstimator {
         NavEstimator { frame, watch, compass_to_true_rad, speed_max_m_s, known: Known::default() }
     }
 
-    /// Where a position lies on the field.
+    /// A position on the field.
     #[must_use]
     pub fn place(&self, lat_deg: f64, lon_deg: f64) -> Ned {
         self.frame.ned(LatLon { lat_deg, lon_deg })
     }
 
-    /// Forgets everything: the next data may be of another boat, or of the same one elsewhere.
+    /// Discards everything: the next data may come from another boat, or from the same one
+    /// elsewhere.
     pub fn forget(&mut self) {
         self.known = Known::default();
     }
 
-    /// Takes a report; returns whether it changed the estimate.
+    /// Adds a report; returns whether it changed the estimate.
     pub fn update(&mut self, now: SimTime, report: &Report) -> bool {
         match report {
             Report::Fix(fix) => self.take_fix(now, fix),
@@ -112,7 +113,7 @@ impl NavEstimator {
         }
     }
 
-    /// The boat is sent this just now.
+    /// Notes a command just sent to the boat.
     pub fn note_order(&mut self, now: SimTime, ordered: Ordered) {
         self.known.ordered = Some((now, ordered));
         if ordered.ahead_m_s.abs() >= THRUST_FROM_M_S {
@@ -123,13 +124,13 @@ impl NavEstimator {
         }
     }
 
-    /// What the boat does not do though it is ordered to.
+    /// The order that the boat does not follow.
     #[must_use]
     pub fn thrust_fault(&self, now: SimTime) -> Option<ThrustFault> {
         self.known.thrust.fault(now)
     }
 
-    /// The boat's motion, and the age of its fix, s; nothing before the first fix and heading.
+    /// The boat's motion, and the age of its fix, s; `None` before the first fix and heading.
     #[must_use]
     pub fn nav(&self, now: SimTime) -> Option<(Nav, f64)> {
         let (fix, Heading { psi_rad, yaw_rate_rad_s, .. }) = (self.known.fix?, self.known.heading?);
@@ -152,7 +153,8 @@ impl NavEstimator {
         self.known.velocity.map_or_else(Ned::default, |(_, velocity)| velocity)
     }
 
-    /// Velocity over the ground, m/s, as whoever must stop in time takes it: the reported one, or that of the positions if it is faster.
+    /// Velocity over the ground, m/s, for stopping in time: the reported one, or that of the
+    /// positions if it is faster.
     #[must_use]
     pub fn fastest_velocity_m_s(&self) -> Ned {
         let reported = self.velocity_m_s();
@@ -160,7 +162,7 @@ impl NavEstimator {
         if measured.length() > reported.length() { measured } else { reported }
     }
 
-    /// What is wrong with navigation now.
+    /// The present navigation fault.
     #[must_use]
     pub fn fault(&self, now: SimTime) -> Option<NavFault> {
         let Some(fix) = &self.known.fix else { return Some(self.known.doubt.unwrap_or(NavFault::NoFix)) };
@@ -171,8 +173,8 @@ impl NavEstimator {
         let still_s = self.known.still_since.map_or(0.0, |since| (now - since).as_s());
         self.known
             .doubt
-            // In this order, since an operator is shown one cause: what the receiver itself
-            // says, then what is old, then what contradicts.
+            // In this order, because an operator sees one cause: first the receiver's own report,
+            // then old data, then contradictions.
             .or(jump.map(|(_, by_m)| NavFault::Jump(by_m)))
             .or((fix_age_s > self.watch.age_max_s).then_some(NavFault::FixStale(fix_age_s)))
             .or((heading_age_s > self.watch.age_max_s).then_some(NavFault::HeadingStale(heading_age_s)))
@@ -183,8 +185,8 @@ impl NavEstimator {
 
     fn take_fix(&mut self, now: SimTime, fix: &protocol::Fix) -> bool {
         let doubt = self.doubt_of(fix);
-        // A boat that sends a fix twice, by two sentences, has sent it already. What speaks
-        // against it may come in the second one alone.
+        // A boat may send the same fix twice, in two sentences. Evidence against it may be in the
+        // second one alone.
         if self.is_repeated(fix.time, fix.at) {
             self.known.doubt = doubt.or(self.known.doubt);
             return false;
@@ -193,11 +195,11 @@ impl NavEstimator {
         self.take_position(now, fix.at, doubt)
     }
 
-    /// What the receiver says against its fix.
+    /// The receiver's evidence against its fix.
     fn doubt_of(&mut self, fix: &protocol::Fix) -> Option<NavFault> {
-        // RMC tells neither quality nor dilution: those of the GGA before it hold for it too, or
-        // each RMC would take back what speaks against the position. But that there is no fix,
-        // either of them says for itself.
+        // RMC reports neither quality nor dilution, so those of the GGA before it also apply to it.
+        // Otherwise each RMC would clear a fault of the position. Either sentence alone can report
+        // that there is no fix.
         let told = self.known.told.filter(|_| fix.quality.is_none()).unwrap_or((fix.quality, fix.hdop));
         if fix.quality.is_some_and(|quality| quality != FixQuality::NONE) {
             self.known.told = Some(told);
@@ -212,7 +214,8 @@ impl NavEstimator {
         }
     }
 
-    /// A repeated fix is not a new one. Receivers that stamp whole seconds may take several in one.
+    /// A repeated fix is not new. Receivers that stamp whole seconds may send several in one
+    /// second.
     fn is_repeated(&self, time: Option<TimeOfDay>, at: Option<LatLon>) -> bool {
         let same_place = self.known.fix.map(|fix| fix.raw) == at || self.known.fix.is_none();
         time.is_some() && time == self.known.time_of_fix && same_place
@@ -239,11 +242,11 @@ impl NavEstimator {
             // fault lasts until positions have agreed for two seconds.
             if moved.length() > self.speed_max_m_s * since_s + self.watch.jump_m {
                 self.known.jumped = Some((now, moved.length()));
-                // A velocity from before belongs to another place.
+                // An earlier velocity belongs to another position.
                 self.known.velocity = None;
                 self.known.motion.jump();
                 self.known.compass.interrupt();
-            // Fixes that come as a burst would divide their noise by nearly nothing.
+            // A burst of fixes would divide their noise by nearly zero.
             } else if !self.is_velocity_reported(now) && since_s > 0.05 {
                 self.known.velocity = Some((None, moved.scaled(1.0 / since_s)));
             }
@@ -272,7 +275,7 @@ impl NavEstimator {
         }
         let psi_rad = match heading.north {
             North::True => rad_from_compass_deg(heading.deg),
-            // Headings of a Surveyor are magnetic, courses of its receiver true.
+            // A Surveyor's headings are magnetic, its receiver's courses true.
             North::Compass => wrap_pi(rad_from_compass_deg(heading.deg) + self.compass_to_true_rad),
         };
         self.known.motion.take_heading(psi_rad);

@@ -1,6 +1,7 @@
-//! What a gateway records of itself: every byte both ways, everything else that its core was given, and what happened.
+//! The recording of a gateway: every byte both ways, all other inputs of its core, and events.
 //!
-//! The topics are listed in the crate [`recording`]. A step of the core is what came in, then what it led to.
+//! The crate [`recording`] lists the topics. A step of the core is an input followed by its
+//! results.
 
 use crate::bridge::{Event, Input, Output, Plan};
 use messages::external::LinkBytes;
@@ -9,7 +10,7 @@ use primitives::{SimTime, VehicleId, codec};
 use recording::{Entry, Facts, Kind, Opening};
 use serde::{Deserialize, Serialize};
 
-/// The topics of JSON; that of bytes has the boat's name in it.
+/// The JSON topics; the topic of bytes contains the boat's name.
 pub(crate) const INPUT: &str = "input";
 pub(crate) const EVENT: &str = "event";
 
@@ -30,7 +31,8 @@ pub(crate) struct RecordedEvent {
     pub(crate) event: Event,
 }
 
-/// How the recording of a gateway begins that `plan` makes: at this UTC (ns), by a program of this commit.
+/// The start of a recording by a gateway with this plan: at this UTC (ns), by a program of this
+/// commit.
 #[must_use]
 pub fn opening(plan: &Plan, began_utc_ns: u64, commit: &str) -> Opening {
     let plan_json = serde_json::to_string(plan).expect("a plan is JSON");
@@ -48,22 +50,23 @@ pub struct StepEncoder {
 }
 
 impl StepEncoder {
-    /// For the boat of this name; its number follows from the game.
+    /// For the boat with this name; its number comes from the game.
     #[must_use]
     pub fn new(boat: &str) -> StepEncoder {
         StepEncoder { link_topic: link_topic(boat), vehicle: VehicleId(0), pieces: 0 }
     }
 
-    /// From now on the boat has this number.
+    /// Sets the boat's number from now on.
     pub fn set_vehicle(&mut self, vehicle: VehicleId) {
         self.vehicle = vehicle;
     }
 
-    /// The entries of a step at `at` by the gateway's clock, `game_now` being the game's time as last received.
+    /// The entries for a step at `at` by the gateway's clock; `game_now` is the game time as last
+    /// received.
     pub fn step(&mut self, at: SimTime, game_now: SimTime, input: &Input, out: &Output) -> Vec<Entry> {
         let mut entries = match input {
-            // As CDR on a topic of its own, since nearly all of a recording is bytes of the
-            // link; JSON would be several times as long.
+            // As CDR on a topic of its own, because link bytes make up nearly all of a recording;
+            // JSON would be several times as long.
             Input::Bytes(bytes) => vec![self.link_bytes(at, game_now, false, bytes)],
             other => vec![json(INPUT, at, &RecordedInput { input: other.clone() })],
         };
@@ -74,7 +77,7 @@ impl StepEncoder {
         entries
     }
 
-    /// The entry of something that happened.
+    /// The entry for an event.
     #[must_use]
     pub fn event(at: SimTime, event: Event) -> Entry {
         json(EVENT, at, &RecordedEvent { event })
@@ -88,7 +91,7 @@ impl StepEncoder {
     }
 }
 
-/// The entry of a message as JSON.
+/// The entry for a message as JSON.
 pub(crate) fn json(topic: &str, at: SimTime, message: &impl Serialize) -> Entry {
     let bytes = serde_json::to_vec(message).expect("what a gateway records is JSON");
     Entry::Message { topic: topic.to_owned(), schema: None, bytes, at }

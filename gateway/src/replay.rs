@@ -1,4 +1,4 @@
-//! A recording, played through the codec and the supervisor again.
+//! Replays a recording through the codec and the supervisor.
 
 use crate::bridge::{Bridge, Event, Input, Output, Plan};
 use crate::config::default_gateway;
@@ -8,12 +8,12 @@ use primitives::SimTime;
 use recording::{Bag, Kind, RecordedMessage, RecordingError};
 use serde_json::Value;
 
-/// What came of a replay.
+/// The result of a replay.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Replay {
-    /// What the gateway was made for.
+    /// The gateway's plan.
     pub plan: Plan,
-    /// How many inputs there were, and how many bytes came and went.
+    /// The number of inputs.
     pub inputs: u64,
     /// Bytes from the boat.
     pub bytes_in: u64,
@@ -21,11 +21,11 @@ pub struct Replay {
     pub bytes_out: u64,
     /// Time from the first input to the last.
     pub lasted: SimTime,
-    /// What happened this time.
+    /// The events of the replay.
     pub events: Vec<(SimTime, Event)>,
-    /// How it ended.
+    /// The final state.
     pub status: GatewayStatus,
-    /// Where the replay first differs from the recording.
+    /// The first difference from the recording.
     pub difference: Option<Difference>,
     /// Whether the file ends abruptly.
     pub is_cut: bool,
@@ -34,11 +34,11 @@ pub struct Replay {
 /// A difference between a recording and its replay.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Difference {
-    /// When.
+    /// The time.
     pub at: SimTime,
-    /// What was recorded.
+    /// The recorded output.
     pub recorded: String,
-    /// What came out this time.
+    /// The replayed output.
     pub replayed: String,
 }
 
@@ -50,7 +50,8 @@ struct RecordedStep {
     events: Vec<Event>,
 }
 
-/// The plan of a recording. A setting that gateways did not have when it was made is that of the default file.
+/// The plan of a recording. A setting that is newer than the recording has its value from the
+/// default file.
 fn plan_of(text: &str) -> Result<Plan, serde_json::Error> {
     let mut plan: Value = serde_json::from_str(text)?;
     if let Some(gateway) = plan.get_mut("gateway") {
@@ -59,7 +60,7 @@ fn plan_of(text: &str) -> Result<Plan, serde_json::Error> {
     serde_json::from_value(plan)
 }
 
-/// Adds what is missing in tables.
+/// Adds missing table entries.
 fn complete(table: &mut Value, defaults: &Value) {
     let (Value::Object(table), Value::Object(defaults)) = (table, defaults) else { return };
     for (key, default) in defaults {
@@ -70,16 +71,15 @@ fn complete(table: &mut Value, defaults: &Value) {
     }
 }
 
-/// Plays a recording again.
+/// Replays a recording.
 ///
 /// # Errors
-/// [`RecordingError`] for anything but a sound recording of a gateway, cut off or not.
+/// [`RecordingError`] for anything except a valid recording of a gateway, complete or truncated.
 pub fn replay(bag: &Bag) -> Result<Replay, RecordingError> {
     if bag.kind() != Kind::Gateway {
         return Err(RecordingError::Kind { wanted: Kind::Gateway, found: bag.kind() });
     }
-    let plan =
-        plan_of(bag.fact("plan")).map_err(|e| RecordingError::Foreign(format!("its plan is not understood: {e}")))?;
+    let plan = plan_of(bag.fact("plan")).map_err(|e| RecordingError::Foreign(format!("cannot parse its plan: {e}")))?;
     let (steps, is_cut) = (steps(bag, &link_topic(&plan.vehicle))?, bag.is_cut());
     let mut bridge = Bridge::new(plan.clone());
     let (mut bytes_in, mut bytes_out) = (0, 0);
@@ -91,7 +91,7 @@ pub fn replay(bag: &Bag) -> Result<Replay, RecordingError> {
             bytes_in += bytes.len() as u64;
         }
         bytes_out += out.bytes.len() as u64;
-        // Of the last step of a cut file some outputs may be missing.
+        // Some outputs of the last step may be missing from a truncated file.
         let is_whole = !is_cut || i + 1 < steps.len();
         if difference.is_none() && is_whole {
             difference = differing(step, &out);
@@ -114,8 +114,8 @@ pub fn replay(bag: &Bag) -> Result<Replay, RecordingError> {
 
 fn differing(step: &RecordedStep, out: &Output) -> Option<Difference> {
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).replace("\r\n", " ").trim_end().to_owned();
-    // Bytes to the boat first, then what was said: a difference in the second often follows
-    // from the first.
+    // Bytes to the boat first, then events: a difference in the events often follows from one
+    // in the bytes.
     let said = |events: &[Event]| format!("{events:?}");
     let pairs = [(text(&step.out), text(&out.bytes)), (said(&step.events), said(&out.events))];
     let (recorded, replayed) = pairs.into_iter().find(|(recorded, replayed)| recorded != replayed)?;
@@ -129,7 +129,7 @@ fn steps(bag: &Bag, link_topic: &str) -> Result<Vec<RecordedStep>, RecordingErro
     Ok(steps)
 }
 
-/// Puts one message where it belongs.
+/// Adds one message to its step.
 fn add_step(
     steps: &mut Vec<RecordedStep>,
     link_topic: &str,
@@ -140,7 +140,7 @@ fn add_step(
     match message.topic {
         INPUT => begin(message.read_json::<RecordedInput>()?.input),
         EVENT => match (message.read_json::<RecordedEvent>()?.event, steps.last_mut()) {
-            // What the core did not say is not compared.
+            // Only outputs of the core are compared.
             (Event::Remark(_), _) | (_, None) => {}
             (event, Some(step)) => step.events.push(event),
         },

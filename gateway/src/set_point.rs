@@ -1,7 +1,8 @@
-//! The set-point mapper: from an order to the set-point that the boat is sent.
+//! The set-point mapper: converts an order to the set-point that the boat receives.
 //!
-//! With `drive = "thrust"` the heading and speed loops are here; with `drive = "speed"` they are the boat's. Thrust is in
-//! per cent, its difference positive to starboard: port = thrust + difference, starboard = thrust − difference.
+//! With `drive = "thrust"` the heading and speed loops run here; with `drive = "speed"` they run on
+//! the boat. Thrust is in per cent, its difference positive to starboard: port = thrust +
+//! difference, starboard = thrust − difference.
 
 use crate::config::{Drive, Gateway, Limits, Loops};
 use crate::thrust_check::Ordered;
@@ -23,7 +24,7 @@ pub enum SetPoint {
     },
     /// Heading and speed, for the boat's own loops.
     Speed {
-        /// Heading as the boat's compass counts it, degrees.
+        /// Heading in the reference of the boat's compass, degrees.
         heading_deg: f64,
         /// Speed, m/s.
         speed_m_s: f64,
@@ -44,11 +45,11 @@ pub struct SetPointMapper {
     compass_to_true_rad: f64,
     /// The integral of the speed loop, per cent.
     integral_pct: f64,
-    /// What was sent last, and when.
+    /// The last set-point, and when it was sent.
     last: Option<(SimTime, f64, f64)>,
 }
 
-/// Longest time step of the loops, s.
+/// Maximum time step of the loops, s.
 const STEP_MAX_S: f64 = 0.25;
 
 impl SetPointMapper {
@@ -70,7 +71,7 @@ impl SetPointMapper {
         (self.integral_pct, self.last) = (0.0, None);
     }
 
-    /// The set-point for a sound order.
+    /// The set-point for a valid order.
     pub fn map(&mut self, now: SimTime, order: Order, nav: &Nav) -> SetPoint {
         let (thrust, difference) = match order {
             Order::Hold => {
@@ -79,15 +80,16 @@ impl SetPointMapper {
             }
             Order::Thrust { port, starboard } => {
                 self.integral_pct = 0.0;
-                // By the manufacturer's algebra: thrust is half the sum, and the difference
-                // half the difference.
+                // The manufacturer's definition: thrust is half the sum, and the difference half
+                // the difference.
                 (50.0 * (port + starboard), 50.0 * (port - starboard))
             }
             Order::Steer { heading_rad, speed_m_s } => {
                 let turn_rad = wrap_pi(heading_rad - nav.psi_rad);
                 return self.steered(now, (heading_rad, turn_rad, speed_m_s), nav);
             }
-            // A boat that steers by itself gets the heading, and takes half a turn to the side that it likes.
+            // A boat that steers by itself receives the heading, and may turn to either side for
+            // half a turn.
             Order::Turn { by_rad, speed_m_s } => {
                 return self.steered(now, (nav.psi_rad + by_rad, by_rad, speed_m_s), nav);
             }
@@ -95,10 +97,10 @@ impl SetPointMapper {
         self.within_limits(now, thrust, difference)
     }
 
-    /// The set-point for a heading, which is so far clockwise from the boat's, and a speed.
+    /// The set-point for a heading, which is this far clockwise from the boat's, and a speed.
     fn steered(&mut self, now: SimTime, (heading_rad, turn_rad, speed_m_s): (f64, f64, f64), nav: &Nav) -> SetPoint {
         let speed_m_s = speed_m_s.min(self.limits.speed_max_m_s);
-        // The boat's own loops are not published, so this is an option and not the default.
+        // The boat's own loops are not published, so this is an option rather than the default.
         if self.drive == Drive::Speed {
             let heading_deg = self.compass_deg(heading_rad);
             return SetPoint::Speed { heading_deg, speed_m_s };
@@ -107,7 +109,8 @@ impl SetPointMapper {
         self.within_limits(now, thrust, difference)
     }
 
-    /// What the set-point of an order should do to a boat. How one turns that steers by itself is its own affair.
+    /// The expected effect of an order's set-point. How a boat turns that steers by itself is not
+    /// predicted.
     #[must_use]
     pub fn ordered(&self, order: Order, set_point: SetPoint) -> Ordered {
         let heading_rad = if let Order::Steer { heading_rad, .. } = order { Some(heading_rad) } else { None };
@@ -120,7 +123,7 @@ impl SetPointMapper {
         }
     }
 
-    /// A true heading as the boat's compass counts it, degrees.
+    /// A true heading in the reference of the boat's compass, degrees.
     #[must_use]
     pub fn compass_deg(&self, true_rad: f64) -> f64 {
         compass_deg_from_rad(true_rad - self.compass_to_true_rad)
@@ -130,16 +133,16 @@ impl SetPointMapper {
         self.last.map_or(0.0, |(at, ..)| (now - at).as_s().clamp(0.0, STEP_MAX_S))
     }
 
-    /// Our own loops: thrust by the map and by the speed error, difference by the heading error, which comes first.
+    /// Our own loops: thrust from the map and the speed error, difference from the heading error,
+    /// which takes priority.
     fn steer(&mut self, step_s: f64, turn_rad: f64, speed_m_s: f64, nav: &Nav) -> (f64, f64) {
         let Loops { speed_pct_per_m_s, speed_integral_s, heading_pct_per_rad, turn_pct_per_rad_s, .. } = self.loops;
-        // P on the heading and D on the rate of turn that is measured, as pMarinePID on these
-        // boats has it.
+        // P on the heading and D on the measured rate of turn, like pMarinePID on these boats.
         let difference = heading_pct_per_rad * turn_rad - turn_pct_per_rad_s * nav.yaw_rate_rad_s;
         let difference = difference.clamp(-self.limits.difference_max_pct, self.limits.difference_max_pct);
         let error_m_s = speed_m_s - nav.surge_m_s;
         let asked = thrust_for(&self.loops.thrust_map, speed_m_s) + speed_pct_per_m_s * error_m_s + self.integral_pct;
-        // Turning comes first: a boat that cannot turn cannot keep clear.
+        // Turning takes priority: a boat that cannot turn cannot keep clear.
         let room = (100.0 - difference.abs()).min(self.limits.thrust_max_pct);
         // Anti-windup: the integral only grows while the thrust is not at its limit, and not at rest.
         if asked.abs() < room && speed_m_s > 0.0 {
@@ -151,7 +154,7 @@ impl SetPointMapper {
     fn within_limits(&mut self, now: SimTime, thrust: f64, difference: f64) -> SetPoint {
         let Limits { thrust_max_pct, difference_max_pct, slew_pct_s, .. } = self.limits;
         let (_, thrust_before, difference_before) = self.last.unwrap_or((now, 0.0, 0.0));
-        // The first set-point may grow as much as in a tenth of a second.
+        // The first set-point may grow as in a tenth of a second.
         let growth = slew_pct_s * if self.last.is_some() { self.step_s(now) } else { 0.1 };
         let difference_pct =
             slewed(difference_before, difference.clamp(-difference_max_pct, difference_max_pct), growth);
@@ -162,7 +165,7 @@ impl SetPointMapper {
     }
 }
 
-/// The thrust, per cent, that gives a speed, m/s: the map read from right to left.
+/// The thrust, per cent, for a speed, m/s: the inverse of the map.
 fn thrust_for(map: &[(f64, f64)], speed_m_s: f64) -> f64 {
     interpolate(map.iter().map(|(thrust, speed)| (*speed, *thrust)), speed_m_s)
 }

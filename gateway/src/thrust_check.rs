@@ -1,80 +1,85 @@
-//! Checks a boat's motion against what it is sent: does it turn, make way, and go where it is ordered to?
+//! Checks a boat's motion against its commands: does it turn, make way, and follow its heading?
 
 use messages::picture::Nav;
 use primitives::angle::wrap_pi;
 use primitives::{SimTime, math};
 use thiserror::Error;
 
-/// What a set-point should do to a boat.
+/// The expected effect of a set-point on a boat.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Ordered {
-    /// The speed ahead that it should give, m/s.
+    /// The expected speed ahead, m/s.
     pub ahead_m_s: f64,
-    /// Thrust difference, per cent, positive to starboard; 0 where the boat steers by itself.
+    /// Thrust difference, per cent, positive to starboard; 0 if the boat steers by itself.
     pub turn_pct: f64,
-    /// The true heading that it should take, rad; none where a rate of turn or thrust is ordered.
+    /// The expected true heading, rad; `None` if a rate of turn or thrust is ordered.
     pub heading_rad: Option<f64>,
 }
 
-/// What a boat does not do though it is ordered to.
+/// An order that a boat does not follow.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum ThrustFault {
-    /// Its heading does not follow the thrust difference: it turns by this many degrees a second under half of all.
-    #[error(
-        "the thrusters: its heading does not follow the thrust difference: {0:.0} degrees a second under half of it"
-    )]
+    /// Its heading does not respond to the thrust difference: its rate of turn in degrees/s at half
+    /// of the full difference.
+    #[error("the thrusters: its heading does not respond to differential thrust: {0:.0} degrees/s at half difference")]
     NoTurn(f64),
-    /// It makes this little way ahead, m/s, under the thrust for 40 s.
+    /// Its speed ahead, m/s, after 40 s under thrust, is too low.
     #[error("the thrusters: it makes no way under thrust: {0:.1} m/s ahead in {WAY_S} s")]
     NoWay(f64),
-    /// It goes astern in place of ahead, or does not take its heading: its course is off by so much, degrees.
+    /// It goes astern instead of ahead, or does not take its heading: its course is off by this
+    /// much, degrees.
     #[error("the boat moves against its orders: its course is off by {0:.0} degrees")]
     Against(f64),
 }
 
-/// A boat that is ordered to go this fast, m/s, ...
+/// A boat has to make way only when it is ordered to go at least this fast, m/s.
 const WAY_FROM_M_S: f64 = 1.2;
-/// ... for this time, s, ...
+/// The order must be in force for this time, s.
 const WAY_S: f64 = 40.0;
-/// ... goes ahead by this share of that at least, but against a current that is as fast.
+/// The boat must then reach at least this fraction of the ordered speed, unless a current is as
+/// fast.
 const WAY_SHARE_MIN: f64 = 0.1;
-/// A boat that is ordered to go this fast, m/s, ...
+/// A boat can move against its orders only when it is ordered to go at least this fast, m/s.
 const AGAINST_FROM_M_S: f64 = 0.8;
-/// ... moves against its orders when it has gone this far astern, m, beside what wind and current take it, m/s, ...
+/// The distance astern, m, that counts as a fault, and the speed that wind and current may add,
+/// m/s.
 const ASTERN_M: f64 = 6.0;
 const ASTERN_DRIFT_M_S: f64 = 0.4;
-/// ... or when it has been this far off a heading that is held, rad, for this time, s, at this speed or more, m/s. Time in which it turns
-/// to that heading, at this rate or faster, rad/s, does not count; time in which it is so far off, rad, that it goes away counts twice.
+/// The error from a held heading, rad, that counts as a fault after this time, s, at this speed or
+/// more, m/s. Time in which it turns to that heading at least at this rate, rad/s, does not count;
+/// time in which the error exceeds this angle, rad, so that it moves away, counts twice.
 const ASTRAY_RAD: f64 = 0.45;
 const ASTRAY_S: f64 = 10.0;
 const ASTRAY_FROM_M_S: f64 = 0.5;
 const ASTRAY_TURN_RAD_S: f64 = 0.05;
 const ASTRAY_AWAY_RAD: f64 = 1.4;
-/// Both take longer in waves, by the variance of the sway over about this time, s: m and s for each m²/s². A gale (0.1 to 0.3 m²/s²)
-/// holds a healthy boat for 40 s, or drives it 30 m away; in a simulated day (`tests/gale`) half of this is enough.
+/// Both limits grow in waves, with the variance of the sway over about this time, s: m and s for
+/// each m²/s². A gale (0.1 to 0.3 m²/s²) holds a healthy boat for 40 s, or drives it 30 m away. In
+/// a simulated day (`tests/gale`) half of this is enough.
 const SWAY_MEMORY_S: f64 = 10.0;
 const ASTERN_UNREST_M: f64 = 40.0;
 const ASTRAY_UNREST_S: f64 = 1500.0;
-/// Rates of turn are means over this time, s, ...
+/// Rates of turn are averaged over this time, s.
 const PIECE_S: f64 = 0.5;
-/// ... and a boat takes them up with about this lag, s.
+/// A boat reaches its rate of turn with about this lag, s.
 const TURN_LAG_S: f64 = 0.7;
-/// The time over which they are compared with what is ordered, s; by this many of them at least.
+/// The time over which rates and orders are compared, s, and the minimum number of rates.
 const TURN_MEMORY_S: f64 = 60.0;
 const PIECES_MIN: f64 = 20.0;
-/// So many of them, one after the other, count as one: waves and gusts last.
+/// This many consecutive rates count as one: waves and gusts last.
 const PIECES_ALIKE: f64 = 8.0;
-/// They scatter by this much at least, rad/s.
+/// Minimum scatter of the rates, rad/s.
 const TURN_SCATTER_MIN_RAD_S: f64 = 0.03;
-/// A boat turns by this much at least, rad/s, under a thrust difference of 100 %, ...
+/// Minimum rate of turn, rad/s, of a healthy boat with a thrust difference of 100 %.
 const TURN_MIN_RAD_S: f64 = 0.15;
-/// ... or it is a fault, when it is less by so many standard deviations. In a gale a healthy boat may be held by the wind for longer than
-/// a minute, or turned the other way: what counts is whether it turns more when more is ordered.
+/// A rate that is lower by this many standard deviations is a fault. In a gale the wind may hold a
+/// healthy boat for longer than a minute, or turn it the other way: the check is whether it turns
+/// more when more is ordered.
 const SIGMAS: f64 = 5.0;
-/// Orders with a longer gap between them are not held, s.
+/// Orders with a longer gap between them are not continuous, s.
 const GAP_MAX_S: f64 = 1.5;
 
-/// A speed that is held, and what the boat has done meanwhile.
+/// A held speed, and the boat's motion in the meantime.
 #[derive(Clone, Copy, Debug)]
 struct Way {
     since: SimTime,
@@ -84,12 +89,12 @@ struct Way {
     seen: f64,
 }
 
-/// The rate of turn against the thrust difference: a regression that forgets.
+/// The rate of turn against the thrust difference: a regression with exponential memory.
 #[derive(Clone, Copy, Debug, Default)]
 struct Turn {
-    /// What is ordered, as a share of all, as slowly as a boat takes it up.
+    /// The ordered difference, as a fraction of the full one, with the boat's lag.
     difference: f64,
-    /// The piece that grows: how long it is, s, and how far the boat has turned in it, rad.
+    /// The current piece: its duration, s, and the turn in it, rad.
     piece_s: f64,
     turned_rad: f64,
     /// Sums of 1, x, y, xx, xy and yy, where x is the difference and y the rate of turn, rad/s.
@@ -97,7 +102,8 @@ struct Turn {
 }
 
 impl Turn {
-    /// Takes a step of this length; returns how fast the boat turns for a difference of all, rad/s, and its standard deviation.
+    /// Adds a step of this length. Returns the rate of turn at full difference, rad/s, and its
+    /// standard deviation.
     fn observe(&mut self, difference: f64, step_s: f64, turned_rad: f64) -> Option<(f64, f64)> {
         self.difference += (difference - self.difference) * (step_s / TURN_LAG_S).min(1.0);
         self.piece_s += step_s;
@@ -106,8 +112,8 @@ impl Turn {
             return None;
         }
         let (x, y) = (self.difference, self.turned_rad / self.piece_s);
-        // Exponential memory in six sums: the same regression over a window would keep hundreds
-        // of pieces.
+        // Exponential memory in six sums: the same regression over a window would store hundreds of
+        // pieces.
         let keep = 1.0 - (self.piece_s / TURN_MEMORY_S).min(1.0);
         for (sum, new) in self.sums.iter_mut().zip([1.0, x, y, x * x, x * y, y * y]) {
             *sum = keep * *sum + new;
@@ -123,7 +129,7 @@ impl Turn {
     }
 }
 
-/// How unsteady the sway is: its mean and mean square lately, m/s and m²/s².
+/// The recent mean and mean square of the sway, m/s and m²/s².
 #[derive(Clone, Copy, Debug, Default)]
 struct Sway {
     mean: f64,
@@ -131,7 +137,7 @@ struct Sway {
 }
 
 impl Sway {
-    /// Takes the sway after a step of this length; returns its variance, m²/s².
+    /// Adds the sway after a step of this length; returns its variance, m²/s².
     fn observe(&mut self, step_s: f64, sway_m_s: f64) -> f64 {
         let share = (step_s / SWAY_MEMORY_S).min(1.0);
         self.mean += (sway_m_s - self.mean) * share;
@@ -140,39 +146,40 @@ impl Sway {
     }
 }
 
-/// What was ordered lately, and what was seen of it.
+/// Recent orders, and the boat's response.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ThrustCheck {
     /// When the last order was noted, and the heading then, rad.
     last: Option<(SimTime, f64)>,
     turn: Turn,
     way: Option<Way>,
-    /// How far the boat has gone astern in place of ahead, m.
+    /// How far the boat has gone astern instead of ahead, m.
     astern_m: f64,
     /// The ordered heading, rad, and for how long the boat has not taken it, s.
     astray: Option<(f64, f64)>,
     sway: Sway,
-    /// Its rate of turn without the waves, rad/s.
+    /// Its rate of turn, with the waves filtered out, rad/s.
     turn_rad_s: f64,
     fault: Option<ThrustFault>,
 }
 
 impl ThrustCheck {
-    /// The boat is sent this now, with what is known of its motion: heading, rad, and speed ahead over the ground, m/s.
+    /// Notes the present command and the boat's motion: heading, rad, and speed ahead over the
+    /// ground, m/s.
     pub(crate) fn observe(&mut self, now: SimTime, ordered: Ordered, nav: &Nav) {
         let Nav { psi_rad, surge_m_s: ahead_m_s, .. } = *nav;
         let before = self.last.replace((now, psi_rad)).filter(|(at, _)| (now - *at).as_s() <= GAP_MAX_S);
         let Some((before, before_rad)) = before else {
-            // After a gap nobody knows what the boat did meanwhile.
+            // The boat's motion during a gap is unknown.
             *self = ThrustCheck { last: self.last, ..ThrustCheck::default() };
             return;
         };
         let turned_rad = wrap_pi(psi_rad - before_rad);
         let known = self.turn.observe(0.01 * ordered.turn_pct, (now - before).as_s(), turned_rad);
         if let Some((slope, sigma)) = known
-            // No plain limit such as "full difference for 8 s and no turn": in a gale a
-            // simulated Surveyor was held so, or turned the other way, for 15 s 28 times in two
-            // hours of four boats.
+            // No plain limit such as "full difference for 8 s and no turn": in a gale, a simulated
+            // Surveyor was held this way, or turned the other way, for 15 s 28 times in two hours
+            // of four boats.
             && slope + SIGMAS * sigma < TURN_MIN_RAD_S
         {
             self.fault = Some(ThrustFault::NoTurn((0.5 * slope).to_degrees()));
@@ -181,13 +188,14 @@ impl ThrustCheck {
         self.take_against((now - before).as_s(), ordered, nav, turned_rad);
     }
 
-    /// Looks for a boat that goes astern in place of ahead, or holds another heading than the one that is ordered.
+    /// Detects a boat that goes astern instead of ahead, or holds a heading other than the ordered
+    /// one.
     fn take_against(&mut self, step_s: f64, ordered: Ordered, nav: &Nav, turned_rad: f64) {
         let Nav { surge_m_s, sway_m_s, psi_rad, .. } = *nav;
         self.turn_rad_s += (turned_rad - step_s * self.turn_rad_s) / step_s.max(TURN_LAG_S);
         let unrest = self.sway.observe(step_s, sway_m_s);
         let heading_rad = ordered.heading_rad.filter(|_| ordered.ahead_m_s >= AGAINST_FROM_M_S);
-        // Along the bow: a boat that turns about moves against its ordered heading, but never
+        // Along the bow: a boat that turns around moves against its ordered heading, but never
         // astern.
         let astern_m = self.astern_m - (surge_m_s + ASTERN_DRIFT_M_S) * step_s;
         self.astern_m = if ordered.ahead_m_s < AGAINST_FROM_M_S { 0.0 } else { astern_m.max(0.0) };
@@ -198,7 +206,7 @@ impl ThrustCheck {
         let growth = match math::length(surge_m_s, sway_m_s) {
             speed_m_s if off_rad.abs() < ASTRAY_RAD || speed_m_s < ASTRAY_FROM_M_S => -2.0,
             _ if self.turn_rad_s * off_rad.signum() > ASTRAY_TURN_RAD_S => 0.0,
-            // Farther away from where it is to go with every second.
+            // It moves away from its destination with every second.
             _ if off_rad.abs() > ASTRAY_AWAY_RAD => 2.0,
             _ => 1.0,
         };
@@ -224,8 +232,8 @@ impl ThrustCheck {
         held.ordered += ordered_m_s;
         held.seen += ahead_m_s;
         if (now - held.since).as_s() >= WAY_S {
-            // A boat that gets weaker is not found: at 40 s and a tenth no current or gale
-            // alone does this.
+            // A gradual loss of power is not detected: no current or gale alone reduces the speed
+            // to a tenth for 40 s.
             if held.seen < WAY_SHARE_MIN * held.ordered {
                 self.fault = Some(ThrustFault::NoWay(held.seen / held.count));
             }
@@ -233,7 +241,7 @@ impl ThrustCheck {
         }
     }
 
-    /// What the boat did not do, as long as it is driven.
+    /// The order that the boat does not follow, while it is driven.
     pub(crate) fn fault(&self, now: SimTime) -> Option<ThrustFault> {
         self.fault.filter(|_| self.last.is_some_and(|(at, _)| (now - at).as_s() <= GAP_MAX_S))
     }
@@ -247,7 +255,7 @@ mod tests {
         Nav { psi_rad, surge_m_s, ..Nav::default() }
     }
 
-    /// After how many seconds, and which, is there a fault when this is ordered and the boat turns and goes ahead like that.
+    /// When a fault occurs, s, and which one, for this order and this motion of the boat.
     fn first_fault(
         ordered: impl Fn(f64) -> Ordered,
         turn_deg_s: impl Fn(f64) -> f64,
@@ -292,8 +300,8 @@ mod tests {
         assert_eq!(first_fault(held(0.8, 0.0), |_| 0.0, 0.0), None, "too little to tell");
     }
 
-    /// After how many seconds is there a fault when a boat that is ordered to this heading at 2 m/s points and goes like that, degrees and
-    /// m/s ahead.
+    /// When a fault occurs, s, for a boat that is ordered to this heading at 2 m/s, with this
+    /// heading and speed, degrees and m/s ahead.
     fn against(heading_deg: f64, motion: impl Fn(f64) -> (f64, f64)) -> Option<f64> {
         let mut check = ThrustCheck::default();
         let heading_rad = Some(f64::to_radians(heading_deg));

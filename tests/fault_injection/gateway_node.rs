@@ -110,7 +110,7 @@ fn read(wire: &Wire, link: u64, tell: &(dyn Fn(LinkEvent) + Send + Sync)) {
             return;
         }
         wire.visit(|state, _| state.is_connected = false);
-        tell(LinkEvent::Down { peer, reason: format!("nothing came for {SILENCE:?}") });
+        tell(LinkEvent::Down { peer, reason: format!("no bytes for {SILENCE:?}") });
         peer += 1;
     }
 }

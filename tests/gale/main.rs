@@ -242,7 +242,7 @@ fn effective(order: Order, fault: Fault) -> Order {
 
 /// Legitimate failsafes: those that the receiver itself reports.
 fn is_of_receiver(cause: &str) -> bool {
-    ["the fix is of quality", "the last fix is", "the position jumped"].iter().any(|words| cause.contains(words))
+    ["the fix has quality", "the last fix is", "the position jumped"].iter().any(|words| cause.contains(words))
 }
 
 fn hours() -> f64 {

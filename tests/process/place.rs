@@ -95,12 +95,12 @@ fn a_gateway_that_outlives_its_sim_joins_the_next_and_asks_for_its_token() {
     let mut gateway = Process::start(command);
     let mut said = gateway.lines();
     let mut sim = user.sim("real_attacker", "twice", &endpoint, &pace);
-    assert!(said.any(|line| line.contains("joined: the sim takes reports")));
+    assert!(said.any(|line| line.contains("joined: the sim accepts the boat")));
     let before = user.bus(&sim);
     sim.process.kill();
     assert!(said.any(|line| line.contains("waiting for the next")));
     let next = user.sim("real_attacker", "twice", &endpoint, &pace);
-    assert!(said.any(|line| line.contains("joined: the sim takes reports")));
+    assert!(said.any(|line| line.contains("joined: the sim accepts the boat")));
     std::thread::spawn(move || said.for_each(drop));
     // Actions that need the token of the present game.
     let release = |bus: &Bus| {

@@ -42,8 +42,8 @@ impl Wrong {
     /// Text for operators: the fault on a side, and its meaning.
     fn words(self) -> [&'static str; 2] {
         match self {
-            Wrong::Bilge => ["bilge pump runs", "the boat takes in water"],
-            Wrong::TooMuch => ["thruster draws too much", "something may be in its propeller"],
+            Wrong::Bilge => ["bilge pump runs", "the boat is taking on water"],
+            Wrong::TooMuch => ["thruster draws too much", "the propeller may be fouled"],
             Wrong::TooLittle => ["thruster draws no current", "it may be off or broken"],
         }
     }
@@ -85,7 +85,7 @@ impl Alarms {
     /// Records a one-off notice from the boat. A repeated text is not reported again.
     pub(super) fn take_notice(&mut self, text: String, events: &mut Vec<Event>) {
         if self.notice.as_ref() != Some(&text) {
-            events.push(Event::Warning(format!("the boat says {text:?}")));
+            events.push(Event::Warning(format!("the boat reports {text:?}")));
             self.notice = Some(text);
         }
     }
@@ -221,7 +221,11 @@ mod tests {
         let none = [0.0; 2];
         for (power, command, told) in [
             (power([10.0, 10.0], none), ahead(40.0, 0.0), ""),
-            (power([10.0, 10.0], [0.0, 0.8]), None, "the starboard bilge pump runs, 0.8 A: the boat takes in water"),
+            (
+                power([10.0, 10.0], [0.0, 0.8]),
+                None,
+                "the starboard bilge pump runs, 0.8 A: the boat is taking on water",
+            ),
             (power([10.0, 10.0], [0.05, 0.0]), None, ""),
             (power([52.0, 10.0], none), None, "the port thruster draws too much, 52.0 A"),
             (power([10.0, -52.0], none), None, "the starboard thruster draws too much, -52.0 A"),

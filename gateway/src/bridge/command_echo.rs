@@ -135,8 +135,9 @@ impl CommandEcho {
         }
     }
 
-    /// Whether thrust and difference lie between what the boat showed last and what it was sent: so shows a boat that reports
-    /// the thrust that it applies, which follows with a lag, in place of its command. Another gateway's set-points jump.
+    /// Whether thrust and difference lie between the last reported and the last sent values. This is so
+    /// for a boat that reports the applied thrust, which lags, instead of its command. Another
+    /// gateway's set-points jump.
     fn is_on_its_way(&self, shown: &Shown) -> bool {
         let Some(last) = self.last.filter(|last| last.mode == Mode::Thruster && shown.mode == Mode::Thruster) else {
             return false;
@@ -174,7 +175,8 @@ mod tests {
         Shown { mode: Mode::Thruster, heading_deg: None, thrust: Some(thrust), difference: Some(0.0) }
     }
 
-    /// What is found when the boat shows these thrusts, ten a second, after 20 % and then 60 % were sent.
+    /// The verdict when the boat shows these thrusts, ten a second, after 20 % and then 60 % were
+    /// sent.
     fn found(shows: &[f64]) -> (bool, bool) {
         let mut echo = CommandEcho::new(crate::config::default_gateway().control);
         let at = |tenth: usize| SimTime::from_s(0.1 * tenth as f64);

@@ -84,7 +84,7 @@ impl ControlLog {
         self.reported.and_then(|report| report.operator)
     }
 
-    /// The mode that the boat has reported, in place of the mode sent, for longer than `echo_s`.
+    /// The mode that the boat has reported, instead of the mode sent, for longer than `echo_s`.
     pub(super) fn mode_mismatch(&self, now: SimTime) -> Option<Mode> {
         let since = self.mismatch_since?;
         let report = self.reported?;

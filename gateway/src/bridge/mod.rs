@@ -216,7 +216,7 @@ impl Bridge {
         self.alarms.forget();
         self.recovery_point = RecoveryPoint::default();
         self.last_sent = None;
-        // The boat may still follow its previous master's last command: send thrust zero first,
+        // The boat may still follow its previous master's last command: send zero thrust first,
         // then standby.
         self.under_way = true;
     }
@@ -282,7 +282,7 @@ impl Bridge {
         let outside = self.on_site.as_ref().and_then(|site| site.outside(now, mission));
         let begun = match (self.supervisor.state(), outside) {
             (State::EStopped, _) => Err(self.e_stop_in_force()),
-            _ if self.plan.dry_run => Err("a dry run sends the boat nothing but standby, and so no mission".to_owned()),
+            _ if self.plan.dry_run => Err("a dry run sends only standby, so it cannot upload a mission".to_owned()),
             _ if !unfit.is_empty() => Err(Refusal::NotReady(unfit).to_string()),
             (_, Some(outside)) => Err(outside),
             // A disarm request leaves the change of state to the supervisor: the boat must rest
@@ -375,7 +375,7 @@ impl Bridge {
                 Action::Task(task) => {
                     let command = Command::Task(self.on_site.as_ref().map_or(task, |site| site.by_compass(task)));
                     let is_reported = self.control.mode() == Some(self.protocol.shown(command).mode);
-                    // Sent again, this task would start anew.
+                    // If sent again, this task would restart.
                     if self.last_sent.as_ref().is_some_and(|(at, last)| {
                         *last == command && (is_reported || (now - *at).as_s() < TASK_AGAIN_S)
                     }) {
@@ -450,7 +450,8 @@ impl Bridge {
         let ignored =
             action == Action::Standby && ours && self.control.mode_mismatch(now).is_some_and(Mode::is_set_point);
         if ignored && !self.standby_ignored {
-            out.events.push(Event::Warning("the boat is sent standby and reports that it is driven".to_owned()));
+            out.events
+                .push(Event::Warning("the boat is being sent standby but reports that it is being driven".to_owned()));
         }
         self.standby_ignored = ignored;
     }

@@ -47,7 +47,7 @@ impl OnSite {
         let area = self.geofence.area();
         let places = std::iter::once(&mission.erp).chain(&mission.waypoints).filter(on_globe);
         if !places.map(place).all(|place| area.contains(place)) {
-            return Some("a place of it is outside of the geofence".to_owned());
+            return Some("one of its waypoints is outside the geofence".to_owned());
         }
         let boat = self.estimator.nav(now).map(|(nav, _)| nav.at());
         // The way from the boat to the first waypoint is a leg as well: the boat goes there by

@@ -1,4 +1,4 @@
-//! When a boat may arm itself again after a failsafe for want of fresh orders.
+//! When a boat may arm itself again after a failsafe for lack of fresh orders.
 
 use primitives::SimTime;
 

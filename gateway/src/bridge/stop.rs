@@ -6,7 +6,7 @@ use crate::supervisor::Control;
 use primitives::SimTime;
 
 impl Bridge {
-    /// The shutdown message, sent before the link closes: thrust zero, then standby.
+    /// The shutdown message, sent before the link closes: zero thrust, then standby.
     #[must_use]
     pub fn shutdown_message(&self) -> Vec<u8> {
         let mut message = Vec::new();

@@ -1,4 +1,4 @@
-//! A gateway file, checked.
+//! Checks a gateway file.
 
 use super::{BoatProtocol, Gateway};
 use primitives::angle::wrap_pi;
@@ -6,10 +6,10 @@ use primitives::{Ned, math};
 use rules::field::{distance_to_line, sides};
 use scenario::{Diagnostics, Document, check_corners, check_thrust_map};
 
-/// The farthest that a corner of a geofence may be from its first, m: farther ones have latitude and longitude exchanged, or a
-/// digit too many.
+/// Maximum distance of a geofence corner from the first, m: farther ones have latitude and
+/// longitude exchanged, or an extra digit.
 const EXTENT_MAX_M: f64 = 50_000.0;
-/// A sphere is enough to see whether sides cross.
+/// A sphere is accurate enough to detect crossing sides.
 const EARTH_RADIUS_M: f64 = 6_371_000.0;
 
 /// Checks a gateway.
@@ -36,12 +36,12 @@ fn check_geofence(diagnostics: &mut Diagnostics, document: &Document<Gateway>) {
     for (i, keep_out) in keep_out.iter().enumerate() {
         let (Some(outline), Some(keep_out)) = (&outline, keep_out) else { continue };
         if sides(keep_out).all(|side| distance_to_line(outline, side) > 0.0) {
-            diagnostics.note(document.at(&path(i)), "keep_out lies outside of the polygon, expected it inside");
+            diagnostics.note(document.at(&path(i)), "keep_out lies outside the polygon, expected it inside");
         }
     }
 }
 
-/// The corners of a polygon in metres from `origin`, if it is one.
+/// The corners of a polygon in metres from `origin`, if it is valid.
 fn polygon(
     diagnostics: &mut Diagnostics,
     document: &Document<Gateway>,
@@ -65,7 +65,8 @@ fn polygon(
     checked.map_err(|(corner, message)| diagnostics.note(at(corner), message)).ok().map(|()| corners)
 }
 
-/// A place on a sphere laid flat: good for the order of its corners, not for distances of its sides.
+/// Projects a position on a sphere to a plane: good for the order of corners, not for distances of
+/// sides.
 fn metres_from([lat_deg, lon_deg]: [f64; 2], place: [f64; 2]) -> Ned {
     let (_, shrink) = math::sin_cos_deg(lat_deg);
     let [north, east] = [place[0] - lat_deg, place[1] - lon_deg].map(|angle_deg| wrap_pi(angle_deg.to_radians()));

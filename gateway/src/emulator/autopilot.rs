@@ -7,37 +7,37 @@ use primitives::frame::{Ned, Pose};
 use primitives::math;
 use std::collections::BTreeMap;
 
-/// A position is reached, or kept, within this distance, m.
+/// A position counts as reached, or kept, within this distance, m.
 const NEAR_M: f64 = 3.0;
-/// How fast a boat goes back to its station at most, m/s.
+/// Maximum speed of a boat that returns to its station, m/s.
 const KEEP_M_S: f64 = 1.0;
-/// How fast it approaches a position, m/s per m of distance.
+/// Approach speed to a position, m/s per m of distance.
 const APPROACH_PER_S: f64 = 0.2;
-/// How a boat that goes astern turns, per cent of thrust difference: per rad, and at most.
+/// Thrust difference of a boat that goes astern, per cent: per rad, and maximum.
 const ASTERN_PCT_PER_RAD: f64 = 30.0;
 const ASTERN_DIFFERENCE_PCT: f64 = 20.0;
-/// Throttle of a mission that names none, per cent.
+/// Throttle of a mission that does not specify one, per cent.
 const THROTTLE_PCT: f64 = 40.0;
 
 /// The state of the controller.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Autopilot {
-    /// By index; 0 is the emergency recovery point.
+    /// Waypoints by index; 0 is the emergency recovery point.
     places: BTreeMap<u16, Ned>,
     throttle_pct: Option<f64>,
-    /// Speed of a mission that names one, m/s.
+    /// Speed of a mission that specifies one, m/s.
     speed_m_s: Option<f64>,
     /// The mission that is being uploaded, if any.
     upload: Option<Upload>,
     station: Option<Ned>,
-    /// The waypoint that is next.
+    /// The next waypoint.
     next: u16,
 }
 
 /// A mission that is being uploaded.
 #[derive(Clone, Debug, Default)]
 struct Upload {
-    /// How many lines were announced, and received.
+    /// Number of lines announced, and received.
     announced: f64,
     lines: u32,
     throttle_pct: Option<f64>,
@@ -50,7 +50,7 @@ pub(super) fn thrust(thrust_pct: f64, difference_pct: f64) -> Order {
     Order::Thrust { port: share(thrust_pct + difference_pct), starboard: share(thrust_pct - difference_pct) }
 }
 
-/// The order for a heading and a speed; none of them may be missing.
+/// The order for a heading and a speed; both are required.
 pub(super) fn steer(heading_rad: Option<f64>, speed_m_s: Option<f64>) -> Order {
     match (heading_rad, speed_m_s) {
         (Some(heading_rad), Some(speed_m_s)) => {
@@ -60,7 +60,7 @@ pub(super) fn steer(heading_rad: Option<f64>, speed_m_s: Option<f64>) -> Order {
     }
 }
 
-/// The order that makes this speed, m/s, astern, and turns the bow by this angle, rad.
+/// The order for this speed, m/s, astern, that turns the bow by this angle, rad.
 pub(super) fn astern(speed_m_s: f64, turn_rad: f64) -> Order {
     let map = SURVEYOR_THRUST_MAP.iter().map(|(thrust, speed)| (*speed, *thrust));
     let difference_pct = (ASTERN_PCT_PER_RAD * turn_rad).clamp(-ASTERN_DIFFERENCE_PCT, ASTERN_DIFFERENCE_PCT);
@@ -73,7 +73,7 @@ pub(super) fn speed_of_thrust(thrust_pct: f64) -> f64 {
 }
 
 impl Autopilot {
-    /// A new task begins here.
+    /// Starts a new task here.
     pub(super) fn begin(&mut self, at: Ned) {
         self.station = Some(at);
         self.next = 1;
@@ -84,7 +84,7 @@ impl Autopilot {
         self.places.insert(0, home);
     }
 
-    /// A mission as a whole, with the speed that it names, m/s; the recovery point stays.
+    /// Sets a complete mission, with its speed, m/s, if specified; the recovery point stays.
     pub(super) fn set_mission(&mut self, waypoints: Vec<Ned>, speed_m_s: Option<f64>) {
         // Place 0 is the home, which a mission does not replace.
         self.places.retain(|index, _| *index == 0);
@@ -92,12 +92,12 @@ impl Autopilot {
         (self.speed_m_s, self.next) = (speed_m_s, 1);
     }
 
-    /// The speed of the mission from here on, m/s.
+    /// Sets the speed of the mission from here on, m/s.
     pub(super) fn set_speed(&mut self, speed_m_s: f64) {
         self.speed_m_s = Some(speed_m_s);
     }
 
-    /// The waypoint that is next, from 1 on.
+    /// The next waypoint, counted from 1.
     pub(super) fn next(&self) -> u16 {
         self.next
     }
@@ -106,23 +106,23 @@ impl Autopilot {
         self.next = waypoint;
     }
 
-    /// Where it stays when it has nowhere to go.
+    /// Where it stays without a destination.
     pub(super) fn station(&self) -> Option<Ned> {
         self.station
     }
 
-    /// An upload begins: the mission before is deleted.
+    /// Starts an upload, which deletes the previous mission.
     pub(super) fn begin_download(&mut self, announced: f64) {
         self.places.clear();
         self.throttle_pct = None;
         self.upload = Some(Upload { announced, ..Upload::default() });
     }
 
-    /// The upload ends; returns a message. With a line missing there is no mission.
+    /// Ends the upload; returns a message. If a line is missing, there is no mission.
     pub(super) fn end_download(&mut self) -> Option<String> {
         let upload = self.upload.take()?;
-        // What a real Surveyor does with a short upload is not known. The strictest answer lets
-        // our own uploads be tested for completeness.
+        // How a real Surveyor handles an incomplete upload is not known. The strictest behaviour
+        // tests that our own uploads are complete.
         if f64::from(upload.lines) != upload.announced {
             return Some(format!(
                 "mission refused: {} lines were announced, {} could be read",
@@ -140,7 +140,7 @@ impl Autopilot {
         }
     }
 
-    /// A waypoint outside of an upload is ignored.
+    /// Sets a waypoint; ignored outside an upload.
     pub(super) fn take_waypoint(&mut self, index: u16, at: Ned) {
         if let Some(upload) = &mut self.upload {
             upload.lines += 1;
@@ -148,13 +148,13 @@ impl Autopilot {
         }
     }
 
-    /// Keeps the station.
+    /// Keeps station.
     pub(super) fn keep(&mut self, pose: Pose) -> Order {
         let station = *self.station.get_or_insert(pose.at);
         go(pose, station, KEEP_M_S).unwrap_or(Order::Hold)
     }
 
-    /// Goes to a position at this speed, m/s, and keeps its station there.
+    /// Goes to a position at this speed, m/s, and keeps station there.
     pub(super) fn go_to(&mut self, pose: Pose, place: Ned, speed_m_s: f64) -> Order {
         self.station = Some(place);
         go(pose, place, speed_m_s).unwrap_or(Order::Hold)
@@ -168,7 +168,7 @@ impl Autopilot {
         }
     }
 
-    /// Sails the mission, and stays at its end.
+    /// Follows the mission, and stays at its end.
     pub(super) fn sail(&mut self, pose: Pose) -> Order {
         while let Some(place) = self.places.get(&self.next.max(1)).copied() {
             if let Some(order) = go(pose, place, self.speed_m_s()) {
@@ -187,7 +187,8 @@ impl Autopilot {
     }
 }
 
-/// The order to go to a position, unless it is reached: slow while the boat points elsewhere, and near it, to avoid circling.
+/// The order to go to a position, unless it is reached: slow while the boat points elsewhere, and
+/// near it, to avoid circling.
 fn go(pose: Pose, place: Ned, speed_m_s: f64) -> Option<Order> {
     let distance_m = pose.at.distance(place);
     if distance_m <= NEAR_M {
@@ -195,8 +196,7 @@ fn go(pose: Pose, place: Ned, speed_m_s: f64) -> Option<Order> {
     }
     let heading_rad = pose.at.bearing_rad(place);
     let (_, ahead) = math::sin_cos(wrap_pi(heading_rad - pose.psi_rad));
-    // A boat that points elsewhere turns first and drives then: with full thrust it would
-    // circle its station.
+    // A boat that points elsewhere turns first: at full thrust it would circle its station.
     let share = ahead.max(0.0) * ahead.max(0.0);
     let limit_m_s = (APPROACH_PER_S * distance_m).min(speed_m_s);
     Some(Order::Steer { heading_rad, speed_m_s: limit_m_s * share })

@@ -1,10 +1,10 @@
-//! The battery of an emulated boat: what its thrusters draw empties it, and its voltage falls.
+//! The battery of an emulated boat: its thrusters drain it, and its voltage falls.
 
 use super::autopilot::speed_of_thrust;
 use messages::Order;
 use primitives::{SimTime, math};
 
-/// Voltage of a lithium cell at rest by what is left in it, a share of all: typical of NMC cells.
+/// Voltage of a lithium cell at rest, by the fraction of charge left: typical of NMC cells.
 const CELL_V: [(f64, f64); 9] = [
     (0.0, 3.00),
     (0.05, 3.30),
@@ -16,10 +16,10 @@ const CELL_V: [(f64, f64); 9] = [
     (0.9, 4.05),
     (1.0, 4.18),
 ];
-/// A step is no longer than this, s: the sim was away meanwhile.
+/// Maximum step, s: after a longer one the sim was away.
 const STEP_MAX_S: f64 = 10.0;
 
-/// What a battery, and what draws from it, are like.
+/// The properties of a battery and its consumers.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pack {
     /// Cells in series.
@@ -28,18 +28,19 @@ pub(super) struct Pack {
     capacity_ah: f64,
     /// Internal resistance, ohm.
     resistance_ohm: f64,
-    /// What the electronics draw, A.
+    /// Current of the electronics, A.
     system_a: f64,
-    /// What a thruster draws at full thrust ahead, W.
+    /// Power of a thruster at full thrust ahead, W.
     thruster_w: f64,
 }
 
 impl Pack {
-    /// The Surveyor's: 24 V and 1500 Wh, thrusters of 1000 W, by its specification. Boats showed 24.8 V with 15433 of 57741 left, which is
-    /// what seven lithium cells have at that charge if the count is in mAh.
+    /// The Surveyor's: 24 V, 1500 Wh and thrusters of 1000 W, from its specification. Boats showed
+    /// 24.8 V with 15433 of 57741 left, which matches seven lithium cells at that charge if the
+    /// count is in mAh.
     pub(super) const SURVEYOR: Pack =
         Pack { cells: 7.0, capacity_ah: 57.741, resistance_ohm: 0.03, system_a: 1.3, thruster_w: 1000.0 };
-    /// Of a BlueBoat's kind: two lithium batteries of 14.8 V and 18 Ah, and thrusters of about 250 W.
+    /// Like a BlueBoat's: two lithium batteries of 14.8 V and 18 Ah, and thrusters of about 250 W.
     pub(super) const BLUEBOAT: Pack =
         Pack { cells: 4.0, capacity_ah: 36.0, resistance_ohm: 0.02, system_a: 1.3, thruster_w: 250.0 };
 }
@@ -48,21 +49,21 @@ impl Pack {
 #[derive(Clone, Debug)]
 pub(super) struct Battery {
     pack: Pack,
-    /// What is left, a share of all.
+    /// Charge left, as a fraction.
     left: f64,
     /// Whether it drains.
     drains: bool,
-    /// What was drawn since the beginning, Ah.
+    /// Charge used since the start, Ah.
     used_ah: f64,
-    /// What the thrusters draw now, port first, A.
+    /// Current of the thrusters, port first, A.
     thruster_a: [f64; 2],
     at: Option<SimTime>,
-    /// A voltage that it shows whatever is left.
+    /// A voltage that it shows regardless of its charge.
     shown_v: Option<f64>,
 }
 
 impl Battery {
-    /// A battery in which this much is left, a share of all; `None` is a full one that stays so.
+    /// A battery with this fraction of its charge left; `None` is full and never drains.
     pub(super) fn new(pack: Pack, left: Option<f64>) -> Battery {
         Battery {
             pack,
@@ -75,7 +76,8 @@ impl Battery {
         }
     }
 
-    /// Time passes under this order. An empty battery turns no thruster: returns the order as it is carried out.
+    /// Advances time under this order. An empty battery drives no thruster: returns the order as
+    /// executed.
     pub(super) fn carry_out(&mut self, now: SimTime, order: Order) -> Order {
         let step_s = self.at.replace(now).map_or(0.0, |at| (now - at).as_s().clamp(0.0, STEP_MAX_S));
         let drawn_ah = self.amps() * step_s / 3600.0;
@@ -83,32 +85,32 @@ impl Battery {
         if self.drains {
             self.left = (self.left - drawn_ah / self.pack.capacity_ah).max(0.0);
         }
-        // Empty, it turns no propeller, but goes on reporting: a boat's electronics outlast its
-        // thrusters.
+        // An empty battery drives no thruster, but reports continue: a boat's electronics outlast
+        // its thrusters.
         let order = if self.left > 0.0 { order } else { Order::Hold };
         let rest_v = self.rest_v();
-        // By the voltage at rest and not under load: a loop through the resistance would need
+        // From the voltage at rest, not under load: a loop through the resistance would need
         // iterations for a few per cent.
         self.thruster_a = powers(order).map(|share| share * self.pack.thruster_w / rest_v);
         order
     }
 
-    /// What all draw, A.
+    /// The total current, A.
     pub(super) fn amps(&self) -> f64 {
         self.pack.system_a + self.thruster_a[0] + self.thruster_a[1]
     }
 
-    /// What the electronics draw, A.
+    /// The current of the electronics, A.
     pub(super) fn system_a(&self) -> f64 {
         self.pack.system_a
     }
 
-    /// What the thrusters draw, port first, A.
+    /// The current of the thrusters, port first, A.
     pub(super) fn thruster_a(&self) -> [f64; 2] {
         self.thruster_a
     }
 
-    /// Its voltage under what is drawn, V.
+    /// Its voltage under load, V.
     pub(super) fn volts(&self) -> f64 {
         self.shown_v.unwrap_or_else(|| self.rest_v() - self.amps() * self.pack.resistance_ohm)
     }
@@ -118,17 +120,17 @@ impl Battery {
         self.shown_v = Some(volts);
     }
 
-    /// What is left, a share of all.
+    /// Charge left, as a fraction.
     pub(super) fn left(&self) -> f64 {
         self.left
     }
 
-    /// What is left, mAh.
+    /// Charge left, mAh.
     pub(super) fn left_mah(&self) -> f64 {
         1000.0 * self.left * self.pack.capacity_ah
     }
 
-    /// What was drawn since the beginning, mAh.
+    /// Charge used since the start, mAh.
     pub(super) fn used_mah(&self) -> f64 {
         1000.0 * self.used_ah
     }
@@ -138,13 +140,13 @@ impl Battery {
     }
 }
 
-/// The power of each thruster under an order, port first, as a share of all. It goes with the cube of the speed that the thrust gives.
+/// The power of each thruster under an order, port first, as a fraction of full power.
 fn powers(order: Order) -> [f64; 2] {
     let full_m_s = speed_of_thrust(100.0);
     let of_speed = |speed_m_s: f64| {
         let share = (speed_m_s / full_m_s).clamp(0.0, 1.0);
-        // Power goes with the cube of the speed that the thrust gives: propellers at 40 % of
-        // thrust last far longer than 2.5 times.
+        // Power is proportional to the cube of the speed that the thrust gives: at 40 % thrust the
+        // battery lasts far longer than 2.5 times as long.
         share * share * share
     };
     match order {
@@ -162,7 +164,7 @@ mod tests {
 
     const HALF: Order = Order::Thrust { port: 0.4, starboard: 0.4 };
 
-    /// The battery after so many hours of an order, in steps of a second.
+    /// The battery after this many hours of an order, in steps of a second.
     fn after(mut battery: Battery, hours: f64, order: Order) -> (Battery, Order) {
         let mut carried_out = order;
         for s in 0..=(3600.0 * hours) as u32 {
@@ -173,7 +175,7 @@ mod tests {
 
     #[test]
     fn a_surveyor_shows_what_was_seen_on_one() {
-        // $PSEAB,24.8,15433,1.3,22.3,42308,,,24.8,,1.3,0.0,0.0,,,26: of a boat at rest.
+        // $PSEAB,24.8,15433,1.3,22.3,42308,,,24.8,,1.3,0.0,0.0,,,26: from a boat at rest.
         let (battery, _) = after(Battery::new(Pack::SURVEYOR, Some(15_433.0 / 57_741.0)), 0.0, Order::Hold);
         assert!((battery.volts() - 24.8).abs() < 0.2, "{}", battery.volts());
         assert!((battery.left_mah() - 15_433.0).abs() < 1.0 && (battery.amps() - 1.3).abs() < 1e-9);

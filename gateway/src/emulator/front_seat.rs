@@ -10,7 +10,7 @@ use primitives::SimTime;
 pub enum FrontSeat {
     /// A Surveyor's.
     Surveyor(Box<Emulator>),
-    /// One with ArduPilot, which speaks MAVLink.
+    /// An ArduPilot boat's, which speaks MAVLink.
     ArduPilot(Box<ArduPilot>),
 }
 
@@ -23,7 +23,7 @@ impl FrontSeat {
         }
     }
 
-    /// Takes bytes from a port. What it answers goes with the next telemetry.
+    /// Receives bytes from a port. Replies are sent with the next telemetry.
     pub fn receive(&mut self, now: SimTime, port: Port, bytes: &[u8]) {
         match self {
             FrontSeat::Surveyor(boat) => boat.receive(now, port, bytes),
@@ -31,7 +31,7 @@ impl FrontSeat {
         }
     }
 
-    /// A log message, once.
+    /// The next log message, if any.
     pub fn take_remark(&mut self) -> Option<String> {
         match self {
             FrontSeat::Surveyor(boat) => boat.take_remark(),
@@ -39,7 +39,7 @@ impl FrontSeat {
         }
     }
 
-    /// Who commands it, where that is a matter of ports.
+    /// The operator in control, if that depends on ports.
     #[must_use]
     pub fn operator(&self) -> Option<Operator> {
         match self {
@@ -48,7 +48,7 @@ impl FrontSeat {
         }
     }
 
-    /// Takes what its sensors measure.
+    /// Updates the sensor measurements.
     pub fn observe(&mut self, now: SimTime, own: &OwnBoat) {
         match self {
             FrontSeat::Surveyor(boat) => boat.observe(now, own),

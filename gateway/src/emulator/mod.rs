@@ -1,8 +1,9 @@
-//! An emulated Surveyor: commands in, telemetry out, with no socket and no clock; and an emulated boat with ArduPilot, in `ardupilot`.
+//! An emulated Surveyor: commands in, telemetry out, without sockets or clocks; and an emulated
+//! ArduPilot boat, in `ardupilot`.
 //!
-//! It is as strict and as tolerant as a Surveyor is known to be: it sends telemetry in standby too, follows commands
-//! only from the operator in control, reads four to six fields, and by default has no watchdog: it follows the last
-//! command for ever.
+//! It is as strict and as tolerant as a Surveyor is known to be: it sends telemetry even in
+//! standby, follows only the operator in control, and reads four to six fields. By default it has
+//! no watchdog, and follows the last command forever.
 
 mod ardupilot;
 mod autopilot;
@@ -25,31 +26,32 @@ use primitives::SimTime;
 use primitives::frame::LatLon;
 use sensed::Sensed;
 
-/// What an emulated boat is made of; constant but for its clock.
+/// Settings of an emulated boat, constant except for its clock.
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// The origin of the field.
     pub datum: LatLon,
     /// Declination, east positive, rad.
     pub declination_rad: f64,
-    /// Without a command for this long the boat goes to standby, s; `None` is never.
+    /// Without a command for this long the boat goes to standby, s; `None` means never.
     pub watchdog_s: Option<f64>,
-    /// Whether a set-point that is not a whole number leaves the one before in force, as in one known stand-in.
+    /// Whether a set-point that is not a whole number leaves the previous one in force, as in one
+    /// known stand-in.
     pub integers: bool,
-    /// Sentences beyond those that a Surveyor sends.
+    /// Sentences in addition to a Surveyor's.
     pub extra: Vec<Extra>,
     /// Date and time of day at time zero.
     pub began: (Date, TimeOfDay),
-    /// What is left in its battery at the beginning, a share of all; with `None` it is full and stays so.
+    /// Initial charge of its battery, as a fraction; `None` is full and never drains.
     pub charge: Option<f64>,
 }
 
-/// From whom bytes come.
+/// The source of bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Port {
-    /// The primary operator's: shore.
+    /// The primary operator: shore.
     Primary,
-    /// The secondary operator's: the back seat.
+    /// The secondary operator: the back seat.
     Secondary,
 }
 
@@ -59,7 +61,7 @@ pub struct Emulator {
     frame: LocalFrame,
     primary: Framer,
     secondary: Framer,
-    /// Who commands it.
+    /// The operator in control.
     operator: Operator,
     /// The last command that it followed, and when.
     command: Command,
@@ -71,7 +73,7 @@ pub struct Emulator {
     sensed: Sensed,
     battery: Battery,
     remark: Option<String>,
-    /// Commands that were followed, and those that were ignored since another operator was in control.
+    /// Commands followed, and commands ignored because another operator was in control.
     followed: u64,
     ignored: u64,
 }
@@ -99,7 +101,7 @@ impl Emulator {
         }
     }
 
-    /// Gives control to somebody else; the boat goes to standby.
+    /// Gives control to another operator; the boat goes to standby.
     pub fn give_control(&mut self, now: SimTime, operator: Operator) {
         if self.operator != operator {
             self.operator = operator;
@@ -107,9 +109,9 @@ impl Emulator {
         }
     }
 
-    /// Takes bytes from a port.
+    /// Receives bytes from a port.
     pub fn receive(&mut self, now: SimTime, port: Port, bytes: &[u8]) {
-        // Taken out while it is used: sentences change the rest of the emulator.
+        // Taken out during use: sentences change the rest of the emulator.
         let mut framer = std::mem::take(self.framer(port));
         framer.push(bytes, &mut |body| {
             // Unknown sentences are ignored.
@@ -132,7 +134,7 @@ impl Emulator {
         self.plan.began = (date, time.later(SimTime::ZERO - now));
     }
 
-    /// A log message, once.
+    /// The next log message, if any.
     pub fn take_remark(&mut self) -> Option<String> {
         self.remark.take()
     }
@@ -142,7 +144,7 @@ impl Emulator {
         self.battery.show_volts(volts);
     }
 
-    /// Takes what its sensors measure.
+    /// Updates the sensor measurements.
     pub fn observe(&mut self, now: SimTime, own: &OwnBoat) {
         self.sensed.observe(now, own);
     }
@@ -151,8 +153,8 @@ impl Emulator {
     pub fn order(&mut self, now: SimTime) -> Order {
         let watchdog = self.plan.watchdog_s.map(SimTime::from_s);
         let silent = watchdog.is_some_and(|limit| now - self.commanded_at > limit);
-        // Only where a file asks for it: whether Surveyors have a watchdog is not published,
-        // and a gateway that is safe without one is safe with it.
+        // Only if a file enables it: whether Surveyors have a watchdog is not published, and a
+        // gateway that is safe without one is safe with it.
         if silent && self.command.mode != Mode::Standby {
             self.command = Command::default();
         }
@@ -160,7 +162,7 @@ impl Emulator {
         self.battery.carry_out(now, order)
     }
 
-    /// What its command asks of the thrusters.
+    /// The thrusters' order from its command.
     fn commanded(&mut self) -> Order {
         let Some(own) = &self.sensed.own else { return Order::Hold };
         let heading = |command: &Command| command.heading_deg.map(|deg| deg.to_radians() + self.plan.declination_rad);
@@ -190,13 +192,13 @@ impl Emulator {
         &self.command
     }
 
-    /// Who commands it.
+    /// The operator in control.
     #[must_use]
     pub fn operator(&self) -> Operator {
         self.operator
     }
 
-    /// Commands followed, and commands ignored since another operator was in control.
+    /// Commands followed, and commands ignored because another operator was in control.
     #[must_use]
     pub fn counters(&self) -> (u64, u64) {
         (self.followed, self.ignored)
@@ -211,8 +213,8 @@ impl Emulator {
             Port::Secondary => self.operator == Operator::Secondary,
         };
         match sentence {
-            // Counted and ignored, without a word to the sender: so a back seat that does not
-            // watch who is in control learns nothing of it.
+            // Silently counted and ignored, so a back seat that does not check who is in control
+            // does not notice.
             Sentence::Command(_) if !in_control => self.ignored += 1,
             Sentence::Command(command) => {
                 self.followed += 1;
@@ -226,8 +228,9 @@ impl Emulator {
         }
     }
 
-    /// The primary operator takes control by any command; with `OP2_ON` in it the secondary gets it, with `OP2_OFF` not
-    /// any more. These words are ours: what the real console sends is not public.
+    /// The primary operator takes control with any command. `OP2_ON` in it gives control to the
+    /// secondary operator, `OP2_OFF` takes it away. These words are ours: the real console's are
+    /// not public.
     fn take_primary(&mut self, now: SimTime, sentence: &Sentence) {
         let Sentence::Command(command) = sentence else { return };
         let operator = if command.words == "OP2_ON" { Operator::Secondary } else { Operator::Primary };
@@ -252,10 +255,10 @@ impl Emulator {
                 }
             }
             mode => {
-                // Another mode ends mode T: its thrust must not come back with the next command
-                // that leaves a field empty.
+                // Another mode ends mode T: its thrust must not return with the next command that
+                // leaves a field empty.
                 (self.thrust_pct, self.difference_pct) = (0.0, 0.0);
-                // A command of the same mode goes on with what is under way.
+                // A command with the same mode continues the current task.
                 if let (true, Some(own)) = (mode != self.command.mode, &self.sensed.own) {
                     self.autopilot.begin(own.nav.at());
                 }

@@ -1,22 +1,22 @@
-//! What an emulated boat knows of itself, whichever protocol it speaks.
+//! The sensor data of an emulated boat, for both protocols.
 
 use messages::picture::OwnBoat;
 use primitives::SimTime;
 
-/// A receiver that has no newer fix than this reports none, s.
+/// A receiver without a fix newer than this reports none, s.
 // The period of a receiver that measures once a second.
 const FIX_AGE_MAX_S: f64 = 1.0;
 
-/// What its sensors measured last.
+/// The latest sensor measurements.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sensed {
     pub(super) own: Option<OwnBoat>,
-    /// When the fix that `own` has was first seen.
+    /// When the fix in `own` was first seen.
     pub(super) fix_seen: Option<SimTime>,
 }
 
 impl Sensed {
-    /// Takes what the sensors measure.
+    /// Updates the sensor measurements.
     pub(super) fn observe(&mut self, now: SimTime, own: &OwnBoat) {
         if self.own.is_none_or(|before| before.fix_ns != own.fix_ns) {
             self.fix_seen = Some(now);

@@ -13,7 +13,8 @@ use primitives::{LatLon, SimTime, math};
 const COURSE_FROM_M_S: f64 = 0.1;
 const STANDARD_GRAVITY_M_S2: f64 = 9.806_65;
 
-/// Sentences that a Surveyor does not send, for readers that want them: gpsd has no time and no speed without RMC.
+/// Sentences that a Surveyor does not send, for readers that need them: gpsd has no time and no
+/// speed without RMC.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extra {
     /// Fix with date, course and speed.
@@ -26,7 +27,7 @@ pub enum Extra {
     Zda,
 }
 
-/// All of it, now.
+/// Writes a complete burst.
 pub(super) fn burst(boat: &Emulator, now: SimTime, out: &mut Vec<u8>) {
     if let (Some(own), Some(seen)) = (&boat.sensed.own, boat.sensed.fix_seen) {
         let report = FixReport::new(boat, now, seen, &own.nav);
@@ -39,20 +40,19 @@ pub(super) fn burst(boat: &Emulator, now: SimTime, out: &mut Vec<u8>) {
     }
     Sentence::Battery(battery(&boat.battery, now)).write(out);
     Sentence::ControlState(control_state(boat)).write(out);
-    // The one code that is known, by the driver of West Point: anything else is a warning
-    // there.
+    // The only known code, from West Point's driver, which treats any other as a warning.
     Sentence::BoatError(BoatError { code: "N".to_owned() }).write(out);
 }
 
-/// A fix as it is reported.
+/// A fix in reported form.
 struct FixReport {
     date: Date,
     now: TimeOfDay,
     time: TimeOfDay,
-    /// Nothing if the receiver has lost its fix.
+    /// `None` if the receiver has lost its fix.
     at: Option<LatLon>,
     psi_rad: f64,
-    /// Course, rad, if there is one, and speed, m/s.
+    /// Course, rad, if any, and speed, m/s.
     course_rad: Option<f64>,
     speed_m_s: f64,
 }
@@ -68,8 +68,8 @@ impl FixReport {
             time: began.later(seen),
             at: boat.sensed.has_fix(now).then(|| boat.frame.lat_lon(nav.at())),
             psi_rad: nav.psi_rad,
-            // Blank and not zero: a reader that takes a missing course for north would send a
-            // resting boat's velocity the wrong way.
+            // Blank, not zero: a reader that takes a missing course for north would get the
+            // velocity of a boat at rest wrong.
             course_rad: (speed_m_s >= COURSE_FROM_M_S).then(|| math::atan2(velocity.east, velocity.north)),
             speed_m_s,
         }
@@ -80,8 +80,7 @@ impl FixReport {
             talker: Talker::GP,
             time: Some(self.time),
             at: self.at,
-            // Surveyors show DGPS (2) with some eleven satellites in the samples that are
-            // public.
+            // Surveyors show DGPS (2) with about eleven satellites in the public samples.
             quality: if self.at.is_some() { 2 } else { 0 },
             satellites: Some(if self.at.is_some() { 11 } else { 0 }),
             hdop: self.at.map(|_| 0.98),
@@ -98,7 +97,7 @@ impl FixReport {
             course_magnetic_deg: self.course_rad.map(|rad| degrees(rad - boat.plan.declination_rad)),
             speed_kn: Some(self.speed_m_s / M_S_PER_KN),
             speed_km_h: Some(3.6 * self.speed_m_s),
-            // New boats leave it out.
+            // Newer boats omit it.
             with_mode: false,
         }
     }
@@ -162,11 +161,11 @@ fn battery(battery: &super::battery::Battery, now: SimTime) -> Battery {
 }
 
 fn control_state(boat: &Emulator) -> ControlState {
-    // Where it steers no heading, it reports the one it has.
+    // Without a commanded heading, it reports its own.
     // Seen in public samples of PSEAD: mode T shows the boat's own heading.
     let steers = matches!(boat.command.mode, Mode::Heading | Mode::Speed);
     let has = || boat.sensed.own.as_ref().map(|own| compass_deg_from_rad(own.nav.psi_rad - boat.plan.declination_rad));
-    // As the boat follows it: no more than all, but for a speed.
+    // As the boat executes it: limited to full thrust, except for a speed.
     let is_speed = boat.command.mode == Mode::Speed;
     let clamped =
         |number: Option<f64>| number.map(|number| if is_speed { number } else { number.clamp(-100.0, 100.0) });

@@ -1,4 +1,4 @@
-//! The water where a boat may be: a polygon, without the keep-outs in it.
+//! The water where a boat may be: a polygon without its keep-outs.
 
 use crate::config::Geofence;
 use crate::geodesy::LocalFrame;
@@ -8,26 +8,27 @@ use rules::field::{Field, distance_to_outline, do_meet, is_within, sides};
 use scenario::{Scenario, StartPosition};
 use thiserror::Error;
 
-/// A round corner is drawn in steps of this, degrees: it is cut by less than half a per cent of the margin.
+/// Angle step for drawing a round corner, degrees: it cuts off less than half a per cent of the
+/// margin.
 const ROUND_STEP_DEG: f64 = 90.0 / 8.0;
 
-/// Why a geofence does not go with a game.
+/// Why a geofence does not suit a game.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum GeofenceError {
-    /// A keep-out is no part of it.
-    #[error("keep_out {0} (the first is 0) lies outside of the geofence, expected it inside")]
+    /// A keep-out is outside it.
+    #[error("keep_out {0} (the first is 0) lies outside the geofence, expected it inside")]
     KeepOutOutside(usize),
-    /// The boat would begin where it must not be.
-    #[error("{0} starts outside of the geofence or in a keep-out, expected its start position inside")]
+    /// The boat would start where it must not be.
+    #[error("{0} starts outside the geofence or in a keep-out, expected its start position inside")]
     StartOutside(String),
 }
 
-/// The water where a boat may be. Its edges do not belong to it.
+/// The water where a boat may be, excluding its edges.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GeofenceArea {
     /// Its corners, in order.
     pub outline: Vec<Ned>,
-    /// The corners of what is cut out of it.
+    /// The corners of the keep-outs.
     pub keep_out: Vec<Vec<Ned>>,
 }
 
@@ -43,13 +44,13 @@ impl GeofenceArea {
         GeofenceArea { outline, keep_out: rules.keep_out.iter().map(laid_out).collect() }
     }
 
-    /// Whether it goes with the game: keep-outs are in it, and so is the start position of the boat.
+    /// Checks that it suits the game: it contains the keep-outs and the boat's start position.
     ///
     /// # Errors
-    /// [`GeofenceError`] says what is outside.
+    /// [`GeofenceError`] names what is outside.
     pub fn check(&self, scenario: &Scenario, vehicle: VehicleId) -> Result<(), GeofenceError> {
-        // A keep-out that touches nothing is a mistyped coordinate, and the shoal that it was
-        // for lies unprotected.
+        // A keep-out that touches nothing has a mistyped coordinate, and leaves its shoal
+        // unprotected.
         let is_apart = |keep_out: &Vec<Ned>| {
             sides(keep_out).all(|(a, b)| !is_within(&self.outline, a) && met(&self.outline, a, b) == 0)
         };
@@ -59,7 +60,7 @@ impl GeofenceArea {
         let boat = &scenario.vehicles[vehicle.index()];
         let starts = match &boat.start_position {
             StartPosition::At(pose) => vec![pose.at],
-            // A drawn position may be in any corner, so all of them have to be inside.
+            // A random position may be in any corner, so all corners must be inside.
             StartPosition::Somewhere { along_m, across_m, .. } => {
                 let ends = [along_m.0, along_m.1].into_iter();
                 let corners = ends.flat_map(|along| [across_m.0, across_m.1].map(|across| (along, across)));
@@ -76,19 +77,18 @@ impl GeofenceArea {
         is_within(&self.outline, at) && !self.keep_out.iter().any(|keep_out| is_within(keep_out, at))
     }
 
-    /// Whether a boat may be on all of the straight way between two places. The ends alone do not tell: the outline may be
-    /// concave, and a keep-out may lie between them.
+    /// Whether a boat may be everywhere on the straight line between two points. The ends alone are
+    /// not enough: the outline may be concave, and a keep-out may lie between them.
     #[must_use]
     pub fn contains_way(&self, from: Ned, to: Ned) -> bool {
         self.contains(from) && self.leads_in(from, to)
     }
 
-    /// Whether the straight way ends inside, and leaves nothing where the boat may be on the way there: a boat that is
-    /// outside, or in a keep-out, comes back by it.
+    /// Whether the straight line ends inside, and never leaves the permitted water once it has
+    /// entered: a boat that is outside, or in a keep-out, returns along it.
     #[must_use]
     pub fn leads_in(&self, from: Ned, to: Ned) -> bool {
-        // From the wrong side exactly one crossing leads in; a second one would lead out again
-        // in between.
+        // From the wrong side exactly one crossing leads in; a second one would lead out again.
         let crosses_once = |polygon: &[Ned], wrong: bool| met(polygon, from, to) == usize::from(wrong);
         self.contains(to)
             && crosses_once(&self.outline, !is_within(&self.outline, from))
@@ -104,20 +104,22 @@ impl GeofenceArea {
     }
 }
 
-/// How many sides of a polygon have a point in common with the straight way.
+/// The number of polygon sides that touch the straight line.
 fn met(polygon: &[Ned], from: Ned, to: Ned) -> usize {
     sides(polygon).filter(|side| do_meet(*side, (from, to))).count()
 }
 
-/// What lies within a rectangle, clockwise on the chart, or up to so far outside: a rectangle with round corners.
+/// The area within a rectangle, clockwise on the chart, or within this distance of it: a rectangle
+/// with round corners.
 fn with_margin(corners: &[Ned; 4], margin_m: f64) -> Vec<Ned> {
     if margin_m <= 0.0 {
         return corners.to_vec();
     }
-    // Round corners, since a margin is a distance: square ones would allow 1.4 times as much at
+    // Round corners, because a margin is a distance: square ones would allow 1.4 times as much at
     // the corners.
     let round = |[before, corner, after]: [Ned; 3]| {
-        // From the normal of the side that ends here to that of the side that begins, a quarter turn clockwise.
+        // From the normal of the side that ends here to that of the next side, a quarter turn
+        // clockwise.
         let [first, second] = [(before, corner), (corner, after)].map(|(a, b)| {
             let (side, length_m) = (b - a, a.distance(b));
             Ned { north: side.east, east: -side.north }.scaled(margin_m / length_m)

@@ -1,4 +1,4 @@
-//! How a boat coasts to rest with its thrusters at zero, by its boat file or by measured distances.
+//! Predicts how a boat coasts to rest with zero thrust, from its boat file or measured distances.
 
 use primitives::frame::Ned;
 use primitives::{SimTime, math};
@@ -9,30 +9,32 @@ use serde::{Deserialize, Serialize};
 const REST_M_S: f64 = 0.1;
 /// Time step of the prediction, s.
 const STEP_S: f64 = 0.25;
-/// Steps of one straight leg of it.
+/// Steps per straight leg.
 const STEPS_PER_LEG: u32 = 4;
-/// Drift counts for this long at least, s: that long after it was stopped, a boat is still inside.
+/// Drift counts for at least this long, s: a boat stays inside for this long after a stop.
 const DRIFT_S: f64 = 20.0;
-/// Shares of drift and turn by which the boat may miss the prediction: at these, no approach of `tests/geofence` crosses.
+/// Fractions of drift and turn by which the boat may deviate from the prediction: with these, no
+/// approach in `tests/geofence` crosses.
 const DRIFT_SLACK: f64 = 0.8;
 const TURN_SLACK: f64 = 0.7;
-/// A hull that nobody steers veers by this, rad.
+/// An unsteered hull veers by this much, rad.
 const VEER_RAD: f64 = 0.1;
-/// Drift that is not seen under way, m/s.
+/// Drift that cannot be observed under way, m/s.
 const LEEWAY_M_S: f64 = 0.2;
-/// Speed falls more slowly than the thruster's setting, by this factor at most.
+/// The speed falls more slowly than the thruster setting, by at most this factor.
 const SLEW_SHARE: f64 = 0.75;
-/// The longest prediction, s.
+/// Maximum duration of the prediction, s.
 const LONGEST_S: f64 = 60.0;
 /// The drift is a mean over about this time, s.
 const DRIFT_MEMORY_S: f64 = 5.0;
-/// After a longer gap between orders the estimate begins anew, s.
+/// After a longer gap between orders the estimate restarts, s.
 const GAP_MAX_S: f64 = 1.5;
-/// A boat turns by no more than this while it coasts, rad.
+/// Maximum turn of a boat while it coasts, rad.
 const TURN_MAX_RAD: f64 = std::f64::consts::FRAC_PI_2;
 
-/// What coasting depends on: resistance ahead, thrusters, and resistance to turning.
-// M du/dt = F - l u - q |u| u (Fossen 2021, ch. 6), where F is what keeps the steady speed of the present thrust.
+/// The parameters of coasting: resistance ahead, thrusters, and resistance to turning.
+// M du/dt = F - l u - q |u| u (Fossen 2021, ch. 6), where F maintains the steady speed of the
+// present thrust.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Coasting {
     /// Mass and added mass in surge M, kg.
@@ -41,11 +43,12 @@ pub struct Coasting {
     pub linear_kg_s: f64,
     /// Quadratic resistance q, kg/m.
     pub quadratic_kg_m: f64,
-    /// What a boat without such resistance slows down by, m/s².
+    /// Deceleration of a boat without such resistance, m/s².
     pub deceleration_m_s2: f64,
-    /// The steady speed of full thrust, m/s.
+    /// The steady speed at full thrust, m/s.
     pub speed_max_m_s: f64,
-    /// How fast thrust falls, in shares of all a second, and how long until it begins to, s.
+    /// Rate at which thrust falls, as a fraction of full thrust per second, and the delay before it
+    /// starts, s.
     pub slew_per_s: f64,
     /// See `slew_per_s`.
     pub lag_s: f64,
@@ -54,7 +57,7 @@ pub struct Coasting {
 }
 
 impl Coasting {
-    /// By the boat file.
+    /// The model from the boat file.
     #[must_use]
     pub fn of(boat: &Boat) -> Coasting {
         let hull = &boat.hull;
@@ -69,7 +72,7 @@ impl Coasting {
                 lag_s: thruster.lag_s + thruster.flaws.latency_s,
                 yaw_s: (hull.yaw_inertia_kg_m2 + hull.added_yaw_kg_m2) / hull.yaw_linear_kg_m2_s.max(1e-6),
             },
-            // It does half of its limit (see `sim::kinematic`); 0 is none.
+            // It uses half of its limit (see `sim::kinematic`); 0 means none.
             Drive::Kinematic(kinematic) => Coasting {
                 mass_kg: 1.0,
                 linear_kg_s: 0.0,
@@ -86,7 +89,8 @@ impl Coasting {
         }
     }
 
-    /// The same boat, but so that it coasts at least as far as was measured from each of these speeds: m/s and m.
+    /// The same boat, but coasting at least the measured distance from each of these speeds: m/s
+    /// and m.
     #[must_use]
     pub fn as_measured(self, measured: &[(f64, f64)]) -> Coasting {
         let longer = |(speed_m_s, distance_m): &(f64, f64)| distance_m / self.distance_m(*speed_m_s).max(1e-3);
@@ -100,7 +104,7 @@ impl Coasting {
         }
     }
 
-    /// How far it coasts from this speed when its thrusters stop at once, m.
+    /// How far it coasts from this speed with an immediate thrust cut, m.
     #[must_use]
     pub fn distance_m(&self, speed_m_s: f64) -> f64 {
         let at_once = Coasting { lag_s: 0.0, slew_per_s: f64::INFINITY, ..*self };
@@ -111,12 +115,12 @@ impl Coasting {
             .map_or(0.0, |leg| leg.end.north)
     }
 
-    /// How far it still coasts from a low speed, where the resistance is linear, m.
+    /// The remaining distance from a low speed, where the resistance is linear, m.
     fn tail_m(&self, speed_m_s: f64) -> f64 {
         if self.linear_kg_s > 0.0 { speed_m_s * self.mass_kg / self.linear_kg_s } else { 0.0 }
     }
 
-    /// Deceleration by resistance alone, m/s², with its sign.
+    /// Deceleration by resistance alone, m/s², signed.
     fn resistance_m_s2(&self, speed_m_s: f64) -> f64 {
         (self.linear_kg_s + self.quadratic_kg_m * speed_m_s.abs()) * speed_m_s / self.mass_kg
     }
@@ -126,7 +130,7 @@ impl Coasting {
         thrust_m_s + (toward_m_s - thrust_m_s).clamp(-change, change)
     }
 
-    /// The way to rest from the boat on, in straight legs.
+    /// The path to rest from the boat on, in straight legs.
     #[must_use]
     pub fn path(&self, glide: &Glide) -> Vec<Leg> {
         let Glide { water_m_s, drift_m_s, yaw_rate_rad_s, reaction_s, .. } = *glide;
@@ -144,7 +148,7 @@ impl Coasting {
             if t_s > until_fall_s {
                 thrust_m_s = self.fallen_thrust(thrust_m_s, 0.0, STEP_S);
                 let change = self.resistance_m_s2(thrust_m_s) - self.resistance_m_s2(speed_m_s);
-                // A boat that is slower than its thrust gains speed for a while.
+                // A boat that is slower than its thrust allows gains speed for a while.
                 let decelerated = if thrust_m_s > 0.0 { 0.0 } else { self.deceleration_m_s2 };
                 speed_m_s = (speed_m_s + (change - decelerated) * STEP_S).max(0.0);
             }
@@ -165,41 +169,44 @@ impl Coasting {
     }
 }
 
-/// How far a boat may be beside its predicted place.
+/// The lateral distance of a boat from its predicted position.
 fn slack_m(drift_m_s: &Ned, t_s: f64, turned_rad: f64, at: Ned) -> f64 {
     (LEEWAY_M_S + DRIFT_SLACK * drift_m_s.length()) * t_s + (VEER_RAD + TURN_SLACK * turned_rad.abs()) * at.length()
 }
 
-/// A part of the way to rest.
+/// A leg of the path to rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Leg {
     /// Its end, m from the boat.
     pub end: Ned,
-    /// How far beside that the boat may come, m: leeway grows as the boat slows down, and a turn may go on.
+    /// How far the boat may deviate laterally from that, m: leeway grows as the boat slows down,
+    /// and a turn may continue.
     pub slack_m: f64,
 }
 
-/// A boat's motion when it begins to coast.
+/// A boat's motion when it starts to coast.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Glide {
     /// Velocity through the water, m/s.
     pub water_m_s: Ned,
-    /// Velocity of the water and of what the wind adds, m/s.
+    /// Velocity of the water, plus that caused by the wind, m/s.
     pub drift_m_s: Ned,
     /// The steady speed of its present thrust, m/s.
     pub thrust_m_s: f64,
     /// Rate of turn, rad/s.
     pub yaw_rate_rad_s: f64,
-    /// How long it goes on as before, s.
+    /// How long it continues as before, s.
     pub reaction_s: f64,
 }
 
-/// The drift of a boat under orders: what its velocity over the ground has beyond the one that its thrust explains.
-// A boat that coasts farther than its file says drifts by this estimate, too: it then counts on a longer way.
+/// The drift of a boat under orders: its velocity over the ground minus the velocity that its
+/// thrust explains.
+// A boat that coasts farther than its file says appears to drift: the predicted path becomes
+// longer.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DriftEstimate {
     at: Option<SimTime>,
-    /// How long it has been estimated, s.
+    /// Duration of the estimate, s.
     lasted_s: f64,
     /// Surge through the water by the boat file, and the steady speed of the thrust, m/s.
     surge_m_s: f64,
@@ -210,7 +217,8 @@ pub struct DriftEstimate {
 }
 
 impl DriftEstimate {
-    /// Takes the steady speed ahead of the present set-point, m/s, and the boat's heading and velocity over the ground.
+    /// Updates the estimate with the steady speed ahead of the present set-point, m/s, and the
+    /// boat's heading and velocity over the ground.
     pub fn observe(
         &mut self,
         coasting: &Coasting,
@@ -227,7 +235,7 @@ impl DriftEstimate {
             return;
         };
         let step_s = (now - at).as_s();
-        // Steps that keep the equation stable.
+        // Small steps keep the equation stable.
         for _ in 0..6 {
             let step_s = step_s / 6.0;
             self.thrust_m_s = coasting.fallen_thrust(self.thrust_m_s, ordered_m_s, step_s);

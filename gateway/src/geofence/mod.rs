@@ -13,34 +13,35 @@ use primitives::SimTime;
 use primitives::frame::Ned;
 use rules::field::Field;
 
-/// From the end of the debounce time to thrust zero at the boat, s: a tick, the link, the boat's own cycle.
+/// Time from the end of the debounce time to zero thrust at the boat, s: a tick, the link, the
+/// boat's own cycle.
 const COMMAND_S: f64 = 0.5;
-/// A breach by drift is over when the path has been free for longer than this, s.
+/// A breach by drift ends when the path has been free for longer than this, s.
 const BREACH_ENDS_S: f64 = 2.0;
 
-/// Watches that a boat is inside of the geofence and can stop there.
+/// Checks that a boat is inside the geofence and can stop there.
 #[derive(Clone, Debug)]
 pub struct GeofenceWatch {
     area: GeofenceArea,
     rules: Geofence,
-    /// `None` where no boat file is known.
+    /// `None` if no boat file is known.
     coasting: Option<Coasting>,
     drift: DriftEstimate,
-    /// Whether the boat is outside or about to be: straight on, and as it drifts and turns.
+    /// Breaches, present or imminent: on the straight path, and on the path with drift and turn.
     straight: Breach,
     drifting: Breach,
 }
 
-/// A breach, from its beginning.
+/// A breach, from its start.
 #[derive(Clone, Copy, Debug, Default)]
 struct Breach {
-    /// Since when, and when it was last seen.
+    /// When it began, and when it was last seen.
     between: Option<(SimTime, SimTime)>,
 }
 
 impl Breach {
-    /// Whether all is well or has not been amiss for as long as `debounce_s`. It must be sound for longer than `ends_s`
-    /// before a breach is over.
+    /// Whether all is well, or has been wrong for less than `debounce_s`. A breach ends after more
+    /// than `ends_s` without a fault.
     fn is_well(&mut self, now: SimTime, is_sound: bool, (debounce_s, ends_s): (f64, f64)) -> bool {
         if is_sound {
             self.between = self.between.filter(|(_, last)| (now - *last).as_s() <= ends_s);
@@ -53,7 +54,7 @@ impl Breach {
 }
 
 impl GeofenceWatch {
-    /// The geofence on this field, for a boat that coasts like this.
+    /// The geofence on this field, for a boat with this coasting model.
     #[must_use]
     pub fn new(field: &Field, rules: &Geofence, coasting: Option<Coasting>) -> GeofenceWatch {
         let mut watch = GeofenceWatch::of_area(GeofenceArea::new(field, rules), rules);
@@ -79,18 +80,19 @@ impl GeofenceWatch {
         &self.area
     }
 
-    /// The boat is sent a set-point of this steady speed ahead, m/s, at this heading and velocity over the ground.
+    /// Notes that the boat receives a set-point of this steady speed ahead, m/s, at this heading
+    /// and velocity over the ground.
     pub fn note_order(&mut self, now: SimTime, ahead_m_s: f64, motion: (f64, Ned)) {
         if let Some(coasting) = &self.coasting {
             self.drift.observe(coasting, now, ahead_m_s, motion);
         }
     }
 
-    /// Whether a boat here with this velocity over the ground and rate of turn is inside and can stop inside. A breach
-    /// counts after the debounce time.
+    /// Whether a boat here, with this velocity over the ground and rate of turn, is inside and can
+    /// stop inside. A breach counts after the debounce time.
     pub fn is_inside(&mut self, now: SimTime, at: Ned, motion: (Ned, f64)) -> bool {
-        // The whole way is checked and not its end: the end alone could lie beyond a keep-out
-        // or an inward corner.
+        // The whole path is checked, not only its end, which could lie beyond a keep-out or an
+        // inward corner.
         let is_sound = |path: &Vec<Leg>| {
             let mut from = at;
             path.iter().all(|leg| {
@@ -102,8 +104,8 @@ impl GeofenceWatch {
         };
         let is_straight_sound = self.area.contains(at) && self.straight_paths(motion.0).iter().all(is_sound);
         let is_drift_sound = self.drifting_path(now, motion).iter().all(is_sound);
-        // A fix that scatters across the line once is no breach. In waves a boat yaws to and fro, and its path to rest
-        // with it: there, one that is free for a moment does not end a breach.
+        // A single fix scattered across the line is not a breach. In waves a boat yaws, and its
+        // path to rest swings with it: a path that is free for a moment does not end a breach.
         let is_well = [
             self.straight.is_well(now, is_straight_sound, (self.rules.debounce_s, 0.0)),
             self.drifting.is_well(now, is_drift_sound, (self.rules.debounce_s, BREACH_ENDS_S)),
@@ -111,12 +113,14 @@ impl GeofenceWatch {
         is_well == [true; 2]
     }
 
-    /// The ways to rest that the boat must have free, from where it is: straight on as in still water, ...
+    /// The paths to rest that must be free for the boat, from its position: straight on as in still
+    /// water, ...
     fn straight_paths(&self, velocity_m_s: Ned) -> Vec<Vec<Leg>> {
         let Geofence { deceleration_m_s2, coast_m, .. } = &self.rules;
         let (speed_m_s, reaction_s) = (velocity_m_s.length(), self.reaction_s());
-        // v t + v²/2a: it holds without a boat file, and above all at high speed. The resistance of water
-        // falls with the speed, so that below 2 m/s boats coast farther than with any one deceleration.
+        // v t + v²/2a: valid without a boat file, and above all at high speed. Water resistance
+        // falls with the speed, so below 2 m/s boats coast farther than with any single
+        // deceleration.
         let braked = velocity_m_s.scaled(reaction_s + speed_m_s / (2.0 * deceleration_m_s2));
         let braked = Leg { end: braked, slack_m: 0.0 };
         let Some(coasting) = &self.coasting else { return vec![vec![braked]] };
@@ -129,13 +133,13 @@ impl GeofenceWatch {
         };
         let mut paths = vec![coasting.path(&still)];
         if coast_m.is_empty() {
-            // What was measured is better than an assumption.
+            // Measured values beat assumptions.
             paths.push(vec![braked]);
         }
         paths
     }
 
-    /// ... and with the drift and the turn that are observed.
+    /// ... and with the observed drift and turn.
     fn drifting_path(&self, now: SimTime, (velocity_m_s, yaw_rate_rad_s): (Ned, f64)) -> Option<Vec<Leg>> {
         let coasting = self.coasting.as_ref().filter(|_| self.drift.is_fresh(now))?;
         let DriftEstimate { drift_m_s, thrust_m_s, .. } = self.drift;
@@ -147,7 +151,7 @@ impl GeofenceWatch {
         self.rules.reaction_s.max(self.rules.debounce_s + COMMAND_S)
     }
 
-    /// Where the boat comes to rest, m from here, by the longest of the ways that are reckoned with.
+    /// Where the boat comes to rest, m from here, by the longest of the predicted paths.
     #[must_use]
     pub fn stopping_way(&self, now: SimTime, motion: (Ned, f64)) -> Ned {
         let paths = self.straight_paths(motion.0).into_iter().chain(self.drifting_path(now, motion));

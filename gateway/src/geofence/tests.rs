@@ -1,4 +1,4 @@
-//! The geofence on fields, in polygons, and against an independent way to see where a place is.
+//! Tests the geofence on fields, in polygons, and against an independent inside test.
 
 use super::*;
 use crate::geodesy::LocalFrame;
@@ -46,10 +46,10 @@ fn surveyor() -> Coasting {
     Coasting::of(&scenario::load_file(&path).unwrap_or_else(|problems| panic!("{problems}")))
 }
 
-/// What the prediction's steps of a quarter of a second cost, m.
+/// The error caused by the prediction's quarter-second steps, m.
 const COARSE_M: f64 = 0.5;
 
-/// M / q ln(1 + q v / l), which is how far a hull coasts from a speed.
+/// M / q ln(1 + q v / l): the coasting distance of a hull from a speed.
 fn coasted_m(coasting: &Coasting, speed_m_s: f64) -> f64 {
     let Coasting { mass_kg, linear_kg_s, quadratic_kg_m, .. } = *coasting;
     mass_kg / quadratic_kg_m * (quadratic_kg_m * speed_m_s / linear_kg_s).ln_1p()
@@ -96,7 +96,7 @@ fn one_fix_outside_is_not_enough() {
     }
 }
 
-/// What operators type for these places of the field.
+/// The polygon that operators type for these points of the field.
 fn typed(field: &Field, corners: &[Ned]) -> Vec<[f64; 2]> {
     let frame = LocalFrame::new(field.plan.datum);
     let place = |corner: &Ned| {
@@ -106,7 +106,7 @@ fn typed(field: &Field, corners: &[Ned]) -> Vec<[f64; 2]> {
     corners.iter().map(place).collect()
 }
 
-/// A star about a place: concave, and without crossings whatever its radii are.
+/// A star around a point: concave, and free of crossings for any radii.
 fn star(centre: Ned, radii_m: &[f64]) -> Vec<Ned> {
     let step_deg = 360.0 / radii_m.len() as f64;
     radii_m
@@ -120,7 +120,8 @@ fn area_of(outline: Vec<Ned>, keep_out: Vec<Vec<Ned>>) -> GeofenceArea {
     GeofenceArea { outline, keep_out }
 }
 
-/// Whether a place is in a polygon, by the angle under which its sides are seen from there: a full turn, or none.
+/// Whether a point is in a polygon, from the sum of the angles of its sides as seen from there: a
+/// full turn, or none.
 fn is_seen_around(polygon: &[Ned], at: Ned) -> bool {
     let angle = |(a, b): (Ned, Ned)| {
         let (a, b) = (a - at, b - at);
@@ -136,7 +137,7 @@ fn may_be_at(area: &GeofenceArea, at: Ned) -> bool {
 /// Steps of the independent check, m.
 const STEP_M: f64 = 0.25;
 
-/// Places on a straight way, `STEP_M` apart at most.
+/// Points on a straight line, at most `STEP_M` apart.
 fn along(from: Ned, to: Ned) -> impl Iterator<Item = Ned> {
     let count = (from.distance(to) / STEP_M).ceil().max(1.0);
     (0..=count as u32).map(move |i| from + (to - from).scaled(f64::from(i) / count))
@@ -146,7 +147,7 @@ fn place() -> impl Strategy<Value = Ned> {
     (-150.0..150.0, -150.0..150.0).prop_map(|(north, east)| Ned { north, east })
 }
 
-/// Concave areas with keep-outs, some of which reach over the outline or over each other.
+/// Concave areas with keep-outs, some of which cross the outline or each other.
 fn area() -> impl Strategy<Value = GeofenceArea> {
     let outline = prop::collection::vec(40.0..140.0_f64, 3..12);
     let keep_out = (place(), prop::collection::vec(3.0..40.0_f64, 3..8));

@@ -167,7 +167,7 @@ fn await_udp(threads: &Threads, at: &HostPort) -> io::Result<(Port, String)> {
             Err(e) => return Err(e),
         }
     }
-    Err(io::Error::new(ErrorKind::TimedOut, format!("nobody sent anything for {CONNECT:?}")))
+    Err(io::Error::new(ErrorKind::TimedOut, format!("received nothing for {CONNECT:?}")))
 }
 
 fn open_serial(path: &Path, baud: u32) -> io::Result<(Port, String)> {

@@ -45,7 +45,7 @@ impl Connection {
         match threads.spawn("link writer", move || write_on(&peer, &shared)) {
             Ok(writer) => connection.writer = Some(writer),
             Err(e) => {
-                connection.close(&End::Lost(format!("no thread for it: {e}")));
+                connection.close(&End::Lost(format!("cannot start a thread for it: {e}")));
                 return Err(e);
             }
         }

@@ -27,7 +27,7 @@ pub(super) struct Peer {
 impl fmt::Display for End {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            End::Asked => write!(f, "a reconnect was asked for"),
+            End::Asked => write!(f, "a reconnect was requested"),
             End::Stopped => write!(f, "closed here"),
             End::Lost(reason) => write!(f, "{reason}"),
         }

@@ -100,7 +100,7 @@ impl Port {
                 // The beginning was discarded, so the rest would be an incomplete sentence.
                 Err(_) if self.flushes() != flushes => return Ok(Wrote::Dropped),
                 Err(_) if clock::since(progress_at) >= STALL => {
-                    return Err(io::Error::new(ErrorKind::TimedOut, format!("nothing taken for {STALL:?}")));
+                    return Err(io::Error::new(ErrorKind::TimedOut, format!("no data accepted for {STALL:?}")));
                 }
                 Err(_) => {}
             }
@@ -169,7 +169,7 @@ impl Port {
         }
     }
 
-    /// The time to transmit so many bytes, where it is long. A serial driver accepts 4 KiB at once, which at
+    /// The time to transmit this many bytes, if it is long. A serial driver accepts 4 KiB at once, which at
     /// 4800 baud are 8 s of old commands.
     pub(super) fn transit(&self, count: usize) -> Duration {
         // Eight data bits, a start bit and a stop bit.

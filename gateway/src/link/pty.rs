@@ -147,7 +147,7 @@ fn make_symlink(link: &Path, target: &Path) -> Result<(), LinkError> {
     // file.
     match fs::symlink_metadata(link) {
         Ok(found) if !found.is_symlink() => {
-            return Err(refused("something else is there, allowed: nothing, or an old symlink".to_owned()));
+            return Err(refused("a file of another kind exists there, allowed: no file, or an old symlink".to_owned()));
         }
         Ok(_) => fs::remove_file(link).map_err(|e| refused(e.to_string()))?,
         Err(_) => {}

@@ -1,42 +1,43 @@
-//! The framer: cuts whatever comes down a wire into messages, and counts what it had to leave.
+//! Splits incoming bytes into messages, and counts what it discards.
 //!
-//! It keeps at most one frame. After damage it looks for the next frame from the byte behind the one that began the damaged frame, so
-//! that a frame inside of what a wrong length covers is found.
+//! It keeps at most one frame. After damage it searches for the next frame from the byte after the
+//! start of the damaged one, so it finds a frame within the range of a wrong length.
 
 use super::dialect::MavMessage;
 use ::mavlink::{MAV_STX, MAV_STX_V2, MavlinkVersion, Message, calculate_crc};
 use std::collections::BTreeMap;
 
-/// The longest frame, bytes: version 2, all of the payload, with a signature.
+/// Maximum bytes of a frame: version 2, full payload, with a signature.
 pub const FRAME_MAX: usize = 10 + 255 + 2 + SIGNATURE;
 const SIGNATURE: usize = 13;
-/// The flag of a frame of version 2 that has a signature.
+/// The flag of a signed frame of version 2.
 const SIGNED: u8 = 1;
-/// How many numbers of unknown messages are kept.
-// Numbers come from whoever is on the link: the table must not grow with them.
+/// Maximum number of unknown message numbers stored.
+// Any sender on the link can choose numbers: the table must not grow with them.
 const UNKNOWN_MAX: usize = 64;
 
-/// A message, and whose it is.
+/// A message and its sender.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Received {
     /// The system that sent it.
     pub system: u8,
-    /// The component of it.
+    /// The component that sent it.
     pub component: u8,
     /// The message.
     pub message: MavMessage,
 }
 
-/// A message with a right checksum that the dialect cannot express, since one of its values is not known.
+/// A message with a valid checksum that the dialect cannot express, because one of its values is
+/// unknown.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Unreadable {
     /// The system that sent it.
     pub system: u8,
-    /// The component of it.
+    /// The component that sent it.
     pub component: u8,
     /// Its number.
     pub id: u32,
-    /// Its payload, without the zeros at the end that version 2 omits.
+    /// Its payload, without the trailing zeros that version 2 omits.
     pub payload: Vec<u8>,
 }
 
@@ -48,52 +49,52 @@ impl Unreadable {
     }
 }
 
-/// A whole frame of a known message.
+/// A complete frame of a known message.
 #[derive(Clone, Debug, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "a frame is handled at once and never stored")]
 pub enum Frame {
-    /// Its message could be read.
+    /// The message could be read.
     Read(Received),
-    /// It could not.
+    /// It could not be read.
     Unreadable(Unreadable),
 }
 
-/// What came through a [`Framer`].
+/// Counts of what passed through a [`Framer`].
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Messages that were read.
+    /// Messages read.
     pub messages: u64,
     /// Frames of known messages with a wrong checksum.
     pub bad_checksum: u64,
-    /// Bytes outside of frames.
+    /// Bytes outside frames.
     pub garbage: u64,
     /// Messages with a value that the dialect does not know.
     pub unreadable: u64,
-    /// Messages that the dialect does not know, by their number; they count when the next frame begins behind them.
+    /// Messages unknown to the dialect, by number; each counts once the next frame begins after it.
     pub unknown: BTreeMap<u32, u64>,
 }
 
-/// Cuts a byte stream into messages.
+/// Splits a byte stream into messages.
 #[derive(Clone, Debug, Default)]
 pub struct Framer {
     buffer: Vec<u8>,
     counts: Counts,
 }
 
-/// Where the parts of a frame are.
+/// The offsets of a frame's parts.
 struct Layout {
     version: MavlinkVersion,
     id: u32,
     system: u8,
     component: u8,
-    /// Where the payload begins and ends.
+    /// Start and end of the payload.
     payload: (usize, usize),
-    /// How long the whole frame is.
+    /// The length of the complete frame.
     len: usize,
 }
 
 impl Layout {
-    /// The layout of what begins like a frame; `Ok(None)` if too little of it is there.
+    /// The layout of bytes that begin like a frame; `Ok(None)` if there are too few of them.
     fn of(bytes: &[u8]) -> Result<Option<Layout>, NotAFrame> {
         match *bytes {
             [MAV_STX, len, _, system, component, id, ..] => {
@@ -101,7 +102,7 @@ impl Layout {
                 let (version, id) = (MavlinkVersion::V1, u32::from(id));
                 Ok(Some(Layout { version, id, system, component, payload: (6, end), len: end + 2 }))
             }
-            // Whoever does not understand such a flag must leave the frame.
+            // A receiver that does not know such a flag must discard the frame.
             [MAV_STX_V2, _, flags, ..] if flags & !SIGNED != 0 => Err(NotAFrame),
             [MAV_STX_V2, len, flags, _, _, system, component, a, b, c, ..] => {
                 let end = 10 + usize::from(len);
@@ -125,29 +126,30 @@ impl Layout {
     }
 }
 
-/// Whether bytes begin with the whole frame of a known message, with a right checksum.
+/// Whether bytes begin with a complete frame of a known message, with a valid checksum.
 fn begins_with_good_frame(bytes: &[u8]) -> bool {
     let Ok(Some(layout)) = Layout::of(bytes) else { return false };
     layout.is_known() && bytes.len() >= layout.len && layout.has_right_checksum(&bytes[..layout.len])
 }
 
-/// These bytes begin no frame.
+/// These bytes do not begin a frame.
 struct NotAFrame;
 
 impl Framer {
-    /// Without anything yet.
+    /// An empty framer.
     #[must_use]
     pub fn new() -> Framer {
         Framer::default()
     }
 
-    /// Forgets a frame that is under way.
+    /// Drops an incomplete frame.
     pub fn interrupt(&mut self) {
         self.counts.garbage += self.buffer.len() as u64;
         self.buffer.clear();
     }
 
-    /// Takes bytes as they come (any split, any garbage); calls `take` with each message with a right checksum, in order.
+    /// Accepts bytes in any split, with any garbage. Calls `take` with each message with a valid
+    /// checksum, in order.
     pub fn push(&mut self, bytes: &[u8], take: &mut dyn FnMut(Received)) {
         self.push_frames(bytes, &mut |frame| {
             if let Frame::Read(received) = frame {
@@ -156,7 +158,7 @@ impl Framer {
         });
     }
 
-    /// As [`Framer::push`], with the frames that cannot be read as well.
+    /// Like [`Framer::push`], but includes frames that cannot be read.
     pub fn push_frames(&mut self, bytes: &[u8], take: &mut dyn FnMut(Frame)) {
         self.buffer.extend_from_slice(bytes);
         let buffer = std::mem::take(&mut self.buffer);
@@ -181,18 +183,19 @@ impl Framer {
         self.buffer.drain(..at);
     }
 
-    /// What came through so far.
+    /// The counts so far.
     #[must_use]
     pub fn counts(&self) -> &Counts {
         &self.counts
     }
 
-    /// Passes over what begins like a frame of an unknown message; returns how many bytes are done with, 0 while that is open.
+    /// Skips what begins like a frame of an unknown message; returns the number of bytes consumed,
+    /// 0 while undecided.
     fn pass_unknown(&mut self, layout: &Layout, bytes: &[u8]) -> usize {
-        // The checksum of a message includes a byte that only its definition tells, so that of
-        // an unknown one cannot be checked. Noise that looks like its beginning shows by a good
-        // frame within its stated length, or by what follows it. More bytes never change what
-        // fewer have decided: the same comes of every split.
+        // A checksum includes a byte that only the message's definition contains, so it cannot be
+        // checked for an unknown message. Noise that looks like its start is detected by a valid
+        // frame within its stated length, or by what follows it. More bytes never change a decision
+        // made with fewer, so the result does not depend on the split.
         let inside = &bytes[..layout.len.min(bytes.len())];
         let is_noise = (1..inside.len()).any(|at| begins_with_good_frame(&inside[at..]));
         match bytes.get(layout.len) {
@@ -209,14 +212,14 @@ impl Framer {
         }
     }
 
-    /// Reads a whole frame; returns how many bytes of it are done with.
+    /// Reads a complete frame; returns the number of bytes consumed.
     fn read(&mut self, layout: &Layout, frame: &[u8], take: &mut dyn FnMut(Frame)) -> usize {
         let Layout { version, id, system, component, payload: (start, end), len } = *layout;
         if !layout.has_right_checksum(frame) {
             self.counts.bad_checksum += 1;
             self.counts.garbage += 1;
-            // One byte and not the whole frame: a false start inside other data would swallow
-            // real frames that follow within its stated length.
+            // One byte and not the whole frame: a false start inside other data would swallow real
+            // frames within its stated length.
             return 1;
         }
         match MavMessage::parse(version, id, &frame[start..end]) {

@@ -1,6 +1,7 @@
-//! MAVLink as ArduPilot's boats speak it: bytes to messages and back, with no port and no clock.
+//! MAVLink as ArduPilot's boats speak it: bytes to messages and back, without ports or clocks.
 //!
-//! The messages themselves are those of the crate `mavlink`, dialect `common`. Frames of version 2 are written; 1 and 2 are read.
+//! The messages are those of the crate `mavlink`, dialect `common`. Writes frames of version 2; reads
+//! versions 1 and 2.
 //! Signatures are neither written nor checked.
 
 mod framer;
@@ -27,21 +28,21 @@ pub struct Writer {
 }
 
 impl Writer {
-    /// Of this system and component.
+    /// A writer for this system and component.
     #[must_use]
     pub fn new(system: u8, component: u8) -> Writer {
         Writer { system, component, sequence: 0 }
     }
 
-    /// The next messages come from this system.
+    /// Sets the system of the next messages.
     pub fn set_system(&mut self, system: u8) {
         self.system = system;
     }
 
-    /// Appends a message that the dialect cannot express, by its number, the byte of its definition that goes into the checksum, and
-    /// its payload.
+    /// Appends a message that the dialect cannot express, from its number, the byte of its
+    /// definition that enters the checksum, and its payload.
     pub fn write_raw(&mut self, id: u32, extra_crc: u8, payload: &[u8], out: &mut Vec<u8>) {
-        // Version 2 omits zeros at the end, but for the first byte.
+        // Version 2 omits trailing zeros, except for the first byte.
         let len = payload.iter().rposition(|byte| *byte != 0).map_or(1, |last| last + 1);
         let [a, b, c, _] = id.to_le_bytes();
         let mut frame = vec![MAV_STX_V2, len as u8, 0, 0, self.sequence, self.system, self.component, a, b, c];
@@ -58,7 +59,7 @@ impl Writer {
         let mut frame = MAVLinkV2MessageRaw::new();
         frame.serialize_message(header, message);
         out.extend_from_slice(frame.raw_bytes());
-        // Receivers count lost frames by gaps in it.
+        // Receivers count lost frames by gaps in the sequence.
         self.sequence = self.sequence.wrapping_add(1);
     }
 }

@@ -1,4 +1,4 @@
-//! The modes of ArduPilot's Rover, which boats run too, by their numbers in HEARTBEAT.
+//! The modes of ArduPilot's Rover, which boats also run, by their numbers in HEARTBEAT.
 
 /// A mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -7,30 +7,30 @@ pub enum RoverMode {
     Manual,
     /// Rate of turn and speed by the remote control.
     Acro,
-    /// As `Acro`, without turning over.
+    /// Like `Acro`, without turning over.
     Steering,
     /// Thrusters idle.
     Hold,
-    /// Keeps its station.
+    /// Keeps station.
     Loiter,
-    /// Sails the mission that was uploaded.
+    /// Follows the uploaded mission.
     Auto,
     /// Goes to its home.
     Rtl,
-    /// Goes to its home by the way it came.
+    /// Returns home along its track.
     SmartRtl,
     /// Follows set-points.
     Guided,
     /// Starts up.
     Initialising,
     /// Any other number.
-    // Kept by number, and treated as somebody else's command: new modes appear with new
-    // versions.
+    // The number is kept, and the mode is treated as another operator's command: new versions add
+    // new modes.
     Other(u32),
 }
 
 impl RoverMode {
-    /// The mode of a number.
+    /// The mode for a number.
     #[must_use]
     pub fn from_number(number: u32) -> RoverMode {
         match number {
@@ -48,7 +48,7 @@ impl RoverMode {
         }
     }
 
-    /// Whether Rover arms in it. Of the modes without a name here it is not known, and not expected.
+    /// Whether Rover arms in this mode. Unnamed modes are assumed not to arm.
     #[must_use]
     pub fn allows_arming(self) -> bool {
         !matches!(self, RoverMode::Rtl | RoverMode::SmartRtl | RoverMode::Initialising | RoverMode::Other(_))

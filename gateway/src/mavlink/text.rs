@@ -1,12 +1,12 @@
-//! A message as people read it.
+//! A message in readable form.
 
 use super::dialect::MavMessage;
 
-/// How texts begin and end where the crate prints them.
+/// The delimiters of a text in the crate's output.
 const BEGIN: &str = "CharArray { data: [";
 const END: &str = " }";
 
-/// All fields of a message, with its texts as text: the crate prints the numbers of their letters.
+/// All fields of a message, with its texts as text: the crate prints character codes.
 #[must_use]
 pub fn message_text(message: &MavMessage) -> String {
     let printed = format!("{message:?}");

@@ -1,28 +1,28 @@
-//! Date and time of day as sentences carry them.
+//! Date and time of day as they appear in sentences.
 
 use primitives::SimTime;
 use serde::{Deserialize, Serialize};
 use time::{Month, UtcDateTime};
 
-/// Milliseconds of a day, and one second more for the day that ends with a leap second.
+/// Milliseconds in a day, plus one second for a day that ends with a leap second.
 const DAY_MS: u32 = 86_400_000;
 
 /// A time of day, UTC, in milliseconds since midnight.
 ///
-/// Written with two decimals, or three where the milliseconds need them. A leap second is 86 400 000 to
-/// 86 400 999; what lies beyond is written as an empty field.
+/// Written with two decimals, or three if the milliseconds need them. A leap second is 86 400 000
+/// to 86 400 999; larger values are written as an empty field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct TimeOfDay(pub u32);
 
 impl TimeOfDay {
-    /// The time in a field `hhmmss`, with or without decimals.
+    /// Parses a field `hhmmss`, with or without decimals.
     pub(super) fn parse(text: &str) -> Option<TimeOfDay> {
         let (clock, decimals) = text.split_once('.').unwrap_or((text, "0"));
         let [hour, minute, second] = pairs(clock)?.map(u32::from);
         if decimals.is_empty() || !decimals.bytes().all(|byte| byte.is_ascii_digit()) {
             return None;
         }
-        // Milliseconds, cut off: a time must not become the next second's.
+        // Truncated to milliseconds: rounding could carry into the next second.
         let digit = |i: usize| u32::from(decimals.as_bytes().get(i).map_or(0, |byte| byte - b'0'));
         let ms = digit(0) * 100 + digit(1) * 10 + digit(2);
         // Leap seconds are inserted at the end of a UTC day only.
@@ -31,10 +31,10 @@ impl TimeOfDay {
         known.then_some(TimeOfDay(((hour * 60 + minute) * 60 + second) * 1000 + ms))
     }
 
-    /// The text of its field; nothing for what is beyond the day.
+    /// The text of its field; empty for a time beyond the day.
     pub(super) fn text(self) -> Option<String> {
         let ms = Some(self.0).filter(|ms| *ms < DAY_MS + 1000)?;
-        // In a leap second the minute goes on.
+        // A leap second continues the last minute.
         let (minute, ms) = if ms < DAY_MS { (ms / 60_000, ms % 60_000) } else { (1439, ms - DAY_MS + 60_000) };
         let clock = format!("{:02}{:02}{:02}", minute / 60, minute % 60, ms / 1000);
         Some(match ms % 1000 {
@@ -43,19 +43,20 @@ impl TimeOfDay {
         })
     }
 
-    /// So much later (or earlier), round the clock.
+    /// Adds an interval, wrapping at midnight.
     #[must_use]
     pub fn later(self, by: SimTime) -> TimeOfDay {
         let ms = i64::from(self.0) + (by.as_s() * 1000.0).round() as i64;
         TimeOfDay(ms.rem_euclid(i64::from(DAY_MS)) as u32)
     }
 
-    /// The time from `other` to this one, s: the shorter way round the clock, negative if this one is earlier.
+    /// The time from `other` to this one, s: the shorter way around the clock, negative if this one
+    /// is earlier.
     #[must_use]
     pub fn since_s(self, other: TimeOfDay) -> f64 {
         let day_s = f64::from(DAY_MS) * 1e-3;
         let apart_s = (f64::from(self.0) - f64::from(other.0)) * 1e-3;
-        // Across midnight the shorter way: without a date nobody knows the day.
+        // The shorter way across midnight: the day is unknown without a date.
         apart_s - day_s * (apart_s / day_s).round()
     }
 }
@@ -80,7 +81,7 @@ pub struct Date {
 }
 
 impl Date {
-    /// The date in a field `ddmmyy`: years 00 to 79 are of this century.
+    /// Parses a field `ddmmyy`; years 00 to 79 belong to this century.
     pub(super) fn parse(text: &str) -> Option<Date> {
         let [day, month, year] = pairs(text)?;
         // GPS began in 1980.
@@ -88,13 +89,13 @@ impl Date {
         Some(Date { year: century + u16::from(year), month, day }).filter(|date| date.is_valid())
     }
 
-    /// The text of its field `ddmmyy`; nothing for a date that two digits of a year cannot express.
+    /// The text of its field `ddmmyy`; empty for a date that a two-digit year cannot express.
     pub(super) fn text(self) -> Option<String> {
         let known = self.is_valid() && (1980..2080).contains(&self.year);
         known.then(|| format!("{:02}{:02}{:02}", self.day, self.month, self.year % 100))
     }
 
-    /// Whether the calendar has this date.
+    /// Whether the date exists in the calendar.
     #[must_use]
     pub fn is_valid(self) -> bool {
         self.in_calendar().is_some()

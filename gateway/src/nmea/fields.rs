@@ -1,4 +1,4 @@
-//! The fields of sentences as they are listed in `fields.txt`.
+//! Checks the fields of sentences against the list in `fields.txt`.
 
 use super::date_time::TimeOfDay;
 use super::number::number;

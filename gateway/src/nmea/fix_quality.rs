@@ -1,4 +1,4 @@
-//! The quality of a fix as GGA numbers it, and the order of these numbers, which is not theirs.
+//! The fix qualities of GGA and their ranking, which is not numerical order.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -13,25 +13,26 @@ impl FixQuality {
     /// No fix.
     pub const NONE: FixQuality = FixQuality(0);
 
-    /// The quality of a number in GGA.
+    /// The quality for a number in GGA.
     #[must_use]
     pub const fn from_gga(number: u8) -> FixQuality {
         FixQuality(number)
     }
 
-    /// Whether it is a fix of satellites, and as good as `required`.
+    /// Whether it is a satellite fix at least as good as `required`.
     #[must_use]
     pub fn meets(self, required: FixQuality) -> bool {
         self.is_fix() && self.rank() >= required.rank()
     }
 
-    /// Whether it comes from satellites. Dead reckoning, manual input and simulators measure no position.
+    /// Whether it comes from satellites. Dead reckoning, manual input and simulators do not measure
+    /// a position.
     #[must_use]
     pub fn is_fix(self) -> bool {
         self.rank() > 0
     }
 
-    /// What it means.
+    /// The quality as text.
     #[must_use]
     pub fn in_words(self) -> &'static str {
         match self.0 {
@@ -48,7 +49,7 @@ impl FixQuality {
         }
     }
 
-    /// Its place in the order from no fix to the best.
+    /// Its rank, from no fix to the best.
     fn rank(self) -> u8 {
         match self.0 {
             1 => 1,

@@ -1,9 +1,11 @@
-//! NMEA 0183 as a Surveyor and its neighbours speak it: bytes to sentences and back, with no port and no clock.
+//! NMEA 0183 as spoken by a Surveyor and similar devices: bytes to sentences and back, without
+//! ports or clocks.
 //!
-//! [`Framer`] cuts a stream into sentences, [`Sentence::parse`] reads one, [`Sentence::write`] writes one; both use the
-//! table of fields that each kind has in `surveyor` or `standard`. Reading is tolerant where real boats differ (too many
-//! fields, zeros before numbers, odd talkers) and strict where a wrong guess would move a boat. What is written is what
-//! the strictest known reader accepts, and never has a non-finite number in it.
+//! [`Framer`] splits a stream into sentences, [`Sentence::parse`] reads one, [`Sentence::write`]
+//! writes one. Both use the table of fields of each kind in `surveyor` or `standard`. Reading is
+//! tolerant where real boats differ (extra fields, leading zeros, unusual talkers) and strict where
+//! a wrong guess would move a boat. The output is acceptable to the strictest known reader, and
+//! never contains a non-finite number.
 
 mod date_time;
 #[cfg(test)]
@@ -37,7 +39,7 @@ use reader::Reader;
 use thiserror::Error;
 use writer::Writer;
 
-/// The longest sentence written, bytes with `$` and CR LF (NMEA 0183 v3.01, 5.3).
+/// Maximum bytes of a sentence written, with `$` and CR LF (NMEA 0183 v3.01, 5.3).
 pub const EMITTED_MAX: usize = 82;
 
 /// A sentence, read or to be written.
@@ -45,13 +47,13 @@ pub const EMITTED_MAX: usize = 82;
 pub enum Sentence {
     /// `PSEAC`: a command to the boat.
     Command(Command),
-    /// `PSEAA`: how the boat lies, and its compass.
+    /// `PSEAA`: attitude and compass.
     Attitude(Attitude),
     /// `PSEAB`: battery and currents.
     Battery(Battery),
-    /// `PSEAD`: which command the boat follows, and whose.
+    /// `PSEAD`: the command that the boat follows, and its operator.
     ControlState(ControlState),
-    /// `PSEAG`: an error code of the boat.
+    /// `PSEAG`: the boat's error code.
     BoatError(BoatError),
     /// `PSEAR`: settings of a mission that is being uploaded.
     MissionSettings(MissionSettings),
@@ -77,45 +79,44 @@ pub enum Sentence {
     Vhw(Vhw),
 }
 
-/// Why a body is not a sentence that this codec reads.
+/// Why this codec rejects a body.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum ParseError {
-    /// No sentence of ours has this address.
-    #[error("{address}: not a sentence that is read here")]
+    /// No supported sentence has this address.
+    #[error("{address}: unsupported sentence")]
     Unknown {
-        /// What stands before the first comma.
+        /// The text before the first comma.
         address: String,
     },
     /// A field does not fit the sentence's layout.
     #[error("{address} field {field} is {found:?}, expected {expected}")]
     Field {
-        /// What stands before the first comma.
+        /// The text before the first comma.
         address: String,
-        /// The data field, from 1.
+        /// The data field, counted from 1.
         field: usize,
         /// Its text.
         found: String,
-        /// What may stand there.
+        /// The allowed contents.
         expected: &'static str,
     },
-    /// The sentence ends too early.
+    /// The sentence is too short.
     #[error("{address} has {found} data fields, expected {expected} or more")]
     TooFew {
-        /// What stands before the first comma.
+        /// The text before the first comma.
         address: String,
-        /// How many there are.
+        /// The number of data fields found.
         found: usize,
-        /// How many there must be.
+        /// The minimum number of data fields.
         expected: usize,
     },
 }
 
 impl Sentence {
-    /// The sentence in a body (what stands between `$` and `*`).
+    /// Parses a body (the text between `$` and `*`).
     ///
     /// # Errors
-    /// [`ParseError::Unknown`] for a sentence that this codec does not read, the others for one that it should
-    /// have been able to.
+    /// [`ParseError::Unknown`] for an unsupported sentence, other errors for a malformed one.
     pub fn parse(body: &str) -> Result<Sentence, ParseError> {
         let reader = Reader::of(body);
         let address = reader.address();
@@ -127,10 +128,10 @@ impl Sentence {
 
     /// Appends `$body*HH\r\n`, at most [`EMITTED_MAX`] bytes.
     ///
-    /// A non-finite number becomes an empty field, as does what would make the sentence too long.
+    /// A non-finite number becomes an empty field, as does any field that would make the sentence
+    /// too long.
     pub fn write(&self, out: &mut Vec<u8>) {
-        // Rounded before it is written, so that thrust and difference together still keep
-        // within 100 %.
+        // Rounded before writing, so that thrust and difference together still stay within 100 %.
         let mut rounded = match self.clone() {
             Sentence::Command(command) => Sentence::Command(command.rounded()),
             Sentence::ControlState(state) => Sentence::ControlState(state.rounded()),
@@ -140,7 +141,8 @@ impl Sentence {
         Writer::write(rounded.layout(), out);
     }
 
-    /// The sentence of an address, without content: a Surveyor's own, or one of the standard with two characters of talker.
+    /// An empty sentence with this address: a Surveyor's own, or a standard one with a
+    /// two-character talker.
     fn blank(address: &str) -> Option<Sentence> {
         Some(match (address, Talker::split(address).map_or("", |(_, kind)| kind)) {
             ("PSEAC", _) => Sentence::Command(Command::default()),
@@ -150,8 +152,8 @@ impl Sentence {
             ("PSEAG", _) => Sentence::BoatError(BoatError::default()),
             ("PSEAR", _) => Sentence::MissionSettings(MissionSettings::default()),
             ("OIWPL", _) => Sentence::Waypoint(Waypoint::default()),
-            // Standard sentences are known by their last three letters, whoever talks: GP, GN
-            // and others are all in use.
+            // Standard sentences are identified by their last three letters, whatever the talker:
+            // GP, GN and others are all in use.
             (_, "GGA") => Sentence::Gga(Gga::default()),
             (_, "RMC") => Sentence::Rmc(Rmc::default()),
             (_, "VTG") => Sentence::Vtg(Vtg::default()),

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// The control mode that a boat's own controller is sent, or reports.
+/// The control mode that a boat's own controller receives or reports.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Mode {
     /// `L`: thrusters idle.
@@ -18,7 +18,7 @@ pub enum Mode {
     StationKeep,
     /// `N`: river navigation.
     RiverNav,
-    /// `W`: sail the uploaded waypoints.
+    /// `W`: follow the uploaded waypoints.
     Waypoint,
     /// `I`: autopilot.
     Autopilot,
@@ -30,7 +30,7 @@ pub enum Mode {
     Depth,
     /// `S`: direction of gravity.
     GravityVector,
-    /// `F`: take a file (a mission) line by line.
+    /// `F`: receive a file (a mission) line by line.
     FileDownload,
     /// `!`: boot loader.
     BootLoader,
@@ -38,7 +38,7 @@ pub enum Mode {
 
 impl Mode {
     /// Every mode with its letter.
-    // By the command dictionary of a public driver for Surveyors; the manufacturer's interface
+    // From the command dictionary of a public driver for Surveyors; the manufacturer's interface
     // document is not public.
     const LETTERS: [(Mode, char); 14] = [
         (Mode::Standby, 'L'),
@@ -63,7 +63,7 @@ impl Mode {
         Mode::LETTERS.map(|(mode, _)| mode)
     }
 
-    /// Whether the boat follows set-points in it.
+    /// Whether the boat follows set-points in this mode.
     #[must_use]
     pub fn is_set_point(self) -> bool {
         matches!(self, Mode::Thruster | Mode::Heading | Mode::Speed)
@@ -75,7 +75,7 @@ impl Mode {
         Mode::LETTERS[self as usize].1
     }
 
-    /// The mode of a letter, in its own case.
+    /// The mode for a letter, which is case-sensitive.
     #[must_use]
     pub fn from_letter(letter: char) -> Option<Mode> {
         Mode::LETTERS.iter().find(|(_, known)| *known == letter).map(|(mode, _)| *mode)

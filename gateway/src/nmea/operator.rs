@@ -2,16 +2,16 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Who commands a boat, by the number on the wire.
+/// The operator that commands a boat, by its number on the wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Operator {
     /// 1: the operator's station on shore.
     Primary,
-    /// 2: the back seat, which is us.
+    /// 2: the back seat, which is the gateway.
     Secondary,
     /// 3: the operator's station by its second link.
     PrimaryBackup,
-    /// 5: the remote control in somebody's hands.
+    /// 5: a handheld remote control.
     Rc,
     /// 6: the boat's own obstacle avoidance.
     ObstacleAvoidance,
@@ -33,7 +33,7 @@ impl Operator {
         }
     }
 
-    /// The operator of a number.
+    /// The operator for a number.
     #[must_use]
     pub fn from_number(number: u8) -> Operator {
         match number {

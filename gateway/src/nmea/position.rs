@@ -1,4 +1,4 @@
-//! A position as sentences carry it: degrees and minutes run together, then a letter.
+//! A position as it appears in sentences: degrees and minutes run together, then a letter.
 
 use super::number::number;
 
@@ -7,7 +7,7 @@ pub(super) struct Axis {
     degree_digits: usize,
     degrees_max: u32,
     letters: [char; 2],
-    /// What is expected in its first and in its second field.
+    /// The expected contents of its first and second field.
     pub(super) expected: &'static str,
     pub(super) expected_letter: &'static str,
 }
@@ -29,18 +29,18 @@ pub(super) const LONGITUDE: Axis = Axis {
 };
 
 impl Axis {
-    /// The sign of a letter: north and east are positive.
+    /// The sign for a letter: north and east are positive.
     pub(super) fn sign(&self, letter: &str) -> Option<f64> {
         let place = self.letters.iter().position(|known| letter.chars().eq([*known]))?;
         Some([1.0, -1.0][place])
     }
 
-    /// Degrees from `ddmm.mmmm`. All digits before the point must be there: without its zeros a position could be
-    /// another position.
+    /// Degrees from `ddmm.mmmm`. All digits before the point are required: without leading zeros
+    /// the position is ambiguous.
     pub(super) fn degrees(&self, text: &str) -> Option<f64> {
         let whole = text.split('.').next().unwrap_or_default();
-        // A missing leading zero would shift degrees into minutes: 8022.3 as a longitude reads
-        // as 802 degrees or as 80, depending on who guesses.
+        // A missing leading zero would shift degrees into minutes: as a longitude, 8022.3 could
+        // mean 802 degrees or 80.
         if whole.len() != self.degree_digits + 2 || !whole.bytes().all(|byte| byte.is_ascii_digit()) {
             return None;
         }
@@ -51,7 +51,8 @@ impl Axis {
         (size_deg <= f64::from(self.degrees_max)).then_some(size_deg)
     }
 
-    /// `ddmm.mmmm,N` with so many decimals of minutes. It is whole steps that are split, so minutes carry.
+    /// `ddmm.mmmm,N` with this many decimals of minutes. Splits an integer number of steps, so that
+    /// minutes carry into degrees.
     pub(super) fn printed(&self, angle_deg: f64, decimals: u32) -> Option<String> {
         if !angle_deg.is_finite() || angle_deg.abs() > f64::from(self.degrees_max) {
             return None;
@@ -62,8 +63,8 @@ impl Axis {
         // "60.00000".
         let steps = (angle_deg.abs() * f64::from(60 * steps_per_minute)).round() as u32;
         let (minutes, part) = (steps / steps_per_minute, steps % steps_per_minute);
-        // What rounds to zero is north or east: "0000.00000,S" is another text for the same
-        // place.
+        // A coordinate that rounds to zero is north or east: "0000.00000,S" would be a second text
+        // for the same position.
         let letter = self.letters[usize::from(angle_deg < 0.0 && steps > 0)];
         let (degree_digits, part_digits) = (self.degree_digits, decimals as usize);
         let (degrees, minutes) = (minutes / 60, minutes % 60);

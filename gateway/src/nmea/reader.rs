@@ -1,4 +1,4 @@
-//! Reads the fields of a sentence by its layout, with errors that say which one is wrong.
+//! Reads the fields of a sentence according to its layout; errors name the faulty field.
 
 use super::ParseError;
 use super::date_time::{Date, TimeOfDay};
@@ -12,11 +12,11 @@ use super::wind::{KNOT_KM_H, SpeedUnit, WindReference};
 use primitives::LatLon;
 use std::str::FromStr;
 
-/// A sentence's address, and its data fields counted from 1 as manuals do.
+/// A sentence's address, and its data fields, counted from 1 as in manuals.
 pub(super) struct Reader<'a> {
     address: &'a str,
     data: Vec<&'a str>,
-    /// The field that was taken last.
+    /// The field read last.
     at: usize,
 }
 
@@ -33,7 +33,7 @@ impl<'a> Reader<'a> {
 
     /// Reads all fields of a layout.
     pub(super) fn read(mut self, layout: Layout<'_>) -> Result<(), ParseError> {
-        // More fields than known are accepted: drivers of real boats send PSEAC with four to
+        // More fields than expected are accepted: drivers of real boats send PSEAC with four to
         // six.
         let (found, expected) = (self.data.len(), layout.fields_min);
         if found < expected {
@@ -45,7 +45,8 @@ impl<'a> Reader<'a> {
     fn read_field(&mut self, field: Field<'_>) -> Result<(), ParseError> {
         match field {
             Field::Address(_) => {}
-            // Any talker: the same sentence comes as GP, GN or II, by who made the receiver.
+            // Any talker: the same sentence arrives as GP, GN or II, depending on the receiver's
+            // manufacturer.
             Field::Standard(talker, _) => *talker = Talker::split(self.address).map_or(*talker, |(talker, _)| talker),
             Field::Constant(_) => self.at += 1,
             Field::Unit(letter) => self.unit(letter)?,
@@ -64,7 +65,7 @@ impl<'a> Reader<'a> {
             Field::Mode(mode) => *mode = self.mode()?,
             Field::Operator(operator) => *operator = self.whole()?.map(Operator::from_number),
             Field::Valid(valid) => *valid = self.valid()?,
-            // Receivers vouch for what they reckon, or are told by hand, just as for a fix.
+            // Receivers mark dead reckoning and manual input as valid, just like a fix.
             Field::ValidFix(valid, ahead) => {
                 *valid = self.valid()? && !matches!(self.peek(ahead), "E" | "M" | "S" | "N");
             }
@@ -83,23 +84,23 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// The text of the next field without the spaces around it; nothing where the sentence is shorter.
+    /// The text of the next field without surrounding spaces; empty if the sentence is shorter.
     fn next(&mut self) -> &'a str {
         self.at += 1;
         self.text(self.at)
     }
 
-    /// The text of the field that comes `ahead` fields later, which is not taken.
+    /// The text of the field `ahead` fields later, without consuming it.
     fn peek(&self, ahead: usize) -> &'a str {
         self.text(self.at + ahead)
     }
 
-    // Real boats send a blank for a field that they have not.
+    // Real boats send a space for a field that they do not have.
     fn text(&self, at: usize) -> &'a str {
         self.data.get(at - 1).map_or("", |text| text.trim_matches(' '))
     }
 
-    /// What `parse` makes of the next field; an empty field is nothing.
+    /// The next field parsed with `parse`; `None` if it is empty.
     fn parsed<T>(&mut self, parse: fn(&str) -> Option<T>, expected: &'static str) -> Result<Option<T>, ParseError> {
         match self.next() {
             "" => Ok(None),
@@ -114,8 +115,8 @@ impl<'a> Reader<'a> {
 
     /// The whole number in the next field, if any.
     fn whole<T: FromStr>(&mut self) -> Result<Option<T>, ParseError> {
-        // The parser of the library takes a plus sign, which no sentence has: that is a field
-        // that was shifted.
+        // The library's parser accepts a plus sign, which never occurs in a sentence and means that
+        // fields have shifted.
         let whole = |text: &str| text.parse().ok().filter(|_| text.bytes().all(|byte| byte.is_ascii_digit()));
         self.parsed(whole, "a small whole number or nothing")
     }
@@ -126,7 +127,7 @@ impl<'a> Reader<'a> {
         mode.ok_or_else(|| self.wrong("the letter of a control mode"))
     }
 
-    /// The position in the next four fields, if any: half of one is an error.
+    /// The position in the next four fields, if any; an incomplete one is an error.
     fn position(&mut self) -> Result<Option<LatLon>, ParseError> {
         if self.peek(1).is_empty() && self.peek(3).is_empty() {
             self.at += 4;
@@ -154,17 +155,18 @@ impl<'a> Reader<'a> {
         if date.is_valid() { Ok(Some(date)) } else { Err(self.wrong_at(first, "a date of the calendar")) }
     }
 
-    /// `A` (data valid) or `D` (with differential corrections); `V` and nothing are not valid.
+    /// `A` (data valid) or `D` (with differential corrections); `V` or an empty field means
+    /// invalid.
     fn valid(&mut self) -> Result<bool, ParseError> {
         match self.next() {
-            // D (differential) stands in this place on some receivers.
+            // Some receivers put D (differential) here.
             "A" | "D" => Ok(true),
             "V" | "" => Ok(false),
             _ => Err(self.wrong("A, D, V or nothing")),
         }
     }
 
-    /// Refuses text other than the unit `letter`: the layout is not the expected one.
+    /// Rejects any text except the unit `letter`: another unit means another layout.
     fn unit(&mut self, letter: &'static str) -> Result<(), ParseError> {
         let text = self.next();
         if text.is_empty() || text == letter { Ok(()) } else { Err(self.wrong(letter)) }
@@ -192,7 +194,7 @@ impl<'a> Reader<'a> {
         let (speed, letter) = (self.number()?, self.next());
         *unit = match (SpeedUnit::from_letter(letter), speed) {
             (Some(unit), _) => unit,
-            // Without a speed nothing is lost with its unit.
+            // Without a speed, the unit does not matter.
             (None, None) if letter.is_empty() => SpeedUnit::MetresPerSecond,
             _ => return Err(self.wrong("K, M, N or S")),
         };

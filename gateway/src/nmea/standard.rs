@@ -6,16 +6,16 @@ use super::talker::Talker;
 use super::wind::{SpeedUnit, WindReference};
 use primitives::LatLon;
 
-/// `GGA`, a fix: when, where, how good.
+/// `GGA`, a fix: time, position and quality.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Gga {
-    /// Who sends it.
+    /// The sender.
     pub talker: Talker,
     /// Time of the fix.
     pub time: Option<TimeOfDay>,
     /// Position of the antenna.
     pub at: Option<LatLon>,
-    /// How the fix was made, as [`super::FixQuality`] explains it. An empty field is 0.
+    /// The fix quality, see [`super::FixQuality`]. An empty field is 0.
     pub quality: u8,
     /// Satellites used.
     pub satellites: Option<u8>,
@@ -28,8 +28,9 @@ pub struct Gga {
 }
 
 impl Gga {
-    /// 14 fields. The last, the reference station, must be empty: the driver of the fleet counts fields after it has
-    /// dropped one empty one from the end, and with a station has no position at all.
+    /// 14 fields. The last one, the reference station, must be empty: the fleet's driver counts
+    /// fields after dropping one trailing empty field, and with a station it reads no position at
+    /// all.
     pub(super) fn layout(&mut self) -> Layout<'_> {
         let fields = vec![
             Field::Standard(&mut self.talker, "GGA"),
@@ -49,20 +50,20 @@ impl Gga {
     }
 }
 
-/// `RMC`, a fix with course, speed and date: the least that a chart plotter wants.
+/// `RMC`, a fix with course, speed and date: the minimum for a chart plotter.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Rmc {
-    /// Who sends it.
+    /// The sender.
     pub talker: Talker,
     /// Time of the fix.
     pub time: Option<TimeOfDay>,
-    /// Whether the receiver vouches for it.
+    /// Whether the receiver marks it valid.
     pub valid: bool,
     /// Position of the antenna.
     pub at: Option<LatLon>,
     /// Speed over ground, knots.
     pub speed_kn: Option<f64>,
-    /// Course over ground, degrees true; none at rest.
+    /// Course over ground, degrees true; `None` at rest.
     pub course_deg: Option<f64>,
     /// Date of the fix.
     pub date: Option<Date>,
@@ -89,7 +90,7 @@ impl Rmc {
     }
 }
 
-/// How a fix was made: autonomous, or not valid.
+/// The mode indicator of a fix: autonomous, or not valid.
 fn fix_mode(valid: bool) -> &'static str {
     if valid { "A" } else { "N" }
 }
@@ -97,9 +98,9 @@ fn fix_mode(valid: bool) -> &'static str {
 /// `VTG`, course and speed over ground.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Vtg {
-    /// Who sends it.
+    /// The sender.
     pub talker: Talker,
-    /// Course over ground, degrees true; none at rest, which is not north.
+    /// Course over ground, degrees true; `None` at rest, which is not north.
     pub course_true_deg: Option<f64>,
     /// Course over ground, degrees magnetic.
     pub course_magnetic_deg: Option<f64>,
@@ -107,7 +108,7 @@ pub struct Vtg {
     pub speed_kn: Option<f64>,
     /// Speed over ground, km/h.
     pub speed_km_h: Option<f64>,
-    /// Whether a ninth field tells how the fix was made: boats of 2024 have none.
+    /// Whether a ninth field holds the mode indicator; boats of 2024 omit it.
     pub with_mode: bool,
 }
 
@@ -133,7 +134,7 @@ impl Vtg {
 /// `HDT`, the true heading.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Hdt {
-    /// Who sends it.
+    /// The sender.
     pub talker: Talker,
     /// Heading, degrees true.
     pub heading_deg: Option<f64>,
@@ -146,16 +147,16 @@ impl Hdt {
     }
 }
 
-/// `HDG`, the magnetic heading with what makes it true.
+/// `HDG`, the magnetic heading with deviation and variation.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Hdg {
-    /// Who sends it.
+    /// The sender.
     pub talker: Talker,
-    /// Heading by the sensor, degrees.
+    /// The sensor's heading, degrees.
     pub heading_deg: Option<f64>,
-    /// What the boat's own iron adds, degrees, east positive.
+    /// Deviation, caused by the boat's own iron, degrees, east positive.
     pub deviation_deg: Option<f64>,
-    /// What the earth's field adds (declination), degrees, east positive.
+    /// Variation (declination), degrees, east positive.
     pub variation_deg: Option<f64>,
 }
 
@@ -174,7 +175,7 @@ impl Hdg {
 /// `ZDA`, time and date.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Zda {
-    /// Who sends it.
+    /// The sender.
     pub talker: Talker,
     /// Time, UTC.
     pub time: Option<TimeOfDay>,
@@ -183,7 +184,7 @@ pub struct Zda {
 }
 
 impl Zda {
-    /// With the local zone as UTC.
+    /// With UTC as the local zone.
     pub(super) fn layout(&mut self) -> Layout<'_> {
         let fields = vec![
             Field::Standard(&mut self.talker, "ZDA"),
@@ -199,13 +200,14 @@ impl Zda {
 /// `GLL`, a position and its time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Gll {
-    /// Who sends it.
+    /// The sender.
     pub talker: Talker,
     /// Position of the antenna.
     pub at: Option<LatLon>,
     /// Time of the fix.
     pub time: Option<TimeOfDay>,
-    /// Whether the receiver vouches for it. Old ones have no such field, and it is not taken for granted.
+    /// Whether the receiver marks it valid. Old receivers lack this field; without it the fix is
+    /// not valid.
     pub valid: bool,
 }
 
@@ -223,20 +225,20 @@ impl Gll {
     }
 }
 
-/// `MWV`, wind: where it comes from, seen from the bow, and how strong it is.
+/// `MWV`, wind: its direction relative to the bow, and its speed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mwv {
-    /// Who sends it.
+    /// The sender.
     pub talker: Talker,
-    /// Where the wind comes from, degrees clockwise from the bow.
+    /// The direction from which the wind blows, degrees clockwise from the bow.
     pub angle_deg: Option<f64>,
-    /// Which wind.
+    /// The wind's reference.
     pub reference: WindReference,
-    /// How strong it is, m/s, whatever the unit on the wire.
+    /// Wind speed, m/s, whatever the unit on the wire.
     pub speed_m_s: Option<f64>,
     /// The unit on the wire.
     pub unit: SpeedUnit,
-    /// Whether the sensor vouches for it.
+    /// Whether the sensor marks it valid.
     pub valid: bool,
 }
 
@@ -249,7 +251,7 @@ impl Mwv {
             Field::WindSpeed(&mut self.speed_m_s, &mut self.unit),
             Field::Valid(&mut self.valid),
         ];
-        // All five: without its reference and its unit an angle and a number are no wind.
+        // All five: an angle and a number without reference and unit do not describe a wind.
         Layout { fields_min: 5, fields }
     }
 }
@@ -257,7 +259,7 @@ impl Mwv {
 /// `VHW`, the log: heading, and speed through the water.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Vhw {
-    /// Who sends it.
+    /// The sender.
     pub talker: Talker,
     /// Heading, degrees true.
     pub heading_true_deg: Option<f64>,

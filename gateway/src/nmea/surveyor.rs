@@ -1,36 +1,37 @@
-//! Sentences of a Surveyor's own: commands, what it reports of itself, missions.
+//! The Surveyor's own sentences: commands, reports and missions.
 
 use super::layout::{BRIEF_THOUSANDTHS, Field, HUNDREDTHS, Layout, TENTHS, WHOLE};
 use super::mode::Mode;
 use super::operator::Operator;
 use primitives::LatLon;
 
-/// `PSEAC`, the command: what a back seat tells the boat to do. What a field means depends on the mode, and any but the
-/// mode may be empty.
+/// `PSEAC`, a command from a back seat. The meaning of a field depends on the mode; every field
+/// except the mode may be empty.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Command {
-    /// What to do.
+    /// The commanded mode.
     pub mode: Mode,
-    /// Compass heading, degrees; in [`Mode::FileDownload`] the number of lines to come.
+    /// Compass heading, degrees; in [`Mode::FileDownload`] the number of lines that follow.
     pub heading_deg: Option<f64>,
-    /// Thrust in percent of the most, ahead positive; in [`Mode::Speed`] the speed in knots.
+    /// Thrust in percent of full thrust, ahead positive; in [`Mode::Speed`] the speed in knots.
     pub thrust: Option<f64>,
-    /// Half of port thrust less starboard thrust, percent: positive turns to starboard.
+    /// Half of port thrust minus starboard thrust, percent: positive turns to starboard.
     pub difference: Option<f64>,
     /// A switch such as `THR_ON`, else empty.
     pub words: String,
 }
 
 impl Command {
-    /// Read with four fields and more: of real drivers some send four, some six. In [`Mode::Thruster`] the heading is a
-    /// whole number too: there are boats that read nothing else, and keep the value they had.
+    /// Accepts four or more fields, because some real drivers send four and some six. In
+    /// [`Mode::Thruster`] the heading is also a whole number: some boats read nothing else, and
+    /// keep the previous value.
     pub(super) fn layout(&mut self) -> Layout<'_> {
-        // No lines to come, and what has no meaning in a download, are three zeros.
+        // In a download without following lines, the three unused fields are zero.
         let zeros = |number: &Option<f64>| WHOLE.wide(if *number == Some(0.0) { 3 } else { 0 });
         let (heading, thrust, difference) = match self.mode {
             Mode::FileDownload => (zeros(&self.heading_deg), zeros(&self.thrust), zeros(&self.difference)),
-            // Whole numbers in mode T: a stand-in for the boat reads each field as an integer,
-            // and keeps the old difference when it has decimals.
+            // Whole numbers in mode T: a stand-in for the boat reads each field as an integer, and
+            // keeps the previous difference if it has decimals.
             Mode::Thruster => (WHOLE.compass(), WHOLE, WHOLE),
             Mode::Speed => (TENTHS.compass().brief(), BRIEF_THOUSANDTHS, WHOLE),
             _ => (TENTHS.compass().brief(), WHOLE, WHOLE),
@@ -46,7 +47,7 @@ impl Command {
         Layout { fields_min: 4, fields }
     }
 
-    /// As it is written: percents are whole numbers.
+    /// The command as written: percentages are whole numbers.
     pub(crate) fn rounded(mut self) -> Command {
         round_percents(self.mode, &mut self.thrust, &mut self.difference);
         if self.mode == Mode::FileDownload {
@@ -58,14 +59,15 @@ impl Command {
     }
 }
 
-/// Rounds thrust and difference to whole percents, halves away from zero; a speed in knots stays as it is.
+/// Rounds thrust and difference to whole percent, halves away from zero; a speed in knots is
+/// unchanged.
 ///
-/// A thruster gets their sum, so where rounding takes that past 100 the boat turns a little less.
+/// A thruster receives their sum, so where rounding would exceed 100 the boat turns a little less.
 fn round_percents(mode: Mode, thrust: &mut Option<f64>, difference: &mut Option<f64>) {
     let sum = |thrust: Option<f64>, difference: Option<f64>| Some(thrust?.abs() + difference?.abs());
     let (whole_thrust, whole_difference) = (thrust.map(f64::round), difference.map(f64::round));
-    // 49.5 and 50.5 are within 100 % and round to 50 and 51: what a boat does beyond 100 % is
-    // not known, so the difference gives way.
+    // 49.5 and 50.5 add up to 100 % but round to 50 and 51. It is not known how a boat handles more
+    // than 100 %, so the difference is reduced.
     let by_rounding = sum(*thrust, *difference).is_some_and(|sum| sum < 100.5)
         && sum(whole_thrust, whole_difference).is_some_and(|sum| sum > 100.0);
     *difference = whole_difference.map(|whole| if by_rounding { whole - whole.signum() } else { whole });
@@ -74,16 +76,16 @@ fn round_percents(mode: Mode, thrust: &mut Option<f64>, difference: &mut Option<
     }
 }
 
-/// `PSEAA`, the attitude: how the boat lies in the water, and its compass.
+/// `PSEAA`, the attitude: pitch, roll and heave, and the compass.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Attitude {
-    /// Pitch, degrees. Which way is positive is not published.
+    /// Pitch, degrees. The positive direction is not published.
     pub pitch_deg: Option<f64>,
     /// Roll, degrees.
     pub roll_deg: Option<f64>,
-    /// Heading by the compass: magnetic, degrees.
+    /// Compass heading: magnetic, degrees.
     pub heading_deg: Option<f64>,
-    /// Heave, m. Read, but never written: boats leave it blank, and readers are used to that.
+    /// Heave, m. Read but never written: boats leave it blank, and readers expect that.
     pub heave_m: Option<f64>,
     /// Temperature of the electronics box, degrees Celsius.
     pub box_c: Option<f64>,
@@ -104,8 +106,8 @@ impl Attitude {
             Field::Number(&mut self.pitch_deg, TENTHS),
             Field::Number(&mut self.roll_deg, TENTHS),
             Field::Number(&mut self.heading_deg, TENTHS.compass()),
-            // Written blank: a public client reads a blank with a space in it as a broken
-            // sentence, and boats leave heave out.
+            // Written blank: a public client treats a field that contains only a space as a broken
+            // sentence, and boats omit heave.
             Field::ReadOnly(&mut self.heave_m),
             Field::Number(&mut self.box_c, TENTHS),
             Field::Number(&mut self.accel_ahead_g, HUNDREDTHS),
@@ -117,12 +119,13 @@ impl Attitude {
     }
 }
 
-/// `PSEAB`, the battery: volts, charge, and who draws how much. In which unit the boat counts charge is not published.
+/// `PSEAB`, the battery: voltage, charge, and the current of each consumer. The unit of charge is
+/// not published.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Battery {
     /// Voltage, V.
     pub volts: Option<f64>,
-    /// Charge that is left.
+    /// Remaining charge.
     pub charge: Option<f64>,
     /// Current, A.
     pub amps: Option<f64>,
@@ -130,9 +133,9 @@ pub struct Battery {
     pub celsius: Option<f64>,
     /// Charge used since the counter was reset.
     pub charge_used: Option<f64>,
-    /// When the counter was reset: the time of day as sent, often empty.
+    /// The time of day when the counter was reset, as sent; often empty.
     pub reset_time: String,
-    /// When the counter was reset: the date `ddmmyy` as sent, often empty.
+    /// The date when the counter was reset, `ddmmyy` as sent; often empty.
     pub reset_date: String,
     /// Voltage of the port battery.
     pub port_volts: Option<f64>,
@@ -177,24 +180,24 @@ impl Battery {
     }
 }
 
-/// `PSEAD`, the control state: which command the boat follows, and whose.
+/// `PSEAD`, the control state: the command that the boat follows, and its operator.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ControlState {
-    /// What the boat does.
+    /// The boat's mode.
     pub mode: Mode,
-    /// The heading it was commanded, degrees magnetic.
+    /// The commanded heading, degrees magnetic.
     pub heading_deg: Option<f64>,
-    /// The thrust it was commanded, percent; in [`Mode::Speed`] the speed in knots.
+    /// The commanded thrust, percent; in [`Mode::Speed`] the speed in knots.
     pub thrust: Option<f64>,
-    /// The thrust difference it was commanded, percent.
+    /// The commanded thrust difference, percent.
     pub difference: Option<f64>,
-    /// The switch it was sent last, else empty.
+    /// The last switch that it received, else empty.
     pub words: String,
-    /// How the command came through: a letter of T, F, R and N.
+    /// How the command arrived: one of the letters T, F, R and N.
     pub transmission: Option<char>,
     /// The operator this report was sent to.
     pub sent_to: Option<u8>,
-    /// Who is in control.
+    /// The operator in control.
     pub operator: Option<Operator>,
 }
 
@@ -215,14 +218,14 @@ impl ControlState {
         Layout { fields_min: 1, fields }
     }
 
-    /// As it is written: percents are whole numbers.
+    /// The state as written: percentages are whole numbers.
     pub(super) fn rounded(mut self) -> ControlState {
         round_percents(self.mode, &mut self.thrust, &mut self.difference);
         self
     }
 }
 
-/// `PSEAG`, the boat's error code. `N` means that nothing is wrong; what other codes mean is not published.
+/// `PSEAG`, the boat's error code. `N` means no error; the meaning of other codes is not published.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct BoatError {
     /// The code as sent.
@@ -235,8 +238,8 @@ impl BoatError {
     }
 }
 
-/// `PSEAR`, the settings of a mission: how much throttle its waypoints are sailed with. The other fields are constant in
-/// every sample known.
+/// `PSEAR`, the settings of a mission: the throttle between its waypoints. The other fields are
+/// constant in every known sample.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MissionSettings {
     /// Throttle, percent.
@@ -246,8 +249,8 @@ pub struct MissionSettings {
 impl MissionSettings {
     pub(super) fn layout(&mut self) -> Layout<'_> {
         let fields = vec![
-            // Only the throttle is understood; the constants are those of a public driver that
-            // works.
+            // Only the meaning of the throttle is known; the constants are those of a working
+            // public driver.
             Field::Address("PSEAR"),
             Field::Constant("0"),
             Field::Constant("000"),
@@ -258,7 +261,7 @@ impl MissionSettings {
         Layout { fields_min: 3, fields }
     }
 
-    /// As it is written: a whole percent.
+    /// The settings as written: a whole percentage.
     pub(super) fn rounded(self) -> MissionSettings {
         MissionSettings { throttle_pct: self.throttle_pct.round() }
     }
@@ -267,7 +270,7 @@ impl MissionSettings {
 /// `OIWPL`, a waypoint of a mission that is being uploaded. Four decimals of minutes place it to 0.1 m.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Waypoint {
-    /// Where.
+    /// The waypoint's position.
     pub at: LatLon,
     /// Its number; 0 is the emergency recovery point.
     pub index: u16,
@@ -294,7 +297,7 @@ mod tests {
             (99.5, -0.5, (100.0, 0.0)),
             (0.5, 99.5, (1.0, 99.0)),
             (20.5, -10.5, (21.0, -11.0)),
-            // What was too much before stays for others to refuse.
+            // A command that was already out of range is left for others to reject.
             (80.0, 40.0, (80.0, 40.0)),
             (101.0, 0.0, (101.0, 0.0)),
         ] {

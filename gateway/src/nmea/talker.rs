@@ -1,6 +1,7 @@
 //! The talker of a standard sentence.
 
-/// The talker: two characters of A to Z and 0 to 9 that say which kind of device sends a sentence.
+/// The talker: two characters, A to Z and 0 to 9, that identify the kind of device that sends a
+/// sentence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Talker([u8; 2]);
 
@@ -22,7 +23,8 @@ impl Talker {
         self.0
     }
 
-    /// Talker and kind of an address of five characters. A maker's own sentence begins with `P` and has no talker.
+    /// Talker and kind of a five-character address. A manufacturer's own sentence begins with `P`
+    /// and has no talker.
     pub(super) fn split(address: &str) -> Option<(Talker, &str)> {
         let (talker, kind) = address.split_at_checked(2)?;
         let characters: [u8; 2] = talker.as_bytes().try_into().ok()?;

@@ -6,7 +6,8 @@ pub const M_S_PER_KN: f64 = 1852.0 / 3600.0;
 /// A knot, km/h.
 pub(super) const KNOT_KM_H: f64 = 1.852;
 
-/// Which wind an `MWV` tells of. Both are angles from the bow, neither is a compass bearing.
+/// The reference of an `MWV` wind. Both angles are relative to the bow; neither is a compass
+/// bearing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum WindReference {
     /// `R`: as felt on the moving boat.

@@ -13,8 +13,9 @@ const FRAME: usize = 6;
 
 /// A sentence that is being written.
 ///
-/// Numbers and free texts are spare: should the line come out longer than [`EMITTED_MAX`], its longest spare
-/// fields are left empty. Everyone understands an empty field, and a cut one would be another number.
+/// Numbers and free texts are optional: if the line would exceed [`EMITTED_MAX`], the longest
+/// optional fields are left empty. Every reader understands an empty field, whereas a truncated one
+/// would be a different number.
 pub(super) struct Writer {
     body: String,
     spare: Vec<Range<usize>>,
@@ -25,7 +26,7 @@ impl Writer {
     pub(super) fn write(layout: Layout<'_>, out: &mut Vec<u8>) {
         let mut line = Writer { body: String::with_capacity(EMITTED_MAX), spare: Vec::new() };
         layout.fields.into_iter().for_each(|field| line.field(field));
-        // A field less is better than a sentence that a strict reader refuses as a whole.
+        // Better to omit a field than to send a sentence that a strict reader rejects.
         while line.body.len() + FRAME > EMITTED_MAX {
             line.empty_the_longest();
         }
@@ -50,8 +51,7 @@ impl Writer {
             Field::Required(number, format, _) => self.number(Some(*number), format),
             Field::ReadOnly(_) => self.fixed(""),
             Field::East(number) => {
-                // The sign is a letter of its own, and of a number that is none there is
-                // neither.
+                // The sign is a separate letter; a missing number has neither.
                 let number = number.filter(|number| number.is_finite());
                 self.number(number.map(f64::abs), TENTHS);
                 self.spare(number.map_or("", |number| if number < 0.0 { "W" } else { "E" }));
@@ -63,7 +63,7 @@ impl Writer {
             Field::Letter(letter) => self.text(&letter.map_or_else(String::new, String::from)),
             Field::Mode(mode) => self.fixed(&String::from(mode.letter())),
             Field::Operator(operator) => self.spare(&operator.map_or_else(String::new, |o| o.number().to_string())),
-            // Never spare: without it a reader would have to guess whether a fix counts.
+            // Never omitted: without it a reader would have to guess whether a fix is valid.
             Field::Valid(valid) | Field::ValidFix(valid, _) => self.fixed(if *valid { "A" } else { "V" }),
             Field::Time(time) => self.fixed(&time.and_then(TimeOfDay::text).unwrap_or_default()),
             Field::Date(date) => self.fixed(&date.and_then(Date::text).unwrap_or_default()),
@@ -84,10 +84,10 @@ impl Writer {
         }
     }
 
-    /// A position in four fields, empty for a missing position and one that is not on the globe.
+    /// A position in four fields, empty for a missing position or one off the globe.
     fn position(&mut self, at: Option<LatLon>, decimals: u32) {
-        // Both or neither: half a position would be read as one on the equator, or in
-        // Greenwich.
+        // Both or neither: half a position would be read as one on the equator or the prime
+        // meridian.
         let texts =
             at.and_then(|at| Some((LATITUDE.printed(at.lat_deg, decimals)?, LONGITUDE.printed(at.lon_deg, decimals)?)));
         let (lat, lon) = texts.unwrap_or_else(|| (",".to_owned(), ",".to_owned()));
@@ -103,7 +103,7 @@ impl Writer {
         }
     }
 
-    /// A field that is never left out; the caller knows that it is short.
+    /// A field that is never omitted; the caller ensures that it is short.
     fn fixed(&mut self, text: &str) {
         self.body.push(',');
         self.body.push_str(text);
@@ -113,7 +113,7 @@ impl Writer {
         self.spare(&format.text(number));
     }
 
-    /// A text of somebody else's: empty if anything in it means something to the framing.
+    /// External text: empty if it contains a character with a meaning for the framing.
     fn text(&mut self, text: &str) {
         let plain = |byte: u8| matches!(byte, b' '..=b'~') && !matches!(byte, b',' | b'*' | b'$');
         self.spare(if text.bytes().all(plain) { text } else { "" });
@@ -128,7 +128,7 @@ impl Writer {
         }
     }
 
-    /// Empties the longest spare field, the last of equals.
+    /// Empties the longest optional field, the last of equal ones.
     fn empty_the_longest(&mut self) {
         let longest = self.spare.iter().enumerate().max_by_key(|(_, range)| range.len()).map(|(i, _)| i);
         let gone = self.spare.remove(longest.expect("the fixed fields of every sentence fit"));

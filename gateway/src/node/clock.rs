@@ -1,15 +1,15 @@
-//! The gateway's monotonic clock, which goes on while the machine is suspended; in a game that runs faster than real time it runs as fast
-//! as the game.
+//! The gateway's monotonic clock, which includes time that the machine is suspended. In a game
+//! faster than real time it runs at the game's pace.
 
 use bus::clock;
 use primitives::SimTime;
 use std::time::{Duration, Instant};
 
-/// Time since the gateway began.
+/// Time since the gateway started.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Clock {
     start: Instant,
-    /// How long the machine had been suspended then.
+    /// Total suspended time at `start`.
     suspended: Duration,
     /// Its time at `start`.
     base: SimTime,
@@ -21,7 +21,7 @@ impl Clock {
         Clock { start: clock::now(), suspended: clock::suspended(), base: SimTime::ZERO, factor: 1.0 }
     }
 
-    /// From now on it runs as fast as a game of this pace.
+    /// Runs at this pace of a game from now on.
     pub(super) fn set_pace(&mut self, factor: f64) {
         let (now, suspended) = (clock::now(), clock::suspended());
         *self = Clock { base: self.time_at(now, suspended), start: now, suspended, factor };
@@ -37,27 +37,27 @@ impl Clock {
     }
 
     fn time_at(&self, moment: Instant, suspended: Duration) -> SimTime {
-        // Linux' monotonic clock stands still while the machine sleeps; the time asleep is
-        // added, so that what is old when it wakes is known to be.
+        // Linux' monotonic clock stops while the machine sleeps. The time asleep is added, so that
+        // old data counts as old after waking.
         let passed = moment.saturating_duration_since(self.start) + suspended.saturating_sub(self.suspended);
         self.base + SimTime::from_s(passed.as_secs_f64() * self.factor)
     }
 
-    /// How long it is in real time until the gateway's time `due`.
+    /// Real time until the gateway's time `due`.
     pub(super) fn until(&self, due: SimTime) -> Duration {
         let wait_s = (due - self.now()).as_s() / self.factor;
         Duration::from_secs_f64(wait_s.clamp(0.0, 1.0))
     }
 }
 
-/// When the gateway's loop last ran, and how long the machine had been suspended by then.
+/// When the gateway's loop last ran, and the total suspended time by then.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LastRun {
     at: Instant,
     suspended: Duration,
 }
 
-/// A suspension counts from here on: the two clocks are not read at once.
+/// Minimum time that counts as a suspension: the two clocks are not read simultaneously.
 const SUSPENSION_MIN: Duration = Duration::from_millis(50);
 
 impl LastRun {
@@ -65,7 +65,8 @@ impl LastRun {
         LastRun { at: clock::now(), suspended: clock::suspended() }
     }
 
-    /// For how long the loop has not run until `now`, and of that, how long the machine was suspended, if it was.
+    /// How long the loop has not run until `now`, and how long of that the machine was suspended,
+    /// if it was.
     pub(super) fn gap(self, now: LastRun) -> (Duration, Option<Duration>) {
         let suspended = now.suspended.saturating_sub(self.suspended);
         let awake = now.at.saturating_duration_since(self.at);

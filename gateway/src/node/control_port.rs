@@ -1,8 +1,9 @@
-//! The control port of a gateway: what operators ask over TCP, with a game or without. Stops come as datagrams, too.
+//! The control port of a gateway: operators' requests over TCP, with or without a game. Stops also
+//! arrive as datagrams.
 //!
-//! A line is a request, as on the network (`bus::token`), and so is the answer to it. Everybody may ask for the status and stop
-//! the boat; for the rest the game's token is proven. A stop waits for nothing; nobody's silence, garbage or number of
-//! connections keeps it out.
+//! Requests and replies are one line each, as on the network (`bus::token`). Everybody may query
+//! the status and stop the boat; everything else requires proof of the game's token. Nothing delays
+//! a stop: no silent peer, no garbage, no number of connections.
 
 use super::error::NodeError;
 use super::loop_input::{LoopInput, Stop};
@@ -19,32 +20,33 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::sync_channel;
 use std::time::Duration;
 
-/// The most connections at once.
+/// Maximum number of connections.
 const CONNECTIONS_MAX: usize = 128;
-/// A connection on which nothing comes for so long is closed, and one that does not read.
+/// A connection that is idle for this long, or does not read, is closed.
 const IDLE_MAX: Duration = Duration::from_secs(30);
 const WRITE_MAX: Duration = Duration::from_secs(2);
-/// The longest request, bytes: a mission has some hundred waypoints.
+/// Maximum bytes of a request: a mission has some hundred waypoints.
 const REQUEST_MAX: u64 = 64 * 1024;
 /// How long the gateway loop may take to reply.
 const REPLY_MAX: Duration = Duration::from_secs(2);
 
-/// How long the loop may take until the answer to a datagram says how the boat is: the next datagram waits meanwhile.
+/// How long the loop may take to provide the boat's state for the reply to a datagram; the next
+/// datagram waits meanwhile.
 const STATE_MAX: Duration = Duration::from_millis(50);
-/// How often another port is tried where any will do, and its number is free for TCP alone.
+/// How often another port is tried if any port will do and its number is free only for TCP.
 const ATTEMPTS: usize = 16;
 
-/// A port that is open as long as this is kept.
+/// A port that stays open until dropped.
 pub(super) struct ControlPort {
     server: Arc<Server>,
     _port: TcpPort,
     _datagrams: DatagramPort,
     pub(super) address: SocketAddr,
-    /// The token that it asks for.
+    /// The token that it requires.
     pub(super) token: CurrentToken,
 }
 
-/// What all connections share.
+/// State shared by all connections.
 struct Server {
     vehicle: String,
     token: CurrentToken,
@@ -54,7 +56,7 @@ struct Server {
 }
 
 impl ControlPort {
-    /// Opens the port of the gateway of a boat.
+    /// Opens the control port of a boat's gateway.
     pub(super) fn open(
         listen: SocketAddr,
         vehicle: &str,
@@ -62,7 +64,7 @@ impl ControlPort {
         input: LoopInput,
     ) -> Result<ControlPort, NodeError> {
         let open = || ControlPort::open_once(listen, vehicle, token.clone(), input.clone());
-        // Port 0 is chosen for TCP; the same number may be taken for UDP.
+        // Port 0 is chosen for TCP; the same number may be in use for UDP.
         let attempts = if listen.port() == 0 { ATTEMPTS } else { 1 };
         (1..attempts).fold(open(), |opened, _| opened.or_else(|_| open()))
     }
@@ -76,7 +78,7 @@ impl ControlPort {
         let is_running = AtomicBool::new(false);
         let server = Arc::new(Server { vehicle: vehicle.to_owned(), token: token.clone(), input, is_running });
         let shared = Arc::clone(&server);
-        // However a connection ends, nobody misses it.
+        // Errors of a single connection do not matter.
         let serve = move |slot: &Slot, stream: &TcpStream| drop(shared.serve(slot, stream));
         let failed = |source| NodeError::ControlPort { listen, source };
         let port = TcpPort::open(listen, "control port", CONNECTIONS_MAX, serve).map_err(failed)?;
@@ -86,19 +88,19 @@ impl ControlPort {
         Ok(ControlPort { server, address, _port: port, _datagrams: datagrams, token })
     }
 
-    /// From now on the gateway loop answers.
+    /// The gateway loop answers from now on.
     pub(super) fn begin(&self) {
         self.server.is_running.store(true, Ordering::SeqCst);
     }
 }
 
 impl Server {
-    /// Answers requests, line by line, until one is garbage or too long, or none comes.
+    /// Answers requests, line by line, until one is garbage or too long, or the peer is silent.
     fn serve(&self, slot: &Slot, mut stream: &TcpStream) -> io::Result<()> {
         stream.set_nodelay(true)?;
         stream.set_read_timeout(Some(IDLE_MAX))?;
         stream.set_write_timeout(Some(WRITE_MAX))?;
-        // A challenge is for this connection: those of others cannot displace it.
+        // A challenge belongs to this connection: those of others cannot displace it.
         let mut guard = Guard::new(self.token.clone());
         let mut reader = BufReader::new(stream);
         loop {
@@ -108,7 +110,8 @@ impl Server {
             if line.pop() != Some(b'\n') {
                 return Ok(());
             }
-            // Before the check: what was checked while no token was known never reaches the loop.
+            // Read before the check, so that a request checked without a token never reaches the
+            // loop.
             let is_running = self.is_running.load(Ordering::SeqCst);
             let (mut answer, is_garbage) = match guard.check(GATEWAY_PORT_KEY, &line, GatewayCommand::needs_token) {
                 Checked::Granted(command) => {
@@ -116,14 +119,12 @@ impl Server {
                     (token::answer(&self.execute(command, is_running)), false)
                 }
                 Checked::Challenged(challenge) => (challenge, false),
-                Checked::Garbage(e) => {
-                    (token::answer(&self.refusal(&format!("the request is not understood: {e}"))), true)
-                }
+                Checked::Garbage(e) => (token::answer(&self.refusal(&format!("cannot parse the request: {e}"))), true),
             };
             answer.push(b'\n');
             stream.write_all(&answer)?;
-            // A browser that is made to post here by some web page speaks HTTP: its first line
-            // is garbage, and what follows is not read.
+            // A browser that a web page makes post here speaks HTTP: its first line is garbage, and
+            // the rest is not read.
             if is_garbage {
                 return Ok(());
             }
@@ -137,10 +138,11 @@ impl Server {
         {
             return self.refusal(&format!("this is the gateway of {}, not of {name}", self.vehicle));
         }
-        // The loop reads stops before everything else: what is left to be asked is how the boat is then.
+        // The loop reads stops before everything else; the query only returns the boat's state
+        // afterwards.
         let ask = match self.stop_in(&command) {
             Some(stop) => {
-                // Before the answer is even prepared: nothing that follows may delay it.
+                // Before the reply is even prepared, so that nothing can delay it.
                 self.input.stop(stop);
                 GatewayCommand::Boat { name: self.vehicle.clone(), command: OperatorCommand::Status }
             }
@@ -154,10 +156,10 @@ impl Server {
         let (reply, replied) = sync_channel(1);
         self.input.request((ask, reply));
         let reply = replied.recv_timeout(REPLY_MAX);
-        reply.unwrap_or_else(|_| self.refusal("the gateway is ending, or does not answer"))
+        reply.unwrap_or_else(|_| self.refusal("the gateway is shutting down, or does not answer"))
     }
 
-    /// The stop of this boat that a command is, if it is one.
+    /// The stop of this boat that a command requests, if any.
     fn stop_in(&self, command: &GatewayCommand) -> Option<Stop> {
         match command {
             GatewayCommand::Boat { name, command } if *name == self.vehicle => Stop::of(command),
@@ -166,7 +168,8 @@ impl Server {
         }
     }
 
-    /// Obeys a stop, and answers how the boat is after it. Before the loop runs there is no boat to tell of.
+    /// Executes a stop, and replies with the boat's state afterwards. Before the loop runs there is
+    /// no state to report.
     fn serve_datagram(&self, bytes: &[u8]) -> Option<Vec<u8>> {
         let request = StopRequest::decode(bytes)?;
         let asks_status = matches!(request.command, GatewayCommand::Boat { command: OperatorCommand::Status, .. });
@@ -175,7 +178,7 @@ impl Server {
             None if asks_status => 0,
             None => return None,
         };
-        // Obeyed all the same: the flag is read when the loop begins.
+        // Obeyed anyway: the loop reads the flag when it starts.
         if !self.is_running.load(Ordering::SeqCst) {
             return None;
         }
@@ -187,10 +190,10 @@ impl Server {
         OperatorReply { refused: Some(reason.to_owned()), status: self.status_before() }
     }
 
-    /// The status where the loop is not asked.
+    /// The status while the loop is not running.
     fn status_before(&self) -> GatewayStatus {
         let is_stopped = self.input.has_e_stop();
-        let state = if is_stopped { "e-stopped, as soon as there is a link" } else { "no link to the boat yet" };
+        let state = if is_stopped { "e-stopped once there is a link" } else { "no link to the boat yet" };
         let link = "no link yet: looking for the game".to_owned();
         GatewayStatus { vehicle: self.vehicle.clone(), link, state: state.to_owned(), ..GatewayStatus::default() }
     }
@@ -244,7 +247,7 @@ mod tests {
         socket.connect(port.address).expect("an address");
         socket.set_read_timeout(Some(Duration::from_millis(300))).expect("a time");
         let request = |command| StopRequest { session: 1, number: 2, game: None, command };
-        // Before its loop runs it obeys, and knows nothing to answer.
+        // Before its loop runs it obeys, but has nothing to report.
         socket.send(&request(boat(OperatorCommand::EStop)).encode()).expect("it is sent");
         let mut buffer = [0; 2000];
         assert!(socket.recv(&mut buffer).is_err() && output.take_stop(Stop::EStop(Scope::Boat)));
@@ -264,7 +267,7 @@ mod tests {
         let text = String::from_utf8_lossy(&buffer[..count]);
         assert!(count <= status.len() && text.contains("armed") && text.contains("mac"), "{text}");
         assert!(!text.contains(&token.hex()));
-        // What has no room for an answer gets none.
+        // A request without room for an answer gets none.
         socket.send(br#"{"body":{"fleet":"e_stop"}}"#).expect("it is sent");
         assert!(socket.recv(&mut buffer).is_err() && output.take_stop(Stop::EStop(Scope::Fleet)));
     }
@@ -300,10 +303,10 @@ mod tests {
             drop(stream.read_to_string(&mut said));
             said
         };
-        // A browser can be made to send this, by any page.
+        // Any web page can make a browser send this.
         let post = b"POST / HTTP/1.1\r\n\r\n{\"body\":{\"fleet\":\"e_stop\"}}\n";
-        assert!(said(post).contains("not understood") && !output.take_stop(Stop::EStop(Scope::Fleet)));
-        assert!(said(&[b'['; 1000].iter().chain(b"\n").copied().collect::<Vec<u8>>()).contains("not understood"));
+        assert!(said(post).contains("cannot parse") && !output.take_stop(Stop::EStop(Scope::Fleet)));
+        assert!(said(&[b'['; 1000].iter().chain(b"\n").copied().collect::<Vec<u8>>()).contains("cannot parse"));
         assert_eq!(said(&vec![b'x'; 10 * REQUEST_MAX as usize]), "");
     }
 }

@@ -1,4 +1,5 @@
-//! The emulator's node: joins a game as the agent of a simulated boat, which a back seat drives by the boat's own protocol.
+//! The emulator's node: joins a game as the agent of a simulated boat, which a back seat drives
+//! with the boat's own protocol.
 
 use super::error::NodeError;
 use super::game_terms::{declination_rad, pace_factor};
@@ -28,36 +29,36 @@ pub struct EmulatorSettings {
     pub place: Place,
     /// The boat's name in the game.
     pub vehicle: String,
-    /// What it speaks. The settings from `declination_rad` to `extra` are of a Surveyor.
+    /// Its protocol. The settings from `declination_rad` to `extra` are for a Surveyor.
     pub protocol: BoatProtocol,
     /// Where the back seat connects.
     pub listen: LinkAddress,
-    /// Where the primary operator connects, or is, if anywhere.
+    /// Where the primary operator connects or listens, if used.
     pub primary: Option<LinkAddress>,
-    /// Declination, east positive, rad; `None` is by the World Magnetic Model.
+    /// Declination, east positive, rad; `None` uses the World Magnetic Model.
     pub declination_rad: Option<f64>,
-    /// After this long without a command the boat goes to standby, s; `None` is never.
+    /// Without a command for this long the boat goes to standby, s; `None` means never.
     pub watchdog_s: Option<f64>,
-    /// Whether a set-point that is not a whole number leaves the one before in force.
+    /// Whether a set-point that is not a whole number leaves the previous one in force.
     pub integers: bool,
-    /// Sentences beyond a Surveyor's.
+    /// Sentences in addition to a Surveyor's.
     pub extra: Vec<Extra>,
-    /// What is left in its battery at the beginning, a share of all; with `None` it is full and stays so.
+    /// Initial charge of its battery, as a fraction; `None` is full and never drains.
     pub charge: Option<f64>,
     /// How long to look for the game.
     pub wait: Duration,
     /// After this long without a picture the sim counts as dead.
     pub silence: Duration,
-    /// Set from outside to end.
+    /// Set by the caller to end the emulator.
     pub stop: Arc<AtomicBool>,
 }
 
-/// How often the loop checks whether it is to end.
+/// How often the loop checks whether it must end.
 const POLL: Duration = Duration::from_millis(100);
-/// Bytes of commands that may wait: more than a back seat sends in a minute.
+/// Maximum bytes of commands that may wait: more than a back seat sends in a minute.
 const UNREAD_MAX: usize = 256 * 1024;
 
-/// What came from the links and the sim since the last poll.
+/// Input from the links and the sim since the last poll.
 #[derive(Default)]
 struct Incoming {
     bytes: Vec<(Port, Vec<u8>)>,
@@ -66,7 +67,7 @@ struct Incoming {
     picture: Option<Vec<u8>>,
 }
 
-/// Emulates a boat until the game is over, or until it is told to stop.
+/// Emulates a boat until the game is over, or until it is stopped.
 ///
 /// # Errors
 /// [`NodeError`] if there is no such game or boat, if it has another agent, or if the network or a link cannot work.
@@ -76,7 +77,7 @@ pub fn emulate(settings: &EmulatorSettings, notify: &mut dyn FnMut(NodeEvent<'_>
     let (bus, game, info) = search.game(&mut looking, &settings.place, settings.game.as_ref())?;
     let vehicle = info.scenario.vehicle_named(&settings.vehicle)?;
     // A back seat runs in real time.
-    // Refused in lockstep: its clock stands still between decisions.
+    // Rejected in lockstep: its clock stops between decisions.
     pace_factor(&info.pace, true)?;
     let scenario = &info.scenario;
     let datum = scenario.field.plan.datum;
@@ -99,7 +100,7 @@ pub fn emulate(settings: &EmulatorSettings, notify: &mut dyn FnMut(NodeEvent<'_>
     let incoming = Arc::new(Watched::new(Incoming::default()));
     let pictures = Arc::clone(&incoming);
     let _subscription = bus.subscribe(topic::picture(&game, scenario, scenario.team_of(vehicle)), move |bytes| {
-        // The newest only: a boat does not act on how it was.
+        // Only the newest: a boat does not act on an outdated picture.
         pictures.visit(|incoming| incoming.picture = Some(bytes.to_vec()));
     })?;
     let back_seat = open(&settings.listen, Port::Secondary, &incoming)?;
@@ -133,7 +134,7 @@ pub fn emulate(settings: &EmulatorSettings, notify: &mut dyn FnMut(NodeEvent<'_>
 /// Opens a port of the boat.
 fn open(address: &LinkAddress, port: Port, incoming: &Arc<Watched<Incoming>>) -> Result<Link, NodeError> {
     let shared = Arc::clone(incoming);
-    // A back seat may listen for hours without a word.
+    // A back seat may listen silently for hours.
     let settings = LinkSettings { silence: None, ..LinkSettings::default() };
     Ok(Link::open(address, settings, move |event| shared.visit(|incoming| incoming.handle_event(port, event)))?)
 }
@@ -156,7 +157,7 @@ impl Incoming {
     }
 }
 
-/// The emulated boat as a mind: its order is what the back seat commands.
+/// The emulated boat as a mind: its order is the back seat's command.
 struct EmulatedBoat {
     vehicle: VehicleId,
     front_seat: FrontSeat,
@@ -177,7 +178,7 @@ struct EmulatorNode {
     runner: MindRunner<EmulatedBoat>,
     ticket: u64,
     sim: SimWatch,
-    /// Time of the game.
+    /// Game time.
     now: SimTime,
     /// To the back seat, and to the primary operator.
     links: [Option<Link>; 2],
@@ -241,8 +242,8 @@ impl EmulatorNode {
 
     /// Answers a picture with the boat's order, and sends telemetry.
     fn answer(&mut self, picture: &Picture) -> Result<(), NodeError> {
-        // The sim repeats pictures whose answers got lost: the order is given again, telemetry
-        // is not.
+        // The sim repeats pictures whose answers were lost. The order is repeated, but not the
+        // telemetry.
         let is_new = self.runner.decided() != Some(picture.stamp.seq);
         if is_new {
             self.now = picture.stamp.valid_ns;

@@ -1,4 +1,4 @@
-//! Why a gateway cannot work.
+//! Why a gateway cannot run.
 
 use crate::declination::DeclinationError;
 use crate::geofence::GeofenceError;
@@ -10,13 +10,13 @@ use std::net::SocketAddr;
 use std::time::Duration;
 use thiserror::Error;
 
-/// Why a gateway cannot work.
+/// Why a gateway cannot run.
 #[derive(Debug, Error)]
 pub enum NodeError {
     /// The network failed.
     #[error(transparent)]
     Bus(#[from] BusError),
-    /// There is no game, or it refuses.
+    /// There is no game, or it refuses the boat.
     #[error(transparent)]
     NotFound(#[from] NotFound),
     /// The link cannot be opened.
@@ -25,9 +25,9 @@ pub enum NodeError {
     /// The control port cannot be opened.
     #[error("the control port {listen}: {source}")]
     ControlPort {
-        /// Where it was to listen.
+        /// The address.
         listen: SocketAddr,
-        /// Why.
+        /// The cause.
         source: std::io::Error,
     },
     /// Another gateway has the link.
@@ -36,27 +36,27 @@ pub enum NodeError {
     /// The recording is incomplete.
     #[error("{0}")]
     Recording(String),
-    /// The declination is not known.
+    /// The declination is unknown.
     #[error("{0}; set declination_deg in the gateway's file")]
     Declination(#[from] DeclinationError),
     /// The game has no such boat.
     #[error(transparent)]
     UnknownVehicle(#[from] UnknownVehicle),
-    /// The geofence does not go with the game.
+    /// The geofence does not suit the game.
     #[error("the gateway file {file}: geofence: {source}")]
     Geofence {
         /// The file's stem.
         file: String,
-        /// Why.
+        /// The cause.
         source: GeofenceError,
     },
-    /// The game and the gateway do not go together.
+    /// The game and the gateway do not match.
     #[error("{0}")]
     Refused(String),
-    /// The sim has died or fallen silent, and with it the emulated boat.
+    /// The sim has died or is silent, so the emulated boat is lost too.
     #[error("the sim is gone: no picture for {0:.1?}")]
     SimGone(Duration),
-    /// Another sim serves a game of the same name, and knows nothing of us.
+    /// Another sim serves a game of the same name, and does not know us.
     #[error("the sim is gone, and another one serves the game: join again")]
     SimReplaced,
 }

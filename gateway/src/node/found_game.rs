@@ -1,4 +1,4 @@
-//! A game that was found for a boat.
+//! A game found for a boat.
 
 use crate::bridge::Site;
 use bus::Bus;
@@ -6,13 +6,13 @@ use messages::GameInfo;
 use messages::topic::GameName;
 use primitives::VehicleId;
 
-/// A game that has let the boat join.
+/// A game that the boat has joined.
 pub(super) struct FoundGame {
     pub(super) bus: Bus,
     pub(super) game: GameName,
     pub(super) info: GameInfo,
     pub(super) vehicle: VehicleId,
-    /// How many seconds of the game pass in a second of real time.
+    /// Seconds of game time per second of real time.
     pub(super) factor: f64,
     pub(super) site: Site,
 }

@@ -1,4 +1,5 @@
-//! Finds the game of a boat and joins it, in a thread of its own: the boat's link and its operators do not wait for that.
+//! Finds a boat's game and joins it, on a thread of its own: the boat's link and its operators do
+//! not wait for that.
 
 use super::error::NodeError;
 use super::found_game::FoundGame;
@@ -16,7 +17,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-/// What is looked for.
+/// The search parameters.
 struct Wanted {
     game: Option<GameName>,
     place: Place,
@@ -27,10 +28,10 @@ struct Wanted {
     stop: Arc<AtomicBool>,
 }
 
-/// Begins to look. What is found, or why nothing can be, is given to the loop.
+/// Starts the search. Its result goes to the loop.
 ///
 /// # Errors
-/// If the system has no thread to give.
+/// If the system cannot start a thread.
 pub(super) fn begin(settings: &Settings, input: LoopInput) -> std::io::Result<NodeThread> {
     let Settings { game, place, vehicle, gateway, at_game_pace, wait, stop, .. } = settings;
     let wanted = Wanted {
@@ -58,17 +59,18 @@ impl Wanted {
         let field = info.scenario.field.clone();
         let area = GeofenceArea::new(&field, &self.gateway.geofence);
         let file = self.gateway.name.clone();
-        // Before the boat joins: a geofence that leaves out the start would be noticed with the
-        // boat on the water.
+        // Before the boat joins: otherwise a geofence that excludes the start would be noticed with
+        // the boat on the water.
         area.check(&info.scenario, vehicle).map_err(|source| NodeError::Geofence { file, source })?;
         let declination_rad = declination_rad(self.gateway.declination_rad, field.plan.datum)?;
         let boat = info.scenario.boat_of(vehicle);
         let coasting = Some(Coasting::of(boat));
         let site = Site { length_m: boat.length_m, field, declination_rad, coasting };
-        // The thread that keeps it joined asks again, and gets it again.
+        // The thread that keeps it joined asks again, and gets the same boat.
         let names = [self.vehicle.clone()];
         let all = (&game, &info.scenario);
-        // Joining once here tells a wrong token or a taken boat while the operator still looks.
+        // Joining once here reports a wrong token or a taken boat while the operator is still
+        // watching.
         search.until(tell, || game_search::join(&bus, &self.place, all, Role::Gateway, &names))?;
         Ok(FoundGame { bus, game, info, vehicle, factor, site })
     }

@@ -1,4 +1,5 @@
-//! The terms on which a boat takes part in a game: that it is real there, the pace, and the declination at the field.
+//! The conditions of a boat's participation in a game: its source, the pace, and the declination at
+//! the field.
 
 use super::error::NodeError;
 use crate::declination::declination_deg;
@@ -18,7 +19,7 @@ pub(super) fn external_vehicle(info: &GameInfo, name: &str) -> Result<VehicleId,
     Err(NodeError::Refused(format!("{name} is simulated in this game: a real boat needs source = \"external\"")))
 }
 
-/// How many seconds of the game pass in a second of real time.
+/// Seconds of game time per second of real time.
 pub(super) fn pace_factor(pace: &str, at_game_pace: bool) -> Result<f64, NodeError> {
     match (pace, at_game_pace) {
         ("realtime", _) => Ok(1.0),
@@ -27,12 +28,12 @@ pub(super) fn pace_factor(pace: &str, at_game_pace: bool) -> Result<f64, NodeErr
             .and_then(|factor| factor.parse().ok())
             .ok_or_else(|| NodeError::Refused(format!("the game's pace is {pace}, expected realtime or a factor"))),
         (pace, false) => Err(NodeError::Refused(format!(
-            "the game's pace is {pace}, expected realtime: a real boat sails in real time (--at-game-pace is for emulated ones)"
+            "the game's pace is {pace}, expected realtime: a real boat runs in real time (--at-game-pace is for emulated ones)"
         ))),
     }
 }
 
-/// The declination as it is set, or else that of here and today; east positive, rad.
+/// The declination as configured, otherwise at the field today; east positive, rad.
 pub(super) fn declination_rad(set_rad: Option<f64>, at: LatLon) -> Result<f64, NodeError> {
     let today_rad = || Ok(declination_deg(at, date_and_time(utc::now_ns()).0)?.to_radians());
     set_rad.map_or_else(today_rad, Ok)

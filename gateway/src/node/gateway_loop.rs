@@ -1,4 +1,5 @@
-//! The gateway loop: inputs from the boat, the sim and operators go to the core, its outputs go out.
+//! The gateway loop: passes inputs from the boat, the sim and operators to the core, and its
+//! outputs on.
 
 use super::clock::{Clock, LastRun};
 use super::error::NodeError;
@@ -29,18 +30,20 @@ use std::time::{Duration, Instant};
 
 /// How often the status is published, and shown.
 const STATUS_EVERY: Duration = Duration::from_millis(500);
-/// How long the shutdown message may take.
+/// Maximum time for the shutdown message.
 const SHUTDOWN_MAX: Duration = Duration::from_millis(500);
-/// How long an error waits for a boat that has not been reached yet, to send it standby.
+/// How long the loop waits after an error for a boat that has not been reached yet, to send it
+/// standby.
 const REACH_MAX: Duration = Duration::from_secs(2);
 const NOT_REACHED: &str = "not connected yet";
-/// The most sentences with orders whose completion is awaited.
+/// Maximum number of order sentences whose completion is awaited.
 const WRITING_MAX: usize = 64;
-/// What has waited longer for the loop is too old to go by: it was suspended, or had no processor.
+/// Data that has waited longer for the loop is too old: the loop was suspended, or had no
+/// processor.
 const WAITED_MAX: Duration = Duration::from_millis(500);
-/// Why a request is refused that a disarm has overtaken.
-const DISARMED: &str = "the boat was disarmed meanwhile: ask again";
-/// A message that comes again within this time is not repeated.
+/// The refusal of a request that a disarm has overtaken.
+const DISARMED: &str = "the boat has been disarmed since: repeat the request";
+/// A message that recurs within this time is not logged again.
 const REMARK_AGAIN: Duration = Duration::from_secs(10);
 
 /// The loop of a gateway, with everything it drives.
@@ -50,22 +53,22 @@ pub(super) struct GatewayLoop<'a> {
     pub(super) clock: Clock,
     pub(super) input: LoopOutput,
     pub(super) game_clock: GameClock,
-    /// The game, once it is found.
+    /// The game, once found.
     pub(super) in_game: Option<InGame>,
     pub(super) settings: &'a Settings,
     pub(super) guarded: Option<Guarded>,
-    /// Where what comes from the game is put.
+    /// The queue for input from the game.
     pub(super) back: LoopInput,
     pub(super) recorder: Option<Recorder>,
     pub(super) encoder: StepEncoder,
     pub(super) counters: Counters,
     pub(super) notify: &'a mut dyn FnMut(NodeEvent<'_>),
     pub(super) guard: Guard,
-    /// The control port, where there is one, and the token that it asks for.
+    /// The control port, if any, and the token that it requires.
     pub(super) port: Option<(SocketAddr, CurrentToken)>,
 }
 
-/// What a gateway has of the game that it is in.
+/// The game that the gateway is in.
 pub(super) struct InGame {
     bus: Bus,
     pub(super) nav: Publisher,
@@ -79,25 +82,25 @@ pub(super) struct InGame {
     _subscriptions: Vec<Declaration>,
 }
 
-/// What the loop keeps track of.
+/// The state of the loop.
 pub(super) struct Counters {
     pub(super) ticket: Option<u64>,
-    /// Time of the game, as last received.
+    /// Game time, as last received.
     pub(super) game_now: SimTime,
     pub(super) reports: u64,
     pub(super) link: String,
     tag: u64,
-    /// Sentences with orders on their way: tag, and when the order came.
+    /// Order sentences being sent: tag, and arrival time of the order.
     writing: VecDeque<(u64, Instant)>,
-    /// When the order that is not sent yet came.
+    /// Arrival time of the order that has not been sent yet.
     order_came: Option<Instant>,
     pub(super) sentence_to_topic: Latency,
     pub(super) order_to_sentence: Latency,
     status_at: Instant,
-    /// When the machine last came back from a suspension, or the gateway began.
+    /// When the machine last resumed from a suspension, or the gateway started.
     awake_since: Instant,
     remarked: (Instant, String),
-    /// What is wrong with the recording, as already reported.
+    /// The fault of the recording, as last reported.
     pub(super) recording_fault: Option<String>,
 }
 
@@ -123,22 +126,22 @@ impl Counters {
 }
 
 impl GatewayLoop<'_> {
-    /// Runs until it is told to stop.
+    /// Runs until it is stopped.
     pub(super) fn run(&mut self, stop: &AtomicBool) -> Result<(), NodeError> {
         let mut beat_at = LastRun::now();
         while !stop.load(Ordering::Relaxed) {
             beat_at = self.beat(beat_at)?;
             let stop_count = self.input.stop_count();
             self.take_requests()?;
-            // With the count from before the stops were taken: a state that is shown stands for
-            // all stops up to that, and none too many.
+            // With the count from before the stops were taken: a published state covers all stops
+            // up to that count, and no later ones.
             self.input.show_state(stop_count, self.bridge.state_in_words());
             let due = self.bridge.due(self.clock.now());
             let wait = self.clock.until(due);
-            // No longer than a heartbeat: the guard takes a loop that waits for a boat for one
-            // that hangs.
+            // No longer than a heartbeat: the guard cannot tell a loop that waits for a boat from
+            // one that hangs.
             let call = self.input.calls.take(if self.guarded.is_some() { wait.min(HEARTBEAT) } else { wait });
-            // That it was suspended comes before what came meanwhile.
+            // The suspension is noted before the input that arrived meanwhile.
             beat_at = self.beat(beat_at)?;
             match call {
                 Some(call) => self.handle_call(call)?,
@@ -155,19 +158,21 @@ impl GatewayLoop<'_> {
         Ok(())
     }
 
-    /// Waits until the boat is reached and was sent standby, if the first attempt is still under way.
+    /// If the first attempt is still in progress, waits until the boat is reached and has received
+    /// standby.
     pub(super) fn await_boat(&mut self) {
         let start = clock::now();
         while self.counters.link == NOT_REACHED && clock::since(start) < REACH_MAX {
             if let Some(Call::Link(event)) = self.input.calls.take(HEARTBEAT) {
-                // There is an error already.
+                // There already is an error.
                 drop(self.take_link(event));
             }
         }
     }
 
-    /// Shows the guard that the loop runs, and the core if it has not for so long that the guard may have stopped the boat.
-    /// What came before the machine was suspended is not used.
+    /// Shows the guard that the loop is running, and reports to the core a pause long enough for
+    /// the guard to have stopped the boat. Input from before a suspension of the machine is
+    /// discarded.
     fn beat(&mut self, last: LastRun) -> Result<LastRun, NodeError> {
         let now = LastRun::now();
         let (gap, suspended) = last.gap(now);
@@ -176,12 +181,11 @@ impl GatewayLoop<'_> {
             self.warn(&format!("this machine was suspended for {:.1} s", suspended.as_secs_f64()));
         }
         if let Some(guarded) = &self.guarded {
-            // What stops the boat may change: who commands it, or whether it is in the middle
-            // of an upload.
+            // The stop message may change: with the operator in control, or during an upload.
             guarded.stop_with(&self.bridge.guard_message());
         }
         if self.guarded.as_ref().is_some_and(|guarded| !guarded.beat()) {
-            self.warn("the guard has died: if the gateway is killed, nobody stops the boat");
+            self.warn("the guard has died: if the gateway is killed, nothing stops the boat");
         }
         if gap >= HUNG && (self.guarded.is_some() || suspended.is_some()) {
             self.step(Input::Hung(gap.as_secs_f64()), None)?;
@@ -189,7 +193,7 @@ impl GatewayLoop<'_> {
         Ok(now)
     }
 
-    /// Whether what came at this moment has waited too long to go by.
+    /// Whether input that arrived at this moment is too old to use.
     fn is_too_old(&self, came: Instant) -> bool {
         clock::since(came) > WAITED_MAX || came < self.counters.awake_since
     }
@@ -202,7 +206,8 @@ impl GatewayLoop<'_> {
         }
     }
 
-    /// Stops before everything else, then at most one request at the control port and one at the hub.
+    /// Handles stops before everything else, then at most one request from the control port and one
+    /// from the hub.
     fn take_requests(&mut self) -> Result<(), NodeError> {
         if self.input.take_stop(Stop::EStop(Scope::Fleet)) {
             self.step(Input::Fleet(FleetCommand::EStop), None)?;
@@ -222,7 +227,7 @@ impl GatewayLoop<'_> {
                 GatewayCommand::Boat { command, .. } => self.execute(command)?,
                 GatewayCommand::Fleet(command) => self.step_core(Input::Fleet(command), None)?,
             };
-            // Whoever asked may be gone.
+            // The requester may be gone.
             drop(reply.try_send(OperatorReply { refused, status: self.full_status() }));
         }
         match self.input.queries.take_now() {
@@ -231,11 +236,12 @@ impl GatewayLoop<'_> {
         }
     }
 
-    /// Refuses what was requested before a disarm that has overtaken it: it must not arm the boat again.
+    /// Refuses requests from before a disarm that has overtaken them: they must not arm the boat
+    /// again.
     fn refuse_earlier(&mut self) -> Result<(), NodeError> {
         while let Some((command, reply)) = self.input.port_requests.take_now() {
             let refused = command.needs_token().then(|| DISARMED.to_owned());
-            // Whoever asked may be gone.
+            // The requester may be gone.
             drop(reply.try_send(OperatorReply { refused, status: self.full_status() }));
         }
         while let Some(query) = self.input.queries.take_now() {
@@ -259,7 +265,7 @@ impl GatewayLoop<'_> {
             _join: Join::begin(&bus, &self.settings.place, (&game, scenario), name, self.back.calls.clone())?,
             bus,
         };
-        // The link has been served since before: only what needs a field begins here.
+        // The link has been served before: only what needs a field starts here.
         self.in_game = Some(in_game);
         self.clock.set_pace(factor);
         self.encoder.set_vehicle(vehicle);
@@ -276,7 +282,7 @@ impl GatewayLoop<'_> {
             Call::Order => self.take_order(),
             Call::Frame(bytes) => self.take_frame(&bytes),
             Call::Release => self.step(Input::Fleet(FleetCommand::Release), None),
-            // What it is about was read before.
+            // Its subject was read before.
             Call::Look => Ok(()),
             Call::Looking(reason) => {
                 (self.notify)(NodeEvent::Looking { reason: &reason });
@@ -287,22 +293,22 @@ impl GatewayLoop<'_> {
                 self.counters.game_now = joined.now;
                 self.game_clock.join(self.clock.at(joined.asked), joined.now);
                 if let Some((address, token)) = &self.port {
-                    // In a game with keys it stays the port's own.
+                    // In a game with keys the port keeps its own.
                     if let Some(known) = self.settings.place.token().get() {
                         token.set(Some(known));
                     }
                     (self.notify)(NodeEvent::ControlPort { address: *address, token: token.get() });
                 }
-                self.remark("joined: the sim takes reports of the boat");
+                self.remark("joined: the sim accepts the boat's reports");
                 self.step(Input::Joined, None)
             }
             // The ticket would be another boat's: its reports would move that one.
             Call::Joined(_) => {
-                Err(NodeError::Refused("the sim let another boat in than the one that asked".to_owned()))
+                Err(NodeError::Refused("the sim admitted a different boat from the one that asked".to_owned()))
             }
             Call::SimGone => {
-                // No error: the boat is stopped by stale orders, and the next sim of the game
-                // is joined as this one was.
+                // Not an error: stale orders stop the boat, and the game's next sim is joined like
+                // this one.
                 self.counters.ticket = None;
                 self.remark("the sim is gone: waiting for the next");
                 Ok(())
@@ -321,9 +327,9 @@ impl GatewayLoop<'_> {
                 self.remark(&format!("connected to {name}"));
                 self.step(Input::LinkUp, None)
             }
-            // A position that waited would be taken for where the boat is now.
+            // An old position would be taken for the boat's present one.
             LinkEvent::Bytes { at, .. } if self.is_too_old(at) => {
-                self.remark("what the boat sent has waited for too long: it is not used");
+                self.remark("discarded data from the boat: it waited too long");
                 self.step(Input::Tick, None)
             }
             LinkEvent::Bytes { at, bytes, .. } => self.step(Input::Bytes(bytes), Some(at)),
@@ -349,7 +355,7 @@ impl GatewayLoop<'_> {
     }
 
     fn take_order(&mut self) -> Result<(), NodeError> {
-        // Of many orders the newest: an older one that is carried out first would delay it.
+        // Only the newest order: executing an older one first would delay it.
         let taken = self.input.latest_order.lock().take();
         let Some((message, came)) = taken else { return Ok(()) };
         if self.is_too_old(came) {
@@ -364,8 +370,8 @@ impl GatewayLoop<'_> {
         if Some(message.order.vehicle) != self.vehicle() {
             return self.step(Input::BadOrder, None);
         }
-        // Checked here as well as in the sim: whatever is on the topic, the core is given sound
-        // numbers.
+        // Checked here as well as in the sim: the core receives only valid numbers, whatever is on
+        // the topic.
         let sound = message.order.order().and_then(|order: Order| order.check().ok());
         match sound {
             Some(order) => {
@@ -384,7 +390,7 @@ impl GatewayLoop<'_> {
         self.step(Input::Others(others), None)
     }
 
-    /// Answers a query; nothing that needs the token is done while there is an objection.
+    /// Answers a query; with an objection, nothing that needs the token is done.
     fn operate(&mut self, query: Query, objection: Option<&str>) -> Result<(), NodeError> {
         let token = self.settings.place.token().get();
         let refused = match self.guard.check(query.key(), query.payload(), OperatorCommand::needs_token) {
@@ -394,14 +400,14 @@ impl GatewayLoop<'_> {
                 query.answer_as(challenge, token.as_ref());
                 return Ok(());
             }
-            Checked::Garbage(e) => Some(format!("the command is not understood: {e}")),
+            Checked::Garbage(e) => Some(format!("cannot parse the command: {e}")),
         };
         let reply = OperatorReply { refused, status: self.full_status() };
         query.answer_as(token::answer(&reply), token.as_ref());
         Ok(())
     }
 
-    /// Carries out a command; returns why it is refused.
+    /// Executes a command; returns why it is refused.
     fn execute(&mut self, command: OperatorCommand) -> Result<Option<String>, NodeError> {
         if command == OperatorCommand::Status {
             return Ok(None);
@@ -418,7 +424,8 @@ impl GatewayLoop<'_> {
         self.step_core(input, read).map(drop)
     }
 
-    /// One step of the core; returns why a request was refused. `read` is when the bytes were read from the link.
+    /// Runs one step of the core; returns why a request was refused. `read` is when the bytes were
+    /// read from the link.
     fn step_core(&mut self, input: Input, read: Option<Instant>) -> Result<Option<String>, NodeError> {
         let now = self.clock.now();
         let mut out = Output::default();
@@ -478,15 +485,13 @@ impl InGame {
 }
 
 impl Drop for GatewayLoop<'_> {
-    /// However a gateway ends, except by a kill or a power cut: the boat is sent the shutdown message, three times, before
-    /// the link closes.
+    /// However a gateway ends, except by a kill or a power cut, the boat receives the shutdown
+    /// message three times before the link closes.
     fn drop(&mut self) {
-        // Three times, for links that lose bytes; on every way out of the loop, a panic among
-        // them.
+        // Three times, for links that lose bytes; on every way out of the loop, including a panic.
         let message = self.bridge.shutdown_message().repeat(3);
         self.link.send_and_wait(&message, SHUTDOWN_MAX);
-        // After the message, not before: until then the guard is there for the case that this
-        // hangs.
+        // After the message: until then the guard must cover a hang.
         self.guarded.iter().for_each(Guarded::end);
     }
 }

@@ -1,8 +1,9 @@
 //! The guard of a gateway: a small process that stops the boat when the gateway dies, hangs or is suspended.
 //!
-//! It has a duplicate of the link, which a killed process cannot take with it, and one end of a pair of sockets. Over that the
-//! gateway sends what stops the boat by its protocol, a heartbeat from its loop, every new link, and that it ends in order. Without a
-//! heartbeat for [`SILENCE`], or when the other end is closed, it writes what stops the boat: thrust zero and standby.
+//! It has a duplicate of the link, which outlives a killed process, and one end of a socket pair.
+//! Over that the gateway sends the stop message of its protocol, a heartbeat from its loop, every
+//! new link, and notice of an orderly exit. Without a heartbeat for [`SILENCE`], or when the other
+//! end closes, it writes the stop message: zero thrust and standby.
 
 use bus::clock;
 use parking_lot::Mutex;
@@ -20,25 +21,26 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-/// How often the loop shows that it runs.
+/// How often the loop sends a heartbeat.
 pub(super) const HEARTBEAT: Duration = Duration::from_millis(100);
-/// Without a heartbeat for so long the gateway counts as hung.
+/// Without a heartbeat for this long the gateway counts as hung.
 const SILENCE: Duration = Duration::from_millis(400);
-/// From here on the loop itself takes it that the guard has stopped the boat: less, so that the two never miss each other.
+/// After this long the loop itself assumes that the guard has stopped the boat: less, so that the
+/// two never disagree.
 pub(super) const HUNG: Duration = Duration::from_millis(350);
-/// How often the boat is sent standby meanwhile, and how often after the gateway has died.
+/// How often the guard sends standby while the gateway hangs, and how many times after it has died.
 const AGAIN: Duration = Duration::from_millis(100);
 const LAST_WORDS: usize = 4;
-/// How long one sentence may take.
+/// Maximum time to write one sentence.
 const WRITE_MAX: Duration = Duration::from_millis(50);
 
-/// What the gateway tells its guard: a byte each, and what stops the boat after the byte of that.
+/// Messages to the guard: one byte each; the stop message follows its byte.
 const ALIVE: u8 = b'.';
 const LINK: u8 = b'+';
 const NO_LINK: u8 = b'-';
 const ENDS: u8 = b'!';
 const STOP: u8 = b'=';
-/// The longest message to the guard, bytes.
+/// Maximum bytes of a message to the guard.
 const TOLD_MAX: usize = 1024;
 
 /// The gateway's end.
@@ -49,17 +51,18 @@ struct Inner {
     socket: OwnedFd,
     process: Mutex<Child>,
     is_gone: AtomicBool,
-    /// What stops the boat, as the guard was last told.
+    /// The stop message that the guard last received.
     stop: Mutex<Vec<u8>>,
 }
 
 impl Guarded {
-    /// Starts the guard, by a command that calls [`guard`] with its standard input, of a boat that this stops.
+    /// Starts the guard with a command that calls [`guard`] on its standard input; the message
+    /// `stop` stops the boat.
     pub(super) fn start(mut command: Command, stop: &[u8]) -> io::Result<Guarded> {
-        // Packets with their boundaries, descriptors may travel along, and the kernel tells the
-        // other end when a process dies.
+        // Packets keep their boundaries, can carry descriptors, and the kernel notifies the other
+        // end when a process dies.
         let (socket, its_end) = socketpair(AddressFamily::UNIX, SocketType::SEQPACKET, SocketFlags::CLOEXEC, None)?;
-        // What ends the gateway by its terminal must not end the guard with it.
+        // A signal from the terminal that ends the gateway must not end the guard.
         command.stdin(Stdio::from(its_end)).stdout(Stdio::null()).process_group(0);
         let process = Mutex::new(command.spawn()?);
         let is_gone = AtomicBool::new(false);
@@ -68,12 +71,12 @@ impl Guarded {
         Ok(guarded)
     }
 
-    /// The loop runs. Whether the guard does, the first time that it does not.
+    /// Reports that the loop is running; returns the guard's failure the first time it is noticed.
     pub(super) fn beat(&self) -> bool {
         self.send(&[ALIVE], None) || self.0.is_gone.swap(true, Ordering::Relaxed)
     }
 
-    /// This stops the boat from now on.
+    /// Sets the stop message from now on.
     pub(super) fn stop_with(&self, message: &[u8]) {
         let mut stop = self.0.stop.lock();
         if *stop != message && self.send(&[&[STOP], message].concat(), None) {
@@ -81,17 +84,18 @@ impl Guarded {
         }
     }
 
-    /// There is a new link, or none.
+    /// Passes on a new link, or the loss of the link.
     pub(super) fn link(&self, descriptor: Option<BorrowedFd<'_>>) {
         self.send(&[if descriptor.is_some() { LINK } else { NO_LINK }], descriptor);
     }
 
-    /// The gateway has stopped the boat itself, and ends.
+    /// Reports that the gateway has stopped the boat itself, and exits.
     pub(super) fn end(&self) {
         self.send(&[ENDS], None);
     }
 
-    /// Whether the guard could be told; one that is suspended takes nothing more some time, and is there.
+    /// Whether the message was delivered. A suspended guard eventually accepts no more data, but
+    /// still exists.
     fn send(&self, what: &[u8], descriptor: Option<BorrowedFd<'_>>) -> bool {
         let descriptors: Vec<BorrowedFd<'_>> = descriptor.into_iter().collect();
         let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(1))];
@@ -99,8 +103,8 @@ impl Guarded {
         if !descriptors.is_empty() {
             control.push(SendAncillaryMessage::ScmRights(&descriptors));
         }
-        // The loop must not wait for its guard, and a guard that is gone must not kill the
-        // gateway by SIGPIPE.
+        // The loop must not wait for its guard, and a dead guard must not kill the gateway by
+        // SIGPIPE.
         let flags = SendFlags::DONTWAIT | SendFlags::NOSIGNAL;
         match sendmsg(&self.0.socket, &[IoSlice::new(what)], &mut control, flags) {
             Ok(_) => true,
@@ -112,24 +116,24 @@ impl Guarded {
 
 impl Drop for Inner {
     fn drop(&mut self) {
-        // One that was not told of an end waits for this one: it ends as if this process had died.
+        // A guard that did not receive the notice of exit treats this as the death of the process.
         let _ = shutdown(&self.socket, Shutdown::Both);
         drop(self.process.lock().wait());
     }
 }
 
-/// What the guard heard.
+/// An input of the guard.
 enum Heard {
     Told(u8, Option<OwnedFd>),
-    /// This stops the boat.
+    /// The stop message.
     Stop(Vec<u8>),
-    /// Nothing, for [`SILENCE`] or as long as it waits.
+    /// Nothing for [`SILENCE`], or for as long as it waits.
     Nothing,
-    /// The other end is closed.
+    /// The other end has closed.
     Died,
 }
 
-/// The guard itself, until the gateway has ended; `remark` is told what it does.
+/// Runs the guard until the gateway has ended; reports its actions through `remark`.
 ///
 /// # Errors
 /// If the socket cannot be used.
@@ -146,25 +150,24 @@ pub fn guard(socket: impl AsFd, remark: &mut dyn FnMut(&str)) -> io::Result<()> 
             Heard::Told(NO_LINK, _) => link = None,
             Heard::Told(..) if is_hung => {
                 is_hung = false;
-                remark("the gateway runs again");
+                remark("the gateway is running again");
             }
             Heard::Told(..) => {}
             Heard::Nothing => {
                 if let Some(link) = &link {
                     write(link, &stop);
                     if !is_hung {
-                        remark("the gateway hangs: its boat is sent thrust zero and standby");
+                        remark("the gateway hangs: its boat is sent zero thrust and standby");
                     }
                 }
-                // Without a link there is nothing to say, and nobody to tell that the gateway
-                // hangs.
+                // Without a link there is nothing to send, and nobody to notify of the hang.
                 is_hung |= link.is_some();
             }
             Heard::Died => {
                 let Some(link) = &link else { return Ok(()) };
                 write(link, &stop);
-                remark("the gateway has died: its boat is sent thrust zero and standby");
-                // Again, for links that lose bytes, and against whatever the dead gateway had
+                remark("the gateway has died: its boat is sent zero thrust and standby");
+                // Repeated, for links that lose bytes, and against data that the dead gateway had
                 // queued in the kernel.
                 for _ in 1..LAST_WORDS {
                     clock::rest(AGAIN);
@@ -180,7 +183,7 @@ fn hear(socket: BorrowedFd<'_>) -> io::Result<Heard> {
     let mut bytes = [0; TOLD_MAX];
     let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(1))];
     let mut control = RecvAncillaryBuffer::new(&mut space);
-    // A signal is no silence.
+    // A signal does not count as silence.
     let received = rustix::io::retry_on_intr(|| {
         recvmsg(socket, &mut [IoSliceMut::new(&mut bytes)], &mut control, RecvFlags::CMSG_CLOEXEC)
     });
@@ -200,13 +203,13 @@ fn hear(socket: BorrowedFd<'_>) -> io::Result<Heard> {
     }
 }
 
-/// Writes it all, if there is room in time.
+/// Writes all bytes if the port accepts them in time.
 fn write(link: &OwnedFd, bytes: &[u8]) {
     let (start, mut rest) = (clock::now(), bytes);
     while !rest.is_empty() && clock::since(start) < WRITE_MAX {
         match rustix::io::write(link, rest) {
             Ok(count) => rest = &rest[count..],
-            // Sockets have waited for a moment by themselves; lines have not.
+            // Sockets have already waited for a moment; serial lines have not.
             Err(rustix::io::Errno::AGAIN | rustix::io::Errno::INTR) => clock::rest(Duration::from_millis(2)),
             Err(_) => return,
         }
@@ -220,7 +223,7 @@ mod tests {
 
     #[test]
     fn a_guard_that_was_not_told_of_the_end_is_not_waited_for_without_end() {
-        // Like a guard it reads until the other end is closed.
+        // Like a guard, it reads until the other end closes.
         let guarded = Guarded::start(Command::new("cat"), b"stop").expect("it starts");
         let (sender, dropped) = channel();
         std::thread::spawn(move || {

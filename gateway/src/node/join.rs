@@ -1,4 +1,5 @@
-//! Keeps the gateway in the game: joins whenever a sim is there, for as long as the gateway runs.
+//! Keeps the gateway in the game: joins whenever a sim is available, for as long as the gateway
+//! runs.
 
 use super::loop_input::Call;
 use bus::game_search::{self, GameSearch, NotFound};
@@ -10,17 +11,17 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-/// How often a thread that sees no change looks whether it is to end.
+/// How often a thread that sees no change checks whether it must end.
 const LOOK: Duration = Duration::from_millis(100);
 
-/// The thread that joins.
+/// The thread that joins the game.
 pub(super) struct Join {
     stop: Arc<AtomicBool>,
     _thread: NodeThread,
 }
 
 impl Join {
-    /// Begins to ask for this vehicle.
+    /// Starts requesting this vehicle.
     pub(super) fn begin(
         bus: &Bus,
         place: &Place,
@@ -28,7 +29,8 @@ impl Join {
         vehicle: &str,
         calls: InboxSender<Call>,
     ) -> Result<Join, BusError> {
-        // Its token is all that counts: a sim that hangs is waited for, and its boat rests when no orders come.
+        // Only its token matters: the gateway waits for a sim that hangs, and its boat rests
+        // without orders.
         let sim = SimWatch::open(bus, game, Patience::of_player(Duration::MAX))?;
         let stop = Arc::new(AtomicBool::new(false));
         let (bus, place, game, scenario) = (bus.clone(), place.clone(), game.clone(), scenario.clone());
@@ -51,7 +53,7 @@ impl Drop for Join {
     }
 }
 
-/// What the thread joins, with what, and by which way.
+/// What the thread joins, with which token, and over which connection.
 struct Joining {
     bus: Bus,
     place: Place,
@@ -61,7 +63,7 @@ struct Joining {
 }
 
 impl Joining {
-    /// Joins, waits until the sim is gone, and begins again with the next.
+    /// Joins, waits until the sim is lost, and starts again with the next one.
     fn keep_joined(&self, sim: &SimWatch, stop: &AtomicBool, calls: &InboxSender<Call>) {
         let Joining { bus, place, game, scenario, vehicle } = self;
         while !stop.load(Ordering::Relaxed) {
@@ -73,8 +75,8 @@ impl Joining {
                 .until(&mut say, || game_search::join(bus, place, (game, scenario), Role::Gateway, vehicle));
             match joined {
                 Ok(joined) => calls.put(Call::Joined(joined)),
-                // It goes on: the boat may be taken by a gateway that is about to leave, or the
-                // next sim may know it.
+                // Keep trying: the gateway that has the boat may be about to leave, or the next sim
+                // may have the boat.
                 Err(NotFound::Refused(refusal)) => calls.put(Call::Remark(format!("the sim refuses: {refusal}"))),
                 Err(NotFound::InTime(..)) => return,
             }

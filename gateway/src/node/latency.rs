@@ -3,7 +3,7 @@
 use hdrhistogram::Histogram;
 use std::time::{Duration, Instant};
 
-/// Longest latency that is recorded, µs.
+/// Maximum latency recorded, µs.
 const LONGEST_US: u64 = 60_000_000;
 
 /// The latencies of one path, µs.
@@ -13,7 +13,7 @@ pub(super) struct Latency {
 
 impl Latency {
     pub(super) fn new() -> Latency {
-        // Three digits, in bounded memory however long it runs.
+        // Three significant digits need bounded memory, however long it runs.
         let histogram = Histogram::new_with_bounds(1, LONGEST_US, 3).expect("sound bounds");
         Latency { histogram }
     }

@@ -1,4 +1,4 @@
-//! What comes to the gateway loop from its other threads, and wakes it.
+//! Inputs from other threads that wake the gateway loop.
 
 use super::error::NodeError;
 use super::found_game::FoundGame;
@@ -13,18 +13,19 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::SyncSender;
 use std::time::{Duration, Instant};
 
-/// The most calls that wait for the loop.
+/// Maximum number of calls that wait for the loop.
 const CALLS_MAX: usize = 4096;
-/// The most requests of operators that wait, of those at the hub and of those at the control port.
+/// Maximum number of operator requests that wait, counted separately for the hub and the control
+/// port.
 const REQUESTS_MAX: usize = 64;
 
-/// What wakes the loop.
+/// The events that wake the loop.
 pub(super) enum Call {
     Link(LinkEvent),
-    /// There is a new order in `latest_order`.
+    /// `latest_order` holds a new order.
     Order,
     Frame(Vec<u8>),
-    /// There is an E-stop or a request, which are read before calls.
+    /// A stop or a request is waiting; the loop reads these before calls.
     Look,
     Release,
     Joined(Joined),
@@ -34,14 +35,14 @@ pub(super) enum Call {
     Remark(String),
 }
 
-/// A request at the control port, and where the reply to it goes.
+/// A request at the control port, and where its reply goes.
 pub(super) type PortRequest = (GatewayCommand, SyncSender<OperatorReply>);
 
-/// Where others put their input for the loop.
+/// The end to which other threads write.
 #[derive(Clone)]
 pub(super) struct LoopInput {
     pub(super) calls: InboxSender<Call>,
-    /// The latest order, and when it came. However many come, only the latest waits.
+    /// The latest order and its arrival time. Only the latest one waits, however many arrive.
     pub(super) latest_order: Arc<Mutex<Option<(ExternalOrder, Instant)>>>,
     stops: Arc<Stops>,
     found: Arc<Mutex<Option<Result<FoundGame, NodeError>>>>,
@@ -49,7 +50,7 @@ pub(super) struct LoopInput {
     port_requests: InboxSender<PortRequest>,
 }
 
-/// Where the loop reads it.
+/// The end from which the loop reads.
 pub(super) struct LoopOutput {
     pub(super) calls: Inbox<Call>,
     pub(super) latest_order: Arc<Mutex<Option<(ExternalOrder, Instant)>>>,
@@ -59,7 +60,7 @@ pub(super) struct LoopOutput {
     found: Arc<Mutex<Option<Result<FoundGame, NodeError>>>>,
 }
 
-/// What stops the boat.
+/// The kinds of stop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Stop {
     EStop(Scope),
@@ -67,7 +68,7 @@ pub(super) enum Stop {
 }
 
 impl Stop {
-    /// The stop that a command to this boat is, if it is one.
+    /// The stop that a command to this boat requests, if any.
     pub(super) fn of(command: &OperatorCommand) -> Option<Stop> {
         match command {
             OperatorCommand::EStop => Some(Stop::EStop(Scope::Boat)),
@@ -77,16 +78,17 @@ impl Stop {
     }
 }
 
-/// Stops that came and that the loop has not carried out. They wait behind nothing, and nothing can displace them.
+/// Stops received but not yet executed. Nothing is queued ahead of them, and nothing can displace
+/// them.
 #[derive(Default)]
 struct Stops {
-    // Flags and no queue: no flood fills them.
+    // Flags instead of a queue, which could be flooded.
     boat: AtomicBool,
     fleet: AtomicBool,
     disarm: AtomicBool,
-    /// How many have come.
+    /// The number of stops received.
     count: AtomicU64,
-    /// The boat's state, and how many stops had been carried out then.
+    /// The boat's state, and the number of stops executed by then.
     state: Watched<(u64, String)>,
 }
 
@@ -100,7 +102,7 @@ impl Stops {
     }
 }
 
-/// Both ends.
+/// Creates both ends.
 pub(super) fn loop_input() -> (LoopInput, LoopOutput) {
     let (calls, calls_out) = inbox(CALLS_MAX);
     let (queries, queries_out) = inbox(REQUESTS_MAX);
@@ -119,50 +121,52 @@ pub(super) fn loop_input() -> (LoopInput, LoopOutput) {
 }
 
 impl LoopInput {
-    /// A stop. Gives the count of those that have come.
+    /// Adds a stop. Returns the number of stops received.
     pub(super) fn stop(&self, stop: Stop) -> u64 {
-        // Sequentially consistent, as everything about stops: the flag is seen wherever the
-        // count is.
+        // Sequentially consistent, like everything about stops: whoever sees the count also sees
+        // the flag.
         let is_first = !self.stops.of(stop).swap(true, Ordering::SeqCst);
-        // It is counted once it can be seen.
+        // Counted once it is visible.
         let count = self.stops.count.fetch_add(1, Ordering::SeqCst) + 1;
-        // Of many only the first wakes the loop: they cannot fill the inbox.
+        // Only the first of several wakes the loop, so they cannot fill the inbox.
         if is_first {
             self.wake();
         }
         count
     }
 
-    /// Whether an E-stop waits to be carried out.
+    /// Whether an E-stop is waiting.
     pub(super) fn has_e_stop(&self) -> bool {
         [Scope::Boat, Scope::Fleet].iter().any(|scope| self.stops.of(Stop::EStop(*scope)).load(Ordering::SeqCst))
     }
 
-    /// The boat's state after so many stops; none if the loop does not come to them within `limit`.
+    /// The boat's state after this many stops; `None` if the loop does not execute them within
+    /// `limit`.
     pub(super) fn state_after(&self, count: u64, limit: Duration) -> Option<String> {
         self.stops.state.wait(limit, |(carried_out, _)| *carried_out >= count);
         self.stops.state.visit(|(carried_out, state)| (*carried_out >= count).then(|| state.clone()))
     }
 
-    /// The game, or why there is none. It cannot be displaced either.
+    /// Sets the game, or why there is none. This cannot be displaced either.
     pub(super) fn found(&self, found: Result<FoundGame, NodeError>) {
         *self.found.lock() = Some(found);
         self.wake();
     }
 
-    /// A query of an operator.
+    /// Adds an operator's query.
     pub(super) fn query(&self, query: Query) {
         self.queries.put(query);
         self.wake();
     }
 
-    /// A request at the control port.
+    /// Adds a request from the control port.
     pub(super) fn request(&self, request: PortRequest) {
         self.port_requests.put(request);
         self.wake();
     }
 
-    /// A full inbox need not take this: then the loop has calls to read, and looks at the rest before each of them.
+    /// May be dropped if the inbox is full: then the loop has calls to read, and checks everything
+    /// else before each of them.
     fn wake(&self) {
         self.calls.put(Call::Look);
     }
@@ -174,17 +178,17 @@ impl LoopOutput {
         self.found.lock().take()
     }
 
-    /// Takes the stop that is to be carried out, if there is one.
+    /// Takes the stop to execute, if any.
     pub(super) fn take_stop(&self, stop: Stop) -> bool {
         self.stops.of(stop).swap(false, Ordering::SeqCst)
     }
 
-    /// How many stops have come.
+    /// The number of stops received.
     pub(super) fn stop_count(&self) -> u64 {
         self.stops.count.load(Ordering::SeqCst)
     }
 
-    /// The boat is in this state, and so many stops were carried out before.
+    /// Publishes the boat's state, and the number of stops executed before.
     pub(super) fn show_state(&self, stop_count: u64, state: String) {
         self.stops.state.visit(|shown| *shown = (stop_count, state));
     }

@@ -1,15 +1,16 @@
-//! What of this machine has to be well before a boat is driven from it.
+//! Checks this machine before a boat is driven from it.
 
 use crate::preflight::Check;
 use std::io;
 use std::path::Path;
 
-/// What a disk must have free for a gateway's recording, of which a day takes a tenth of this, MiB.
+/// Minimum free disk space for a gateway's recording, MiB; a day takes a tenth of it.
 pub(super) const SPACE_MIN_MIB: u64 = 1024;
-/// Where systemd keeps who holds off what.
+/// Where systemd lists its inhibitors.
 const INHIBITORS: &str = "/run/systemd/inhibit";
 
-/// Whether there is room for recordings in this folder, and whether something keeps the machine from sleeping.
+/// Checks whether this folder has space for recordings, and whether something prevents the machine
+/// from sleeping.
 #[must_use]
 pub fn machine_checks(folder: &Path) -> Vec<Check> {
     vec![space(folder), sleep(Path::new(INHIBITORS))]
@@ -26,7 +27,7 @@ fn space(folder: &Path) -> Check {
     }
 }
 
-/// What the disk that this is on has free, MiB.
+/// Free space of the disk that holds this path, MiB.
 pub(super) fn free_mib(path: &Path) -> io::Result<u64> {
     let about = rustix::fs::statvfs(path)?;
     Ok(about.f_bavail.saturating_mul(about.f_frsize) >> 20)
@@ -36,22 +37,22 @@ fn sleep(inhibitors: &Path) -> Check {
     let Ok(entries) = std::fs::read_dir(inhibitors) else {
         return Check::not_done(
             "sleep",
-            format!("there is no {}: see that this machine stays awake", inhibitors.display()),
+            format!("{} does not exist: make sure that this machine stays awake", inhibitors.display()),
         );
     };
     let texts = entries.flatten().filter_map(|entry| std::fs::read_to_string(entry.path()).ok());
     let holders: Vec<String> = texts.filter_map(|text| sleep_inhibitor(&text)).collect();
     if holders.is_empty() {
-        let found = "nothing keeps this machine from sleeping, expected systemd-inhibit --what=sleep, or the unit";
+        let found = "nothing prevents this machine from sleeping; use systemd-inhibit --what=sleep, or the unit";
         return Check::of("sleep", false, found.to_owned());
     }
-    Check::of("sleep", true, format!("kept off by {}", holders.join(", ")))
+    Check::of("sleep", true, format!("prevented by {}", holders.join(", ")))
 }
 
-/// Who holds off sleep by this entry, if it does.
+/// The name of the process that prevents sleep by this entry, if it does.
 fn sleep_inhibitor(text: &str) -> Option<String> {
     let value = |key: &str| text.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix('='));
-    // An inhibitor of mode "delay" only puts sleep off for some seconds.
+    // An inhibitor of mode "delay" only delays sleep by some seconds.
     let blocks = value("MODE")? == "block" && value("WHAT")?.split(':').any(|what| what == "sleep");
     blocks.then(|| value("WHO").unwrap_or("somebody").to_owned())
 }
@@ -72,7 +73,7 @@ mod tests {
         entry("desktop", "handle-lid-switch:idle", "block");
         assert_eq!(sleep(folder.path()).verdict, Verdict::Failed);
         entry("squall", "idle:sleep", "block");
-        assert_eq!(sleep(folder.path()), Check::of("sleep", true, "kept off by squall".to_owned()));
+        assert_eq!(sleep(folder.path()), Check::of("sleep", true, "prevented by squall".to_owned()));
         assert_eq!(sleep(&folder.path().join("none")).verdict, Verdict::NotChecked);
     }
 

@@ -1,7 +1,7 @@
-//! The network shell: connects a real boat with a game, and emulates a boat for real back seats.
+//! The network shell: connects a real boat to a game, and emulates a boat for real back seats.
 //!
-//! [`serve`] is for a real boat, `emulate` for a simulated one. All decisions are made in [`crate::bridge`] and
-//! `crate::emulator`; here are the sockets, the clocks and the threads.
+//! [`serve`] is for a real boat, `emulate` for a simulated one. All decisions are made in
+//! [`crate::bridge`] and `crate::emulator`; the sockets, clocks and threads are here.
 
 mod clock;
 mod control_port;
@@ -57,37 +57,41 @@ use std::process::Command;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
-/// What a gateway has beside the network of the game: the way to its boat, a port for operators, and the boat's payloads.
+/// A gateway's connections other than the game's network: the boat, a port for operators, and the
+/// boat's payloads.
 pub struct Outside {
     /// The address of the boat.
     pub link: LinkAddress,
-    /// After this long without a byte the boat counts as gone.
+    /// Without a byte for this long the boat counts as lost.
     pub silence: Duration,
-    /// Where the control port listens; port 0 is any that is free.
+    /// Where the control port listens; port 0 means any free port.
     pub control: SocketAddr,
-    /// Starts the process that calls [`guard()`] and stops the boat when this one cannot; `None` is without.
+    /// Starts the process that calls [`guard()`] and stops the boat when this process cannot;
+    /// `None` means no guard.
     pub guard: Option<GuardCommand>,
-    /// The payloads of the boat that are passed through.
+    /// The boat's payloads to pass through.
     pub payloads: Vec<PayloadPort>,
 }
 
 /// A command whose process calls [`guard()`].
 pub struct GuardCommand {
-    /// The file of the program.
+    /// The program's file.
     pub program: PathBuf,
     /// Its arguments.
     pub args: Vec<String>,
 }
 
-/// What a link tells its gateway.
+/// The callback for a link's events.
 pub type OnLinkEvent = Box<dyn Fn(LinkEvent) + Send + Sync>;
 
-/// Connects a real boat with a game until it is told to stop. The link comes first, and standby is the first thing that the boat
-/// is sent; the game is looked for while operators are served. However it ends, the boat is sent standby.
+/// Connects a real boat to a game until it is stopped. The link comes first, and the boat first
+/// receives standby; the gateway searches for the game while it serves operators. However it ends,
+/// the boat receives standby.
 ///
 /// # Errors
-/// [`NodeError`] if another gateway on this machine has the link, if the game refuses, or if the network, the link or the
-/// recording cannot work. A boat or a sim that goes away is none: the gateway waits for it.
+/// [`NodeError`] if another gateway on this machine has the link, if the game refuses, or if the
+/// network, the link or the recording fails. A lost boat or sim is not an error: the gateway waits
+/// for it.
 pub fn serve(
     settings: &Settings,
     file: Option<NewFile>,
@@ -98,7 +102,7 @@ pub fn serve(
     let _lock = match LinkLock::take(&outside.link.to_string()) {
         Ok(lock) => Some(lock),
         Err(held @ LinkLockError::Held { .. }) => return Err(held.into()),
-        // A boat is not left alone since a file cannot be written.
+        // Failure to write a file is no reason to abandon the boat.
         Err(LinkLockError::File { link, source }) => {
             let text = format!("the link {link} is not locked against a second gateway: {source}");
             notify(NodeEvent::Event { at_s: 0.0, event: &Event::Warning(text) });
@@ -106,14 +110,15 @@ pub fn serve(
         }
     };
     let input = loop_input();
-    // What is known of the token by now; nothing is waited for, and that no game is there yet is
-    // no error.
+    // The token as known by now: nothing waits for it, and it is not an error if there is no game
+    // yet.
     drop(settings.place.net(settings.game.as_ref()));
-    // Until a game says which, the port has a token of its own; in a game with keys that stays so.
+    // Until a game provides one, the port has a token of its own; in a game with keys it keeps
+    // that.
     let token = settings.place.token().get().unwrap_or_else(Token::random);
-    // Before the link: a port that is taken is an error before the boat hears anything of us.
+    // Before the link: a port in use is an error before the boat receives anything from us.
     let port = ControlPort::open(outside.control, &settings.vehicle, Some(token).into(), input.0.clone())?;
-    // What is sent nothing but standby needs nobody to stop it.
+    // A boat that receives only standby needs no guard.
     let guarded = if settings.dry_run { None } else { start_guard(settings, outside, notify) };
     let on_port = guarded.clone().map(|guarded| -> OnPort { Box::new(move |descriptor| guarded.link(descriptor)) });
     let open = |on_event: OnLinkEvent| -> Result<Box<dyn BoatLink>, LinkError> {
@@ -123,24 +128,24 @@ pub fn serve(
     connect(settings, input, file, (Some(port), guarded, &outside.payloads), open, notify)
 }
 
-/// The guard, where there is to be one. A boat is not left alone since it cannot be started.
+/// Starts the guard if there is to be one. Failure to start it does not abandon the boat.
 fn start_guard(settings: &Settings, outside: &Outside, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Option<Guarded> {
     let GuardCommand { program, args } = outside.guard.as_ref()?;
     let mut command = Command::new(program);
-    // Without the environment it has no token and no address, and needs none.
+    // Without the environment it has no token and no address, and needs neither.
     command.args(args).env_clear();
     let started = Guarded::start(command, &Protocol::new(&settings.gateway).guard_message());
     if let Err(e) = &started {
-        let text = format!("there is no guard, so if the gateway is killed, nobody stops the boat: {e}");
+        let text = format!("there is no guard: if the gateway is killed, nothing stops the boat: {e}");
         notify(NodeEvent::Event { at_s: 0.0, event: &Event::Warning(text) });
     }
     started.ok()
 }
 
-/// As [`serve`], without a control port and over a link that `open` gives: for networks that are simulated.
+/// Like [`serve`], without a control port, and over a link from `open`: for simulated networks.
 ///
 /// # Errors
-/// [`NodeError`], as there.
+/// As for [`serve`].
 pub fn serve_over(
     settings: &Settings,
     open: impl FnOnce(OnLinkEvent) -> Result<Box<dyn BoatLink>, LinkError>,
@@ -149,7 +154,7 @@ pub fn serve_over(
     connect(settings, loop_input(), None, (None, None, &[]), open, notify)
 }
 
-/// Opens the link, runs the loop, and finds the game meanwhile.
+/// Opens the link, runs the loop, and finds the game in the meantime.
 fn connect(
     settings: &Settings,
     (input, output): (LoopInput, LoopOutput),
@@ -178,7 +183,7 @@ fn connect(
     let clock = Clock::start();
     let record = recorder.as_ref().map(Recorder::bulk).zip(path);
     let shell = payload::Shell { record, space_min_mib: SPACE_MIN_MIB, clock, calls: input.calls.clone() };
-    // After the link: a payload that takes its time must not keep standby from the boat.
+    // After the link: a slow payload must not delay standby for the boat.
     let payloads = Payloads::open(payloads, &shell, notify);
     let mut gateway_loop = GatewayLoop {
         game_clock: GameClock::new(SimTime::from_s(plan.gateway.order_ttl_s)),
@@ -197,13 +202,13 @@ fn connect(
         guard: Guard::new(settings.place.token().clone()),
         port: port.as_ref().map(|port| (port.address, port.token.clone())),
     };
-    // In a thread of its own: a gateway that looked for its game first left a boat alone that
-    // was under way.
+    // On its own thread: a gateway that searched for its game first abandoned a moving boat
+    // meanwhile.
     let finder = game_finder::begin(settings, input);
     port.iter().for_each(ControlPort::begin);
     let result = match &finder {
         Ok(_) => gateway_loop.run(&settings.stop),
-        Err(e) => Err(NodeError::Refused(format!("no thread to look for the game: {e}"))),
+        Err(e) => Err(NodeError::Refused(format!("cannot start a thread to look for the game: {e}"))),
     };
     if result.is_err() {
         gateway_loop.await_boat();
@@ -213,19 +218,19 @@ fn connect(
     let (in_game, recorder) = (gateway_loop.in_game.take(), gateway_loop.recorder.take());
     drop(gateway_loop);
     let recorded = recorder.map(|recorder| recorder.end(Facts::new()));
-    // It ends however it came to that; who looks for a game does so too.
+    // Ends in every case, as does the search for a game.
     settings.stop.store(true, Ordering::Relaxed);
     drop((port, finder, payloads));
     notify(NodeEvent::Ended(&status));
     in_game.into_iter().for_each(InGame::leave);
-    // What was wrong with the boat or the game comes first.
+    // Errors of the boat or the game come first.
     result.and(match recorded.as_ref().and_then(report::recording_fault) {
         Some(fault) => Err(NodeError::Recording(fault)),
         None => Ok(()),
     })
 }
 
-/// The recording. A boat is not left alone since it cannot begin.
+/// Starts the recording. Failure to start it does not abandon the boat.
 fn recorder(
     file: NewFile,
     settings: &Settings,

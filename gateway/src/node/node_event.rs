@@ -10,7 +10,7 @@ use std::path::Path;
 pub enum NodeEvent<'a> {
     /// It cannot begin yet.
     Looking {
-        /// Why.
+        /// The cause.
         reason: &'a str,
     },
     /// Something happened.

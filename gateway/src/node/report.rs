@@ -1,4 +1,5 @@
-//! What a running gateway says of its boat: the status, navigation and link bytes to the sim, and all of it to the recording.
+//! The reports of a running gateway: status, navigation and link bytes to the sim, and all of it to
+//! the recording.
 
 use super::error::NodeError;
 use super::gateway_loop::GatewayLoop;
@@ -10,10 +11,10 @@ use messages::{Message, Stamp};
 use primitives::SimTime;
 use recording::Entry;
 
-/// What is wrong with a recording, if anything.
+/// The fault of a recording, if any.
 pub(super) fn recording_fault(state: &RecordingState) -> Option<String> {
     match (&state.failed, state.dropped) {
-        (Some(why), _) => Some(format!("nothing is recorded any more in {}: {why}", state.file)),
+        (Some(why), _) => Some(format!("recording to {} has stopped: {why}", state.file)),
         (None, 0) => None,
         (None, _) => Some("the recording is incomplete: the disk is too slow".to_owned()),
     }
@@ -24,7 +25,7 @@ impl GatewayLoop<'_> {
     pub(super) fn full_status(&self) -> GatewayStatus {
         let mut status = self.bridge.status(self.clock.now());
         status.control = self.port.as_ref().map(|(address, _)| address.to_string());
-        // The core knows up and down; why it is down, the shell.
+        // The core knows whether the link is up; the shell knows why it is down.
         if status.link != "up" {
             status.link.clone_from(&self.counters.link);
         }
@@ -36,14 +37,14 @@ impl GatewayLoop<'_> {
         let rest = [
             ("calls dropped", self.input.calls.dropped()),
             ("messages not recorded", lost[0]),
-            ("messages of payloads not recorded", lost[1]),
+            ("payload messages not recorded", lost[1]),
         ];
         status.alarms.extend(self.counters.recording_fault.clone());
         status.counts.extend(more.into_iter().chain(rest).map(|(name, count)| (name.to_owned(), count)));
         status
     }
 
-    /// Warns once when the recording ends before the gateway does, or loses entries.
+    /// Warns once if the recording ends before the gateway does, or loses entries.
     pub(super) fn check_recording(&mut self) {
         let Some(fault) = self.recorder.as_ref().and_then(|recorder| recording_fault(&recorder.state())) else {
             return;
@@ -66,8 +67,7 @@ impl GatewayLoop<'_> {
     /// Publishes the bytes that went over the link, and records the whole step.
     pub(super) fn record_step(&mut self, now: SimTime, input: &Input, out: &Output) -> Result<(), NodeError> {
         let link_bytes = self.in_game.as_ref().map(|in_game| &in_game.link_bytes);
-        // Nothing is encoded for nobody: without a recorder and observers the bytes are dropped
-        // here.
+        // Encode only for a reader: without a recorder and observers the bytes are dropped here.
         let ticket = self.counters.ticket.filter(|_| link_bytes.is_some_and(Publisher::is_heard));
         if ticket.is_none() && self.recorder.is_none() {
             return Ok(());

@@ -18,18 +18,18 @@ pub struct Settings {
     pub vehicle: String,
     /// How it is driven and stopped.
     pub gateway: Gateway,
-    /// Whether it arms by itself, once.
+    /// Whether it arms itself, once.
     pub arms_itself: bool,
-    /// Whether the boat is sent nothing but standby.
+    /// Whether the boat receives only standby.
     pub dry_run: bool,
-    /// Whether its pre-flight check lets it be armed.
+    /// Whether its pre-flight check allows arming.
     pub preflight: Preflight,
-    /// Whether its clock runs as fast as the game's: for emulated boats.
+    /// Whether its clock runs at the game's pace: for emulated boats.
     pub at_game_pace: bool,
     /// The commit that the program was built from.
     pub commit: &'static str,
     /// How long to look for the game.
     pub wait: Duration,
-    /// Set from outside to end.
+    /// Set by the caller to end the gateway.
     pub stop: Arc<AtomicBool>,
 }

@@ -1,4 +1,4 @@
-//! The subscriptions of a gateway in a game: orders, and all that stops its boat.
+//! The subscriptions of a gateway in a game: orders, and everything that stops its boat.
 
 use super::loop_input::{Call, LoopInput, Stop};
 use crate::supervisor::Scope;
@@ -9,7 +9,7 @@ use messages::topic::{self, GameName};
 use messages::{Control, GameInfo};
 use primitives::{VehicleId, codec};
 
-/// Subscribes to what comes from the sim and from operators.
+/// Subscribes to data from the sim and from operators.
 pub(super) fn subscribe(
     bus: &Bus,
     game: &GameName,
@@ -22,19 +22,19 @@ pub(super) fn subscribe(
     let take_order = move |bytes: &[u8]| {
         let Ok(order) = codec::decode(bytes) else { return };
         let mut latest_order = orders.latest_order.lock();
-        // A call that still waits will find the newest.
+        // A call that is still waiting will find the newest.
         if latest_order.replace((order, bus::clock::now())).is_none() {
             orders.calls.put(Call::Order);
         }
     };
     let name = &scenario.vehicles[vehicle.index()].name;
     let mut subscriptions = vec![
-        // From the sim, not from agents: whose order counts (tickets), what the referee lets a
-        // boat do, and when an agent is lost are known there alone. A second implementation of
-        // that on the way to the boat would be wrong one day.
+        // From the sim, not from agents: only the sim knows whose order counts (tickets), what the
+        // referee allows, and when an agent is lost. A second implementation on the way to the boat
+        // would eventually be wrong.
         bus.subscribe(topic::external_order(game, scenario, vehicle), take_order)?,
         bus.answer(topic::operate(game, name), move |query| {
-            // It is read again, to be answered, behind others.
+            // It is read again, behind other requests, to be answered.
             let command = Guard::default().check(query.key(), query.payload(), OperatorCommand::needs_token);
             if let Checked::Granted(command) = command
                 && let Some(stop) = Stop::of(&command)
@@ -49,14 +49,14 @@ pub(super) fn subscribe(
             }
         })?,
         bus.subscribe(topic::control(game), move |bytes| {
-            // Everything else reaches the boat as an order, if at all.
+            // All other commands reach the boat as an order, if at all.
             if let Ok(Control::EStop) = serde_json::from_slice(bytes) {
                 controls.stop(Stop::EStop(Scope::Fleet));
             }
         })?,
         bus.subscribe(topic::released(game), move |_| releases.calls.put(Call::Release))?,
     ];
-    // Frames are published only where somebody subscribes.
+    // Frames are published only if there is a subscriber.
     if scenario.externals().nth(1).is_some() {
         let take_frame = move |bytes: &[u8]| frames.calls.put(Call::Frame(bytes.to_vec()));
         subscriptions.push(bus.subscribe(topic::frame(game), take_frame)?);
@@ -64,7 +64,7 @@ pub(super) fn subscribe(
     Ok(subscriptions)
 }
 
-/// What is published to stop the boat: an operator's command, or one for all boats.
+/// The topics that stop the boat: an operator's command to it, or to all boats.
 fn stop_in(bytes: &[u8]) -> Option<Stop> {
     match serde_json::from_slice(bytes) {
         Ok(GatewayCommand::Fleet(FleetCommand::EStop)) => Some(Stop::EStop(Scope::Fleet)),

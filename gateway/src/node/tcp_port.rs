@@ -1,4 +1,5 @@
-//! A TCP port that is served as long as it is kept: a thread for each of its connections, of which there are so many at most.
+//! A TCP port that is served until dropped, with one thread for each of a limited number of
+//! connections.
 
 use bus::{Connections, Slot, clock};
 use socket2::SockRef;
@@ -9,20 +10,20 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// How often the thread that accepts looks whether it is to end.
+/// How often the accepting thread checks whether it must end.
 const LOOK: Duration = Duration::from_millis(100);
 
-/// A port. Dropped, it is closed, and so are its connections.
+/// A port. Dropping it closes it and its connections.
 pub(super) struct TcpPort {
     server: Arc<Server>,
     thread: Option<JoinHandle<()>>,
     pub(super) address: SocketAddr,
 }
 
-/// Serves a connection, until it returns.
+/// Serves a connection until it returns.
 type Serve = Box<dyn Fn(&Slot, &TcpStream) + Send + Sync>;
 
-/// What the threads share.
+/// State shared by the threads.
 struct Server {
     /// The name of the threads.
     name: String,
@@ -32,7 +33,8 @@ struct Server {
 }
 
 impl TcpPort {
-    /// Opens a port for so many connections; a newcomer takes the place of whoever idles longest.
+    /// Opens a port for this many connections; a new one displaces the one that has been idle
+    /// longest.
     pub(super) fn open(
         listen: SocketAddr,
         name: &str,
@@ -40,7 +42,7 @@ impl TcpPort {
         serve: impl Fn(&Slot, &TcpStream) + Send + Sync + 'static,
     ) -> io::Result<TcpPort> {
         let listener = TcpListener::bind(listen)?;
-        // On Linux it holds for `accept` too.
+        // On Linux this applies to `accept` too.
         SockRef::from(&listener).set_read_timeout(Some(LOOK))?;
         let address = listener.local_addr()?;
         let server = Arc::new(Server {
@@ -58,7 +60,7 @@ impl TcpPort {
 impl Drop for TcpPort {
     fn drop(&mut self) {
         self.server.is_closing.store(true, Ordering::SeqCst);
-        // A thread that panicked has nothing to give back.
+        // The result of a thread that panicked is not needed.
         self.thread.take().map(JoinHandle::join).into_iter().for_each(drop);
         self.server.connections.close();
     }
@@ -70,18 +72,18 @@ impl Server {
             match listener.accept() {
                 Ok((stream, from)) => self.open(stream, from.ip()),
                 Err(e) if e.kind() == io::ErrorKind::WouldBlock => {}
-                // Too many open files, for example: it may pass.
+                // For example too many open files, which may pass.
                 Err(_) => clock::rest(LOOK),
             }
         }
     }
 
-    /// A connection has its thread. One for which there is none finds itself closed.
+    /// Starts a connection's thread. Without a thread, the connection is closed.
     fn open(self: &Arc<Self>, stream: TcpStream, from: IpAddr) {
         let Ok(other) = stream.try_clone() else { return };
-        // The thread that reads from it finds out; it may be closed already.
-        // Whoever has been idle the longest makes room, so that a crowd of silent connections
-        // locks nobody out.
+        // The reading thread will notice; the stream may be closed already.
+        // The connection that has been idle longest is closed, so that many silent connections
+        // cannot lock anybody out.
         let slot = self.connections.admit(from, move || drop(other.shutdown(Shutdown::Both)));
         let server = Arc::clone(self);
         let serve = move || (server.serve)(&slot, &stream);

@@ -7,13 +7,13 @@ use std::io::Read;
 use std::os::unix::fs::OpenOptionsExt;
 use std::time::Duration;
 
-/// How often the terminal is looked at.
+/// How often the terminal is polled.
 const LOOK: Duration = Duration::from_millis(50);
 
-/// Calls `pressed` whenever Enter is pressed in the terminal of this process, as long as that is there.
+/// Calls `pressed` whenever Enter is pressed in this process's terminal, while it has one.
 ///
-/// A process in the background that reads from its terminal is suspended by the system, and its boat goes on: so nothing is read
-/// while this one is not in the foreground, and no read waits.
+/// The system suspends a background process that reads from its terminal, while its boat continues.
+/// So nothing is read unless this process is in the foreground, and no read blocks.
 pub fn on_enter(pressed: impl Fn() + Send + 'static) {
     let flags = OFlags::NONBLOCK.bits().cast_signed();
     let Ok(mut terminal) = OpenOptions::new().read(true).custom_flags(flags).open("/dev/tty") else { return };
@@ -29,12 +29,12 @@ pub fn on_enter(pressed: impl Fn() + Send + 'static) {
                 Ok(count) if bytes[..count].contains(&b'\n') => pressed(),
                 Ok(_) => {}
                 Err(e) if e.kind() == std::io::ErrorKind::WouldBlock => {}
-                // The terminal is gone.
+                // The terminal was closed.
                 Err(_) => return,
             }
         }
     };
-    // Without a thread for it there is no key; nothing else is lost.
+    // Without a thread the key does not work; nothing else is lost.
     drop(std::thread::Builder::new().name("terminal key".to_owned()).spawn(read));
 }
 

@@ -1,6 +1,7 @@
-//! The payloads of a boat, such as a camera or a sonde: their ports as people type them, and what is recorded of them.
+//! The payloads of a boat, such as a camera or a sonde: their ports as users type them, and their
+//! recordings.
 //!
-//! What passes the bytes on is in `node::payload`; here is neither socket nor clock.
+//! `node::payload` passes the bytes on; there are no sockets or clocks here.
 
 pub mod exo2;
 mod port;

@@ -1,4 +1,4 @@
-//! The port of a payload as people type it: `NAME=URL[,listen=HOST:PORT][,exo2[=http]]`.
+//! The port of a payload as users type it: `NAME=URL[,listen=HOST:PORT][,exo2[=http]]`.
 
 use crate::link::LinkAddress;
 use std::net::{Ipv4Addr, SocketAddr};
@@ -7,46 +7,47 @@ use thiserror::Error;
 
 const FORM: &str = "NAME=URL[,listen=HOST:PORT][,exo2|,exo2=http]";
 const NAMES: &str = "1 to 32 letters, digits and _, a letter first";
-/// The longest name.
+/// Maximum length of a name.
 const NAME_MAX: usize = 32;
-/// Each has threads of its own.
+/// Each payload has its own threads.
 const PORTS_MAX: usize = 8;
 
-/// A payload: where it is, and where its clients connect.
+/// A payload: its address, and where its clients connect.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PayloadPort {
     /// Its name, which is part of topics.
     pub name: String,
-    /// Where it is.
+    /// Its address.
     pub address: LinkAddress,
-    /// Where clients connect; port 0 is any that is free.
+    /// Where clients connect; port 0 means any free port.
     pub listen: SocketAddr,
     /// The protocol of its EXO2 sonde, if it is one whose values are recorded.
     pub exo2: Option<Exo2Port>,
 }
 
-/// How an EXO2 sonde is asked.
+/// How an EXO2 sonde is queried.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Exo2Port {
-    /// By its commands, each a line: its signal output adapter, directly or over a serial server.
+    /// By its commands, one per line: its signal output adapter, directly or over a serial server.
     Lines,
-    /// By HTTP: a server at the sonde takes `GET /data`, and `POST /data` with a command as the body.
+    /// By HTTP: a server at the sonde accepts `GET /data`, and `POST /data` with a command as the
+    /// body.
     Http,
 }
 
-/// A payload's port that is not understood.
+/// An invalid payload port.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{text:?}: {found}, allowed: {allowed}")]
 pub struct PayloadPortError {
-    /// What was typed.
+    /// The port as typed.
     pub text: String,
-    /// What is wrong with it.
+    /// The fault.
     pub found: String,
-    /// What would be right.
+    /// The values allowed.
     pub allowed: String,
 }
 
-/// What is wrong with it, and what would be right.
+/// The fault, and the values allowed.
 type Fault = (String, String);
 
 impl FromStr for PayloadPort {
@@ -58,10 +59,10 @@ impl FromStr for PayloadPort {
 }
 
 impl PayloadPort {
-    /// Whether all of them go together.
+    /// Checks all of them together.
     ///
     /// # Errors
-    /// [`PayloadPortError`] for a name that two have, and for too many.
+    /// [`PayloadPortError`] for a duplicate name, or too many payloads.
     pub fn check(ports: &[PayloadPort]) -> Result<(), PayloadPortError> {
         let error = |text: &str, found: &str, allowed: String| {
             Err(PayloadPortError { text: text.to_owned(), found: found.to_owned(), allowed })
@@ -89,14 +90,13 @@ fn parse(text: &str) -> Result<PayloadPort, Fault> {
     }
     let address =
         LinkAddress::to_connect(url).map_err(|e| (format!("the URL is {url:?}: {}", e.found), e.allowed.to_owned()))?;
-    // Loopback unless asked for more: whoever reaches this port reaches the payload, without a
-    // token.
+    // Loopback by default: anybody who reaches this port reaches the payload, without a token.
     let any = SocketAddr::from((Ipv4Addr::LOCALHOST, 0));
     let mut port = PayloadPort { name: name.to_owned(), address, listen: any, exo2: None };
     parts.try_for_each(|option| set(&mut port, option))?;
     match (&port.address, port.exo2) {
         (LinkAddress::Tcp(..), _) | (_, None | Some(Exo2Port::Lines)) => Ok(port),
-        _ => Err(("exo2=http is over no TCP port".to_owned(), "exo2=http with tcp://HOST:PORT".to_owned())),
+        _ => Err(("exo2=http requires a TCP address".to_owned(), "exo2=http with tcp://HOST:PORT".to_owned())),
     }
 }
 
@@ -149,7 +149,7 @@ mod tests {
             ("cam=tcp://1.2.3.4:5,exo=1", "an option is \"exo=1\"", "exo2=http"),
             ("cam=tcp://1.2.3.4:5,exo2=", "an option is \"exo2=\"", "exo2=http"),
             ("cam=tcp://1.2.3.4:5,", "an option is \"\"", "listen=HOST:PORT"),
-            ("cam=udp://1.2.3.4:5,exo2=http", "over no TCP port", "tcp://"),
+            ("cam=udp://1.2.3.4:5,exo2=http", "requires a TCP address", "tcp://"),
         ] {
             let error = text.parse::<PayloadPort>().expect_err(text);
             assert!(error.found.contains(found) && error.allowed.contains(allowed), "{text}: {error}");

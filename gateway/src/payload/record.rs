@@ -1,4 +1,4 @@
-//! What a gateway records of a payload.
+//! The recording of a payload.
 
 use super::exo2::Measurement;
 use crate::record::json;
@@ -7,7 +7,7 @@ use messages::{Message, Stamp};
 use primitives::{SimTime, codec};
 use recording::Entry;
 
-/// Turns what passes between a payload and its clients into entries of a recording.
+/// Turns the bytes between a payload and its clients into entries of a recording.
 pub struct PayloadEncoder {
     bytes_topic: String,
     values_topic: String,
@@ -22,7 +22,8 @@ impl PayloadEncoder {
         PayloadEncoder { bytes_topic: format!("payload/{name}"), values_topic: format!("values/{name}"), pieces: 0 }
     }
 
-    /// The entry of bytes of this connection at `at` by the gateway's clock; of none where that side has closed it.
+    /// The entry for bytes of this connection at `at` by the gateway's clock; empty if that side
+    /// has closed it.
     pub fn bytes(&mut self, at: SimTime, connection: u32, outward: bool, data: &[u8]) -> Entry {
         let stamp = Stamp { valid_ns: at, seq: self.pieces, version: PayloadBytes::VERSION };
         self.pieces += 1;
@@ -30,7 +31,7 @@ impl PayloadEncoder {
         Entry::Message { topic: self.bytes_topic.clone(), schema: Some(PayloadBytes::SCHEMA), bytes, at }
     }
 
-    /// The entry of what was measured.
+    /// The entry for a measurement.
     #[must_use]
     pub fn values(&self, at: SimTime, measurement: &Measurement) -> Entry {
         json(&self.values_topic, at, measurement)

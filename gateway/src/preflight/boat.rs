@@ -1,4 +1,4 @@
-//! What a boat's own sentences tell before it is armed.
+//! Pre-flight checks of a boat's own sentences.
 
 use super::Check;
 use super::fix_scatter::FixScatter;
@@ -10,11 +10,12 @@ use crate::sensor_check::{HostTime, SensorCheck};
 use primitives::frame::LatLon;
 use rules::Field;
 
-/// Fixes of a boat at rest may be so far from their mean, 95 of 100, and their mean may drift so far, m.
+/// Maximum distance of 95 of 100 fixes of a boat at rest from their mean, and maximum drift of that
+/// mean, m.
 const SCATTER_MAX_M: f64 = 2.5;
-/// For how long they are looked at, s.
+/// How long fixes are collected, s.
 const SCATTER_S: f64 = 25.0;
-/// Where the boat is to play.
+/// The water on which the boat will play.
 pub struct Water {
     /// The field.
     pub field: Field,
@@ -22,7 +23,7 @@ pub struct Water {
     pub area: GeofenceArea,
 }
 
-/// The checks of what a boat has sent until now, by the host's clock.
+/// The checks of what a boat has sent so far, by the host's clock.
 #[must_use]
 pub fn boat_checks(seen: &SensorCheck, host: HostTime, gateway: &Gateway, water: Option<&Water>) -> Vec<Check> {
     let missing = seen.missing();
@@ -42,7 +43,7 @@ pub fn boat_checks(seen: &SensorCheck, host: HostTime, gateway: &Gateway, water:
 }
 
 fn fix(seen: &SensorCheck, gateway: &Gateway) -> Check {
-    let Some(fix) = seen.fix() else { return Check::not_done("fix", "none came that tells its quality") };
+    let Some(fix) = seen.fix() else { return Check::not_done("fix", "no fix with a quality was received") };
     let nav = &gateway.nav;
     let satellites = fix.satellites.map_or("unknown".to_owned(), |count| count.to_string());
     let hdop = fix.hdop.map_or("unknown".to_owned(), |hdop| hdop.to_string());
@@ -61,12 +62,12 @@ fn scatter(seen: &SensorCheck) -> Check {
     let fixes = seen.fixes();
     let lasted_s = fixes.first().zip(fixes.last()).map_or(0.0, |(first, last)| (last.0 - first.0).as_s());
     let places: Vec<LatLon> = fixes.iter().map(|(_, at)| *at).collect();
-    // Drift of a fix shows over tens of seconds; a few good fixes say nothing of it.
+    // Drift of a fix shows over tens of seconds; a few good fixes do not reveal it.
     match FixScatter::of(&places).filter(|_| lasted_s >= SCATTER_S) {
-        None => Check::not_done("scatter", format!("{lasted_s:.0} s of fixes, expected {SCATTER_S}: --for-s 30")),
+        None => Check::not_done("scatter", format!("{lasted_s:.0} s of fixes, expected {SCATTER_S}: use --for-s 30")),
         Some(FixScatter { radius_95_m, drift_m }) => {
             let found = format!(
-                "95 % within {radius_95_m:.2} m, drift {drift_m:.2} m in {lasted_s:.0} s; expected up to {SCATTER_MAX_M} m of a boat at rest"
+                "95 % within {radius_95_m:.2} m, drift {drift_m:.2} m in {lasted_s:.0} s; expected up to {SCATTER_MAX_M} m for a boat at rest"
             );
             Check::of("scatter", radius_95_m <= SCATTER_MAX_M && drift_m <= SCATTER_MAX_M, found)
         }
@@ -75,9 +76,9 @@ fn scatter(seen: &SensorCheck) -> Check {
 
 fn geofence(seen: &SensorCheck, water: Option<&Water>) -> Check {
     let Some(water) = water else {
-        return Check::not_done("geofence", "no game says where the field is: --vehicle NAME, with --game");
+        return Check::not_done("geofence", "the field is unknown without a game: use --vehicle NAME with --game");
     };
-    let Some((_, at)) = seen.fixes().last() else { return Check::not_done("geofence", "no position came") };
+    let Some((_, at)) = seen.fixes().last() else { return Check::not_done("geofence", "received no position") };
     let place = LocalFrame::new(water.field.plan.datum).ned(*at);
     let clearance_m = water.area.clearance_m(place);
     let on_field = if water.field.contains(place) { "on the field" } else { "off the field" };
@@ -86,7 +87,7 @@ fn geofence(seen: &SensorCheck, water: Option<&Water>) -> Check {
         place.east,
         place.north,
         clearance_m.abs(),
-        if clearance_m > 0.0 { "inside of" } else { "OUTSIDE of" }
+        if clearance_m > 0.0 { "inside" } else { "OUTSIDE" }
     );
     Check::of("geofence", clearance_m > 0.0, found)
 }
@@ -97,25 +98,25 @@ fn compass(seen: &SensorCheck) -> Check {
             Check::of("compass", true, seen.heading().unwrap_or_default())
         }
         Some(heading_deg) => Check::of("compass", false, format!("heading {heading_deg}, expected 0 to 360")),
-        None => Check::not_done("compass", "no heading came"),
+        None => Check::not_done("compass", "received no heading"),
     }
 }
 
 fn control(seen: &SensorCheck, gateway: &Gateway) -> Check {
     let Some(control) = seen.control() else {
-        let found = "the boat does not say who commands it";
-        // The file may vouch for it, for boats without such a sentence: then it is a person who
-        // answers for who has control.
+        let found = "the boat does not report who commands it";
+        // For boats without such a sentence the file may state it: then a person takes
+        // responsibility for who has control.
         return Check::of("control", gateway.control.assumed, format!("{found}; expected PSEAD, or control.assumed"));
     };
     let (mode, is_ours) = (control.shown.mode, control.operator.is_none_or(|operator| operator == Operator::Secondary));
-    let operator = control.operator.map_or("nobody named".to_owned(), |operator| format!("{operator:?}"));
+    let operator = control.operator.map_or("nobody identified".to_owned(), |operator| format!("{operator:?}"));
     let found = format!(
         "mode {}, commanded by {operator}; expected {}, and Secondary",
         seen.mode_in_words(mode),
         seen.mode_in_words(Mode::Standby)
     );
-    // A boat under way is not to be taken over by a check.
+    // A check must not take over a moving boat.
     Check::of("control", is_ours && mode == Mode::Standby, found)
 }
 
@@ -135,7 +136,7 @@ fn bilge(seen: &SensorCheck, gateway: &Gateway) -> Check {
             let found = format!("pumps draw {amps:.1} A, expected less than {most_a}: more is a leak");
             Check::of("bilge", amps < most_a, found)
         }
-        _ => Check::not_done("bilge", "the boat does not report its pumps, or they are not watched"),
+        _ => Check::not_done("bilge", "the boat does not report its pumps, or they are not monitored"),
     }
 }
 
@@ -146,7 +147,7 @@ fn clock(seen: &SensorCheck, host: HostTime) -> Check {
             let found = format!("fixes are {behind_s:.2} s behind this machine's clock, expected -1 to 5");
             Check::of("clock", true, found)
         }
-        (None, None) => Check::not_done("clock", "no time of day came"),
+        (None, None) => Check::not_done("clock", "received no time of day"),
     }
 }
 
@@ -172,7 +173,8 @@ mod tests {
         Water { field, area }
     }
 
-    /// A minute of a boat about this place of the field, with its GGA from the fifth field on and what else it says.
+    /// A minute of a boat around this point of the field: its GGA from the fifth field on, and its
+    /// other sentences.
     fn seen(water: &Water, [x, y]: [f64; 2], fix: &str, more: &[&str]) -> SensorCheck {
         let frame = LocalFrame::new(water.field.plan.datum);
         let mut check = SensorCheck::new(&crate::config::default_gateway());
@@ -216,7 +218,7 @@ mod tests {
             ([80.0, 40.0], "8,11,0.98", SOUND, "fix", "simulator"),
             ([80.0, 40.0], "9,11,0.98", SOUND, "fix", "an unknown quality"),
             ([80.0, 40.0], "5,4,7.50", SOUND, "fix", "RTK float, 4 satellites, dilution 7.5"),
-            ([80.0, 400.0], fix, SOUND, "geofence", "off the field, 290.0 m OUTSIDE of"),
+            ([80.0, 400.0], fix, SOUND, "geofence", "off the field, 290.0 m OUTSIDE"),
             (
                 [80.0, 40.0],
                 fix,

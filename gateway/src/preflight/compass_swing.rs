@@ -1,21 +1,22 @@
 //! A compass swing: the boat is turned through all headings, and the deviation of its compass is fitted.
 //!
-//! The deviation is A + B sin h + C cos h + D sin 2h + E cos 2h at the heading h (Bowditch, *American Practical Navigator*,
-//! ch. 6), east positive: what has to be added to the compass to have the heading.
+//! The deviation is A + B sin h + C cos h + D sin 2h + E cos 2h at the heading h (Bowditch,
+//! *American Practical Navigator*, ch. 6), east positive: it is added to the compass reading to
+//! obtain the heading.
 
 use primitives::angle::wrap_pi;
 use primitives::math;
 use std::f64::consts::TAU;
 
-/// The most pairs that are kept.
+/// Maximum number of pairs stored.
 const PAIRS_MAX: usize = 20_000;
-/// The sectors of headings, of each of which there must be pairs.
+/// The number of heading sectors, each of which needs pairs.
 const SECTORS: usize = 12;
 
-/// Headings by the compass beside true ones.
+/// Pairs of compass and true headings.
 #[derive(Clone, Debug, Default)]
 pub struct CompassSwing {
-    /// True heading, and what has to be added to the compass, rad.
+    /// True heading, and the value to add to the compass reading, rad.
     pairs: Vec<(f64, f64)>,
 }
 
@@ -24,21 +25,21 @@ pub struct CompassSwing {
 pub struct Deviation {
     /// A to E, degrees.
     pub a_to_e_deg: [f64; 5],
-    /// The standard deviation of what it does not explain, degrees.
+    /// The standard deviation of the residual, degrees.
     pub residual_deg: f64,
     /// Its largest value on any heading, degrees.
     pub largest_deg: f64,
 }
 
 impl CompassSwing {
-    /// Takes the heading by the compass, with the declination, and a true one of the same moment, rad.
+    /// Adds a compass heading, with the declination, and a true one of the same moment, rad.
     pub fn add_reading(&mut self, compass_rad: f64, true_rad: f64) {
         if self.pairs.len() < PAIRS_MAX && compass_rad.is_finite() && true_rad.is_finite() {
             self.pairs.push((true_rad.rem_euclid(TAU), wrap_pi(true_rad - compass_rad)));
         }
     }
 
-    /// How many sectors of 30 degrees the boat has pointed to.
+    /// The number of 30-degree sectors to which the boat has pointed.
     #[must_use]
     pub fn sectors(&self) -> usize {
         let sector = |psi_rad: f64| (psi_rad / TAU * SECTORS as f64) as usize % SECTORS;
@@ -47,17 +48,17 @@ impl CompassSwing {
         seen.iter().filter(|seen| **seen).count()
     }
 
-    /// The deviation by least squares, once the boat has pointed everywhere.
+    /// The deviation by least squares, once the boat has pointed in all directions.
     ///
     /// # Errors
-    /// Says what is missing.
+    /// The missing condition.
     pub fn fit(&self) -> Result<Deviation, String> {
         let sectors = self.sectors();
-        // With a part of the circle the sines of one and two turns cannot be told apart.
+        // With only part of the circle, the sines of one and two turns cannot be distinguished.
         if sectors < SECTORS {
             return Err(format!("{sectors} of {SECTORS} sectors of 30 degrees were swept, expected all of them"));
         }
-        // About their mean, so that angles near half a turn do not jump.
+        // Relative to their mean, so that angles near half a turn do not wrap.
         let [sin, cos] = self.pairs.iter().fold([0.0; 2], |[s, c], (_, off)| {
             let (sin, cos) = math::sin_cos(*off);
             [s + sin, c + cos]
@@ -72,7 +73,7 @@ impl CompassSwing {
             }
         }
         let solved = solve_positive_definite(normal, right);
-        let mut found = solved.ok_or_else(|| "the headings do not tell a curve".to_owned())?;
+        let mut found = solved.ok_or_else(|| "the headings do not determine a deviation curve".to_owned())?;
         found[0] = wrap_pi(found[0] + mean_rad);
         let value = |psi_rad: f64| basis(psi_rad).iter().zip(found).map(|(base, factor)| base * factor).sum::<f64>();
         let squares = self.pairs.iter().map(|(psi_rad, off)| wrap_pi(off - value(*psi_rad))).map(|rest| rest * rest);
@@ -87,7 +88,7 @@ impl CompassSwing {
 }
 
 impl Deviation {
-    /// What to paste into the boat's file.
+    /// The lines to paste into the boat's file.
     #[must_use]
     pub fn toml(&self) -> String {
         let names = ["a_deg", "b_deg", "c_deg", "d_deg", "e_deg"].into_iter();
@@ -96,14 +97,15 @@ impl Deviation {
     }
 }
 
-/// What A to E are the factors of.
+/// The basis functions of A to E.
 fn basis(psi_rad: f64) -> [f64; 5] {
     let ((sin, cos), (sin_2, cos_2)) = (math::sin_cos(psi_rad), math::sin_cos(2.0 * psi_rad));
     [1.0, sin, cos, sin_2, cos_2]
 }
 
-/// Solves a symmetric system by Cholesky's factors (Golub and Van Loan, *Matrix Computations*, 4.2.3 and 3.1); nothing if it
-/// is not positive definite. Five lines and columns are no reason to have a library of matrices on the boat.
+/// Solves a symmetric system by Cholesky's factors (Golub and Van Loan, *Matrix Computations*,
+/// 4.2.3 and 3.1); `None` if it is not positive definite. A five-by-five system does not justify a
+/// matrix library on the boat.
 fn solve_positive_definite(matrix: [[f64; 5]; 5], right: [f64; 5]) -> Option<[f64; 5]> {
     let (mut lower, mut x) = (matrix, right);
     for j in 0..5 {

@@ -1,4 +1,4 @@
-//! How far the fixes of a boat that lies still are apart.
+//! The scatter of the fixes of a boat at rest.
 
 use crate::geodesy::LocalFrame;
 use primitives::frame::{LatLon, Ned};
@@ -6,16 +6,16 @@ use primitives::frame::{LatLon, Ned};
 /// The scatter of fixes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct FixScatter {
-    /// Within this distance of their mean are 95 of 100 fixes, m.
+    /// The distance from their mean that contains 95 of 100 fixes, m.
     pub(super) radius_95_m: f64,
-    /// How far the mean of the second half is from that of the first, m.
+    /// The distance between the means of the first and second half, m.
     pub(super) drift_m: f64,
 }
 
 impl FixScatter {
-    /// The scatter of these fixes, in the order in which they came; `None` of fewer than ten.
+    /// The scatter of these fixes, in order of arrival; `None` for fewer than ten.
     pub(super) fn of(fixes: &[LatLon]) -> Option<FixScatter> {
-        // Of fewer fixes the 95th percentile is the worst of them.
+        // For fewer fixes the 95th percentile is the worst of them.
         if fixes.len() < 10 {
             return None;
         }

@@ -1,4 +1,4 @@
-//! The pre-flight check of a boat: what is looked at before anybody arms it, and the report of it.
+//! The pre-flight check of a boat before it is armed, and its report.
 
 mod boat;
 mod compass_swing;
@@ -9,29 +9,29 @@ pub use compass_swing::{CompassSwing, Deviation};
 
 use serde::{Deserialize, Serialize};
 
-/// Without these a report is none of a boat that may be armed.
+/// A report must contain these for a boat to be armed.
 const NEEDED: [&str; 6] = ["sentences", "fix", "scatter", "geofence", "compass", "control"];
 
-/// What came of looking at one thing.
+/// The result of one check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// It is as it must be.
+    /// Passed.
     Passed,
-    /// It is not.
+    /// Failed.
     Failed,
-    /// Nobody looked, or it cannot be seen here.
+    /// Not checked, or not possible here.
     NotChecked,
 }
 
-/// One thing that was looked at.
+/// One check.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Check {
-    /// What.
+    /// Its name.
     pub name: String,
-    /// What came of it.
+    /// Its result.
     pub verdict: Verdict,
-    /// What was found, and what is allowed.
+    /// The value found, and the values allowed.
     pub found: String,
 }
 
@@ -42,7 +42,7 @@ impl Check {
         Check { name: name.to_owned(), verdict: if is_well { Verdict::Passed } else { Verdict::Failed }, found }
     }
 
-    /// What was not looked at, and why.
+    /// A check that was not done, and why.
     #[must_use]
     pub fn not_done(name: &str, why: impl Into<String>) -> Check {
         Check { name: name.to_owned(), verdict: Verdict::NotChecked, found: why.into() }
@@ -54,18 +54,18 @@ impl Check {
 pub struct Report {
     /// The boat's name in its game.
     pub vehicle: String,
-    /// Where it was reached.
+    /// The link's address.
     pub link: String,
-    /// When, s since 1970 in UTC.
+    /// The time, s since 1970 in UTC.
     pub at_unix_s: u64,
-    /// The same, to be read.
+    /// The same time as text.
     pub at: String,
-    /// What was looked at, in this order.
+    /// The checks, in this order.
     pub checks: Vec<Check>,
 }
 
 impl Report {
-    /// What keeps it from having passed: what failed, and what nobody looked at though it is needed.
+    /// The reasons why it has not passed: failed checks, and required checks that were not done.
     #[must_use]
     pub fn faults(&self) -> Vec<String> {
         let failed = self.checks.iter().filter(|check| check.verdict == Verdict::Failed);
@@ -76,21 +76,21 @@ impl Report {
         failed.chain(missing).collect()
     }
 
-    /// Whether a gateway to this boat may arm by it.
+    /// Whether it allows a gateway to this boat to arm.
     ///
     /// # Errors
-    /// Says why not.
+    /// The reason why not.
     pub fn admits(&self, vehicle: &str, link: &str, now_unix_s: u64, age_max_h: f64) -> Result<(), String> {
         let faults = self.faults();
         if !faults.is_empty() {
             return Err(format!("it has not passed: {}", faults.join("; ")));
         }
         if (self.vehicle.as_str(), self.link.as_str()) != (vehicle, link) {
-            return Err(format!("it is of {} at {}, expected {vehicle} at {link}", self.vehicle, self.link));
+            return Err(format!("it is for {} at {}, expected {vehicle} at {link}", self.vehicle, self.link));
         }
         let age_h = (now_unix_s as f64 - self.at_unix_s as f64) / 3600.0;
-        // One from the future comes from a machine with another clock, and says nothing about
-        // its age.
+        // A report from the future comes from a machine with a different clock, so its age is
+        // unknown.
         if (0.0..=age_max_h).contains(&age_h) {
             return Ok(());
         }
@@ -135,7 +135,7 @@ mod tests {
             ("blue_one", "tcp://a:1", 10_800, ""),
             ("blue_one", "tcp://a:1", 11_000, "it is 1.1 h old, expected 0 to 1"),
             ("blue_one", "tcp://a:1", 7000, "it is -0.1 h old"),
-            ("red_one", "tcp://a:1", 7200, "it is of blue_one at tcp://a:1, expected red_one at tcp://a:1"),
+            ("red_one", "tcp://a:1", 7200, "it is for blue_one at tcp://a:1, expected red_one at tcp://a:1"),
             ("blue_one", "tcp://b:1", 7200, "expected blue_one at tcp://b:1"),
         ] {
             let refused = report.admits(vehicle, link, now_s, 1.0).err().unwrap_or_default();

@@ -1,9 +1,10 @@
 //! MAVLink with an ArduPilot boat: reports from its messages, messages from commands.
 //!
-//! The boat follows set-points when it is armed and in mode GUIDED; standby is mode HOLD, disarmed. A boat in any other mode that we did
-//! not ask for is commanded by somebody else (a remote control, a ground station, a failsafe of its own), and is sent nothing that would take
-//! it from them. A mode is asked for until the boat shows it once, never again after it has left it: who takes the boat out of GUIDED
-//! keeps it.
+//! The boat follows set-points when it is armed and in mode GUIDED; standby is mode HOLD, disarmed.
+//! A boat in any other mode that we did not request is under other control (a remote control, a
+//! ground station, a failsafe of its own), and receives nothing that would take it over. A mode is
+//! requested until the boat shows it once, and never again after the boat has left it: an operator
+//! who takes the boat out of GUIDED keeps it.
 
 use super::mavlink_boat::Boat;
 use super::mavlink_upload::{Next, Upload};
@@ -25,16 +26,16 @@ use ::mavlink::MessageData;
 use messages::external::Mission;
 use primitives::{SimTime, math};
 
-/// How often we say that we are there, s.
+/// Interval of our heartbeat, s.
 const HEARTBEAT_S: f64 = 1.0;
-/// A mode or arming that the boat does not show is asked for again after this time, s.
+/// A mode or arming that the boat does not show is requested again after this time, s.
 const AGAIN_S: f64 = 0.5;
 /// Below this speed, m/s, a velocity is not sent: its direction would be that of a rounding error.
 const VELOCITY_MIN_M_S: f64 = 0.01;
-/// What we need of the boat: the numbers of messages, and how often, 1/s.
+/// The messages that we need from the boat: number, and rate, 1/s.
 const STREAMS: [(u32, f64); 9] = [
-    // Five times a second in place of once: by it the gateway sees that somebody has taken the
-    // boat, and a second is two metres.
+    // Five times a second instead of once: it shows the gateway that somebody has taken over the
+    // boat, which travels two metres in a second.
     (HEARTBEAT_DATA::ID, 5.0),
     (GLOBAL_POSITION_INT_DATA::ID, 10.0),
     (ATTITUDE_DATA::ID, 10.0),
@@ -42,11 +43,11 @@ const STREAMS: [(u32, f64); 9] = [
     (SYS_STATUS_DATA::ID, 1.0),
     (SYSTEM_TIME_DATA::ID, 1.0),
     (HOME_POSITION_DATA::ID, 0.5),
-    // Which set-points it follows, to compare with our own.
+    // The set-points that it follows, to compare with our own.
     (NAV_CONTROLLER_OUTPUT_DATA::ID, 5.0),
     (POSITION_TARGET_GLOBAL_INT_DATA::ID, 5.0),
 ];
-/// They are asked for again after this time, s: the boat may have been started anew.
+/// They are requested again after this time, s: the boat may have restarted.
 const STREAMS_AGAIN_S: f64 = 10.0;
 
 /// The system and component that a message is for.
@@ -56,7 +57,7 @@ pub(super) struct Target {
     pub(super) component: u8,
 }
 
-/// A mode that the boat was asked for.
+/// A mode requested from the boat.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Asked {
     pub(super) mode: RoverMode,
@@ -66,7 +67,7 @@ pub(super) struct Asked {
     pub(super) is_shown: bool,
 }
 
-/// What is remembered of a link.
+/// The state of a link.
 #[derive(Clone, Debug)]
 pub struct Mavlink {
     settings: Settings,
@@ -80,7 +81,7 @@ pub struct Mavlink {
     heartbeat_due: SimTime,
     streams_due: SimTime,
     upload: Option<Upload>,
-    /// What the boat asked for.
+    /// The boat's pending request.
     answers: Vec<MavMessage>,
 }
 
@@ -105,8 +106,7 @@ impl Mavlink {
     pub(super) fn begin_link(&mut self) {
         self.framer.interrupt();
         self.boat.forget(self.settings.boat_system);
-        // The boat may be another one, or started anew: what was asked of it before is not
-        // believed to hold.
+        // The boat may be a different one, or have restarted: earlier requests no longer hold.
         (self.asked, self.upload) = (None, None);
         (self.heartbeat_due, self.streams_due) = (SimTime::LONG_AGO, SimTime::LONG_AGO);
         self.answers.clear();
@@ -137,8 +137,8 @@ impl Mavlink {
                 take(Report::Home([1e-7 * f64::from(home.latitude), 1e-7 * f64::from(home.longitude)]));
             }
             MavMessage::MISSION_ACK(ack) if (ack.target_system, ack.target_component) == ours => {
-                // To us, by system and component: ground stations on the same link upload
-                // missions, too.
+                // For our system and component: ground stations on the same link upload missions,
+                // too.
                 self.upload.iter_mut().for_each(|upload| upload.take_ack(ack.mavtype, now));
             }
             other => match item_request(other) {
@@ -154,7 +154,7 @@ impl Mavlink {
     }
 
     fn target(&self) -> Target {
-        // Nobody in particular is everybody: a set-point of zero may be for all.
+        // No target means everybody: a set-point of zero may be for all.
         let system = self.boat.system.unwrap_or(0);
         Target { system, component: if system == 0 { 0 } else { AUTOPILOT } }
     }
@@ -180,7 +180,7 @@ impl Mavlink {
         }
     }
 
-    /// Asks for a mode, armed, until the boat shows it.
+    /// Requests a mode, armed, until the boat shows it.
     fn engage(&mut self, now: SimTime, wanted: RoverMode, out: &mut Vec<u8>) {
         let asked = self.asked.filter(|asked| asked.is_armed);
         let is_done = asked.is_some_and(|asked| asked.mode == wanted && asked.is_shown);
@@ -196,7 +196,8 @@ impl Mavlink {
         self.write_arming(true, out);
     }
 
-    /// Asks for mode HOLD, disarmed, if the boat is ours: until it shows that, and whenever it is driven again.
+    /// Requests mode HOLD, disarmed, if the boat is ours: until it shows that, and whenever it is
+    /// driven again.
     fn stand_by(&mut self, now: SimTime, out: &mut Vec<u8>) {
         let Some(shown) = self.boat.mode.filter(|_| self.boat.is_ours(self.asked.as_ref())) else { return };
         let before = self.asked.filter(|asked| !asked.is_armed);
@@ -204,7 +205,7 @@ impl Mavlink {
         if before.is_some_and(|asked| asked.is_shown) && !is_driven {
             return;
         }
-        // A mode of a task that we asked for stays ours until the boat has left it.
+        // The mode of a task that we requested stays ours until the boat has left it.
         if shown.mode == RoverMode::Hold && !shown.is_armed {
             self.asked = Some(Asked { mode: RoverMode::Hold, is_armed: false, at: now, is_shown: true });
             return;
@@ -228,7 +229,7 @@ impl Mavlink {
     }
 
     fn write_mode(&mut self, mode: RoverMode, out: &mut Vec<u8>) {
-        // Of the base mode only the flag counts that says that there is a custom mode.
+        // Of the base mode, only the flag for a custom mode counts.
         self.write_command(MavCmd::MAV_CMD_DO_SET_MODE, [1.0, mode.number() as f32], out);
     }
 
@@ -236,13 +237,15 @@ impl Mavlink {
         self.write_command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, [f32::from(u8::from(arm)), 0.0], out);
     }
 
-    /// As "Rover commands in guided mode" of ArduPilot's documentation. A boat forgets a set-point after three seconds.
+    /// See "Rover commands in guided mode" in ArduPilot's documentation. A boat drops a set-point
+    /// after three seconds.
     fn write_set_point(&mut self, set_point: SetPoint, out: &mut Vec<u8>) {
         let Target { system: target_system, component: target_component } = self.target();
         let no_roll_no_pitch = AttitudeTargetTypemask::ATTITUDE_TARGET_TYPEMASK_BODY_ROLL_RATE_IGNORE
             | AttitudeTargetTypemask::ATTITUDE_TARGET_TYPEMASK_BODY_PITCH_RATE_IGNORE;
         let message = match set_point {
-            // Thrust is a share of the boat's cruise speed, ahead positive, and the rate of turn is to starboard.
+            // Thrust is a fraction of the boat's cruise speed, ahead positive; the rate of turn is
+            // to starboard.
             SetPoint::Thrust { thrust_pct, difference_pct } => {
                 MavMessage::SET_ATTITUDE_TARGET(SET_ATTITUDE_TARGET_DATA {
                     body_yaw_rate: (0.01 * difference_pct * self.settings.turn_rate_max_rad_s) as f32,
@@ -253,7 +256,8 @@ impl Mavlink {
                     ..SET_ATTITUDE_TARGET_DATA::default()
                 })
             }
-            // Velocity zero has no direction, and the boat would turn to the north: it is sent the heading, and no thrust.
+            // A zero velocity has no direction, and the boat would turn north: it receives the
+            // heading, and zero thrust.
             SetPoint::Speed { heading_deg, speed_m_s } if speed_m_s < VELOCITY_MIN_M_S => {
                 let (z, w) = math::sin_cos(0.5 * heading_deg.to_radians());
                 MavMessage::SET_ATTITUDE_TARGET(SET_ATTITUDE_TARGET_DATA {
@@ -266,9 +270,10 @@ impl Mavlink {
             }
             SetPoint::Speed { heading_deg, speed_m_s } => {
                 let (east, north) = math::sin_cos(heading_deg.to_radians());
-                // Without a yaw, which the velocity has anyhow. With a yaw or a yaw rate Rover takes the sign of `vx`, which
-                // is to the north, for the sign of the speed, in every frame: a boat that is ordered to the south goes astern
-                // (Rover/GCS_MAVLink_Rover.cpp, handle_set_position_target_local_ned; seen with ArduRover's SITL).
+                // Without a yaw, which the velocity implies. With a yaw or a yaw rate, Rover takes
+                // the sign of `vx`, which points north, for the sign of the speed in every frame: a
+                // boat ordered south goes astern (Rover/GCS_MAVLink_Rover.cpp,
+                // handle_set_position_target_local_ned; seen with ArduRover's SITL).
                 let type_mask = PositionTargetTypemask::POSITION_TARGET_TYPEMASK_X_IGNORE
                     | PositionTargetTypemask::POSITION_TARGET_TYPEMASK_Y_IGNORE
                     | PositionTargetTypemask::POSITION_TARGET_TYPEMASK_Z_IGNORE
@@ -292,7 +297,8 @@ impl Mavlink {
         self.send(message, out);
     }
 
-    /// What is due without a command: our heartbeat, what we need of the boat, and answers to it.
+    /// The messages due without a command: our heartbeat, requests for messages, and answers to the
+    /// boat.
     pub(super) fn keep_up(&mut self, now: SimTime, out: &mut Vec<u8>) {
         for message in std::mem::take(&mut self.answers) {
             self.send(message, out);
@@ -303,7 +309,7 @@ impl Mavlink {
                 MavMessage::HEARTBEAT(HEARTBEAT_DATA {
                     mavtype: MavType::MAV_TYPE_GCS,
                     autopilot: MavAutopilot::MAV_AUTOPILOT_INVALID,
-                    // By default the crate sets the first flag, which is that of an armed vehicle.
+                    // By default the crate sets the first flag, which marks an armed vehicle.
                     base_mode: MavModeFlag::empty(),
                     system_status: MavState::MAV_STATE_ACTIVE,
                     ..HEARTBEAT_DATA::default()
@@ -311,8 +317,8 @@ impl Mavlink {
                 out,
             );
         }
-        // Not before the boat is known: ArduPilot answers a request for everybody as well, and
-        // so would every other system on the link.
+        // Not before the boat is known: ArduPilot also answers a request to everybody, and so would
+        // every other system on the link.
         if self.boat.system.is_some() && now >= self.streams_due {
             self.streams_due = now + SimTime::from_s(STREAMS_AGAIN_S);
             for (id, rate_hz) in STREAMS {
@@ -327,7 +333,8 @@ impl Mavlink {
         upload.min(self.heartbeat_due)
     }
 
-    /// What stops a boat that is ours; one that others command is sent a set-point of zero, which it ignores.
+    /// The stop message for a boat that is ours; one under other control receives a set-point of
+    /// zero, which it ignores.
     pub(super) fn stop_message(&self) -> Vec<u8> {
         let (mut copy, mut out) = (self.clone(), Vec::new());
         // The same bytes as long as nothing changes.
@@ -340,7 +347,7 @@ impl Mavlink {
         out
     }
 
-    /// What stops a boat whoever commands it.
+    /// The stop message for a boat, whoever commands it.
     pub(super) fn forced_stop_message(&self) -> Vec<u8> {
         let (mut copy, mut out) = (self.clone(), Vec::new());
         copy.write_set_point(SetPoint::ZERO, &mut out);
@@ -351,7 +358,7 @@ impl Mavlink {
 
     pub(super) fn begin_upload(&mut self, now: SimTime, mission: &Mission) -> Result<(), String> {
         mission_check::check(mission)?;
-        // Missions of the game give a throttle, as a Surveyor has it; ArduPilot's give a speed.
+        // The game's missions specify a throttle, like a Surveyor's; ArduPilot's specify a speed.
         let speed_m_s = math::interpolate(self.thrust_map.iter().copied(), mission.throttle_pct);
         let speed_m_s = speed_m_s.clamp(0.0, self.speed_max_m_s);
         self.upload = Some(Upload::new(mission, speed_m_s, self.target(), now));
@@ -392,7 +399,7 @@ impl Mavlink {
             ("bad checksums", framed.bad_checksum),
             ("bytes of garbage", framed.garbage),
             ("unreadable", framed.unreadable),
-            ("messages of other systems", self.boat.others),
+            ("messages from other systems", self.boat.others),
         ];
         let unknown = framed.unknown.iter().map(|(id, count)| (format!("unknown message {id}"), *count));
         [known.into_iter().map(|(name, count)| (name.to_owned(), count)).collect(), unknown.collect()]
@@ -402,16 +409,16 @@ impl Mavlink {
 fn mode_of(task: Task) -> RoverMode {
     match task {
         Task::StationKeep => RoverMode::Loiter,
-        // What comes nearest on an ArduPilot boat: it goes home to where it was armed, or to
-        // its rally point.
+        // The closest match on an ArduPilot boat: it goes home to where it was armed, or to its
+        // rally point.
         Task::GoToErp => RoverMode::Rtl,
         Task::Mission => RoverMode::Auto,
-        // It is refused before.
+        // Refused earlier.
         Task::Mode(_) => RoverMode::Hold,
     }
 }
 
-/// The item of a mission that a boat asks for, and whom.
+/// The mission item that a boat requests, and from whom.
 #[expect(deprecated, reason = "ArduPilot asks by MISSION_REQUEST too, and is answered as the specification says")]
 fn item_request(message: &MavMessage) -> Option<(u16, (u8, u8))> {
     match message {
@@ -423,7 +430,7 @@ fn item_request(message: &MavMessage) -> Option<(u16, (u8, u8))> {
     }
 }
 
-/// Degrees as messages carry them.
+/// Degrees in the format of messages.
 pub(super) fn global_e7(deg: f64) -> i32 {
     (1e7 * deg).round() as i32
 }

@@ -1,4 +1,4 @@
-//! What is known of an ArduPilot boat, by its own messages.
+//! The state of an ArduPilot boat, from its messages.
 
 use super::mavlink::Asked;
 use super::report::{ControlReport, Fix, Heading, North, Power, Report, Shown};
@@ -13,13 +13,13 @@ use ::mavlink::Message;
 use primitives::frame::Ned;
 use primitives::{LatLon, SimTime};
 
-/// A receiver that has told nothing of its fix for this long has none, s.
+/// A receiver that has not reported a fix for this long has none, s.
 const FIX_TYPE_AGE_MAX_S: f64 = 2.0;
-/// Without ATTITUDE for this long the heading is that of the position, s.
+/// Without ATTITUDE for this long the heading comes from the position message, s.
 const ATTITUDE_AGE_MAX_S: f64 = 1.0;
-/// What the boat shows of its set-point counts for this long, s: three of its reports.
+/// The set-point shown by the boat is valid for this long, s: three of its reports.
 const TARGET_AGE_MAX_S: f64 = 0.6;
-/// The most ground stations that are remembered.
+/// Maximum number of ground stations stored.
 const STATIONS_MAX: usize = 8;
 
 /// A mode, and whether the boat is armed.
@@ -29,20 +29,20 @@ pub(super) struct ShownMode {
     pub(super) is_armed: bool,
 }
 
-/// What its messages have told.
+/// The contents of its messages.
 #[derive(Clone, Debug)]
 pub(super) struct Boat {
     /// Its system, once that is known.
     pub(super) system: Option<u8>,
     pub(super) mode: Option<ShownMode>,
-    /// Messages of other systems and components.
+    /// Messages from other systems and components.
     pub(super) others: u64,
-    /// What the receiver tells of its fix, and when that came.
+    /// The receiver's report of its fix, and when it arrived.
     fix: Option<(SimTime, Fix)>,
     position_ms: Option<u32>,
     attitude_at: SimTime,
     has_volts: bool,
-    /// The heading that it shows as ordered in GUIDED, degrees, and when that came.
+    /// The ordered heading that it shows in GUIDED, degrees, and when it arrived.
     ordered: Option<(SimTime, f64)>,
     /// When it last showed that it goes to a position in GUIDED.
     position_target_at: SimTime,
@@ -52,7 +52,7 @@ pub(super) struct Boat {
 }
 
 impl Boat {
-    /// The boat of this system; 0 is the first that shows itself.
+    /// The boat of this system; 0 means the first that appears.
     pub(super) fn new(system: u8) -> Boat {
         Boat {
             system: (system != 0).then_some(system),
@@ -73,7 +73,8 @@ impl Boat {
         *self = Boat { others: self.others, ..Boat::new(system) };
     }
 
-    /// Whether a message is this boat's. Without a system the first autopilot of a boat is taken.
+    /// Whether a message is from this boat. Without a system number, the first boat's autopilot is
+    /// chosen.
     pub(super) fn is_its(&mut self, received: &Received) -> bool {
         if let (None, MavMessage::HEARTBEAT(heartbeat)) = (self.system, &received.message)
             && received.component == AUTOPILOT
@@ -81,13 +82,13 @@ impl Boat {
         {
             self.system = Some(received.system);
         }
-        // Cameras and gimbals of the same boat have its system and send heartbeats as well.
+        // Cameras and gimbals on the boat share its system number and send heartbeats as well.
         let is_its = self.system == Some(received.system) && received.component == AUTOPILOT;
         self.others += u64::from(!is_its);
         is_its
     }
 
-    /// Whether nobody else commands it: it is in GUIDED or HOLD, or in the mode that we asked for.
+    /// Whether nobody else commands it: it is in GUIDED or HOLD, or in the mode that we requested.
     pub(super) fn is_ours(&self, asked: Option<&Asked>) -> bool {
         self.mode.is_none_or(|shown| {
             matches!(shown.mode, RoverMode::Guided | RoverMode::Hold)
@@ -95,7 +96,8 @@ impl Boat {
         })
     }
 
-    /// Set-points of others for the boat, and other ground stations, as far as the boat or a router passes them on to us.
+    /// Notes other senders' set-points for the boat, and other ground stations, if the boat or a
+    /// router passes them on to us.
     pub(super) fn report_stranger(&mut self, received: &Received, take: &mut dyn FnMut(Report)) {
         let Received { system, component, message } = received;
         let is_for_it = message.target_system_id().is_some_and(|target| target == 0 || Some(target) == self.system);
@@ -131,8 +133,8 @@ impl Boat {
         self.mode = Some(shown);
         let is_ours = self.is_ours(asked.as_ref());
         if !is_ours {
-            // Somebody took it: what we asked for before must not count as ours when the boat
-            // happens to be in that mode later.
+            // Another operator took it: our earlier request must not count when the boat happens to
+            // be in that mode later.
             *asked = None;
         }
         if let Some(asked) = asked {
@@ -140,7 +142,7 @@ impl Boat {
         }
         let is_fresh = |at: SimTime| (now - at).as_s() <= TARGET_AGE_MAX_S;
         let mode = match shown.mode {
-            // Whatever its mode: a boat that is not armed does not move.
+            // In any mode: a boat that is not armed does not move.
             _ if is_ours && !is_armed => Mode::Standby,
             RoverMode::Hold => Mode::Standby,
             // We never send it a position.
@@ -165,24 +167,25 @@ impl Boat {
         ControlReport { shown, operator: Some(operator) }
     }
 
-    /// What it shows of the set-point that it follows; nothing of that is ours before it shows that it is armed in GUIDED.
+    /// The set-point that it shows; none of it is ours before it shows that it is armed in GUIDED.
     fn take_target(&mut self, now: SimTime, message: &MavMessage) {
         if self.mode != Some(ShownMode { mode: RoverMode::Guided, is_armed: true }) {
             (self.ordered, self.position_target_at) = (None, SimTime::LONG_AGO);
             return;
         }
         match message {
-            // The ordered heading, from version 4.7 on; before that it is 0, but for the bearing of a position.
+            // The ordered heading, from version 4.7 on; before that it is 0, except for the bearing
+            // of a position.
             MavMessage::NAV_CONTROLLER_OUTPUT(NAV_CONTROLLER_OUTPUT_DATA { nav_bearing, .. }) => {
                 self.ordered = Some((now, f64::from(*nav_bearing)));
             }
-            // Rover sends it for positions alone, and when it keeps its station for want of a set-point.
+            // Rover sends it only for positions, and when it keeps station for lack of a set-point.
             MavMessage::POSITION_TARGET_GLOBAL_INT(_) => self.position_target_at = now,
             _ => {}
         }
     }
 
-    /// What a message reports.
+    /// The reports in a message.
     pub(super) fn report(&mut self, now: SimTime, message: &MavMessage, take: &mut dyn FnMut(Report)) {
         self.texts.take_overdue(now, &mut |text| take(Report::Notice(text)));
         match message {
@@ -198,8 +201,7 @@ impl Boat {
                 take(Report::Heading(Heading { deg, north: North::True, yaw_rate_deg_s: Some(yaw_rate) }));
             }
             MavMessage::SYS_STATUS(status) => {
-                // Both messages may tell of the same battery; SYS_STATUS is the one that every
-                // board sends.
+                // Both messages may report the same battery; every board sends SYS_STATUS.
                 let volts = millivolts(status.voltage_battery);
                 self.has_volts = volts.is_some();
                 volts
@@ -215,12 +217,12 @@ impl Boat {
                 let (_, time) = date_and_time(time.time_unix_usec.saturating_mul(1000));
                 take(Report::Clock(time));
             }
-            // What is less than a warning is said all the time, and would hide what matters.
+            // Texts below a warning are sent all the time, and would hide important ones.
             MavMessage::STATUSTEXT(status) if status.severity as u8 <= MavSeverity::MAV_SEVERITY_WARNING as u8 => {
                 self.texts.take(now, status, &mut |text| take(Report::Notice(text)));
             }
             MavMessage::COMMAND_ACK(COMMAND_ACK_DATA { command, result, .. }) => {
-                // Only of commands that we send ourselves: an answer goes to everybody on the
+                // Only for commands that we send ourselves: an answer goes to everybody on the
                 // link.
                 let is_orderly = matches!(
                     command,
@@ -240,8 +242,8 @@ impl Boat {
 
     fn take_position(&mut self, now: SimTime, position: &GLOBAL_POSITION_INT_DATA, take: &mut dyn FnMut(Report)) {
         let GLOBAL_POSITION_INT_DATA { time_boot_ms, lat, lon, vx, vy, hdg, .. } = *position;
-        // The same again is not news.
-        // A router may deliver a message by two ways.
+        // Repetitions are not news.
+        // A router may deliver a message by two routes.
         if self.position_ms.replace(time_boot_ms) == Some(time_boot_ms) {
             return;
         }
@@ -250,7 +252,7 @@ impl Boat {
             take(Report::Heading(Heading { deg, north: North::True, yaw_rate_deg_s: None }));
         }
         take(Report::Velocity(Ned { north: 0.01 * f64::from(vx), east: 0.01 * f64::from(vy) }));
-        // The position is an estimate that goes on without a receiver: its fix says what it is worth.
+        // The position is an estimate that continues without a receiver: its fix shows its quality.
         let fix = self.fix.filter(|(at, _)| (now - *at).as_s() <= FIX_TYPE_AGE_MAX_S);
         let fix = fix.map_or(Fix { quality: Some(FixQuality::NONE), ..Fix::default() }, |(_, fix)| fix);
         let at = LatLon { lat_deg: 1e-7 * f64::from(lat), lon_deg: 1e-7 * f64::from(lon) };
@@ -259,24 +261,24 @@ impl Boat {
     }
 }
 
-/// An ArduPilot on a boat, or on a rover, which is the same program.
+/// ArduPilot on a boat, or on a rover, which runs the same program.
 fn is_boat(heartbeat: &HEARTBEAT_DATA) -> bool {
     let is_vehicle = matches!(heartbeat.mavtype, MavType::MAV_TYPE_SURFACE_BOAT | MavType::MAV_TYPE_GROUND_ROVER);
     is_vehicle && heartbeat.autopilot == MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA
 }
 
-/// A fix but for its place.
+/// A fix without its position.
 fn fix(gps: &GPS_RAW_INT_DATA) -> Fix {
     Fix {
         quality: Some(quality(gps)),
-        // The largest values say that it is not known.
+        // The largest values mean that it is unknown.
         hdop: (gps.eph != u16::MAX).then(|| 0.01 * f64::from(gps.eph)),
         satellites: (gps.satellites_visible != u8::MAX).then_some(gps.satellites_visible),
         ..Fix::default()
     }
 }
 
-/// The quality of a fix as GGA counts it.
+/// The quality of a fix in GGA's numbering.
 fn quality(gps: &GPS_RAW_INT_DATA) -> FixQuality {
     FixQuality::from_gga(match gps.fix_type {
         GpsFixType::GPS_FIX_TYPE_NO_GPS | GpsFixType::GPS_FIX_TYPE_NO_FIX | GpsFixType::GPS_FIX_TYPE_2D_FIX => 0,
@@ -284,12 +286,12 @@ fn quality(gps: &GPS_RAW_INT_DATA) -> FixQuality {
         GpsFixType::GPS_FIX_TYPE_DGPS | GpsFixType::GPS_FIX_TYPE_PPP => 2,
         GpsFixType::GPS_FIX_TYPE_RTK_FLOAT => 5,
         GpsFixType::GPS_FIX_TYPE_RTK_FIXED => 4,
-        // A base station knows its place because somebody entered it.
+        // A base station knows its position because somebody entered it.
         GpsFixType::GPS_FIX_TYPE_STATIC => 7,
     })
 }
 
-/// A voltage, V, if it is measured.
+/// A voltage, V, if measured.
 fn millivolts(value: u16) -> Option<f64> {
     (value != 0 && value != u16::MAX).then(|| 0.001 * f64::from(value))
 }

@@ -1,4 +1,5 @@
-//! The upload of a mission by MAVLink: the boat's home is set and seen taken, then the boat asks for item after item.
+//! The upload of a mission by MAVLink: the boat's home is set and confirmed, then the boat requests
+//! one item after the other.
 
 use super::mavlink::{Target, global_e7};
 use crate::mavlink::dialect::HOME_POSITION_DATA;
@@ -10,39 +11,40 @@ use ::mavlink::MessageData;
 use messages::external::Mission;
 use primitives::SimTime;
 
-/// What the boat does not answer is sent again after this time, s, and so often in all.
+/// An unanswered message is sent again after this time, s, and this many times in all.
 const AGAIN_S: f64 = 1.0;
 const TRIES_MAX: u32 = 5;
-/// A home that is as near to the recovery point as this is the one that was set, 1e-7 degrees: one metre.
+/// A home within this distance of the recovery point is the one that was set, 1e-7 degrees: one
+/// metre.
 const SAME_E7: u32 = 90;
 
 /// The upload.
 #[derive(Clone, Debug)]
 pub(super) struct Upload {
     items: Vec<MISSION_ITEM_INT_DATA>,
-    /// Where the boat's home is to be: latitude and longitude, 1e-7 degrees.
+    /// The position of the boat's new home: latitude and longitude, 1e-7 degrees.
     home: (i32, i32),
     phase: Phase,
     tries: u32,
     due: SimTime,
 }
 
-/// What the boat has to do next.
+/// The next step of the boat.
 #[derive(Clone, Debug, PartialEq)]
 enum Phase {
-    /// Show the home that it was sent.
+    /// Report the home that it was sent.
     Home,
-    /// Ask for items, and take them.
+    /// Request items, and accept them.
     Items,
-    /// Nothing.
+    /// None: it has accepted everything.
     Done,
-    /// Nothing any more: it has refused this.
+    /// None: it has refused the mission, for this reason.
     Refused(String),
 }
 
-/// How an upload goes on.
+/// The next step of an upload.
 pub(super) enum Next {
-    /// These are sent.
+    /// Send these messages.
     Send(Vec<MavMessage>),
     Wait,
     Done,
@@ -50,7 +52,8 @@ pub(super) enum Next {
 }
 
 impl Upload {
-    /// The items of a mission that is sailed at this speed, m/s. The first is the home, as ArduPilot counts.
+    /// The items of a mission at this speed, m/s. The first is the home, as in ArduPilot's
+    /// numbering.
     pub(super) fn new(mission: &Mission, speed_m_s: f64, target: Target, now: SimTime) -> Upload {
         let item = |command: MavCmd, [lat_deg, lon_deg]: [f64; 2]| MISSION_ITEM_INT_DATA {
             x: global_e7(lat_deg),
@@ -78,7 +81,7 @@ impl Upload {
         Upload { items, home: (global_e7(lat_deg), global_e7(lon_deg)), phase: Phase::Home, tries: 0, due: now }
     }
 
-    /// When it goes on by itself.
+    /// When the next step is due.
     pub(super) fn due(&self) -> SimTime {
         self.due
     }
@@ -91,7 +94,11 @@ impl Upload {
             Phase::Home | Phase::Items => {}
         }
         if self.tries == TRIES_MAX {
-            let what = if self.phase == Phase::Home { "does not show the home it is sent" } else { "asks for no item" };
+            let what = if self.phase == Phase::Home {
+                "does not report the home position that it was sent"
+            } else {
+                "requests no item"
+            };
             return Next::Failed(format!("the boat {what}"));
         }
         self.tries += 1;
@@ -99,27 +106,29 @@ impl Upload {
         Next::Send(if self.phase == Phase::Home { self.home(target) } else { vec![self.count(target)] })
     }
 
-    /// The boat shows its home.
+    /// Handles the home that the boat reports.
     pub(super) fn take_home(&mut self, (lat_e7, lon_e7): (i32, i32), now: SimTime) {
         let is_near = lat_e7.abs_diff(self.home.0) <= SAME_E7 && lon_e7.abs_diff(self.home.1) <= SAME_E7;
         if self.phase == Phase::Home && is_near {
-            // RTL goes to the home, so a boat that has not taken it must not get a mission
-            // whose recovery point it is.
+            // RTL goes to the home, so a boat that has not accepted it must not get a mission with
+            // that recovery point.
             (self.phase, self.tries, self.due) = (Phase::Items, 0, now);
         }
     }
 
-    /// The boat asks for an item.
+    /// Handles the boat's request for an item.
     pub(super) fn take_request(&mut self, seq: u16, now: SimTime) -> Option<MavMessage> {
         let item = self.items.get(usize::from(seq)).filter(|_| self.phase == Phase::Items)?;
-        // Each request shows that the boat is still at it: the tries begin anew.
+        // Each request shows that the upload continues, so the attempts are counted again from
+        // zero.
         (self.tries, self.due) = (1, now + SimTime::from_s(AGAIN_S));
         Some(MavMessage::MISSION_ITEM_INT(item.clone()))
     }
 
-    /// The boat takes the mission, or does not.
+    /// Handles the boat's acceptance or refusal of the mission.
     pub(super) fn take_ack(&mut self, result: MavMissionResult, now: SimTime) {
-        // ArduPilot answers so to an item that comes twice, since it was slow to come once, and goes on.
+        // ArduPilot sends this for an item that arrives twice because it was slow the first time,
+        // and continues.
         if self.phase == Phase::Items && result != MavMissionResult::MAV_MISSION_INVALID_SEQUENCE {
             let is_taken = result == MavMissionResult::MAV_MISSION_ACCEPTED;
             self.phase = if is_taken { Phase::Done } else { Phase::Refused(format!("the boat answers {result:?}")) };

@@ -1,17 +1,17 @@
-//! The check of a mission before it is uploaded.
+//! Checks a mission before it is uploaded.
 
 use messages::external::Mission;
 
-/// Most waypoints of a mission.
-// An upload of a second a line takes minutes by then; a boat's own limit is not published.
+/// Maximum number of waypoints of a mission.
+// At one line a second such an upload takes minutes; a boat's own limit is not published.
 const WAYPOINTS_MAX: usize = 200;
-/// Largest throttle that other drivers of a Surveyor send, per cent.
+/// Maximum throttle that other drivers of a Surveyor send, per cent.
 const THROTTLE_MAX_PCT: f64 = 70.0;
 
-/// Whether a boat can be sent this mission.
+/// Checks whether a mission can be sent to a boat.
 ///
 /// # Errors
-/// What is wrong with it.
+/// The fault of the mission.
 pub(super) fn check(mission: &Mission) -> Result<(), String> {
     if !(0.0..=THROTTLE_MAX_PCT).contains(&mission.throttle_pct) {
         return Err(format!("throttle_pct is {}, expected 0 to {THROTTLE_MAX_PCT}", mission.throttle_pct));

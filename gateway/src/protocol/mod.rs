@@ -1,6 +1,7 @@
 //! The protocol of a boat: its bytes become [`Report`]s, and a [`Command`] becomes bytes.
 //!
-//! Nothing in here decides whether a boat may move: that is the supervisor's, and what a bridge sends follows from it.
+//! Nothing here decides whether a boat may move: the supervisor does, and a bridge sends what
+//! follows from that.
 
 mod mavlink;
 mod mavlink_boat;
@@ -20,24 +21,24 @@ use primitives::SimTime;
 pub use report::{ControlReport, Fix, Heading, North, Power, Report, Shown};
 use surveyor::Surveyor;
 
-/// What a boat is told.
+/// A command to a boat.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Command {
-    /// Stop, and do nothing.
+    /// Stop, and stay passive.
     Standby,
-    /// Standby, and switch this on or off, where the boat has such a switch.
+    /// Standby, and set this switch, if the boat has such a switch.
     Switch(SwitchWord),
-    /// Thrust zero, whatever the boat does; it does not make it follow set-points.
+    /// Zero thrust, whatever the boat does; it does not make it follow set-points.
     Zero,
     /// Follow this set-point.
     SetPoint(SetPoint),
-    /// Do this by its own controller.
+    /// Execute this task with the boat's own controller.
     Task(Task),
     /// The upload of a mission is over, finished or not.
     EndOfUpload,
 }
 
-/// How far the upload of a mission is.
+/// The progress of a mission upload.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum UploadStep {
     /// Something was sent.
@@ -46,11 +47,11 @@ pub enum UploadStep {
     Waiting,
     /// The boat has all of it.
     Done,
-    /// The boat does not take it: why.
+    /// The boat rejects it, for this reason.
     Failed(String),
 }
 
-/// A protocol, with what it must remember of a link.
+/// A protocol, with the state of its link.
 #[derive(Clone, Debug)]
 pub enum Protocol {
     /// The Surveyor's NMEA.
@@ -60,7 +61,7 @@ pub enum Protocol {
 }
 
 impl Protocol {
-    /// For a boat that this gateway drives.
+    /// The protocol of a boat that this gateway drives.
     #[must_use]
     pub fn new(gateway: &Gateway) -> Protocol {
         match gateway.protocol {
@@ -69,7 +70,7 @@ impl Protocol {
         }
     }
 
-    /// A new link: nothing of the one before counts.
+    /// Starts a new link: the state of the previous one is discarded.
     pub fn begin_link(&mut self) {
         match self {
             Protocol::Surveyor(surveyor) => surveyor.begin_link(),
@@ -77,7 +78,7 @@ impl Protocol {
         }
     }
 
-    /// Reads bytes from the boat, cut as they come.
+    /// Reads bytes from the boat, in any split.
     pub fn read(&mut self, now: SimTime, bytes: &[u8], take: &mut dyn FnMut(Report)) {
         match self {
             Protocol::Surveyor(surveyor) => surveyor.read(bytes, take),
@@ -93,10 +94,10 @@ impl Protocol {
         }
     }
 
-    /// Appends what is due without a command, such as a heartbeat and answers to the boat.
+    /// Appends messages due without a command, such as a heartbeat or answers to the boat.
     pub fn keep_up(&mut self, now: SimTime, out: &mut Vec<u8>) {
         match self {
-            // A Surveyor sends everything unasked and wants no heartbeat.
+            // A Surveyor sends everything unasked and needs no heartbeat.
             Protocol::Surveyor(_) => {}
             Protocol::Mavlink(mavlink) => mavlink.keep_up(now, out),
         }
@@ -108,7 +109,7 @@ impl Protocol {
         matches!(self, Protocol::Surveyor(_))
     }
 
-    /// What a boat should show that has been told this.
+    /// The report expected from a boat that has received this command.
     #[must_use]
     pub fn shown(&self, command: Command) -> Shown {
         match self {
@@ -117,7 +118,7 @@ impl Protocol {
         }
     }
 
-    /// A command as people read it.
+    /// A command in readable form.
     #[must_use]
     pub fn text(&self, command: Command) -> String {
         match self {
@@ -126,7 +127,8 @@ impl Protocol {
         }
     }
 
-    /// What stops the boat, whatever it does: thrust zero, then standby. It takes nothing from others who command the boat.
+    /// The stop message for any state of the boat: zero thrust, then standby. It does not take over
+    /// a boat from others.
     #[must_use]
     pub fn stop_message(&self) -> Vec<u8> {
         match self {
@@ -135,22 +137,22 @@ impl Protocol {
         }
     }
 
-    /// As [`Protocol::stop_message`], whoever commands the boat, as far as its protocol allows that.
+    /// Like [`Protocol::stop_message`], whoever commands the boat, as far as its protocol allows.
     #[must_use]
     pub fn forced_stop_message(&self) -> Vec<u8> {
         match self {
             // A Surveyor follows only the operator in control, and no sentence of ours changes
-            // who that is.
+            // that.
             Protocol::Surveyor(_) => surveyor::stop_message(),
             Protocol::Mavlink(mavlink) => mavlink.forced_stop_message(),
         }
     }
 
-    /// As [`Protocol::stop_message`], after whatever was being written when the gateway died.
+    /// Like [`Protocol::stop_message`], after an incomplete write by a gateway that died.
     #[must_use]
     pub fn guard_message(&self) -> Vec<u8> {
         match self {
-            // A sentence that was cut off ends first.
+            // An incomplete sentence is ended first.
             Protocol::Surveyor(_) => [b"\r\n".to_vec(), self.stop_message()].concat(),
             Protocol::Mavlink(mavlink) => mavlink.stop_message(),
         }
@@ -159,7 +161,7 @@ impl Protocol {
     /// Begins the upload of a mission.
     ///
     /// # Errors
-    /// What is wrong with the mission.
+    /// The fault of the mission.
     pub fn begin_upload(&mut self, now: SimTime, mission: &Mission) -> Result<(), String> {
         match self {
             Protocol::Surveyor(surveyor) => surveyor.begin_upload(now, mission),
@@ -167,7 +169,7 @@ impl Protocol {
         }
     }
 
-    /// Goes on with the upload of a mission; without one it is done.
+    /// Continues the upload of a mission; done if there is none.
     pub fn continue_upload(&mut self, now: SimTime, out: &mut Vec<u8>) -> UploadStep {
         match self {
             Protocol::Surveyor(surveyor) => surveyor.continue_upload(now, out),
@@ -184,7 +186,7 @@ impl Protocol {
         }
     }
 
-    /// Forgets the upload, if there is one; returns whether there was. The boat is not told.
+    /// Discards the upload, if any; returns whether there was one. The boat is not notified.
     pub fn abort_upload(&mut self) -> bool {
         match self {
             Protocol::Surveyor(surveyor) => surveyor.abort_upload(),
@@ -192,18 +194,18 @@ impl Protocol {
         }
     }
 
-    /// When something of its own is due, if anything is.
+    /// When its next own message is due, if any.
     #[must_use]
     pub fn due(&self) -> Option<SimTime> {
         match self {
             Protocol::Surveyor(surveyor) => surveyor.due(),
-            // MAVLink wants a word every second even when nothing is commanded: without it a
-            // boat may go into a failsafe of their own.
+            // MAVLink needs a message every second even without commands: otherwise a boat may
+            // enter a failsafe of its own.
             Protocol::Mavlink(mavlink) => Some(mavlink.due()),
         }
     }
 
-    /// What was counted so far, by name, and what was received under names that nothing is known of.
+    /// The counters by name, including those for unknown names received.
     #[must_use]
     pub fn counts(&self) -> [Vec<(String, u64)>; 2] {
         match self {

@@ -1,10 +1,10 @@
-//! What boats report of themselves, whichever protocol they speak.
+//! The reports of boats, for all protocols.
 
 use crate::nmea::{FixQuality, Mode, Operator, TimeOfDay};
 use primitives::LatLon;
 use primitives::frame::Ned;
 
-/// Something that a boat reports.
+/// A report from a boat.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Report {
     /// A fix of its receiver.
@@ -13,27 +13,27 @@ pub enum Report {
     Velocity(Ned),
     /// Its heading.
     Heading(Heading),
-    /// How it lies, roll and pitch in degrees.
+    /// Its attitude, roll and pitch in degrees.
     Tilt([f64; 2]),
     /// The receiver's time of day.
     Clock(TimeOfDay),
-    /// What it does, and who commands it.
+    /// Its mode, and who commands it.
     Control(ControlReport),
-    /// Somebody else was heard to send it a set-point.
+    /// Another sender's set-point for it was received.
     ForeignOrder,
-    /// A ground station that is not we was heard for the first time: this is told to people.
+    /// Another ground station was heard for the first time: people are notified.
     Station(String),
-    /// Its battery, and who draws from it.
+    /// Its battery and consumers.
     Power(Power),
-    /// The error that it is in; `None` is none.
+    /// Its present error; `None` means no error.
     Error(Option<String>),
-    /// Something that it says once and people should know.
+    /// A single message that people should know.
     Notice(String),
-    /// Where its home is, to which it goes for recovery: latitude and longitude, degrees.
+    /// The position of its home, to which it goes for recovery: latitude and longitude, degrees.
     Home([f64; 2]),
 }
 
-/// What the battery gives, and who draws how much; what is not measured is missing.
+/// Battery and consumers; values that are not measured are missing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Power {
     /// Voltage, V.
@@ -47,15 +47,16 @@ pub struct Power {
 /// A fix of the receiver.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Fix {
-    /// When, by the receiver. A fix of the same time and position as the one before is no new one.
+    /// Time from the receiver. A fix with the same time and position as the previous one is not
+    /// new.
     pub time: Option<TimeOfDay>,
-    /// Where; nothing if the receiver does not know.
+    /// The position; `None` if the receiver does not know it.
     pub at: Option<LatLon>,
-    /// Its quality, if it is told.
+    /// Its quality, if reported.
     pub quality: Option<FixQuality>,
-    /// The horizontal dilution of precision, if it is told.
+    /// The horizontal dilution of precision, if reported.
     pub hdop: Option<f64>,
-    /// How many satellites it is made of, if that is told.
+    /// The number of satellites used, if reported.
     pub satellites: Option<u8>,
 }
 
@@ -64,31 +65,31 @@ pub struct Fix {
 pub struct Heading {
     /// Degrees.
     pub deg: f64,
-    /// From which north.
+    /// The reference of the heading.
     pub north: North,
-    /// Rate of turn, degrees a second, if it is told.
+    /// Rate of turn, degrees a second, if reported.
     pub yaw_rate_deg_s: Option<f64>,
 }
 
-/// What a heading counts from.
+/// The reference of a heading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum North {
     /// True north.
     True,
-    /// The one of the boat's compass: the gateway's file says which that is.
+    /// That of the boat's compass: the gateway's file says which one that is.
     Compass,
 }
 
-/// What a boat does, and who commands it.
+/// A boat's mode, and who commands it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ControlReport {
-    /// What it shows of the command that it follows.
+    /// The command that it follows, as reported.
     pub shown: Shown,
-    /// Who commands it, if it says so.
+    /// Who commands it, if reported.
     pub operator: Option<Operator>,
 }
 
-/// What a boat shows of a command, or should show.
+/// A command as a boat reports it, or should report it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shown {
     /// The mode.

@@ -1,18 +1,19 @@
-//! The texts that a boat says by STATUSTEXT: one of more than 50 letters comes in chunks.
+//! Reassembles STATUSTEXT messages: a text of more than 50 characters arrives in chunks.
 
 use crate::mavlink::dialect::STATUSTEXT_DATA;
 use primitives::SimTime;
 
-/// A text whose next chunk has not come for this long is shown without it, s.
+/// A text whose next chunk is this late is shown without it, s.
 const CHUNK_AGE_MAX_S: f64 = 1.0;
-/// The longest text, bytes: ArduPilot's has 256, and memory must not grow with what a stranger sends.
+/// Maximum bytes of a text: ArduPilot's has 256, and a stranger must not be able to fill the
+/// memory.
 const TEXT_MAX: usize = 1000;
-/// The most unfinished texts.
+/// Maximum number of unfinished texts.
 const UNFINISHED_MAX: usize = 4;
-/// What stands in place of lost chunks.
+/// The placeholder for lost chunks.
 const LOST: &[u8] = "…".as_bytes();
 
-/// The texts of which chunks are missing.
+/// The texts with missing chunks.
 #[derive(Clone, Debug, Default)]
 pub(super) struct StatusTexts {
     unfinished: Vec<Unfinished>,
@@ -27,16 +28,16 @@ struct Unfinished {
 }
 
 impl StatusTexts {
-    /// Takes a message; calls `say` with each text that is complete with it.
+    /// Accepts a message; calls `say` with each text that it completes.
     pub(super) fn take(&mut self, now: SimTime, status: &STATUSTEXT_DATA, say: &mut dyn FnMut(String)) {
         let (letters, capacity) = (status.text.iter().take_while(|letter| **letter != 0), status.text.len());
         let letters: Vec<u8> = letters.copied().collect();
-        // MAVLink 1 has neither field: the text is whole.
+        // MAVLink 1 has neither field: the text is complete.
         if status.id == 0 {
             return say(in_words(&letters));
         }
         let place = self.unfinished.iter().position(|text| text.id == status.id);
-        // A chunk that was there already begins another text: numbers are used again.
+        // A repeated chunk number starts another text: numbers are reused.
         let (mut text, again) = match place.map(|place| self.unfinished.remove(place)) {
             Some(text) if text.next_chunk <= status.chunk_seq => (text, None),
             other => (Unfinished { id: status.id, next_chunk: 0, at: now, text: vec![] }, other),
@@ -73,7 +74,7 @@ impl Unfinished {
     }
 }
 
-/// Joined before it is read, since a chunk may end within a letter.
+/// Joined before decoding, because a chunk may end within a character.
 fn in_words(letters: &[u8]) -> String {
     String::from_utf8_lossy(letters).trim().to_owned()
 }
@@ -85,7 +86,7 @@ mod tests {
     const LONG: &str =
         "PreArm: Compass not calibrated and the accelerometers are inconsistent at 12° and 50°, please wait a while";
 
-    /// What is said of these chunks, which come every 0.1 s, and 2 s later.
+    /// The texts shown for these chunks, which arrive every 0.1 s, and 2 s later.
     fn said(chunks: &[(u16, u8, &[u8])]) -> Vec<String> {
         let (mut texts, mut said) = (StatusTexts::default(), vec![]);
         for (i, (id, chunk_seq, text)) in chunks.iter().enumerate() {
@@ -114,7 +115,7 @@ mod tests {
             (vec![(7, 1, b), (7, 2, c)], vec![part(&[LOST, b, c].concat())]),
             (vec![(7, 0, a)], vec![part(&[a, LOST].concat())]),
             (vec![(7, 0, a), (7, 0, c)], vec![part(&[a, LOST].concat()), part(c)]),
-            // Of exactly 50 letters, with the empty chunk that ends it.
+            // Exactly 50 characters, followed by the empty chunk that ends it.
             (vec![(7, 0, full), (7, 1, b"")], vec![part(full)]),
         ] {
             assert_eq!(said(&chunks), want);

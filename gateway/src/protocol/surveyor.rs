@@ -11,10 +11,10 @@ use primitives::SimTime;
 use primitives::frame::Ned;
 use std::collections::BTreeMap;
 
-/// How many names of unknown sentences are kept.
+/// Maximum number of unknown sentence names stored.
 const UNKNOWN_MAX: usize = 64;
 
-/// What is remembered of a link.
+/// The state of a link.
 #[derive(Clone, Debug)]
 pub struct Surveyor {
     framer: Framer,
@@ -30,7 +30,7 @@ impl Surveyor {
     }
 
     pub(super) fn begin_link(&mut self) {
-        // A sentence that was cut off must not be completed by bytes of the new link.
+        // Bytes from the new link must not complete a truncated sentence.
         self.framer.push(b"\r\n", &mut |_| {});
         self.upload = None;
     }
@@ -40,7 +40,7 @@ impl Surveyor {
         framer.push(bytes, &mut |body| match Sentence::parse(body) {
             Ok(sentence) => report(&sentence, take),
             Err(ParseError::Unknown { address }) => {
-                // Names come off a wire that may carry noise: without a limit they would fill
+                // Names arrive over a wire that may carry noise: without a limit they would fill
                 // the memory.
                 let room = unknown.len() < UNKNOWN_MAX;
                 let name = if room || unknown.contains_key(&address) { address } else { "others".to_owned() };
@@ -97,7 +97,7 @@ impl Surveyor {
     }
 }
 
-/// What a sentence reports.
+/// The reports in a sentence.
 fn report(sentence: &Sentence, take: &mut dyn FnMut(Report)) {
     match sentence {
         Sentence::Gga(gga) => {
@@ -107,7 +107,7 @@ fn report(sentence: &Sentence, take: &mut dyn FnMut(Report)) {
         }
         Sentence::Rmc(rmc) => {
             velocity(rmc.course_deg, rmc.speed_kn).into_iter().for_each(|velocity| take(Report::Velocity(velocity)));
-            // It tells no quality but none at all.
+            // It contains no quality, only whether there is a fix.
             let quality = (!rmc.valid).then_some(FixQuality::NONE);
             take(Report::Fix(Fix { time: rmc.time, at: rmc.at, quality, ..Fix::default() }));
         }
@@ -157,8 +157,8 @@ fn pseac(mode: Mode, numbers: [Option<f64>; 3]) -> nmea::Command {
 
 fn sentence(command: Command) -> nmea::Command {
     match command {
-        // Zeros as in the public drivers that run these boats: an empty field might mean "as
-        // before".
+        // Zeros, as in the public drivers that run these boats: an empty field might mean
+        // "unchanged".
         Command::Standby => pseac(Mode::Standby, [Some(0.0); 3]),
         Command::Switch(word) => nmea::Command { words: word.text().to_owned(), ..sentence(Command::Standby) },
         Command::Zero => sentence(Command::SetPoint(SetPoint::ZERO)),
@@ -168,7 +168,7 @@ fn sentence(command: Command) -> nmea::Command {
         Command::SetPoint(SetPoint::Speed { heading_deg, speed_m_s }) => {
             pseac(Mode::Speed, [Some(heading_deg), Some(speed_m_s / M_S_PER_KN), None])
         }
-        // Empty fields, as the one public driver sends it that has driven it.
+        // Empty fields, as sent by the one public driver that has used it.
         Command::Task(Task::StationKeep) => pseac(Mode::StationKeep, [None; 3]),
         Command::Task(Task::GoToErp) => pseac(Mode::GoToErp, [Some(0.0); 3]),
         Command::Task(Task::Mission) => pseac(Mode::Waypoint, [Some(0.0); 3]),
@@ -191,12 +191,12 @@ fn mode_of(mode: BoatMode) -> Mode {
     }
 }
 
-/// The start of a download of so many lines.
+/// Starts a download of this many lines.
 pub(super) fn start_of_download(lines: usize) -> Sentence {
     Sentence::Command(pseac(Mode::FileDownload, [Some(lines as f64), Some(0.0), Some(0.0)]))
 }
 
-/// What ends a download, finished or not.
+/// Ends a download, finished or not.
 pub(super) fn end_of_download() -> Sentence {
     Sentence::Command(sentence(Command::EndOfUpload))
 }
@@ -206,7 +206,7 @@ pub(super) fn write(command: Command, out: &mut Vec<u8>) {
 }
 
 pub(super) fn shown(command: Command) -> Shown {
-    // What is compared is what was sent: whole percents.
+    // Compared with what was sent: whole percentages.
     let nmea::Command { mode, heading_deg, thrust, difference, .. } = sentence(command).rounded();
     Shown { mode, heading_deg, thrust, difference }
 }

@@ -1,4 +1,4 @@
-//! The upload of a mission to a Surveyor: lines one after the other, with pauses.
+//! The upload of a mission to a Surveyor: one line after the other, with pauses.
 
 use super::surveyor::{end_of_download, start_of_download};
 use crate::nmea::{MissionSettings, Sentence, Waypoint};
@@ -7,7 +7,7 @@ use primitives::SimTime;
 use primitives::frame::LatLon;
 use std::collections::VecDeque;
 
-/// What is still to be sent.
+/// The lines still to be sent.
 #[derive(Clone, Debug)]
 pub(super) struct Upload {
     lines: VecDeque<Sentence>,
@@ -15,13 +15,13 @@ pub(super) struct Upload {
     due: SimTime,
 }
 
-/// What is next.
+/// The next step.
 pub(super) enum Next {
-    /// This line, now.
+    /// Send this line now.
     Line(Box<Sentence>),
     /// Nothing yet.
     Wait,
-    /// All lines are sent.
+    /// All lines have been sent.
     Done,
 }
 

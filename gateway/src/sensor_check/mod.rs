@@ -17,26 +17,27 @@ use primitives::frame::LatLon;
 use primitives::{SimTime, math};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Compass and true heading that are nearer than this are the same, rad.
+/// Compass and true heading closer than this are the same, rad.
 const SAME_HEADING_RAD: f64 = 0.02;
-/// The course of a slower boat is not where it points, m/s.
+/// Minimum speed at which the course shows the heading, m/s.
 const COURSE_MIN_M_S: f64 = 1.0;
-/// The most positions that are kept.
+/// Maximum number of positions stored.
 const FIXES_MAX: usize = 20_000;
-/// The most names that are counted.
+/// Maximum number of names counted.
 const NAMES_MAX: usize = 64;
-/// The most vehicles that are told apart when none is the boat.
+/// Maximum number of vehicles listed if none of them is the boat.
 const HEARD_MAX: usize = 8;
 
-/// The boat's clock may be off by so much from this machine's, s: fixes are told a moment after their time.
-// Latencies of half a minute are no latencies: then one of the clocks is wrong, and recordings
-// cannot be laid side by side.
+/// Allowed range of the boat's clock error relative to this machine's, s: fixes arrive a moment
+/// after their time.
+// An offset of half a minute is not latency: one of the clocks is wrong, and recordings cannot be
+// compared.
 const CLOCK_BEHIND_S: std::ops::RangeInclusive<f64> = -1.0..=5.0;
 /// The days of 1024 weeks, less one for the time of day.
 const GPS_WEEKS_DAYS: i64 = 7167;
 
-/// A moment by the check's clock and by the host's: the two belong together, or what lies between them looks like a fault
-/// of the boat's clock.
+/// A moment by the check's clock and by the host's. The two belong together: a gap between them
+/// would look like a fault of the boat's clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HostTime {
     /// The moment, by the check's clock.
@@ -52,28 +53,28 @@ impl HostTime {
     }
 }
 
-/// The sentences or messages of one name.
+/// The sentences or messages with one name.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Received {
-    /// How often.
+    /// The number received.
     pub count: u64,
-    /// Of those, how many could not be read; all, where the sentence is unknown.
+    /// The number of these that could not be read; all of them if the sentence is unknown.
     pub unreadable: u64,
-    /// Why the first of these could not be read, where that is not for its name.
+    /// Why the first of these could not be read, unless its name is unknown.
     pub why_unreadable: Option<String>,
-    /// When first and last.
+    /// When the first and the last arrived.
     pub between: Option<(SimTime, SimTime)>,
-    /// The last of them: a sentence as received, of a message its fields.
+    /// The last one: a sentence as received, or the fields of a message.
     pub last: String,
 }
 
 impl Received {
-    /// How often a second it comes.
+    /// The rate, 1/s.
     #[must_use]
     pub fn rate_hz(&self) -> Option<f64> {
         let (first, last) = self.between?;
         let span_s = (last - first).as_s();
-        // Intervals, not messages: of two that came within a second there is one interval.
+        // Counts intervals, not messages: two messages within a second are one interval.
         (span_s > 0.0).then(|| (self.count - 1) as f64 / span_s)
     }
 
@@ -84,35 +85,35 @@ impl Received {
     }
 }
 
-/// Cuts what a boat sends into what has a name.
+/// Splits a boat's data into named sentences or messages.
 #[derive(Clone, Debug)]
 enum Framer {
     Nmea(Box<nmea::Framer>),
     Mavlink(mavlink::Framer),
 }
 
-/// What a boat has sent so far.
+/// The data that a boat has sent so far.
 #[derive(Clone, Debug)]
 pub struct SensorCheck {
     framer: Framer,
     received: BTreeMap<String, Received>,
-    /// How many bytes came.
+    /// Number of bytes received.
     bytes: usize,
-    /// What of it the gateway could use.
+    /// The data that the gateway could use.
     usable: BTreeMap<Usable, Received>,
-    /// The MAVLink vehicles whose heartbeats came, in words.
+    /// The MAVLink vehicles whose heartbeats were received, as text.
     heard: BTreeSet<String>,
     protocol: Protocol,
     fix: Option<Fix>,
-    /// Time of the last position, by the receiver.
+    /// The receiver's time of the last position.
     time_of_position: Option<TimeOfDay>,
-    /// Its positions, and when they came.
+    /// Its positions, with their arrival times.
     fixes: Vec<(SimTime, LatLon)>,
     /// Course and speed over the ground, degrees and m/s.
     track: Option<(f64, f64)>,
-    /// Time of day by the boat, and when it came.
+    /// The boat's time of day, and when it arrived.
     clock: Option<(SimTime, TimeOfDay)>,
-    /// Date by the boat, and when it came.
+    /// The boat's date, and when it arrived.
     date: Option<(SimTime, Date)>,
     compass_deg: Option<f64>,
     true_deg: Option<f64>,
@@ -122,7 +123,7 @@ pub struct SensorCheck {
 }
 
 impl SensorCheck {
-    /// Nothing received yet of a boat that is driven like this.
+    /// An empty check for a boat with this protocol.
     #[must_use]
     pub fn new(gateway: &Gateway) -> SensorCheck {
         let framer = match gateway.protocol {
@@ -150,10 +151,10 @@ impl SensorCheck {
         }
     }
 
-    /// Takes bytes as they come.
+    /// Accepts bytes in any split.
     pub fn receive(&mut self, now: SimTime, bytes: &[u8]) {
-        // Counted by name with a framer of its own; what is reported comes from the gateway's
-        // codec, so that the check goes by what the gateway would.
+        // A separate framer counts by name. The reports come from the gateway's own codec, so that
+        // the check judges what the gateway would use.
         self.bytes += bytes.len();
         self.count(now, bytes);
         let mut reports = vec![];
@@ -161,43 +162,44 @@ impl SensorCheck {
         reports.into_iter().for_each(|report| self.apply(now, report));
     }
 
-    /// Appends what a boat must be asked for before it sends anything: nothing for a Surveyor, its telemetry by MAVLink.
+    /// Appends the requests that make a boat send data: none for a Surveyor; for MAVLink, its
+    /// telemetry.
     pub fn write_questions(&mut self, now: SimTime, out: &mut Vec<u8>) {
         self.protocol.keep_up(now, out);
     }
 
-    /// What was received, by name.
+    /// The received data by name.
     #[must_use]
     pub fn received(&self) -> &BTreeMap<String, Received> {
         &self.received
     }
 
-    /// What was counted on the link, by name.
+    /// The counters of the link by name.
     #[must_use]
     pub fn counts(&self) -> Vec<(String, u64)> {
         let [known, _] = self.protocol.counts();
         known
     }
 
-    /// The last fix of which the quality was told.
+    /// The last fix with a reported quality.
     #[must_use]
     pub fn fix(&self) -> Option<&Fix> {
         self.fix.as_ref()
     }
 
-    /// The positions so far, and when they came.
+    /// The positions so far, with their arrival times.
     #[must_use]
     pub fn fixes(&self) -> &[(SimTime, LatLon)] {
         &self.fixes
     }
 
-    /// Heading by the compass, degrees.
+    /// Compass heading, degrees.
     #[must_use]
     pub fn compass_deg(&self) -> Option<f64> {
         self.compass_deg
     }
 
-    /// A true heading to compare it with, degrees: as reported, or the course of a boat that makes way.
+    /// A true heading for comparison, degrees: as reported, or the course of a boat that makes way.
     #[must_use]
     pub fn true_deg(&self) -> Option<f64> {
         let course =
@@ -205,25 +207,25 @@ impl SensorCheck {
         self.true_deg.or_else(course)
     }
 
-    /// The heading that the gateway would go by, degrees.
+    /// The heading that the gateway would use, degrees.
     #[must_use]
     pub fn heading_deg(&self) -> Option<f64> {
         self.compass_deg.or(self.true_deg)
     }
 
-    /// Mode, who commands the boat, and its thrust.
+    /// Mode, operator and thrust.
     #[must_use]
     pub fn control(&self) -> Option<&ControlReport> {
         self.control.as_ref()
     }
 
-    /// The battery, and who draws from it.
+    /// The battery and its consumers.
     #[must_use]
     pub fn power(&self) -> Power {
         self.power
     }
 
-    /// What the boat says is wrong with it, if anything.
+    /// The fault that the boat reports, if any.
     #[must_use]
     pub fn error(&self) -> Option<&str> {
         self.error.as_deref()
@@ -235,20 +237,20 @@ impl SensorCheck {
         self.clock.map(|(came, time)| date_and_time(host.utc_ns_at(came)).1.since_s(time))
     }
 
-    /// What is wrong with the boat's clock or date, or with the host's, if anything.
+    /// The fault of the boat's clock or date, or of the host's, if any.
     #[must_use]
     pub fn clock_fault(&self, host: HostTime) -> Option<String> {
         let off = self.clock_behind_s(host).filter(|behind_s| !CLOCK_BEHIND_S.contains(behind_s));
         let days = self.date.map_or(0, |(came, date)| {
             let at = host.utc_ns_at(came);
             let ns = |s: f64| (s * 1e9) as u64;
-            // About midnight the date of a fix may be that of the day before.
+            // Around midnight a fix may have the previous day's date.
             let about = [at.saturating_sub(ns(*CLOCK_BEHIND_S.end())), at + ns(-CLOCK_BEHIND_S.start())];
             if about.iter().any(|at| date_and_time(*at).0 == date) { 0 } else { date_and_time(at).0.days_since(date) }
         });
         let side = |is_ahead| if is_ahead { "AHEAD of" } else { "behind" };
         if days != 0 {
-            // A receiver counts weeks modulo 1024, and is off by these after its rollover.
+            // A receiver counts weeks modulo 1024: after a rollover it is wrong by this much.
             let rollover = if days >= GPS_WEEKS_DAYS { ", as after a GPS week rollover (7168 days)" } else { "" };
             let (days, side) = (days.abs(), side(days < 0));
             return Some(format!("the date is {days} days {side} this host's{rollover}: one of the two is wrong"));
@@ -256,7 +258,7 @@ impl SensorCheck {
         off.map(|s| format!("fixes are {:.2} s {} this host's clock: one of the two is wrong", s.abs(), side(s < 0.0)))
     }
 
-    /// What the boat reports of itself, in words.
+    /// The boat's reports as text.
     #[must_use]
     pub fn findings(&self, host: HostTime) -> Vec<String> {
         let mut found = Vec::new();
@@ -267,8 +269,9 @@ impl SensorCheck {
         }
         found.extend(self.heading());
         if let Some(ControlReport { shown, operator }) = &self.control {
-            let who = operator
-                .map_or("it does not report by whom".to_owned(), |operator| format!("commanded by {operator:?}"));
+            let who = operator.map_or("it does not report who commands it".to_owned(), |operator| {
+                format!("commanded by {operator:?}")
+            });
             found.push(format!("control: mode {}, {who}", self.mode_in_words(shown.mode)));
         }
         found.extend(self.power.volts.map(|volts| format!("battery: {volts} V")));
@@ -285,7 +288,7 @@ impl SensorCheck {
         found
     }
 
-    /// A mode by its name, and where it is one by its letter.
+    /// A mode by its name, and by its letter if it has one.
     pub(crate) fn mode_in_words(&self, mode: Mode) -> String {
         match self.framer {
             Framer::Nmea(_) => format!("{} ({mode:?})", mode.letter()),
@@ -293,13 +296,13 @@ impl SensorCheck {
         }
     }
 
-    /// Its headings, in words.
+    /// Its headings as text.
     pub(crate) fn heading(&self) -> Option<String> {
         let Some(compass_deg) = self.compass_deg else {
             return self.true_deg.map(|true_deg| format!("heading: {true_deg:.1} true"));
         };
         Some(match self.true_deg {
-            None => format!("heading: {compass_deg:.1} by its compass; nothing true to compare it with"),
+            None => format!("heading: {compass_deg:.1} by its compass; no true heading to compare it with"),
             Some(true_deg) => {
                 let apart_rad = wrap_pi((true_deg - compass_deg).to_radians());
                 let frame = if apart_rad.abs() < SAME_HEADING_RAD {
@@ -312,52 +315,54 @@ impl SensorCheck {
         })
     }
 
-    /// What is missing for driving the boat.
+    /// The data missing for driving the boat.
     #[must_use]
     pub fn missing(&self) -> Vec<String> {
         let mut missing = self.unmet();
         if let Some(operator) = self.control.as_ref().and_then(|control| control.operator)
-            // Everything else may be there: a boat that somebody else commands follows nothing
-            // that we send.
+            // All data may be there, but a boat under other control follows nothing that we send.
             && operator != Operator::Secondary
         {
             missing.push(match self.framer {
-                Framer::Nmea(_) => "secondary control: the operator ashore has to enable it".to_owned(),
+                Framer::Nmea(_) => "secondary control: the operator ashore must enable it".to_owned(),
                 Framer::Mavlink(_) => {
-                    format!("control: {operator:?} has the boat, in a mode that is not GUIDED or HOLD")
+                    format!("control: {operator:?} has control, and the mode is neither GUIDED nor HOLD")
                 }
             });
         }
         let no_fix = self.no_fix();
-        missing.extend(no_fix.map(|quality| format!("a position: its fix is of quality {quality}")));
+        missing.extend(no_fix.map(|quality| format!("a position: its fix has quality {quality}")));
         missing
     }
 
-    /// The quality of the last fix, if it is no fix: a receiver without one still sends its sentences, at the full rate.
+    /// The quality of the last fix if it is not a fix: a receiver without one still sends its
+    /// sentences at the full rate.
     fn no_fix(&self) -> Option<FixQuality> {
         let Fix { at, quality, .. } = self.fix?;
         quality.filter(|quality| at.is_none() || !quality.is_fix())
     }
 
-    /// What came if nothing of it could be read, with the reason.
+    /// What was received if none of it could be read, with the reason.
     #[must_use]
     pub fn unread(&self) -> String {
         let lines = match &self.framer {
             Framer::Nmea(framer) => framer.rejected().map(|last| {
                 let nmea::Counts { bad_checksum, overlong, broken, .. } = framer.counts();
                 let count = bad_checksum + overlong + broken;
-                format!("{count} lines came, none a sentence: {} {}", last.line, last.why)
+                format!("received {count} lines, none of them a valid sentence: {} {}", last.line, last.why)
             }),
             Framer::Mavlink(_) => None,
         };
         match lines {
             Some(lines) => lines,
-            None if self.bytes == 0 => "nothing came".to_owned(),
-            None => format!("{} bytes came, none of them readable: check the protocol and the baud rate", self.bytes),
+            None if self.bytes == 0 => "received nothing".to_owned(),
+            None => {
+                format!("received {} bytes, none of them readable: check the protocol and the baud rate", self.bytes)
+            }
         }
     }
 
-    /// The last line that was rejected, if any were, with the reason.
+    /// The last rejected line, if any, with the reason.
     fn rejected(&self) -> Option<String> {
         let Framer::Nmea(framer) = &self.framer else { return None };
         framer.rejected().map(|last| format!("rejected: {} {}", last.line, last.why))
@@ -393,7 +398,7 @@ impl SensorCheck {
         }
     }
 
-    /// Notes that something came in a form that the gateway can use.
+    /// Notes data in a form that the gateway can use.
     fn note_usable(&mut self, now: SimTime, report: &Report) {
         let usable = match report {
             Report::Fix(Fix { time, at: Some(at), .. }) if (at.lat_deg, at.lon_deg) != (0.0, 0.0) => {
@@ -416,12 +421,12 @@ impl SensorCheck {
     fn apply(&mut self, now: SimTime, report: Report) {
         self.note_usable(now, &report);
         match report {
-            // RMC says no more than whether there is one.
+            // RMC only shows whether there is one.
             Report::Fix(fix) if fix.quality.is_some() => {
                 if let Some(at) = fix.at
                     && fix.quality.is_some_and(FixQuality::is_fix)
-                    // The first ones are kept: their scatter is judged over the time from the
-                    // first to the last.
+                    // The first ones are kept: their scatter is judged over the time from the first
+                    // to the last.
                     && self.fixes.len() < FIXES_MAX
                 {
                     self.fixes.push((now, at));
@@ -444,7 +449,7 @@ impl SensorCheck {
     }
 }
 
-/// Notes something that came: its text, and why it could not be read.
+/// Notes received data: its text, and why it could not be read.
 fn note(
     received: &mut BTreeMap<String, Received>,
     now: SimTime,
@@ -463,7 +468,7 @@ fn note(
     received.last = text;
 }
 
-/// What kind of vehicle a heartbeat is of, as in `a QUADROTOR is system 1`.
+/// The vehicle that sent a heartbeat, such as `a QUADROTOR is system 1`.
 fn vehicle_in_words(system: u8, heartbeat: &HEARTBEAT_DATA) -> String {
     let [kind, autopilot] = [format!("{:?}", heartbeat.mavtype), format!("{:?}", heartbeat.autopilot)];
     let kind = kind.trim_start_matches("MAV_TYPE_");

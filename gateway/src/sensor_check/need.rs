@@ -1,11 +1,12 @@
-//! What driving a boat needs of its sentences or messages, and why it is missing.
+//! The data needed to drive a boat, and why it is missing.
 
 use super::{Framer, Received, SensorCheck};
 
-/// Below this rate something comes too seldom to drive a boat, 1/s: what comes once a second may come a little late.
+/// Below this rate data arrives too rarely to drive a boat, 1/s: data sent once a second may arrive
+/// a little late.
 const RATE_MIN_HZ: f64 = 0.9;
 
-/// What a boat must report, in a form that the gateway can use.
+/// Data that a boat must report, in a form that the gateway can use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Usable {
     /// A new position of a fix.
@@ -13,14 +14,14 @@ pub(super) enum Usable {
     /// A fix, not only an estimate.
     Quality,
     Heading,
-    /// Who commands it.
+    /// The operator in control.
     Control,
     Velocity,
     /// A battery's voltage.
     Voltage,
 }
 
-/// One need: what it is, which sentences or messages have it, and what follows without it.
+/// One need: the data, the sentences or messages that carry it, and the consequence without it.
 struct Need {
     usable: Usable,
     what: &'static str,
@@ -52,7 +53,7 @@ const MAVLINK_NEEDS: [Need; 5] = [
 ];
 
 impl SensorCheck {
-    /// The needs that what came does not meet.
+    /// The needs that the received data does not meet.
     pub(super) fn unmet(&self) -> Vec<String> {
         let needs = match self.framer {
             Framer::Nmea(_) => &SURVEYOR_NEEDS,
@@ -62,19 +63,19 @@ impl SensorCheck {
         needs.iter().filter_map(|need| self.lacks(need)).collect()
     }
 
-    /// Judged by what the gateway could use, not by what has the right name: a sentence may be unreadable or empty.
+    /// Judged by what the gateway could use, not by names: a sentence may be unreadable or empty.
     fn lacks(&self, need: &Need) -> Option<String> {
         let Need { usable, what, kinds, without } = need;
         let rate_hz = self.usable.get(usable).and_then(Received::rate_hz).unwrap_or(0.0);
         if rate_hz >= RATE_MIN_HZ {
             return None;
         }
-        // By the ending, for talkers differ (GPGGA, GNGGA).
+        // By the ending, because talkers differ (GPGGA, GNGGA).
         let named = self.received.iter().filter(|(name, _)| kinds.iter().any(|kind| name.ends_with(kind)));
         let named: Vec<_> = named.collect();
         let names = kinds.join(" or ");
         if *usable == Usable::Position && self.no_fix().is_some() {
-            // Its quality is said in place of this.
+            // Its quality is reported instead.
             return None;
         }
         let lost = named.iter().find_map(|(_, received)| received.why_unreadable.as_ref());
@@ -84,13 +85,13 @@ impl SensorCheck {
             (Some((name, _)), _) if !self.usable.contains_key(usable) => {
                 format!("{what}: {name} comes without it: {without}")
             }
-            _ => format!("{names} comes only {rate_hz:.2} times a second with new data: {without}"),
+            _ => format!("{names} arrive only {rate_hz:.2} times a second with new data: {without}"),
         })
     }
 
     fn no_boat(&self) -> String {
         let heard: Vec<String> = self.heard.iter().cloned().collect();
-        let heard = if heard.is_empty() { "no HEARTBEAT came".to_owned() } else { heard.join(", ") };
-        format!("a boat: all messages are of other systems ({heard})")
+        let heard = if heard.is_empty() { "received no HEARTBEAT".to_owned() } else { heard.join(", ") };
+        format!("a boat: all messages are from other systems ({heard})")
     }
 }

@@ -7,7 +7,7 @@ const TELEMETRY: &str = "$GPGGA,150502.00,4221.50616,N,07105.24688,W,2,11,0.98,5
     $PSEAD,T,58.7,20,-10,,T,2,1*7A\r\n\
     $PTQM0,1*35\r\n";
 
-/// Ten times these sentences; the time of a GGA goes on with each.
+/// Ten times these sentences; the time of a GGA advances with each.
 fn checked(text: &str, hz: f64) -> SensorCheck {
     let mut check = SensorCheck::new(&crate::config::default_gateway());
     for i in 0..10 {
@@ -32,7 +32,7 @@ fn sentences_are_counted_and_missing_ones_are_named() {
     assert!((gga.rate_hz().unwrap_or(0.0) - 10.0).abs() < 1e-9);
     assert_eq!(check.received()["PTQM0"].unreadable, 10);
     let missing = check.missing().join("\n");
-    for want in ["VTG or RMC", "PSEAB", "the operator ashore has to enable it"] {
+    for want in ["VTG or RMC", "PSEAB", "the operator ashore must enable it"] {
         assert!(missing.contains(want), "{missing}");
     }
     assert!(!missing.contains("GGA") && !missing.contains("PSEAA"), "{missing}");
@@ -44,7 +44,7 @@ fn findings_are_in_words() {
     let findings = checked(TELEMETRY, 10.0).findings(host).join("\n");
     for want in [
         "position: 42.358436, -71.087448, fix quality 2 (DGPS), dilution 0.98",
-        "heading: 222.6 by its compass; nothing true",
+        "heading: 222.6 by its compass; no true heading",
         "control: mode T (Thruster), commanded by Primary",
         "clock: fixes are 1.30 s behind this host's clock; it sends no date",
     ] {
@@ -70,10 +70,10 @@ fn what_came_but_cannot_be_used_is_missing_with_the_reason() {
             "GPGGA,150503.00,4121.2880,N,07403.3060,W,1,12,.9,12.0,M,-33.2,M,,",
             "a position: GPGGA field 8 is \".9\", expected a number or nothing",
         ),
-        ("GPGGA,150503.00,,,,,1,12,0.9,12.0,M,-33.2,M,,", "a position: its fix is of quality 1"),
+        ("GPGGA,150503.00,,,,,1,12,0.9,12.0,M,-33.2,M,,", "a position: its fix has quality 1"),
         ("GPGGA,150503.00,0000.00000,N,00000.00000,E,1,12,0.9,1,M,1,M,,", "a position: GPGGA comes without it"),
-        // The receiver's time stands still.
-        ("GPGGA,150503.00,4121.2880,N,07403.3060,W,1,12,0.9,12.0,M,-33.2,M,,", "GGA or RMC comes only 0.00 times"),
+        // The receiver's time does not advance.
+        ("GPGGA,150503.00,4121.2880,N,07403.3060,W,1,12,0.9,12.0,M,-33.2,M,,", "GGA or RMC arrive only 0.00 times"),
         ("PSEAA,-2.2,0.7,,,47.8,-0.04,-0.01,-1.00,-0.01", "a heading: PSEAA comes without it"),
         ("PSEAA,-2.2,0.7,400,,47.8,-0.04,-0.01,-1.00,-0.01", "a heading: PSEAA comes without it"),
         ("GPVTG,,T,,M,,N,,K", "a velocity: GPVTG comes without it"),
@@ -87,10 +87,10 @@ fn what_came_but_cannot_be_used_is_missing_with_the_reason() {
 #[test]
 fn a_link_without_sentences_says_what_came() {
     for (stream, want) in [
-        ("$PSEAG,N\r\n", "10 lines came, none a sentence: $PSEAG,N has no checksum"),
-        ("$PSEAG,N*23\r\n", "10 lines came, none a sentence: $PSEAG,N*23 has a wrong checksum"),
-        ("\u{1}\u{2}", "20 bytes came, none of them readable: check the protocol and the baud rate"),
-        ("", "nothing came"),
+        ("$PSEAG,N\r\n", "received 10 lines, none of them a valid sentence: $PSEAG,N has no checksum"),
+        ("$PSEAG,N*23\r\n", "received 10 lines, none of them a valid sentence: $PSEAG,N*23 has a wrong checksum"),
+        ("\u{1}\u{2}", "received 20 bytes, none of them readable: check the protocol and the baud rate"),
+        ("", "received nothing"),
     ] {
         let check = checked(stream, 10.0);
         assert!(check.received().is_empty() && check.unread() == want, "{}", check.unread());
@@ -111,7 +111,7 @@ fn a_date_that_is_not_the_hosts_is_a_fault_and_midnight_is_none() {
         let found = fault(date, host(20)).unwrap_or_default();
         assert!(found.starts_with(want), "{found}");
     }
-    // Two seconds after midnight a fix of the evening before has only been on its way.
+    // Two seconds after midnight, a fix from the evening before is merely delayed.
     let midnight = HostTime { utc_ns: host(21).utc_ns - 54_303_300_000_000 + 2_000_000_000, ..host(21) };
     assert_eq!(fault("20,11,2026", midnight), None);
     let gga = checked(TELEMETRY, 10.0);
@@ -121,5 +121,5 @@ fn a_date_that_is_not_the_hosts_is_a_fault_and_midnight_is_none() {
 
 #[test]
 fn a_low_rate_is_reported() {
-    assert!(checked(TELEMETRY, 0.5).missing().join("\n").contains("GGA or RMC comes only 0.50 times a second"));
+    assert!(checked(TELEMETRY, 0.5).missing().join("\n").contains("GGA or RMC arrive only 0.50 times a second"));
 }

@@ -16,7 +16,7 @@ pub enum Cause {
     #[error("navigation: {0}")]
     Nav(NavFault),
     /// The boat was outside the geofence, or could not have stopped inside it.
-    #[error("outside of the geofence, or unable to stop inside")]
+    #[error("outside the geofence, or unable to stop inside")]
     Geofence,
     /// The boat did not respond to its orders as expected.
     #[error("{0}")]
@@ -31,16 +31,16 @@ pub enum Cause {
     #[error("the boat no longer reports who commands it")]
     ControlUnknown,
     /// The boat did not enter the mode that it was sent; it reported this one.
-    #[error("the boat does not follow the commands it is sent: it is in mode {0}")]
+    #[error("the boat does not follow its commands: it is in mode {0}")]
     Disobeyed(char),
     /// The boat still echoes an outdated command: it transmits but does not listen.
-    #[error("the boat does not follow the commands it is sent: it shows older ones")]
+    #[error("the boat does not follow its commands: it still shows an older command")]
     Deaf,
     /// The boat echoes a command that we have not sent.
-    #[error("the boat gets orders that are not ours: another gateway may be at work")]
+    #[error("the boat receives orders that are not ours: another gateway may be at work")]
     ForeignOrders,
     /// The boat has no known recovery point.
-    #[error("the boat has no recovery point that was uploaded here, seen taken, and lies inside of the geofence")]
+    #[error("no recovery point inside the geofence that this gateway uploaded and the boat confirmed")]
     NoRecoveryPoint,
     /// The gateway did not run for this long, s, and its guard may have stopped the boat.
     #[error("the gateway hung for {0:.1} s, and its guard may have stopped the boat")]
@@ -54,7 +54,7 @@ pub enum Cause {
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum NavFault {
     /// No game has defined the field yet.
-    #[error("no game yet, and so no field and no geofence")]
+    #[error("no game yet, so no field and no geofence")]
     NoField,
     /// No fix received yet.
     #[error("no fix yet")]
@@ -69,7 +69,7 @@ pub enum NavFault {
     #[error("the last heading is {0:.1} s old")]
     HeadingStale(f64),
     /// The fix quality that the receiver reports.
-    #[error("the fix is of quality {0}")]
+    #[error("the fix has quality {0}")]
     Quality(FixQuality),
     /// The dilution of precision.
     #[error("the horizontal dilution of precision is {0}")]
@@ -84,13 +84,13 @@ pub enum NavFault {
     #[error("the position has not changed for {0:.1} s under thrust")]
     Frozen(f64),
     /// The compass has not changed in any digit while the course turned by this much, degrees.
-    #[error("the compass shows the same while the course turned by {0:.0} degrees")]
+    #[error("the compass reading did not change while the course changed by {0:.0} degrees")]
     CompassFrozen(f64),
     /// The compass deviates by this much from the course over ground on several headings, degrees.
-    #[error("the compass is off by {:.0} degrees, by the course over the ground", .0.abs())]
+    #[error("the compass is off by {:.0} degrees, judged by the course over the ground", .0.abs())]
     CompassOff(f64),
     /// The reported speed is below the one computed from positions, which is this, m/s.
-    #[error("the reported speed is less than that of the positions, {0:.1} m/s")]
+    #[error("the reported speed is lower than the speed implied by its positions, {0:.1} m/s")]
     SpeedTooLow(f64),
 }
 
@@ -120,17 +120,17 @@ impl Cause {
             Cause::Hung(_) => "a gateway that does not hang".to_owned(),
             Cause::LinkLost => "the link to the boat".to_owned(),
             Cause::TakenOver(by) => format!("secondary control: {} commands the boat", operator(by)),
-            Cause::ForeignOrders => "a boat that gets no orders but ours".to_owned(),
+            Cause::ForeignOrders => "a boat that receives orders only from us".to_owned(),
             Cause::NoRecoveryPoint => {
-                "a recovery point inside of the geofence that was uploaded here and that the boat took (mission)"
+                "a recovery point inside the geofence that this gateway uploaded and the boat accepted (mission)"
                     .to_owned()
             }
             Cause::ControlUnknown | Cause::Disobeyed(_) | Cause::Deaf => {
                 "secondary control: the boat does not report that we command it".to_owned()
             }
             Cause::Nav(fault) => format!("navigation: {fault}"),
-            Cause::Thrust(fault) => format!("a boat that does as it is ordered: {fault}"),
-            Cause::Geofence => "a position inside of the geofence, and room to stop".to_owned(),
+            Cause::Thrust(fault) => format!("a boat that follows its orders: {fault}"),
+            Cause::Geofence => "a position inside the geofence, and room to stop".to_owned(),
             Cause::BatteryLow => "a charged battery".to_owned(),
             Cause::OrderStale => "a fresh order".to_owned(),
         }
@@ -143,7 +143,7 @@ fn operator(number: u8) -> String {
         1 => "the primary operator".to_owned(),
         3 => "the primary operator's backup link".to_owned(),
         5 => "the remote control".to_owned(),
-        6 => "the obstacle avoidance".to_owned(),
+        6 => "obstacle avoidance".to_owned(),
         other => format!("operator {other}"),
     }
 }

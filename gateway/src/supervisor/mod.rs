@@ -59,7 +59,7 @@ pub struct Conditions {
     pub blocked: bool,
     /// Whether there is a valid order within its time to live.
     pub order_fresh: bool,
-    /// Whether a boat that stopped for want of a fresh order may arm itself again.
+    /// Whether a boat that stopped for lack of a fresh order may arm itself again.
     pub may_rearm: bool,
 }
 
@@ -89,7 +89,7 @@ pub enum Control {
     Unknown,
     /// Another operator: PSEAD's operator number.
     Other(u8),
-    /// This gateway, but the boat reports this mode in place of the one it was sent.
+    /// This gateway, but the boat reports this mode instead of the one it was sent.
     Disobeys(char),
     /// This gateway, but the boat echoes the thrust of an outdated command.
     Deaf,
@@ -157,7 +157,7 @@ pub enum State {
 /// What to send the boat now.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Action {
-    /// Standby; after thrust, thrust zero comes first.
+    /// Standby; after thrust, zero thrust comes first.
     Standby,
     /// Thrust zero.
     Zero,

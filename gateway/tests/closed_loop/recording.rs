@@ -84,7 +84,7 @@ fn what_is_no_recording_is_refused() {
     let version = |opening: &mut Opening| drop(opening.facts.insert("version".to_owned(), "9.1.0".to_owned()));
     assert!(refused(version).contains("recorded by Squall 9.1.0"));
     assert!(refused(|opening| opening.kind = Kind::Game).contains("not a recording of a gateway: it is of a game"));
-    assert!(refused(|opening| opening.facts.clear()).contains("its plan is not understood"));
+    assert!(refused(|opening| opening.facts.clear()).contains("cannot parse its plan"));
     // Headers had no checksum before gateways recorded bags.
     let mut writer = mcap::Writer::new(Cursor::new(Vec::new())).expect("memory");
     let metadata = [("version".to_owned(), primitives::VERSION.to_owned())].into();

@@ -97,7 +97,7 @@ fn a_line_that_takes_nothing_for_two_seconds_is_opened_anew() {
     let start = Instant::now();
     link.send(vec![b'x'; 1 << 20], 0);
     let (reason, down) = log.down(0);
-    assert!(reason.contains("nothing taken for 2s"), "{reason}");
+    assert!(reason.contains("no data accepted for 2s"), "{reason}");
     assert!(down - start > Duration::from_secs(2) && down - start < Duration::from_secs(4), "{:?}", down - start);
     log.up(1);
 }

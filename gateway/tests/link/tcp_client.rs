@@ -228,7 +228,7 @@ fn a_reconnect_breaks_the_connection_and_makes_a_new_one() {
     let (link, log, mut boat, listener) = joined(patient());
     link.reconnect();
     let (reason, _) = log.down(0);
-    assert_eq!(reason, "a reconnect was asked for");
+    assert_eq!(reason, "a reconnect was requested");
     assert_eq!(boat.read(&mut [0]).unwrap(), 0, "the old connection is closed");
     let mut boat = accept(&listener);
     assert_eq!(log.up(1).0, 1);

@@ -229,7 +229,7 @@ fn a_boat_that_leaves_guided_for_hold_is_not_taken_back() {
     rig.ardupilot.set_mode(RoverMode::Hold);
     rig.run(2.0);
     assert_eq!(rig.mode().0, RoverMode::Hold);
-    rig.run_until(2.0, |rig| rig.state().contains("does not follow the commands"));
+    rig.run_until(2.0, |rig| rig.state().contains("does not follow its commands"));
     rig.run(10.0);
     assert_eq!(rig.mode(), HOLD);
 }
@@ -337,13 +337,13 @@ fn a_mission_that_the_boat_does_not_take_is_given_up_with_the_reason() {
     let mut rig = Rig::under_way();
     let mission = Mission { throttle_pct: 40.0, erp: [0.0; 2], waypoints: vec![[0.0; 2]] };
     rig.operator(OperatorCommand::Mission(mission));
-    assert!(rig.refused.take().is_some_and(|reason| reason.contains("outside of the geofence")));
+    assert!(rig.refused.take().is_some_and(|reason| reason.contains("outside the geofence")));
     let at = LocalFrame::new(plan().site.expect("the rig has one").field.plan.datum).lat_lon(Ned::from_xy(40.0, 30.0));
     let there = [at.lat_deg, at.lon_deg];
     rig.open.0 = false;
     rig.operator(OperatorCommand::Mission(Mission { throttle_pct: 40.0, erp: there, waypoints: vec![there] }));
     rig.run(8.0);
-    let told = |event: &Event| matches!(event, Event::Warning(text) if text.contains("the mission is not uploaded: the boat does not show"));
+    let told = |event: &Event| matches!(event, Event::Warning(text) if text.contains("the mission is not uploaded: the boat does not report the home"));
     assert!(rig.events.iter().any(told), "{:?}", rig.events);
 }
 
@@ -383,7 +383,7 @@ fn messages_of_other_systems_are_counted_and_ignored() {
     }
     assert_eq!(rig.state(), "armed");
     let counts = rig.bridge.status(rig.now).counts;
-    assert!(counts.iter().any(|(name, count)| name == "messages of other systems" && *count >= 100), "{counts:?}");
+    assert!(counts.iter().any(|(name, count)| name == "messages from other systems" && *count >= 100), "{counts:?}");
 }
 
 #[test]
@@ -394,5 +394,5 @@ fn arming_that_the_boat_refuses_is_a_failsafe_with_its_own_words() {
     // From now on it replies but receives nothing.
     rig.open.0 = false;
     rig.operator(OperatorCommand::Arm);
-    rig.run_until(4.0, |rig| rig.state().contains("does not follow the commands it is sent"));
+    rig.run_until(4.0, |rig| rig.state().contains("does not follow its commands"));
 }

@@ -108,7 +108,7 @@ fn a_ground_station_that_steers_in_guided_is_found_by_what_the_boat_follows() {
     for (message, limit_s, words) in [
         (velocity(0.0, 1.5), 1.0, "orders that are not ours"),
         (velocity(180.0, 1.0), 1.0, "orders that are not ours"),
-        (position(), 4.0, "does not follow the commands it is sent: it is in mode W"),
+        (position(), 4.0, "does not follow its commands: it is in mode W"),
     ] {
         let (after_s, state) = steered_by_another(Rig::under_way(), &message, 10.0);
         assert!(after_s < limit_s && state.contains(words), "{message:?}: {after_s} s, {state}");

@@ -64,7 +64,7 @@ fn a_sound_boat_passes_and_each_thing_that_is_wrong_fails_its_own_check() {
     let (seen, checks) = checked(inside, |boat| boat.set_mode(RoverMode::Manual));
     let control = checks.iter().find(|check| check.name == "control").expect("it is checked");
     assert!(control.verdict == Verdict::Failed && control.found.contains("commanded by Rc"), "{control:?}");
-    assert_eq!(seen.missing(), ["control: Rc has the boat, in a mode that is not GUIDED or HOLD"]);
+    assert_eq!(seen.missing(), ["control: Rc has control, and the mode is neither GUIDED nor HOLD"]);
 }
 
 #[test]
@@ -118,7 +118,7 @@ fn a_vehicle_that_is_no_boat_is_named_and_a_heading_that_is_unknown_is_missing()
         seen.receive(SimTime::from_s(f64::from(s)), &bytes);
     };
     (0..9).for_each(|s| send(&mut seen, copter.clone(), s));
-    assert_eq!(seen.missing(), ["a boat: all messages are of other systems (a QUADROTOR is system 1)"]);
+    assert_eq!(seen.missing(), ["a boat: all messages are from other systems (a QUADROTOR is system 1)"]);
     (10..20).for_each(|s| send(&mut seen, boat.clone(), s));
     let missing = seen.missing().join("\n");
     assert!(missing.contains("a heading: GLOBAL_POSITION_INT comes without it"), "{missing}");

@@ -190,7 +190,7 @@ fn the_last_rejected_line_is_kept_with_the_reason() {
         ("$PSEAG,N\r\n$PSEAG,N*22\r\n", "$PSEAG,N", "has no checksum"),
         ("$PSEAG,N*2$", "$PSEAG,N*2", "has no checksum"),
         ("$PSEAG,N*23\r\n", "$PSEAG,N*23", "has a wrong checksum"),
-        ("$PSE\0AG,N*22\r\n", "$PSE", "is cut off by a byte that is no text"),
+        ("$PSE\0AG,N*22\r\n", "$PSE", "is interrupted by a non-text byte"),
     ] {
         let mut framer = Framer::new();
         framer.push(stream.as_bytes(), &mut |_| {});

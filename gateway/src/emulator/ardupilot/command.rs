@@ -1,4 +1,4 @@
-//! The commands that an emulated ArduPilot boat takes, and its acknowledgements.
+//! The commands that an emulated ArduPilot boat accepts, and its acknowledgements.
 
 #![expect(deprecated, reason = "ground stations send the older commands, too, and ArduPilot takes them")]
 
@@ -15,7 +15,7 @@ use primitives::SimTime;
 const DONE: MavResult = MavResult::MAV_RESULT_ACCEPTED;
 const DENIED: MavResult = MavResult::MAV_RESULT_DENIED;
 const FAILED: MavResult = MavResult::MAV_RESULT_FAILED;
-/// MAV_CMD_DO_SEND_BANNER, which is not of the common dialect.
+/// MAV_CMD_DO_SEND_BANNER, which is not in the common dialect.
 const DO_SEND_BANNER: u16 = 42_428;
 /// The only flag of MAV_CMD_DO_REPOSITION: the boat may change to GUIDED.
 const CHANGE_MODE: i32 = 1;
@@ -25,7 +25,7 @@ fn result_of(is_done: bool) -> MavResult {
 }
 
 impl ArduPilot {
-    /// As ArduPilot does, it is carried out as the COMMAND_INT that it would be.
+    /// Converted to the equivalent COMMAND_INT, as in ArduPilot.
     pub(super) fn take_command_long(&mut self, now: SimTime, from: (u8, u8), long: &COMMAND_LONG_DATA) {
         let has_position = matches!(long.command, MavCmd::MAV_CMD_DO_SET_HOME | MavCmd::MAV_CMD_DO_REPOSITION);
         let whole = |param: f32| (if has_position { 1e7 } else { 1.0 } * f64::from(param)).round() as i32;
@@ -55,7 +55,7 @@ impl ArduPilot {
             MavCmd::MAV_CMD_DO_REPOSITION => self.command_reposition(command),
             MavCmd::MAV_CMD_NAV_SET_YAW_SPEED => self.command_yaw_speed(now, command),
             MavCmd::MAV_CMD_NAV_RETURN_TO_LAUNCH => self.command_mode(RoverMode::Rtl.number()),
-            // A part of the mission only: Rover does not do that either.
+            // Rover does not support a part of the mission either.
             MavCmd::MAV_CMD_MISSION_START if param1 != 0.0 || param2 != 0.0 => DENIED,
             MavCmd::MAV_CMD_MISSION_START => self.command_mode(RoverMode::Auto.number()),
             MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT => result_of(self.set_current(param1 as u16)),
@@ -64,7 +64,7 @@ impl ArduPilot {
         self.acknowledge(from, command.command as u16, result);
     }
 
-    /// A command that the dialect does not know.
+    /// Handles a command unknown to the dialect.
     pub(super) fn take_unknown_command(&mut self, from: (u8, u8), command: u16) {
         let is_banner = command == DO_SEND_BANNER;
         if is_banner {
@@ -73,7 +73,7 @@ impl ArduPilot {
         self.acknowledge(from, command, if is_banner { DONE } else { MavResult::MAV_RESULT_UNSUPPORTED });
     }
 
-    /// By its number, since commands are acknowledged that the dialect does not know.
+    /// Takes a number, because commands unknown to the dialect are also acknowledged.
     pub(super) fn acknowledge(&mut self, from: (u8, u8), command: u16, result: MavResult) {
         let [low, high] = command.to_le_bytes();
         let payload = [low, high, result as u8, 0, 0, 0, 0, 0, from.0, from.1];
@@ -84,8 +84,8 @@ impl ArduPilot {
         let mode = RoverMode::from_number(number);
         let can = match mode {
             RoverMode::Manual | RoverMode::Hold | RoverMode::Guided | RoverMode::Loiter => true,
-            // Rover refuses a mode that has nothing to do, and says so in a STATUSTEXT, which
-            // the gateway shows to its operator.
+            // Rover rejects a mode without a task, and reports so in a STATUSTEXT, which the
+            // gateway shows to its operator.
             RoverMode::Auto => self.mission.waypoints() > 0,
             RoverMode::Rtl => self.home.is_some(),
             _ => false,
@@ -108,8 +108,8 @@ impl ArduPilot {
                 return self.refuse("Arm: Mode not armable");
             }
             self.is_armed = true;
-            // As ArduPilot does: the home is where the boat is first armed, unless a ground
-            // station has set it.
+            // As in ArduPilot: the home is where the boat is first armed, unless a ground station
+            // has set it.
             if self.home.is_none() {
                 self.set_home(here);
             }
@@ -128,7 +128,7 @@ impl ArduPilot {
         self.place(home).into_iter().for_each(|place| self.autopilot.set_home(place));
     }
 
-    /// In the modes that go to positions; whether it is one.
+    /// Changes the speed in the modes that go to positions; returns whether this is one.
     fn change_speed(&mut self, speed_m_s: f64) -> bool {
         match self.mode {
             RoverMode::Guided => self.set_points.set_speed(speed_m_s),
@@ -140,7 +140,8 @@ impl ArduPilot {
         }
     }
 
-    /// Goes to a position, at a speed where one is given: as Rover, which takes that only on its way to another.
+    /// Goes to a position, at the given speed if any. Like Rover, it accepts a speed only on the
+    /// way to another position.
     fn command_reposition(&mut self, command: &COMMAND_INT_DATA) -> MavResult {
         let may_change_mode = command.param2 as i32 & CHANGE_MODE != 0;
         let at_e7 = (command.x, command.y);
@@ -153,7 +154,7 @@ impl ArduPilot {
         result_of(self.set_points.go_to(place))
     }
 
-    /// A heading, from north or from the one before, and a speed.
+    /// Sets a heading, from north or relative to the current one, and a speed.
     fn command_yaw_speed(&mut self, now: SimTime, command: &COMMAND_INT_DATA) -> MavResult {
         let Some(own) = self.sensed.own.filter(|_| self.mode == RoverMode::Guided) else { return FAILED };
         let own_rad = (command.param3 > 0.0).then_some(own.nav.psi_rad);
@@ -161,7 +162,7 @@ impl ArduPilot {
         result_of(self.set_points.take_heading(now, heading_rad, own_rad, speed_m_s).is_ok())
     }
 
-    /// Goes on with an item of the mission; whether there is one.
+    /// Continues with an item of the mission; returns whether it exists.
     pub(super) fn set_current(&mut self, seq: u16) -> bool {
         let waypoint = self.mission.waypoint_of(seq);
         waypoint.into_iter().for_each(|waypoint| self.autopilot.set_next(waypoint));

@@ -1,4 +1,5 @@
-//! The mission of an emulated ArduPilot boat: it asks for item after item, and shows them to whoever asks.
+//! The mission of an emulated ArduPilot boat: it requests one item after the other, and shows them
+//! on request.
 
 #![expect(deprecated, reason = "ground stations send the older messages, and are answered as ArduPilot does")]
 
@@ -9,15 +10,15 @@ use crate::mavlink::dialect::{
 };
 use primitives::{LatLon, SimTime};
 
-/// The most items that it takes.
-// About what a board that runs ArduPilot has room for.
+/// Maximum number of items accepted.
+// About the capacity of a board that runs ArduPilot.
 const ITEMS_MAX: u16 = 700;
-/// An item that does not come is asked for again after this time, s.
+/// A missing item is requested again after this time, s.
 const AGAIN_S: f64 = 1.0;
-/// An upload without an item for this long is given up, s.
+/// An upload without an item for this long is abandoned, s.
 const UPLOAD_AGE_MAX_S: f64 = 8.0;
 
-/// The mission that it has, and the one that is being uploaded.
+/// The current mission, and the one that is being uploaded.
 #[derive(Clone, Debug, Default)]
 pub(super) struct MissionStore {
     items: Vec<MISSION_ITEM_INT_DATA>,
@@ -30,7 +31,7 @@ struct Upload {
     from: (u8, u8),
     count: u16,
     items: Vec<MISSION_ITEM_INT_DATA>,
-    /// When the last item came, and when one was last asked for.
+    /// When the last item arrived, and when one was last requested.
     came_at: SimTime,
     asked_at: SimTime,
 }
@@ -40,7 +41,7 @@ impl Upload {
         self.asked_at = now;
         let (target_system, target_component) = self.from;
         let seq = self.items.len() as u16;
-        // ArduPilot asks by this message, and dronekit knows no other.
+        // ArduPilot requests items with this message, and dronekit knows no other.
         MavMessage::MISSION_REQUEST(MISSION_REQUEST_DATA { seq, target_system, target_component, ..Default::default() })
     }
 }
@@ -50,19 +51,19 @@ fn is_waypoint(item: &MISSION_ITEM_INT_DATA) -> bool {
 }
 
 impl MissionStore {
-    /// How many waypoints the mission has; the first item is the home.
+    /// The number of waypoints; the first item is the home.
     pub(super) fn waypoints(&self) -> usize {
-        // Item 0 is the home in ArduPilot's missions, whoever uploads them.
+        // Item 0 is always the home in ArduPilot's missions.
         self.items.iter().skip(1).filter(|item| is_waypoint(item)).count()
     }
 
-    /// The number of the waypoint, from 1 on, that an item leads to.
+    /// The number of the waypoint, from 1, to which an item leads.
     pub(super) fn waypoint_of(&self, seq: u16) -> Option<u16> {
         let before = self.items.get(1..usize::from(seq.max(1)))?;
         (usize::from(seq) < self.items.len()).then(|| before.iter().filter(|item| is_waypoint(item)).count() as u16 + 1)
     }
 
-    /// The item that is under way to a waypoint.
+    /// The item that leads to a waypoint.
     pub(super) fn current(&self, waypoint: u16) -> MavMessage {
         let waypoints = self.items.iter().enumerate().skip(1).filter(|(_, item)| is_waypoint(item));
         let seq = waypoints.map(|(seq, _)| seq).take(usize::from(waypoint.max(1))).last().unwrap_or(0) as u16;
@@ -70,7 +71,7 @@ impl MissionStore {
         MavMessage::MISSION_CURRENT(MISSION_CURRENT_DATA { seq, total, ..Default::default() })
     }
 
-    /// A mission that was just taken: its waypoints, and the speed that it names, m/s.
+    /// The mission just accepted: its waypoints, and its speed, m/s, if specified.
     pub(super) fn take_new(&mut self) -> Option<(Vec<LatLon>, Option<f64>)> {
         std::mem::take(&mut self.is_new).then(|| {
             let items = self.items.iter().skip(1);
@@ -85,7 +86,7 @@ impl MissionStore {
         })
     }
 
-    /// What an upload that has come to a halt asks for; in the end it is given up.
+    /// Repeats the request of a stalled upload; finally abandons the upload.
     pub(super) fn overdue(&mut self, now: SimTime) -> Option<MavMessage> {
         let upload = self.upload.as_mut()?;
         if (now - upload.came_at).as_s() > UPLOAD_AGE_MAX_S {
@@ -96,14 +97,14 @@ impl MissionStore {
         ((now - upload.asked_at).as_s() > AGAIN_S).then(|| upload.request(now))
     }
 
-    /// Ends an upload for want of what an item asks for; the answer to its sender.
+    /// Ends an upload for lack of the requested item; returns the reply to its sender.
     pub(super) fn refuse(&mut self, from: (u8, u8), reason: MavMissionResult) -> MavMessage {
         self.upload = self.upload.take().filter(|upload| upload.from != from);
         ack(from, reason)
     }
 
-    /// Takes a message of the mission protocol from a system and component; the answer to it, where one is due. The outer `None` is
-    /// another message. Item 0 is the home, 1e-7 degrees.
+    /// Handles a message of the mission protocol from a system and component; returns the reply, if
+    /// one is due. The outer `None` means another message. Item 0 is the home, 1e-7 degrees.
     pub(super) fn answer(
         &mut self,
         now: SimTime,
@@ -112,7 +113,7 @@ impl MissionStore {
         message: &MavMessage,
     ) -> Option<Option<MavMessage>> {
         if let Some(mission_type) = type_of(message).filter(|kind| *kind != MavMissionType::MAV_MISSION_TYPE_MISSION) {
-            // A board without fences and rally points answers so.
+            // The reply of a board without fences and rally points.
             return Some(Some(typed_ack(from, MavMissionResult::MAV_MISSION_UNSUPPORTED, mission_type)));
         }
         Some(match message {
@@ -162,7 +163,7 @@ impl MissionStore {
         let Some(upload) = self.upload.as_mut().filter(|upload| upload.from == from) else {
             return ack(from, MavMissionResult::MAV_MISSION_ERROR);
         };
-        // The upload goes on: what was asked for is asked for again in time.
+        // The upload continues: the request is repeated in time.
         if usize::from(item.seq) != upload.items.len() {
             return ack(from, MavMissionResult::MAV_MISSION_INVALID_SEQUENCE);
         }
@@ -179,7 +180,7 @@ impl MissionStore {
         ack(from, MavMissionResult::MAV_MISSION_ACCEPTED)
     }
 
-    /// An item; the home is always there to be read.
+    /// An item; the home can always be read.
     fn item(&self, from: (u8, u8), home: Option<(i32, i32)>, seq: u16) -> Option<MISSION_ITEM_INT_DATA> {
         let (target_system, target_component) = from;
         let stored = self.items.get(usize::from(seq)).cloned();
@@ -194,7 +195,7 @@ impl MissionStore {
     }
 }
 
-/// Why an item is not taken: the boat would not carry it out.
+/// Why an item is rejected: the boat would not execute it.
 fn fault_of(item: &MISSION_ITEM_INT_DATA) -> Option<MavMissionResult> {
     match item.command {
         MavCmd::MAV_CMD_DO_CHANGE_SPEED => None,
@@ -210,10 +211,10 @@ fn fault_of(item: &MISSION_ITEM_INT_DATA) -> Option<MavMissionResult> {
     }
 }
 
-/// What a message of the protocol is about: missions, fences or rally points. Acknowledgements need no answer.
+/// The subject of a message: missions, fences or rally points. Acknowledgements need no reply.
 fn type_of(message: &MavMessage) -> Option<MavMissionType> {
     Some(match message {
-        // Of everything, the mission is what there is.
+        // Of everything, only the mission exists.
         MavMessage::MISSION_CLEAR_ALL(all) if all.mission_type == MavMissionType::MAV_MISSION_TYPE_ALL => return None,
         MavMessage::MISSION_CLEAR_ALL(clear) => clear.mission_type,
         MavMessage::MISSION_COUNT(count) => count.mission_type,
@@ -228,7 +229,7 @@ fn type_of(message: &MavMessage) -> Option<MavMissionType> {
     })
 }
 
-/// An item of the older message, whose positions are in degrees.
+/// An item in the older message, whose positions are in degrees.
 pub(super) fn int_from_float(item: &MISSION_ITEM_DATA) -> MISSION_ITEM_INT_DATA {
     let MISSION_ITEM_DATA { param1, param2, param3, param4, z, seq, command, frame, current, autocontinue, .. } = *item;
     let e7 = |deg: f32| (1e7 * f64::from(deg)).round() as i32;

@@ -1,7 +1,8 @@
-//! An emulated boat with ArduPilot's Rover: MAVLink commands in, telemetry out, with no socket and no clock.
+//! An emulated ArduPilot Rover boat: MAVLink commands in, telemetry out, without sockets or clocks.
 //!
-//! It does what the documentation of Rover says for boats: it is driven in mode GUIDED when it is armed, forgets a set-point after three
-//! seconds, takes messages for its own system and for all, and acknowledges commands.
+//! It follows Rover's documentation for boats: it is driven in mode GUIDED when armed, drops a
+//! set-point after three seconds, accepts messages for its own system and for all, and acknowledges
+//! commands.
 
 mod command;
 mod failsafe;
@@ -29,9 +30,9 @@ use set_point::{FORGOTTEN, SetPoints};
 use std::collections::{BTreeMap, VecDeque};
 use telemetry::Streams;
 
-/// The system that it is, until SYSID_THISMAV is set.
+/// Its system number until SYSID_THISMAV is set.
 pub const SYSTEM: u8 = 1;
-/// How many log messages wait to be read.
+/// Maximum number of log messages that wait to be read.
 const REMARKS_MAX: usize = 64;
 
 /// The front seat of an emulated boat that speaks MAVLink.
@@ -50,7 +51,7 @@ pub struct ArduPilot {
     streams: Streams,
     station: StationWatch,
     sensed: Sensed,
-    /// Where its first fix was: the origin of positions in the frame LOCAL_NED.
+    /// The position of its first fix: the origin of the frame LOCAL_NED.
     origin: Option<Ned>,
     /// UTC at time zero, µs since 1970.
     began_us: u64,
@@ -58,20 +59,21 @@ pub struct ArduPilot {
     remarks: VecDeque<String>,
     /// When it last reported that it does not support a message, by message number.
     complaints: BTreeMap<u32, SimTime>,
-    /// Frames that are to be sent, as soon as that can be.
+    /// Frames to send as soon as possible.
     outbox: Vec<u8>,
 }
 
 impl ArduPilot {
-    /// A boat in HOLD, disarmed, on a field with this origin; this share of its battery's charge is left, and with `None` it stays full.
+    /// A boat in HOLD, disarmed, on a field with this origin, with this fraction of its charge;
+    /// `None` is full and never drains.
     #[must_use]
     pub fn new(datum: LatLon, charge: Option<f64>) -> ArduPilot {
         ArduPilot {
             frame: LocalFrame::new(datum),
             framer: Framer::new(),
             writer: Writer::new(SYSTEM, AUTOPILOT),
-            // INITIAL_MODE 4 of our recommended parameters: a boat that has just started is the
-            // gateway's, and rests.
+            // INITIAL_MODE 4 of our recommended parameters: a boat that has just started belongs to
+            // the gateway, and rests.
             mode: RoverMode::Hold,
             is_armed: false,
             set_points: SetPoints::default(),
@@ -97,9 +99,9 @@ impl ArduPilot {
         self.began_us = (utc_ns / 1000).saturating_sub(since_us);
     }
 
-    /// Takes bytes from a link.
+    /// Receives bytes from a link.
     pub fn receive(&mut self, now: SimTime, bytes: &[u8]) {
-        // Taken out while it runs, since the callback needs the whole boat.
+        // Taken out during the call, because the callback needs the whole boat.
         let mut framer = std::mem::take(&mut self.framer);
         framer.push_frames(bytes, &mut |frame| match frame {
             Frame::Read(received) => self.apply(now, &received),
@@ -108,7 +110,7 @@ impl ArduPilot {
         self.framer = framer;
     }
 
-    /// Somebody with a remote control, or the boat itself, sets its mode.
+    /// Sets its mode, as a remote control or the boat itself does.
     pub fn set_mode(&mut self, mode: RoverMode) {
         if self.mode != mode {
             self.mode = mode;
@@ -116,7 +118,7 @@ impl ArduPilot {
             if let Some(own) = &self.sensed.own {
                 let next = self.autopilot.next();
                 self.autopilot.begin(own.nav.at());
-                // A mission that was interrupted continues, as with MIS_RESTART at its default.
+                // An interrupted mission continues, as with MIS_RESTART at its default.
                 if usize::from(next) <= self.mission.waypoints() {
                     self.autopilot.set_next(next);
                 }
@@ -132,13 +134,13 @@ impl ArduPilot {
     }
 
     fn note(&mut self, remark: String) {
-        // Nobody need read them.
+        // Log messages need not be read.
         if self.remarks.len() < REMARKS_MAX {
             self.remarks.push_back(remark);
         }
     }
 
-    /// A log message, once.
+    /// The next log message, if any.
     pub fn take_remark(&mut self) -> Option<String> {
         self.remarks.pop_front()
     }
@@ -148,7 +150,7 @@ impl ArduPilot {
         self.battery.show_volts(volts);
     }
 
-    /// Takes what its sensors measure.
+    /// Updates the sensor measurements.
     pub fn observe(&mut self, now: SimTime, own: &OwnBoat) {
         self.sensed.observe(now, own);
         self.origin.get_or_insert(own.nav.at());
@@ -161,12 +163,12 @@ impl ArduPilot {
         self.battery.carry_out(now, order)
     }
 
-    /// What its mode and set-point ask of the thrusters.
+    /// The thrusters' order from its mode and set-point.
     fn commanded(&mut self, now: SimTime) -> Order {
         let Some(own) = self.sensed.own else { return Order::Hold };
         let pose = own.nav.pose();
         if self.mode == RoverMode::Guided && self.set_points.expires(now) {
-            // A boat keeps its station then, where a car stops.
+            // A boat keeps station here, where a car stops.
             self.autopilot.begin(pose.at);
             self.say(MavSeverity::MAV_SEVERITY_WARNING, FORGOTTEN);
         }
@@ -186,20 +188,20 @@ impl ArduPilot {
         }
     }
 
-    /// The highest speed of set-points, m/s.
+    /// The maximum speed of set-points, m/s.
     fn speed_max_m_s(&self) -> f64 {
         self.parameters.value("WP_SPEED")
     }
 
-    /// The system that it is.
+    /// Its system number.
     fn system(&self) -> u8 {
         self.parameters.value("SYSID_THISMAV") as u8
     }
 
-    /// Appends what is to be sent at once.
+    /// Appends the frames to send at once.
     pub fn answers(&mut self, out: &mut Vec<u8>) {
         out.append(&mut self.outbox);
-        // Here and not before: the reply to a new number comes from the old one.
+        // Here and not earlier: the reply to a new number comes from the old one.
         self.writer.set_system(self.system());
     }
 
@@ -223,14 +225,14 @@ impl ArduPilot {
         if !is_for_us || from == (self.system(), AUTOPILOT) {
             return;
         }
-        // Rover obeys commands of anybody, but its failsafe and its manual control listen to
-        // one ground station alone.
+        // Rover obeys commands from anybody, but its failsafe and manual control accept only one
+        // ground station.
         let is_station = f64::from(*system) == self.parameters.value("SYSID_MYGCS");
         match message {
             MavMessage::HEARTBEAT(_) if is_station => self.station.heard_at = Some(now),
             MavMessage::SET_MODE(set) => {
                 let result = self.command_mode(set.custom_mode);
-                // There is no command with the number of this message, but ArduPilot does so.
+                // No command has this message's number, but ArduPilot does the same.
                 self.acknowledge(from, message.message_id() as u16, result);
             }
             MavMessage::COMMAND_LONG(command) => self.take_command_long(now, from, command),
@@ -243,7 +245,7 @@ impl ArduPilot {
                 self.station.heard_at = Some(now);
                 self.set_points.take_channels(now, channels);
             }
-            // Of others: ignored, as by Rover.
+            // Messages from others are ignored, as by Rover.
             MavMessage::HEARTBEAT(_) | MavMessage::MANUAL_CONTROL(_) | MavMessage::RC_CHANNELS_OVERRIDE(_) => {}
             MavMessage::SET_ATTITUDE_TARGET(_)
             | MavMessage::SET_POSITION_TARGET_LOCAL_NED(_)
@@ -279,7 +281,7 @@ impl ArduPilot {
         self.autopilot.set_mission(places, speed_m_s);
     }
 
-    /// A set-point, which counts in mode GUIDED only.
+    /// Handles a set-point, which counts only in mode GUIDED.
     fn take_set_point(&mut self, now: SimTime, message: &MavMessage) {
         let (Some(own), Some(origin), RoverMode::Guided) = (self.sensed.own, self.origin, self.mode) else { return };
         let speed_max_m_s = self.speed_max_m_s();
@@ -299,7 +301,8 @@ impl ArduPilot {
         }
     }
 
-    /// A position as a mission item, which older programs send in mode GUIDED. A change of altitude has no effect on a boat.
+    /// Handles a position as a mission item, which older programs send in mode GUIDED. A change of
+    /// altitude has no effect on a boat.
     fn take_guided(&mut self, from: (u8, u8), item: &MISSION_ITEM_INT_DATA) {
         let place = self.place((item.x, item.y)).filter(|_| set_point::is_global(item.frame));
         let is_waypoint = item.command == MavCmd::MAV_CMD_NAV_WAYPOINT && self.mode == RoverMode::Guided;
@@ -309,7 +312,7 @@ impl ArduPilot {
         self.send(&mission::ack(from, result));
     }
 
-    /// Where this latitude and longitude, 1e-7 degrees, are on the field, if they are on the globe.
+    /// The point on the field for a latitude and longitude, 1e-7 degrees, if they are on the globe.
     fn place(&self, (lat_e7, lon_e7): (i32, i32)) -> Option<Ned> {
         let is_on_globe = lat_e7.unsigned_abs() <= 900_000_000 && lon_e7.unsigned_abs() <= 1_800_000_000;
         let at = LatLon { lat_deg: 1e-7 * f64::from(lat_e7), lon_deg: 1e-7 * f64::from(lon_e7) };
@@ -322,7 +325,7 @@ impl ArduPilot {
         ((1e7 * at.lat_deg).round() as i32, (1e7 * at.lon_deg).round() as i32)
     }
 
-    /// UTC by its receiver, µs since 1970.
+    /// UTC from its receiver, µs since 1970.
     fn utc_us(&self, now: SimTime) -> u64 {
         self.began_us + (1e6 * now.as_s()) as u64
     }

@@ -1,9 +1,10 @@
-//! The parameters of an emulated ArduPilot boat: a few of the real ones, by the names that versions up to 4.6 have.
+//! The parameters of an emulated ArduPilot boat: a few of the real ones, with their names up to
+//! version 4.6.
 
 use crate::mavlink::dialect::{MavMessage, MavParamError, MavParamType, PARAM_ERROR_DATA, PARAM_VALUE_DATA};
 use ::mavlink::types::CharArray;
 
-/// Name and value at the beginning.
+/// Names and initial values.
 const BEGINNING: [(&str, f32); 11] = [
     ("SYSID_THISMAV", super::SYSTEM as f32),
     ("SYSID_MYGCS", 255.0),
@@ -18,7 +19,7 @@ const BEGINNING: [(&str, f32); 11] = [
     ("RC_OVERRIDE_TIME", 3.0),
 ];
 
-/// All of them.
+/// All parameters.
 #[derive(Clone, Debug)]
 pub(super) struct Parameters {
     values: [f32; BEGINNING.len()],
@@ -29,12 +30,13 @@ impl Parameters {
         Parameters { values: BEGINNING.map(|(_, value)| value) }
     }
 
-    /// The value of one; 0 if there is none of this name.
+    /// The value of a parameter; 0 if it does not exist.
     pub(super) fn value(&self, name: &str) -> f64 {
         index_of(name).map_or(0.0, |index| f64::from(self.values[index]))
     }
 
-    /// Takes a message of the parameter protocol; the answers to it, or nothing if it is another message.
+    /// Handles a message of the parameter protocol. Returns the replies, or `None` for any other
+    /// message.
     pub(super) fn answer(&mut self, from: (u8, u8), message: &MavMessage) -> Option<Vec<MavMessage>> {
         let one = match message {
             MavMessage::PARAM_REQUEST_LIST(_) => {
@@ -80,7 +82,7 @@ fn index_of(name: &str) -> Option<usize> {
     BEGINNING.iter().position(|(known, _)| *known == name)
 }
 
-/// Whether a parameter can have a value; the number of a system must be one.
+/// Whether a value is valid for a parameter: a system number must be one.
 fn is_allowed(name: &str, value: f32) -> bool {
     value.is_finite() && (!name.starts_with("SYSID_") || (1.0..=255.0).contains(&value) && value.fract() == 0.0)
 }

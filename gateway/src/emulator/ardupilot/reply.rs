@@ -1,4 +1,4 @@
-//! The replies of an emulated ArduPilot boat to requests for what it does not have: none goes unanswered.
+//! The replies of an emulated ArduPilot boat to unsupported requests: every request gets a reply.
 
 #![expect(deprecated, reason = "ground stations send the older messages, too")]
 
@@ -12,17 +12,18 @@ use crate::mavlink::{AUTOPILOT, Unreadable};
 use ::mavlink::Message;
 use primitives::SimTime;
 
-/// How often it says at most that it does not support a message, s.
+/// Minimum time between reports that it does not support a message, s.
 const COMPLAINT_S: f64 = 1.0;
-/// The file transfer protocol: a negative reply, and the reason that the command is unknown.
+/// The file transfer protocol: a negative reply, with the reason that the command is unknown.
 const NAK: u8 = 129;
 const UNKNOWN_COMMAND: u8 = 7;
-/// Where the messages name their target system; the component follows. By number, of those that have enumerations.
+/// The offset of the target system in messages, by number, for messages with enumerations; the
+/// component follows it.
 const TARGET_AT: [(u32, usize); 12] =
     [(23, 4), (39, 32), (40, 2), (43, 0), (44, 2), (45, 0), (51, 2), (73, 32), (75, 30), (76, 30), (84, 50), (86, 50)];
 
 impl ArduPilot {
-    /// Answers a message that is none of commands, parameters and missions.
+    /// Answers a message that is not a command, parameter or mission message.
     pub(super) fn answer_other(&mut self, now: SimTime, from: (u8, u8), message: &MavMessage) {
         let (target_system, target_component) = from;
         let reply = match message {
@@ -47,7 +48,7 @@ impl ArduPilot {
                 })
             }
             MavMessage::SET_GPS_GLOBAL_ORIGIN(_) => self.origin_message(),
-            // Neither asks for anything.
+            // Neither requests anything.
             MavMessage::TIMESYNC(_) | MavMessage::PING(_) | MavMessage::LOG_REQUEST_END(_) => return,
             other if other.target_system_id().is_some_and(|target| target != 0) => {
                 return self.complain(now, other.message_id(), &format!("{} is not supported", other.message_name()));
@@ -57,7 +58,7 @@ impl ArduPilot {
         self.send(&reply);
     }
 
-    /// Answers a message with a value that the dialect does not know.
+    /// Answers a message with a value unknown to the dialect.
     pub(super) fn answer_unreadable(&mut self, now: SimTime, message: &Unreadable) {
         let Some((_, at)) = TARGET_AT.iter().find(|(id, _)| *id == message.id) else { return };
         let from = (message.system, message.component);
@@ -76,7 +77,7 @@ impl ArduPilot {
         }
     }
 
-    /// Says that it does not do what a message asks for: at once, but not as often as set-points come.
+    /// Reports that a message is not supported: at once, but less often than set-points arrive.
     pub(super) fn complain(&mut self, now: SimTime, id: u32, text: &str) {
         let said = self.complaints.get(&id).copied().unwrap_or(SimTime::LONG_AGO);
         if (now - said).as_s() >= COMPLAINT_S {
@@ -85,7 +86,7 @@ impl ArduPilot {
         }
     }
 
-    /// Tells operators something, in 50 letters at most.
+    /// Sends a text to operators, 50 characters at most.
     pub(super) fn say(&mut self, severity: MavSeverity, text: &str) {
         let status = STATUSTEXT_DATA { severity, text: text.into(), ..STATUSTEXT_DATA::default() };
         self.send(&MavMessage::STATUSTEXT(status));
@@ -97,7 +98,8 @@ impl ArduPilot {
     }
 }
 
-/// The negative reply to a request of the file transfer protocol: sequence number, session, opcode, size, the request's opcode, then data.
+/// The negative reply to a request of the file transfer protocol: sequence number, session, opcode,
+/// size, the request's opcode, then data.
 fn refused(request: &[u8; 251]) -> [u8; 251] {
     let mut reply = [0; 251];
     let next = u16::from_le_bytes([request[0], request[1]]).wrapping_add(1);

@@ -1,4 +1,4 @@
-//! The set-points of an emulated ArduPilot boat, and how long they hold.
+//! The set-points of an emulated ArduPilot boat, and their lifetime.
 
 use crate::emulator::autopilot;
 use crate::mavlink::dialect::{
@@ -11,16 +11,17 @@ use primitives::frame::{Ned, Pose, Rotation};
 use primitives::{SimTime, math};
 use std::f64::consts::PI;
 
-/// A set-point of mode GUIDED is forgotten after this time, s, as is one of a remote control by MAVLink.
+/// A set-point in mode GUIDED expires after this time, s, as does one from a remote control over
+/// MAVLink.
 const HELD_S: f64 = 3.0;
-/// What Rover says when it forgets a set-point of mode GUIDED.
+/// Rover's message when a set-point in mode GUIDED expires.
 pub(super) const FORGOTTEN: &str = "target not received last 3.0 secs, stopping";
-/// A boat turns by the rate of turn as if it were to point where that leads in this time, s.
+/// A boat with a rate of turn steers to the heading that the rate reaches in this time, s.
 const TURN_LEAD_S: f64 = 1.0;
-/// No boat is asked for more, m/s.
+/// Maximum commanded speed, m/s.
 const SPEED_MAX_M_S: f64 = 100.0;
 
-/// What is to be steered.
+/// The steering target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Course {
     /// A true heading, rad.
@@ -29,12 +30,12 @@ enum Course {
     Turn(f64),
 }
 
-/// What a message asks for, with what it ignores left out.
+/// The contents of a message, without the ignored fields.
 struct Target {
     place: Option<Ned>,
-    /// Along the axes of its frame, m/s.
+    /// Velocity along the axes of its frame, m/s.
     velocity: Option<(f64, f64)>,
-    /// In its frame, rad.
+    /// Yaw in its frame, rad.
     yaw_rad: Option<f64>,
     yaw_rate_rad_s: Option<f64>,
     has_acceleration: bool,
@@ -61,7 +62,7 @@ impl Target {
     }
 }
 
-/// Whether positions of a frame are latitude and longitude.
+/// Whether positions in a frame are latitude and longitude.
 #[expect(deprecated, reason = "ground stations send the older frames, too")]
 pub(super) fn is_global(frame: MavFrame) -> bool {
     matches!(
@@ -78,11 +79,11 @@ pub(super) fn is_global(frame: MavFrame) -> bool {
 /// The set-points in force.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SetPoints {
-    /// When it came, what is to be steered, and the speed, m/s.
+    /// When it arrived, the steering target, and the speed, m/s.
     guided: Option<(SimTime, Course, f64)>,
     /// The position to which it goes instead.
     destination: Option<Ned>,
-    /// The speed at which it goes there, where one was commanded, m/s.
+    /// The commanded speed on the way there, if any, m/s.
     speed_m_s: Option<f64>,
     /// Throttle and steering, -1 to 1.
     manual: Option<(SimTime, f64, f64)>,
@@ -93,20 +94,20 @@ impl SetPoints {
         *self = SetPoints::default();
     }
 
-    /// Forgets what a remote control by MAVLink sent.
+    /// Drops the input of a remote control over MAVLink.
     pub(super) fn release_manual(&mut self) {
         self.manual = None;
     }
 
-    /// Whether a set-point of mode GUIDED has just been forgotten.
+    /// Whether a set-point in mode GUIDED has just expired.
     pub(super) fn expires(&mut self, now: SimTime) -> bool {
         self.guided.take_if(|(at, ..)| (now - *at).as_s() > HELD_S).is_some()
     }
 
-    /// A heading or a rate of turn with a share of the highest speed, m/s.
+    /// Sets a heading or a rate of turn, with a fraction of the highest speed, m/s.
     ///
     /// # Errors
-    /// What Rover ignores, with the reason.
+    /// The reason if Rover ignores it.
     pub(super) fn take_attitude(
         &mut self,
         now: SimTime,
@@ -114,7 +115,7 @@ impl SetPoints {
         speed_max_m_s: f64,
     ) -> Result<(), &'static str> {
         let mask = target.type_mask;
-        // Rover drops the whole message when it carries no throttle.
+        // Rover drops the whole message if it carries no throttle.
         if mask.contains(AttitudeTargetTypemask::ATTITUDE_TARGET_TYPEMASK_THROTTLE_IGNORE) {
             return Err("set-point ignored: it has no throttle");
         }
@@ -128,10 +129,11 @@ impl SetPoints {
         }
     }
 
-    /// A position from the origin or from the boat, or a velocity. The boat's own heading counts in frames that turn with it.
+    /// Sets a position relative to the origin or the boat, or a velocity. The boat's own heading
+    /// matters in frames that turn with it.
     ///
     /// # Errors
-    /// What Rover ignores, with the reason.
+    /// The reason if Rover ignores it.
     #[expect(deprecated, reason = "ground stations send the frames of the boat, and Rover takes them")]
     pub(super) fn take_local(
         &mut self,
@@ -159,10 +161,10 @@ impl SetPoints {
         )
     }
 
-    /// A position on the globe, `place`, or a velocity.
+    /// Sets a position on the globe, `place`, or a velocity.
     ///
     /// # Errors
-    /// What Rover ignores, with the reason.
+    /// The reason if Rover ignores it.
     pub(super) fn take_global(
         &mut self,
         now: SimTime,
@@ -179,8 +181,8 @@ impl SetPoints {
         self.follow(now, &asked, speed_max_m_s)
     }
 
-    /// A position alone, or a speed with the heading of the velocity, another heading, or a rate of turn; as Rover's
-    /// `handle_set_position_target_local_ned`, with its sign of the speed.
+    /// Sets a position, or a speed with the heading of the velocity, another heading, or a rate of
+    /// turn. Like Rover's `handle_set_position_target_local_ned`, including its sign of the speed.
     fn follow(&mut self, now: SimTime, target: &Target, speed_max_m_s: f64) -> Result<(), &'static str> {
         if target.has_acceleration {
             return Err("set-point ignored: set ACC_IGNORE in mask");
@@ -190,23 +192,22 @@ impl SetPoints {
         }
         let (x_m_s, y_m_s) = target.velocity.unwrap_or((0.0, 0.0));
         let course = match (target.yaw_rad, target.yaw_rate_rad_s) {
-            // Rover takes one or the other, and nothing when both are given.
+            // Rover accepts one or the other, and ignores the message if both are given.
             (Some(_), Some(_)) => return Err("set-point ignored: yaw and yaw rate"),
             (Some(yaw_rad), None) => Course::Heading(yaw_rad + target.frame_rad),
             (None, Some(rate_rad_s)) => Course::Turn(rate_rad_s),
             (None, None) if target.velocity.is_none() => return Err("set-point ignored: its mask"),
             (None, None) => Course::Heading(math::atan2(y_m_s, x_m_s) + target.frame_rad),
         };
-        // The sign of x is that of the speed, in frames where x is to the north too.
-        // This is the mistake in Rover/GCS_MAVLink_Rover.cpp that sent boats astern on
-        // southward headings. It is imitated so that our closed loops show it if a yaw is ever
-        // sent with a velocity again.
+        // The sign of x becomes that of the speed, even in frames where x points north. This is the
+        // bug in Rover/GCS_MAVLink_Rover.cpp that sent boats astern on southward headings. It is
+        // imitated so that our closed loops detect a yaw sent with a velocity.
         let has_yaw = target.yaw_rad.is_some() || target.yaw_rate_rad_s.is_some();
         let sign = if has_yaw && x_m_s < 0.0 { -1.0 } else { 1.0 };
         self.set(now, course, sign * math::length(x_m_s, y_m_s).min(speed_max_m_s))
     }
 
-    /// A heading, rad, from north or, where the boat's own is given, from the one before, and a speed, m/s.
+    /// Sets a heading, rad, from north or relative to the given heading, and a speed, m/s.
     ///
     /// # Errors
     /// Non-finite numbers.
@@ -224,7 +225,7 @@ impl SetPoints {
         self.set(now, Course::Heading(heading_rad + own_rad.map_or(0.0, before)), speed_m_s)
     }
 
-    /// Goes to a position, if it is one.
+    /// Goes to a position if it is valid.
     pub(super) fn go_to(&mut self, place: Ned) -> bool {
         if place.is_finite() {
             (self.guided, self.destination) = (None, Some(place));
@@ -232,14 +233,14 @@ impl SetPoints {
         place.is_finite()
     }
 
-    /// The speed on the way to a position, m/s; whether it goes to one.
+    /// Sets the speed on the way to a position, m/s; returns whether there is one.
     pub(super) fn set_speed(&mut self, speed_m_s: f64) -> bool {
         let is_taken = self.destination.is_some() && speed_m_s >= 0.0;
         self.speed_m_s = if is_taken { Some(speed_m_s) } else { self.speed_m_s };
         is_taken
     }
 
-    /// The position to which it goes in mode GUIDED, if it goes to one, and the speed that was commanded, m/s.
+    /// The position to which it goes in mode GUIDED, if any, and the commanded speed, m/s.
     pub(super) fn destination(&self) -> Option<(Ned, Option<f64>)> {
         self.destination.map(|place| (place, self.speed_m_s))
     }
@@ -249,12 +250,13 @@ impl SetPoints {
         self.guided.is_some()
     }
 
-    /// The heading that is ordered in mode GUIDED, whole degrees, as version 4.7 shows it (earlier ones show 0); 0 without one.
+    /// The ordered heading in mode GUIDED, whole degrees, as version 4.7 shows it (earlier ones
+    /// show 0); 0 without one.
     pub(super) fn nav_bearing(&self, now: SimTime) -> i16 {
         match self.guided {
             Some((at, Course::Heading(heading_rad), _)) if (now - at).as_s() <= HELD_S => {
-                // Rover 4.7 shows whole degrees here, cut off and not rounded; earlier versions
-                // always 0.
+                // Rover 4.7 shows whole degrees here, truncated rather than rounded; earlier
+                // versions always show 0.
                 wrap_pi(heading_rad).to_degrees() as i16
             }
             _ => 0,
@@ -270,13 +272,15 @@ impl SetPoints {
         Ok(())
     }
 
-    /// Steering is the axis y, throttle the axis z, from 0 to 1000 with rest at 500, or x where that is set.
+    /// Manual control: steering is the y axis; throttle is the z axis, 0 to 1000 with rest at 500,
+    /// or x if that is set.
     pub(super) fn take_manual(&mut self, now: SimTime, control: &MANUAL_CONTROL_DATA) {
         let throttle = 0.002 * (f64::from(control.z) - 500.0);
         self.manual = Some((now, throttle.clamp(-1.0, 1.0), (0.001 * f64::from(control.y)).clamp(-1.0, 1.0)));
     }
 
-    /// Steering is channel 1, throttle channel 3, 1000 to 2000 µs with rest at 1500; 0 is no override.
+    /// RC override: steering is channel 1, throttle channel 3, 1000 to 2000 µs with rest at 1500; 0
+    /// means no override.
     pub(super) fn take_channels(&mut self, now: SimTime, channels: &RC_CHANNELS_OVERRIDE_DATA) {
         let share = |us: u16| if us == 0 || us == u16::MAX { 0.0 } else { 0.002 * (f64::from(us) - 1500.0) };
         let (throttle, steering) = (share(channels.chan3_raw), share(channels.chan1_raw));
@@ -292,7 +296,7 @@ impl SetPoints {
         }
     }
 
-    /// The order of the set-point in mode GUIDED, if there is one.
+    /// The order from the set-point in mode GUIDED, if any.
     pub(super) fn guided(&self, psi_rad: f64) -> Option<Order> {
         let (_, course, speed_m_s) = self.guided?;
         Some(match course {
@@ -301,8 +305,8 @@ impl SetPoints {
             }
             Course::Turn(rate_rad_s) if speed_m_s < 0.0 => autopilot::astern(speed_m_s, rate_rad_s * TURN_LEAD_S),
             Course::Heading(heading_rad) => autopilot::steer(Some(heading_rad), Some(speed_m_s)),
-            // A set-point of zero is what our gateway stops a boat with: it must rest and not
-            // hold a heading.
+            // Our gateway stops a boat with a set-point of zero: it must rest and not hold a
+            // heading.
             Course::Turn(0.0) if speed_m_s == 0.0 => Order::Hold,
             Course::Turn(rate_rad_s) => {
                 let by_rad = (rate_rad_s * TURN_LEAD_S).clamp(-PI, PI);

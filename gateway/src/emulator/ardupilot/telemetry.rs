@@ -1,4 +1,4 @@
-//! The telemetry of an emulated ArduPilot boat: which messages, how often, and what is in them.
+//! The telemetry of an emulated ArduPilot boat: messages, rates and contents.
 
 #![expect(deprecated, reason = "ground stations ask for streams by REQUEST_DATA_STREAM all the same")]
 
@@ -17,19 +17,19 @@ use primitives::frame::Ned;
 use primitives::{SimTime, math};
 use std::collections::BTreeMap;
 
-/// Nothing is sent more often than this, s.
+/// Minimum interval of a message, s.
 const INTERVAL_MIN_S: f64 = 0.02;
-/// The version 4.5.7, as ArduPilot counts it.
+/// Version 4.5.7, in ArduPilot's encoding.
 const VERSION: u32 = 0x0405_07FF;
 
-/// EKF_STATUS_REPORT of ArduPilot's own dialect: its number, the byte of its definition in the checksum, and its flags when all is well
-/// and without a fix.
+/// EKF_STATUS_REPORT of ArduPilot's own dialect: its number, the byte of its definition in the
+/// checksum, and its flags when healthy and without a fix.
 const EKF_STATUS_REPORT: u32 = 193;
 const EKF_EXTRA_CRC: u8 = 71;
 const EKF_WELL: u16 = 831;
 const EKF_WITHOUT_FIX: u16 = 165;
 
-/// Every message that it can send: its number, the stream that it is of, and how often it comes unasked, s, if it does.
+/// Every message that it can send: its number, its stream, and its default interval, s, if any.
 const MESSAGES: [(u32, MavDataStream, Option<f64>); 16] = [
     (HEARTBEAT_DATA::ID, MavDataStream::MAV_DATA_STREAM_ALL, Some(1.0)),
     (SYS_STATUS_DATA::ID, MavDataStream::MAV_DATA_STREAM_EXTENDED_STATUS, Some(1.0)),
@@ -49,7 +49,7 @@ const MESSAGES: [(u32, MavDataStream, Option<f64>); 16] = [
     (AUTOPILOT_VERSION_DATA::ID, MavDataStream::MAV_DATA_STREAM_ALL, None),
 ];
 
-/// How often each message is sent, s, and when it is due.
+/// The interval of each message, s, and when it is due.
 #[derive(Clone, Debug)]
 pub(super) struct Streams {
     regular: BTreeMap<u32, (f64, SimTime)>,
@@ -66,7 +66,7 @@ impl Streams {
         let mut due = vec![];
         for (id, (every_s, at)) in &mut self.regular {
             if now >= *at {
-                // In step with what asks, which comes in steps of its own.
+                // In step with the caller, which polls at its own intervals.
                 *at = (*at + SimTime::from_s(*every_s)).max(now);
                 due.push(*id);
             }
@@ -74,8 +74,8 @@ impl Streams {
         due
     }
 
-    /// The interval of a message, µs; -1 is never, 0 as unasked.
-    // Zero asks for the default rate and a negative interval ends the message
+    /// Sets the interval of a message, µs; -1 means never, 0 means the default.
+    // Zero requests the default rate, and a negative interval stops the message
     // (MAV_CMD_SET_MESSAGE_INTERVAL).
     pub(super) fn set_interval(&mut self, id: u32, interval_us: f64) -> MavResult {
         let Some((_, _, unasked_s)) = MESSAGES.iter().find(|(known, ..)| *known == id) else {
@@ -87,20 +87,20 @@ impl Streams {
         MavResult::MAV_RESULT_ACCEPTED
     }
 
-    /// The interval of a message, µs: -1 is never, 0 is a message that it does not have.
+    /// The interval of a message, µs: -1 means never, 0 an unsupported message.
     fn interval_us(&self, id: u32) -> i32 {
         let is_known = MESSAGES.iter().any(|(known, ..)| *known == id);
         let never = if is_known { -1 } else { 0 };
         self.regular.get(&id).map_or(never, |(every_s, _)| (1e6 * every_s) as i32)
     }
 
-    /// The rate of a stream, or of all.
+    /// Sets the rate of one stream, or of all.
     pub(super) fn take_request(&mut self, request: &REQUEST_DATA_STREAM_DATA) {
         let every_s = (request.start_stop == 1 && request.req_message_rate > 0)
             .then(|| 1.0 / f64::from(request.req_message_rate));
         let is_all = request.req_stream_id == MavDataStream::MAV_DATA_STREAM_ALL;
         for (id, stream, unasked_s) in MESSAGES {
-            // A heartbeat goes on.
+            // The heartbeat continues.
             if unasked_s.is_some() && id != HEARTBEAT_DATA::ID && (is_all || stream == request.req_stream_id) {
                 self.set(id, every_s);
             }
@@ -119,7 +119,7 @@ impl Streams {
 }
 
 impl ArduPilot {
-    /// Shows how often a message is sent.
+    /// Reports the interval of a message.
     pub(super) fn show_interval(&mut self, id: u32) -> MavResult {
         let interval_us = self.streams.interval_us(id);
         let shown = MESSAGE_INTERVAL_DATA { interval_us, message_id: id as u16 };
@@ -127,7 +127,7 @@ impl ArduPilot {
         if interval_us == 0 { MavResult::MAV_RESULT_FAILED } else { MavResult::MAV_RESULT_ACCEPTED }
     }
 
-    /// Sends a message as it is now; whether there is anything to tell.
+    /// Sends a message with current data; returns whether there was any.
     pub(super) fn send_message(&mut self, now: SimTime, id: u32) -> bool {
         if id == EKF_STATUS_REPORT {
             let flags = if self.sensed.has_fix(now) { EKF_WELL } else { EKF_WITHOUT_FIX };
@@ -152,7 +152,7 @@ impl ArduPilot {
                 let nav_bearing = self.set_points.nav_bearing(now);
                 MavMessage::NAV_CONTROLLER_OUTPUT(NAV_CONTROLLER_OUTPUT_DATA { nav_bearing, ..Default::default() })
             }
-            // Of velocities there is none.
+            // There are no velocities.
             POSITION_TARGET_GLOBAL_INT_DATA::ID if self.mode == RoverMode::Guided => {
                 let (lat_int, lon_int) = self.e7(self.position_target()?);
                 let time_boot_ms = boot_ms(now);
@@ -222,7 +222,7 @@ impl ArduPilot {
         (1000.0 * self.battery.volts()).round().clamp(0.0, 65_534.0) as u16
     }
 
-    /// What is drawn, 10 mA.
+    /// The current drawn, 10 mA.
     fn centiamps(&self) -> i16 {
         (100.0 * self.battery.amps()).round().clamp(0.0, f64::from(i16::MAX)) as i16
     }
@@ -233,8 +233,8 @@ impl ArduPilot {
 
     fn battery(&self) -> BATTERY_STATUS_DATA {
         let mut voltages = [u16::MAX; 10];
-        // The whole pack in the first cell and the others unused, as boards without cell
-        // monitors report it.
+        // The whole pack in the first cell and the others unused, as reported by boards without
+        // cell monitors.
         voltages[0] = self.millivolts();
         BATTERY_STATUS_DATA {
             current_consumed: self.battery.used_mah().round() as i32,
@@ -272,7 +272,7 @@ impl ArduPilot {
         Some(self.e7(self.sensed.own?.nav.at()))
     }
 
-    /// The position to which it goes in GUIDED, or where it keeps its station for want of a set-point.
+    /// The position to which it goes in GUIDED, or where it keeps station for lack of a set-point.
     fn position_target(&self) -> Option<Ned> {
         let destination = self.set_points.destination().map(|(place, _)| place);
         destination.or_else(|| self.autopilot.station().filter(|_| !self.set_points.has_course()))
@@ -310,7 +310,7 @@ impl ArduPilot {
             vx: (100.0 * velocity.north).round() as i16,
             vy: (100.0 * velocity.east).round() as i16,
             vz: 0,
-            // Held below 36000, which is no heading any more.
+            // Kept below 36000, which is not a valid heading.
             hdg: ((100.0 * compass_deg_from_rad(nav.psi_rad)) as u16).min(35_999),
         })
     }

@@ -1,4 +1,5 @@
-//! A client of a payload behind a TCP port: it has a connection of its own to the payload, over which its bytes and those for it pass.
+//! A client of a payload behind a TCP port, with its own connection to the payload, over which
+//! bytes pass both ways.
 
 use super::limit::{ANSWER_PAUSE, CONNECT_MAX, LOOK, WRITE_MAX};
 use super::passed_payload::Payload;
@@ -11,13 +12,14 @@ use std::net::{Shutdown, TcpStream, ToSocketAddrs};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-/// The most bytes that pass at once.
+/// Maximum bytes passed at once.
 const PIECE: usize = 64 * 1024;
-/// After so long without a byte a connection is probed, so often, and given up when nobody answers.
+/// Idle time before a connection is probed, interval of the probes, and their number before it is
+/// closed.
 const KEEPALIVE: TcpKeepalive =
     TcpKeepalive::new().with_time(Duration::from_secs(10)).with_interval(Duration::from_secs(5)).with_retries(3);
 
-/// A client, and its connection to the payload.
+/// A client and its connection to the payload.
 struct Forward<'a> {
     payload: &'a Payload,
     slot: &'a Slot,
@@ -25,11 +27,11 @@ struct Forward<'a> {
     upstream: TcpStream,
     number: u32,
     tap: Tap,
-    /// Whether the payload, the client has closed its side.
+    /// Whether the payload and the client have closed their sides.
     ended: [AtomicBool; 2],
 }
 
-/// Serves a client, until it or the payload is gone.
+/// Serves a client until it or the payload is lost.
 pub(super) fn serve(payload: &Payload, at: &HostPort, slot: &Slot, client: &TcpStream) {
     let Some(_turn) = payload.turn.client() else { return };
     let connected = connect(at).and_then(|upstream| {
@@ -38,7 +40,7 @@ pub(super) fn serve(payload: &Payload, at: &HostPort, slot: &Slot, client: &TcpS
     });
     let upstream = match connected {
         Ok(upstream) => upstream,
-        Err(e) => return payload.remark(&format!("a client finds nothing at {}: {e}", payload.port.address)),
+        Err(e) => return payload.remark(&format!("cannot connect a client to {}: {e}", payload.port.address)),
     };
     let (number, tap) = payload.taps.open();
     let forward = Forward { payload, slot, client, upstream, number, tap, ended: Default::default() };
@@ -46,7 +48,7 @@ pub(super) fn serve(payload: &Payload, at: &HostPort, slot: &Slot, client: &TcpS
         let thread = std::thread::Builder::new().name(format!("payload {}", payload.port.name));
         match thread.spawn_scoped(scope, || forward.pass(false)) {
             Ok(_) => forward.pass(true),
-            Err(e) => payload.remark(&format!("no thread for a client: {e}")),
+            Err(e) => payload.remark(&format!("cannot start a thread for a client: {e}")),
         }
     });
 }
@@ -56,7 +58,8 @@ pub(super) fn connect(at: &HostPort) -> io::Result<TcpStream> {
     let mut last = io::Error::new(ErrorKind::NotFound, "the host has no address");
     for address in (at.host.as_str(), at.port).to_socket_addrs()? {
         match TcpStream::connect_timeout(&address, CONNECT_MAX) {
-            // Nobody listens on a port of the ephemeral range, and our own socket was given that very port.
+            // Nothing listens on this port of the ephemeral range, and our own socket got that very
+            // port.
             Ok(stream) if stream.local_addr()? == address => last = ErrorKind::ConnectionRefused.into(),
             Ok(stream) => {
                 prepare(&stream)?;
@@ -68,7 +71,7 @@ pub(super) fn connect(at: &HostPort) -> io::Result<TcpStream> {
     Err(last)
 }
 
-/// Sets the options of a connection on which nobody is waited for without a limit.
+/// Sets the options of a connection so that no wait is unlimited.
 pub(super) fn prepare(stream: &TcpStream) -> io::Result<()> {
     stream.set_nodelay(true)?;
     stream.set_read_timeout(Some(LOOK))?;
@@ -82,7 +85,8 @@ pub(super) fn is_pause(error: &io::Error) -> bool {
 }
 
 impl Forward<'_> {
-    /// Passes bytes on one way, until that ends. While the other side does not take them, no more are read.
+    /// Passes bytes one way until that ends. Reads no more while the other side does not accept
+    /// them.
     fn pass(&self, outward: bool) {
         let (from, to) = if outward { (self.client, &self.upstream) } else { (&self.upstream, self.client) };
         let mut piece = vec![0; PIECE];
@@ -92,7 +96,7 @@ impl Forward<'_> {
                 Ok(0) => {
                     self.tap.end(self.number, outward);
                     self.ended[usize::from(outward)].store(true, Ordering::Relaxed);
-                    // Who is gone already need not be told.
+                    // The other side may be gone already.
                     drop(to.shutdown(Shutdown::Write));
                     return;
                 }
@@ -100,15 +104,16 @@ impl Forward<'_> {
                     received = clock::now();
                     self.slot.touch();
                     self.tap.record_bytes(self.number, outward, &piece[..count]);
-                    // What one side does not take is not read from the other: TCP's own back
-                    // pressure holds a fast camera back.
+                    // Bytes that one side does not accept are not read from the other: TCP's own
+                    // back pressure slows down a fast camera.
                     if let Err(e) = (&mut &*to).write_all(&piece[..count]) {
                         self.tell_stall(outward, &e);
                         return self.close();
                     }
                 }
                 Err(e) if is_pause(&e) => {
-                    // After the payload's last byte nothing is for the client to say; the payload may still have to answer.
+                    // After the payload's last byte the client has nothing to send; the payload may
+                    // still have to answer.
                     let has_other_ended = self.ended[usize::from(!outward)].load(Ordering::Relaxed);
                     if has_other_ended && (outward || clock::since(received) >= ANSWER_PAUSE) {
                         return self.close();
@@ -119,15 +124,15 @@ impl Forward<'_> {
         }
     }
 
-    /// Logs whoever was waited for too long.
+    /// Logs the side that stalled for too long.
     fn tell_stall(&self, outward: bool, error: &io::Error) {
         if is_pause(error) {
-            let whoever = if outward { "the payload" } else { "a client" };
-            self.payload.remark(&format!("{whoever} took nothing for {WRITE_MAX:?}: disconnected"));
+            let receiver = if outward { "the payload" } else { "a client" };
+            self.payload.remark(&format!("{receiver} accepted no data for {WRITE_MAX:?}: disconnected"));
         }
     }
 
-    /// Ends both ways; who is gone already need not be told.
+    /// Ends both ways; a side may be gone already.
     fn close(&self) {
         drop(self.client.shutdown(Shutdown::Both));
         drop(self.upstream.shutdown(Shutdown::Both));

@@ -1,7 +1,7 @@
-//! Payloads passed through: clients connect here, bytes pass both ways, and all of them are recorded.
+//! Payload pass-through: clients connect here, bytes pass both ways, and all are recorded.
 //!
-//! A payload never harms the boat: it has threads of its own, and of the gateway loop it wants nothing but that a remark is logged now
-//! and then. Whoever is slow or stopped, a client or a payload, holds up its own connection alone.
+//! A payload never harms the boat: it has its own threads, and the gateway loop only logs a remark
+//! for it now and then. A slow or stopped client or payload delays only its own connection.
 
 mod forward;
 mod limit;
@@ -30,17 +30,17 @@ use tap::Taps;
 use turn::Turn;
 use way::Way;
 
-/// The payloads of a boat, as long as this is kept.
+/// The payloads of a boat, open until dropped.
 pub(super) struct Payloads(Vec<Passage>);
 
-/// The way to a payload that is open to clients.
+/// The connection to a payload that is open to clients.
 struct Passage {
     payload: Arc<Payload>,
     port: TcpPort,
 }
 
 impl Payloads {
-    /// Opens a port for each. A boat is not left alone since one of them cannot be opened: that is a warning.
+    /// Opens a port for each. Failure to open one does not abandon the boat; it is a warning.
     pub(super) fn open(ports: &[PayloadPort], shell: &Shell, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Payloads {
         let mut passages = vec![];
         for port in ports {
@@ -76,9 +76,9 @@ impl Passage {
         let serve = move |slot: &Slot, client: &TcpStream| to.serve(&clients, slot, client);
         let name = format!("payload {}", port.name);
         let passage = Passage { port: TcpPort::open(port.listen, &name, CLIENTS_MAX, serve)?, payload };
-        // Without a recording nobody would learn what was measured.
-        // A sonde says nothing unasked, and two who ask at once get each other's answers: so
-        // the gateway asks itself, in turn with clients.
+        // Without a recording, nobody would receive the values.
+        // A sonde sends nothing unasked, and two simultaneous queries get each other's answers. So
+        // the gateway queries it, in turn with clients.
         if let (Some(exo2), true) = (port.exo2, shell.record.is_some()) {
             let payload = Arc::clone(&passage.payload);
             let thread = std::thread::Builder::new().name(format!("sonde {}", port.name));

@@ -1,4 +1,4 @@
-//! A payload that is passed through, as its threads share it.
+//! A payload that is passed through, as shared by its threads.
 
 use super::remarks::Remarks;
 use super::tap::Taps;
@@ -6,7 +6,7 @@ use super::turn::Turn;
 use crate::payload::PayloadPort;
 use std::sync::Arc;
 
-/// What the threads of a payload share.
+/// State shared by the threads of a payload.
 pub(super) struct Payload {
     pub(super) port: PayloadPort,
     pub(super) taps: Taps,
@@ -15,7 +15,7 @@ pub(super) struct Payload {
 }
 
 impl Payload {
-    /// Has something logged, unless something was just now.
+    /// Logs a remark, unless one was logged just now.
     pub(super) fn remark(&self, text: &str) {
         self.remarks.make(text);
     }

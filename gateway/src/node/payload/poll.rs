@@ -1,4 +1,4 @@
-//! A sonde that is asked by the gateway itself, as long as no client is connected, so that its values are recorded all the same.
+//! Polls a sonde while no client is connected, so that its values are recorded anyway.
 
 use super::forward::{connect, is_pause};
 use super::passed_payload::Payload;
@@ -14,25 +14,26 @@ use std::io::{self, ErrorKind, Read, Write};
 use std::net::TcpStream;
 use std::time::Duration;
 
-/// How often it is asked, at the most.
+/// Minimum time between polls.
 const EVERY: Duration = Duration::from_secs(1);
-/// How long an answer by HTTP may take.
+/// Maximum time for an answer by HTTP.
 const ANSWER_MAX: Duration = Duration::from_secs(5);
-/// More than so much is no answer, bytes.
+/// Maximum bytes of an answer.
 const ANSWER_LENGTH_MAX: usize = 64 * 1024;
-/// After so many questions without an answer it is asked for its parameters again: it may have others now.
+/// After this many queries without an answer its parameters are queried again: they may have
+/// changed.
 const UNANSWERED_MAX: u32 = 5;
 
-/// What to ask the sonde next.
+/// The next query to the sonde.
 struct Questions<'a> {
     payload: &'a Payload,
-    /// What was known of it when its parameters were asked for, and when it was last asked.
+    /// The state of the sonde when its parameters were queried, and when it was last polled.
     begun: Sonde,
     last: Sonde,
     unanswered: u32,
 }
 
-/// Asks the sonde whenever it has no client, until all is over.
+/// Polls the sonde whenever it has no client, until everything ends.
 pub(super) fn run(payload: &Payload, way: &Way, exo2: Exo2Port) {
     while let Some(turn) = payload.turn.poll() {
         let mut questions = Questions::new(payload);
@@ -42,9 +43,9 @@ pub(super) fn run(payload: &Payload, way: &Way, exo2: Exo2Port) {
             (Way::Shared(line), _) => over_line(line, &mut questions, &turn),
         };
         if let Err(e) = asked {
-            payload.remark(&format!("the sonde at {} cannot be asked: {e}", payload.port.address));
+            payload.remark(&format!("cannot query the sonde at {}: {e}", payload.port.address));
         }
-        // A client that connects has the sonde at once: people come before the recording.
+        // A client that connects gets the sonde at once: people come before the recording.
         turn.is_wanted_within(EVERY);
     }
 }
@@ -55,7 +56,7 @@ impl Questions<'_> {
         Questions { payload, begun: sonde.clone(), last: sonde, unanswered: 0 }
     }
 
-    /// Its parameters until it has told them, and then their values.
+    /// Queries its parameters until it has reported them, then their values.
     fn next(&mut self) -> Command {
         let sonde = self.payload.taps.sonde().unwrap_or_default();
         self.unanswered = if sonde == self.last { self.unanswered + 1 } else { 0 };
@@ -68,20 +69,19 @@ impl Questions<'_> {
     }
 
     fn command(&self, sonde: &Sonde) -> Command {
-        // Numbers mean nothing without the codes of their parameters, which a sonde is asked
-        // for first.
+        // Numbers mean nothing without the codes of their parameters, so these are queried first.
         if sonde.told == self.begun.told { Command::Parameters } else { Command::Values }
     }
 }
 
-/// Over one connection, a line at a time.
+/// Over one connection, line by line.
 fn by_lines(payload: &Payload, at: &HostPort, questions: &mut Questions<'_>, turn: &PollTurn<'_>) -> io::Result<()> {
     let stream = connect(at)?;
     let connection = payload.taps.open();
     while !turn.is_wanted_within(Duration::ZERO) {
         match send_question(&stream, &connection, &line(questions.next()), turn, EVERY)? {
             Answer::Ended => return Err(ErrorKind::ConnectionAborted.into()),
-            // What goes on and on is read no faster than this.
+            // Limits the rate at which an endless answer is read.
             Answer::TooLong => drop(turn.is_wanted_within(EVERY)),
             Answer::Open => {}
         }
@@ -89,9 +89,9 @@ fn by_lines(payload: &Payload, at: &HostPort, questions: &mut Questions<'_>, tur
     Ok(())
 }
 
-/// Over a line whose answers come to its clients too.
+/// Over a line whose answers also reach its clients.
 fn over_line(line_to: &SharedLine, questions: &mut Questions<'_>, turn: &PollTurn<'_>) -> io::Result<()> {
-    // Who unplugged it is told so already.
+    // The link has already reported its loss.
     while line_to.is_up() && line_to.send(0, line(questions.next()).as_bytes()) {
         if turn.is_wanted_within(EVERY) {
             break;
@@ -100,10 +100,10 @@ fn over_line(line_to: &SharedLine, questions: &mut Questions<'_>, turn: &PollTur
     Ok(())
 }
 
-/// By HTTP, a connection for each question.
+/// By HTTP, with a connection for each query.
 fn by_http(payload: &Payload, at: &HostPort, questions: &mut Questions<'_>, turn: &PollTurn<'_>) -> io::Result<()> {
     loop {
-        // HTTP/1.0: the answer ends with the connection, and comes in no chunks.
+        // HTTP/1.0: the answer ends with the connection, and has no chunks.
         let request = match questions.next() {
             Command::Values => format!("GET /data HTTP/1.0\r\nHost: {at}\r\n\r\n"),
             other => {
@@ -123,16 +123,16 @@ fn by_http(payload: &Payload, at: &HostPort, questions: &mut Questions<'_>, turn
     }
 }
 
-/// How far an answer has come.
+/// The progress of an answer.
 enum Answer {
     /// The other side has closed the connection.
     Ended,
     TooLong,
-    /// There may be more to come.
+    /// More bytes may follow.
     Open,
 }
 
-/// Sends a question, and reads what comes for so long, unless somebody else wants the turn.
+/// Sends a query, and reads the answer until this limit, unless a client wants its turn.
 fn send_question(
     mut stream: &TcpStream,
     (number, tap): &(u32, Tap),
@@ -163,7 +163,7 @@ fn send_question(
     Ok(Answer::Open)
 }
 
-/// A command as the sonde takes it.
+/// A command in the sonde's format.
 fn line(command: Command) -> String {
     format!("{}\r", command.word())
 }

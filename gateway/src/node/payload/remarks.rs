@@ -1,11 +1,11 @@
-//! What is logged of a payload, no more than a remark now and then.
+//! Rate-limited remarks about a payload.
 
 use super::super::loop_input::Call;
 use bus::{InboxSender, clock};
 use parking_lot::Mutex;
 use std::time::{Duration, Instant};
 
-/// No more than one in this time.
+/// Minimum time between remarks.
 const EVERY: Duration = Duration::from_secs(10);
 
 /// The remarks of a payload.
@@ -20,14 +20,14 @@ impl Remarks {
         Remarks { name: name.to_owned(), calls, last: Mutex::default() }
     }
 
-    /// Has something logged, unless something was just now.
+    /// Logs a remark, unless one was logged just now.
     pub(super) fn make(&self, text: &str) {
         let mut last = self.last.lock();
         if last.is_some_and(|at| clock::since(at) < EVERY) {
             return;
         }
         *last = Some(clock::now());
-        // A loop that has no room for it has worse to tell.
+        // A loop whose queue is full has worse to report.
         self.calls.offer(Call::Remark(format!("payload {}: {text}", self.name)));
     }
 }

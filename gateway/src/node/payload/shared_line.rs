@@ -1,4 +1,5 @@
-//! A payload on a serial line or UDP port, which its clients share: all are sent what it says, and it is sent what each of them says.
+//! A payload on a serial line or UDP port, shared by its clients: each receives everything it
+//! sends, and it receives what each of them sends.
 
 use super::forward::{is_pause, prepare};
 use super::limit::{ANSWER_PAUSE, CONNECT_MAX};
@@ -13,11 +14,12 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::time::Duration;
 
-/// The most bytes of a client that are written at once, so that the others have their turn: a quarter of a second at 9600 baud.
+/// Maximum bytes of a client written at once, so that the others get their turn: a quarter of a
+/// second at 9600 baud.
 const PIECE: usize = 256;
-/// How long the line may take to write them.
+/// Maximum time to write them.
 const WRITE_LIMIT: Duration = Duration::from_secs(2);
-/// The most pieces that wait for a client which does not read.
+/// Maximum number of pieces that wait for a client that does not read.
 const WAITING_MAX: usize = 64;
 /// From the line to all clients.
 const TO_ALL: u32 = 0;
@@ -25,7 +27,7 @@ const TO_ALL: u32 = 0;
 /// The line.
 pub(super) struct SharedLine {
     link: Link,
-    /// One piece at a time: of two that wait, the link keeps the newer alone.
+    /// One piece at a time: of two that wait, the link keeps only the newer.
     writing: Mutex<()>,
     ends: Arc<Ends>,
 }
@@ -41,7 +43,7 @@ struct Ends {
 struct Client {
     number: u32,
     pieces: SyncSender<Arc<[u8]>>,
-    /// To close it.
+    /// Closes it.
     stream: TcpStream,
 }
 
@@ -56,25 +58,26 @@ impl SharedLine {
         Ok(SharedLine { link, writing: Mutex::new(()), ends })
     }
 
-    /// Whether the line is there, or comes soon.
+    /// Whether the line is up, or will be soon.
     pub(super) fn is_up(&self) -> bool {
         self.ends.is_up.wait(CONNECT_MAX, |is_up| *is_up)
     }
 
-    /// Sends the payload something, behind what others send; whether the line took it.
+    /// Sends bytes to the payload after those of other senders; returns whether the line accepted
+    /// them.
     pub(super) fn send(&self, connection: u32, bytes: &[u8]) -> bool {
-        // A command of one client is written whole before the next one's begins.
+        // A command of one client is written completely before the next one's begins.
         let _writing = self.writing.lock();
         self.ends.tap.record_bytes(connection, true, bytes);
         self.link.send_and_wait(bytes, WRITE_LIMIT)
     }
 
-    /// Serves a client, until it or the line is gone.
+    /// Serves a client until it or the line is lost.
     pub(super) fn serve(&self, slot: &Slot, stream: &TcpStream) {
         let payload = &self.ends.payload;
         let Some(_turn) = payload.turn.client() else { return };
         if !self.is_up() {
-            return payload.remark(&format!("a client finds nothing at {}", payload.port.address));
+            return payload.remark(&format!("cannot connect a client to {}", payload.port.address));
         }
         let (number, _) = payload.taps.open();
         let (sender, pieces) = sync_channel(WAITING_MAX);
@@ -86,15 +89,15 @@ impl SharedLine {
             let thread = std::thread::Builder::new().name(format!("payload {}", payload.port.name));
             match thread.spawn_scoped(scope, move || write(stream, &pieces)) {
                 Ok(_) => self.read(number, slot, stream),
-                Err(e) => payload.remark(&format!("no thread for a client: {e}")),
+                Err(e) => payload.remark(&format!("cannot start a thread for a client: {e}")),
             }
-            // Its queue is closed with it, and that ends the thread.
+            // This also closes its queue, which ends the thread.
             self.ends.clients.lock().retain(|client| client.number != number);
             drop(stream.shutdown(Shutdown::Both));
         });
     }
 
-    /// Sends the payload what a client says.
+    /// Sends a client's bytes to the payload.
     fn read(&self, number: u32, slot: &Slot, mut stream: &TcpStream) {
         let mut piece = [0; PIECE];
         loop {
@@ -107,7 +110,7 @@ impl SharedLine {
                 Ok(count) => {
                     slot.touch();
                     if !self.send(number, &piece[..count]) {
-                        return self.ends.payload.remark(&format!("the line took nothing for {WRITE_LIMIT:?}"));
+                        return self.ends.payload.remark(&format!("the line accepted no data for {WRITE_LIMIT:?}"));
                     }
                 }
                 Err(e) if is_pause(&e) => {}
@@ -134,11 +137,11 @@ impl Ends {
         }
     }
 
-    /// Gives all clients a piece; one that has too many already is cut off.
+    /// Sends a piece to all clients; disconnects a client whose queue is full.
     fn give(&self, piece: &Arc<[u8]>) {
         for client in &*self.clients.lock() {
-            // One client that does not read must not hold up the others, nor make the gateway
-            // keep what it misses.
+            // A client that does not read must not delay the others, nor make the gateway store
+            // what it misses.
             if client.pieces.try_send(Arc::clone(piece)).is_err() {
                 self.payload.remark("a client does not read: disconnected");
                 client.close();
@@ -148,13 +151,13 @@ impl Ends {
 }
 
 impl Client {
-    /// Its threads find out.
+    /// Its threads will notice.
     fn close(&self) {
         drop(self.stream.shutdown(Shutdown::Both));
     }
 }
 
-/// Writes a client what comes for it.
+/// Writes queued bytes to a client.
 fn write(mut stream: &TcpStream, pieces: &Receiver<Arc<[u8]>>) {
     let written: io::Result<()> = pieces.iter().try_for_each(|piece| stream.write_all(&piece));
     if written.is_err() {

@@ -1,4 +1,4 @@
-//! What payloads need of the gateway.
+//! The gateway services that payloads need.
 
 use super::super::clock::Clock;
 use super::super::loop_input::Call;
@@ -6,11 +6,11 @@ use bus::InboxSender;
 use recording::BulkRecorder;
 use std::path::PathBuf;
 
-/// What payloads need of the gateway.
+/// The gateway services that payloads need.
 pub(crate) struct Shell {
     /// The recorder, and its file.
     pub(crate) record: Option<(BulkRecorder, PathBuf)>,
-    /// What the disk must have free for bytes of payloads to be recorded, MiB.
+    /// Minimum free disk space for recording payload bytes, MiB.
     pub(crate) space_min_mib: u64,
     pub(crate) clock: Clock,
     pub(crate) calls: InboxSender<Call>,

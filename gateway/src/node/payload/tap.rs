@@ -1,4 +1,4 @@
-//! What passes between a payload and its clients, recorded, and read where the payload is a sonde.
+//! Records the bytes between a payload and its clients, and decodes them if the payload is a sonde.
 
 use super::super::clock::Clock;
 use super::super::machine_check::free_mib;
@@ -14,7 +14,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, Instant};
 
-/// How often the free space of the disk is looked at.
+/// How often the free disk space is checked.
 const SPACE_EVERY: Duration = Duration::from_secs(1);
 
 /// Records a payload's connections. Without a recorder it does nothing.
@@ -24,17 +24,17 @@ struct Recording {
     recorder: BulkRecorder,
     clock: Clock,
     encoder: Mutex<PayloadEncoder>,
-    /// What is known of the sonde, if it is one.
+    /// The state of the sonde, if it is one.
     sonde: Option<Mutex<Sonde>>,
     space: Space,
     remarks: Arc<Remarks>,
 }
 
-/// The disk of the recording: with less free than this, the rest is for the boat's own bytes.
+/// The disk of the recording: with less free space than this, the rest is for the boat's own bytes.
 struct Space {
     file: PathBuf,
     min_mib: u64,
-    /// When it was looked at, and whether there was enough.
+    /// When it was checked, and whether there was enough space.
     seen: Mutex<Option<(Instant, bool)>>,
 }
 
@@ -55,25 +55,25 @@ impl Taps {
         Taps(shell.record.clone().map(recording), AtomicU32::new(0))
     }
 
-    /// The number of a new connection, and what records it.
+    /// The number of a new connection, and its recorder.
     pub(super) fn open(&self) -> (u32, Tap) {
         let number = self.1.fetch_add(1, Ordering::Relaxed).wrapping_add(1);
         (number, Tap { recording: self.0.clone(), conversation: Mutex::default() })
     }
 
-    /// What is known of the sonde; nothing where nobody wants to know.
+    /// The state of the sonde; `None` if its values are not wanted.
     pub(super) fn sonde(&self) -> Option<Sonde> {
         self.0.as_ref()?.sonde.as_ref().map(|sonde| sonde.lock().clone())
     }
 }
 
 impl Tap {
-    /// Bytes of the connection of this number, to the payload if `outward`.
+    /// Records bytes of the connection of this number, to the payload if `outward`.
     pub(super) fn record_bytes(&self, connection: u32, outward: bool, bytes: &[u8]) {
         self.record(connection, outward, bytes, |conversation, sonde| conversation.read_bytes(outward, bytes, sonde));
     }
 
-    /// The side that bytes come from has closed the connection.
+    /// Records that the sending side has closed the connection.
     pub(super) fn end(&self, connection: u32, outward: bool) {
         self.record(connection, outward, &[], |conversation, sonde| {
             conversation.end(outward, sonde).into_iter().collect()
@@ -92,7 +92,7 @@ impl Tap {
         };
         let at = clock.now();
         let mut encoder = encoder.lock();
-        // The boat's own recording needs the room: a camera of 1 MB a second fills a disk in a
+        // The boat's own recording needs the space: a camera at 1 MB a second fills a disk in a
         // day.
         if space.is_enough() {
             recorder.record(encoder.bytes(at, connection, outward, bytes));
@@ -112,7 +112,7 @@ impl Space {
         match *seen {
             Some((at, is_enough)) if clock::since(at) < SPACE_EVERY => is_enough,
             _ => {
-                // Where it cannot be known, the recorder will find out.
+                // If the free space is unknown, the recorder will detect a full disk.
                 let is_enough = free_mib(&self.file).map_or(true, |free_mib| free_mib >= self.min_mib);
                 *seen = Some((clock::now(), is_enough));
                 is_enough

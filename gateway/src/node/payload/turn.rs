@@ -1,15 +1,16 @@
-//! Whose turn it is at a sonde: that of its clients, or, as long as there are none, of the gateway, which asks it by itself.
+//! Turns at a sonde: its clients have it, or, while there are none, the gateway, which polls it.
 
 use bus::Watched;
 use std::time::Duration;
 
-/// How long a client waits for the gateway to let go of the sonde, which takes it no longer than an attempt to connect.
+/// How long a client waits for the gateway to release the sonde, which takes no longer than an
+/// attempt to connect.
 const LET_GO_MAX: Duration = Duration::from_secs(3);
 
-/// The most clients at once, those among them that are being disconnected.
+/// Maximum number of clients, including those that are being disconnected.
 const CLIENTS_MAX: usize = 2 * super::limit::CLIENTS_MAX;
 
-/// Whose turn it is.
+/// The state of the turns.
 #[derive(Default)]
 pub(super) struct Turn(Watched<State>);
 
@@ -20,14 +21,15 @@ struct State {
     is_closing: bool,
 }
 
-/// A client has the turn, with other clients, until this is dropped.
+/// A client has the turn, together with other clients, until this is dropped.
 pub(super) struct ClientTurn<'a>(&'a Turn);
 
 /// The gateway has the turn, until this is dropped.
 pub(super) struct PollTurn<'a>(&'a Turn);
 
 impl Turn {
-    /// A client takes the turn, and waits until the gateway has let go of it. None where there are too many.
+    /// Takes the turn for a client, and waits until the gateway has released it. `None` if there
+    /// are too many clients.
     pub(super) fn client(&self) -> Option<ClientTurn<'_>> {
         let is_one_more = self.0.visit(|state| {
             let is_one_more = state.clients < CLIENTS_MAX;
@@ -35,13 +37,13 @@ impl Turn {
             is_one_more
         });
         let turn = is_one_more.then(|| ClientTurn(self))?;
-        // A sonde has one conversation at a time: our question and a client's would get each
+        // A sonde handles one conversation at a time: our query and a client's would get each
         // other's answers.
         self.0.wait(LET_GO_MAX, |state| !state.is_polling);
         Some(turn)
     }
 
-    /// The gateway takes the turn once there are no clients; none when all is over.
+    /// Takes the turn for the gateway once there are no clients; `None` when everything ends.
     pub(super) fn poll(&self) -> Option<PollTurn<'_>> {
         loop {
             self.0.wait(LET_GO_MAX, |state| state.clients == 0 || state.is_closing);
@@ -58,14 +60,14 @@ impl Turn {
         }
     }
 
-    /// All is over.
+    /// Ends all turns.
     pub(super) fn close(&self) {
         self.0.visit(|state| state.is_closing = true);
     }
 }
 
 impl PollTurn<'_> {
-    /// Waits, as long as nobody else wants the turn; whether somebody does.
+    /// Waits while nobody else wants the turn; returns whether somebody does.
     pub(super) fn is_wanted_within(&self, limit: Duration) -> bool {
         self.0.0.wait(limit, |state| state.clients > 0 || state.is_closing)
     }

@@ -1,4 +1,4 @@
-//! The way to a payload.
+//! The connection to a payload.
 
 use super::forward;
 use super::passed_payload::Payload;
@@ -10,9 +10,9 @@ use std::sync::Arc;
 
 /// How a payload is reached.
 pub(super) enum Way {
-    /// By a connection for each client.
+    /// One connection for each client.
     Tcp(HostPort),
-    /// By one that they share.
+    /// One connection shared by all clients.
     Shared(SharedLine),
 }
 
@@ -24,7 +24,7 @@ impl Way {
         })
     }
 
-    /// Serves a client, until it or the payload is gone.
+    /// Serves a client until it or the payload is lost.
     pub(super) fn serve(&self, payload: &Payload, slot: &Slot, client: &TcpStream) {
         match self {
             Way::Tcp(at) => forward::serve(payload, at, slot, client),

@@ -1,34 +1,34 @@
-//! The lines that go one way between a sonde and a client, whether they talk by lines or by HTTP.
+//! The lines in one direction between a sonde and a client, as plain lines or over HTTP.
 
-/// The longest line that is read, bytes: some ten characters for each of the most parameters that are believed.
+/// Maximum bytes of a line: about ten characters for each of the maximum number of parameters.
 const LINE_MAX: usize = 2048;
 
-/// Puts lines together from bytes, however they are cut: ended by CR, LF or both, or by the length that the head of an HTTP message
-/// says. Of such a head the first line is given, and no other.
+/// Assembles lines from bytes in any split. A line ends with CR, LF or both, or after the length
+/// stated in the head of an HTTP message. Only the first line of such a head is returned.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Lines {
     line: Vec<u8>,
     is_overlong: bool,
-    /// Whether the byte before was a CR, of which a LF is part.
+    /// Whether the previous byte was a CR, to which a LF belongs.
     after_cr: bool,
     part: Part,
 }
 
-/// What the next byte belongs to.
+/// The part to which the next byte belongs.
 #[derive(Clone, Copy, Debug, Default)]
 enum Part {
     #[default]
     Line,
     /// The head of an HTTP message, whose body has this length, bytes.
     Head { body: usize },
-    /// The body, of which so many bytes are left.
+    /// The body, with this many bytes left.
     Body { left: usize },
-    /// Nothing that can be read: the body of an HTTP message in chunks, which also may be several messages.
+    /// Unreadable data: the chunked body of an HTTP message, and possibly further messages.
     Chunks,
 }
 
 impl Lines {
-    /// Takes a byte; the line that it ends, unless that is empty, too long or no text.
+    /// Adds a byte. Returns the line that it ends, unless that is empty, too long or not text.
     pub(super) fn push_byte(&mut self, byte: u8) -> Option<String> {
         if std::mem::take(&mut self.after_cr) && byte == b'\n' {
             return None;
@@ -72,18 +72,18 @@ impl Lines {
         }
     }
 
-    /// Nothing more comes: the line that was not ended.
+    /// Ends the input; returns the unfinished line.
     pub(super) fn end(&mut self) -> Option<String> {
         let line = std::mem::take(&mut self.line);
         if std::mem::take(&mut self.is_overlong) || line.is_empty() {
             return None;
         }
-        // Noise on a serial line is no text, and no answer.
+        // Noise on a serial line is neither text nor an answer.
         String::from_utf8(line).ok()
     }
 
     fn add(&mut self, byte: u8) {
-        // Dropped as a whole: a line that was cut would be read as one with fewer values.
+        // Dropped completely: a truncated line would be read as one with fewer values.
         self.is_overlong |= self.line.len() >= LINE_MAX;
         if self.is_overlong {
             self.line.clear();
@@ -93,7 +93,7 @@ impl Lines {
     }
 }
 
-/// Whether a line is the first of an HTTP message, of a request or of a response.
+/// Whether a line is the first of an HTTP request or response.
 fn begins_http(line: &str) -> bool {
     line.starts_with("HTTP/1.") || line.ends_with(" HTTP/1.0") || line.ends_with(" HTTP/1.1")
 }

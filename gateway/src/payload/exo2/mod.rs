@@ -1,8 +1,9 @@
-//! What an EXO2 sonde (YSI) measures, read from what it and a client say to each other.
+//! The measurements of an EXO2 sonde (YSI), read from its conversation with a client.
 //!
-//! Its signal output adapter takes commands as lines of ASCII: `para` is answered by the codes of the parameters that it outputs, `data` by a
-//! number for each of them. It echoes what it is sent and shows a prompt, `#`. A server at the sonde may take the same commands by HTTP
-//! and answer by the line alone: `GET /data` is `data`, and `POST /data` has a command as its body.
+//! Its signal output adapter accepts commands as ASCII lines: the answer to `para` is the codes of
+//! its output parameters, the answer to `data` a number for each of them. It echoes its input and
+//! shows a prompt, `#`. A server at the sonde may accept the same commands by HTTP and answer with
+//! only the line: `GET /data` is `data`, and `POST /data` has a command as its body.
 
 mod line;
 mod parameter;
@@ -14,10 +15,10 @@ pub use parameter::parameter;
 use line::Lines;
 use serde::Serialize;
 
-/// The most parameters that are believed.
+/// Maximum number of parameters accepted.
 const PARAMETERS_MAX: usize = 128;
 
-/// What one side asks the sonde for.
+/// A query to the sonde.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Command {
     /// The codes of its parameters.
@@ -26,48 +27,48 @@ pub enum Command {
     Values,
 }
 
-/// What the sonde measured at one moment.
+/// A measurement at one moment.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Measurement {
     /// A value for each parameter, in the order of the sonde.
     pub values: Vec<Value>,
 }
 
-/// A value that was measured.
+/// A measured value.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Value {
     /// The code of the parameter.
     pub code: u16,
-    /// Its name, `unknown` where the code is.
+    /// Its name, or `unknown`.
     pub name: &'static str,
-    /// Its unit; empty for what has none.
+    /// Its unit; empty if it has none.
     pub unit: &'static str,
     /// The value as the sonde sent it.
     pub value: f64,
 }
 
-/// What is known of a sonde, whoever asked it.
+/// The state of a sonde, whoever queries it.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Sonde {
-    /// The codes of the parameters that it outputs, as it last said.
+    /// The codes of its output parameters, as last reported.
     codes: Vec<u16>,
-    /// How often it has said so.
+    /// How often it has reported them.
     pub told: u64,
-    /// How many measurements have come.
+    /// Number of measurements received.
     pub measured: u64,
 }
 
-/// One connection to a sonde, read from outside.
+/// One connection to a sonde, as observed.
 #[derive(Clone, Debug, Default)]
 pub struct Conversation {
     to_sonde: Lines,
     from_sonde: Lines,
-    /// What was asked last, and is not answered.
+    /// The last query, if unanswered.
     asked: Option<Command>,
 }
 
 impl Command {
-    /// As the sonde is sent it, without the end of the line.
+    /// The command as the sonde receives it, without the end of the line.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {
@@ -88,7 +89,7 @@ impl Command {
 }
 
 impl Conversation {
-    /// Takes bytes, those to the sonde being `outward`; what was measured, where they complete an answer.
+    /// Adds bytes, `outward` if to the sonde. Returns the measurement if they complete an answer.
     pub fn read_bytes(&mut self, outward: bool, bytes: &[u8], sonde: &mut Sonde) -> Vec<Measurement> {
         let mut measurements = vec![];
         for byte in bytes {
@@ -100,7 +101,7 @@ impl Conversation {
         measurements
     }
 
-    /// Nothing more comes this way: a server of HTTP/1.0 ends its answer so.
+    /// Ends one direction: an HTTP/1.0 server ends its answer this way.
     pub fn end(&mut self, outward: bool, sonde: &mut Sonde) -> Option<Measurement> {
         let line = if outward { self.to_sonde.end() } else { self.from_sonde.end() };
         self.read(outward, &line?, sonde)
@@ -111,11 +112,11 @@ impl Conversation {
             self.asked = Command::of(line);
             return None;
         }
-        // Without a question before it a line is not known to be an answer: the sonde also
-        // prompts, and may be set to talk by itself.
+        // Without a preceding query, a line may not be an answer: the sonde also shows prompts, and
+        // may be set to send by itself.
         let asked = self.asked?;
         let answer = line.trim_start_matches(['#', ' ', '\t']);
-        // The echo may be in the same line.
+        // The echo may be on the same line.
         let answer = answer.strip_prefix(asked.word()).unwrap_or(answer);
         let measurement = match asked {
             Command::Parameters => {
@@ -126,7 +127,7 @@ impl Conversation {
             Command::Values => {
                 let is_number = |number: &f64| number.is_finite();
                 let values = numbers(answer, |text| text.parse().ok().filter(is_number))?;
-                // A torn line has fewer numbers, and each would get the name of another.
+                // A torn line has fewer numbers, and each would get the wrong name.
                 if values.len() != sonde.codes.len() {
                     return None;
                 }
@@ -138,14 +139,13 @@ impl Conversation {
                 Some(Measurement { values: named.collect() })
             }
         };
-        // Only after an answer that was understood: its echo comes before it, in a line of its
-        // own.
+        // Only after an answer that was parsed: its echo precedes it, on a line of its own.
         self.asked = None;
         measurement
     }
 }
 
-/// The numbers in a line in which there is nothing else.
+/// The numbers in a line that contains nothing else.
 fn numbers<T>(line: &str, read: impl Fn(&str) -> Option<T>) -> Option<Vec<T>> {
     let numbers: Option<Vec<T>> = line.split_whitespace().map(read).collect();
     numbers.filter(|numbers| (1..=PARAMETERS_MAX).contains(&numbers.len()))

@@ -1,4 +1,4 @@
-//! The parameters that an EXO2 sonde can output, by their codes.
+//! The output parameters of an EXO2 sonde, by code.
 //!
 //! Source: the list of parameter codes in the manuals of YSI's EXO sondes and their signal output adapters.
 

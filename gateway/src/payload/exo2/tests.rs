@@ -1,11 +1,12 @@
-//! What is read of sondes, by lines and by HTTP, however it is cut.
+//! Tests the reading of sondes, by lines and by HTTP, in any split.
 
 use super::*;
 
-/// What is said: `>` to the sonde, `<` from it, and `.` where the sonde closes the connection.
+/// A conversation: `>` to the sonde, `<` from it, and `.` where the sonde closes the connection.
 type Talk<'a> = &'a [(char, &'a str)];
 
-/// The values that come of it, each measurement of codes and values; every piece cut into parts of so many bytes.
+/// The resulting values, each measurement as codes and values; every piece is split into parts of
+/// this many bytes.
 fn measured(sonde: &mut Sonde, talk: Talk<'_>, part: usize) -> Vec<Vec<(u16, f64)>> {
     let mut conversation = Conversation::default();
     let mut all = vec![];
@@ -21,7 +22,7 @@ fn measured(sonde: &mut Sonde, talk: Talk<'_>, part: usize) -> Vec<Vec<(u16, f64
     all.into_iter().map(pairs).collect()
 }
 
-/// The same, of a sonde of which nothing is known, and cut anyhow.
+/// The same, for a new sonde and any split.
 fn values(talk: Talk<'_>) -> Vec<Vec<(u16, f64)>> {
     let all = |part| measured(&mut Sonde::default(), talk, part);
     let whole = all(usize::MAX);
@@ -103,7 +104,7 @@ fn nothing_is_guessed_of_what_is_no_answer() {
     {
         let talk = [&PARA[..], &[('>', "data\r"), ('<', answer)]].concat();
         assert_eq!(values(&talk), Vec::<Vec<_>>::new(), "{answer:.20}");
-        // What comes after it is read all the same.
+        // The data after it is still read.
         let talk = [&talk[..], &[('<', "1 2 3\r\n")]].concat();
         assert_eq!(values(&talk), [[(1, 1.0), (18, 2.0), (212, 3.0)]], "{answer:.20}");
     }
