@@ -26,7 +26,7 @@ Squall simulates boats that play capture the flag.
   squall run strategy_4_vs_3          a game in the terminal
   squall run surveyor_2v2 --sea gale --blue learned --view
   squall files                        games, seas and strategies by name
-  squall new strategy mine            your own strategy file, which you edit and play:
+  squall new strategy mine            your own strategy file, to edit and play:
   squall run surveyor_2v2 --blue mine
   squall help                         everything else
 ";

@@ -88,7 +88,7 @@ enum Command {
     /// Describes and plots a sea and its effects on a boat.
     #[command(after_help = "Examples:\n  squall sea gale\n  squall sea gale --boat heron --plot gale.svg")]
     Sea(sea_command::Args),
-    /// Drives one boat in open water through recorded commands or a standard manoeuvre.
+    /// Drives one boat through recorded commands or a standard manoeuvre.
     #[command(after_help = "Examples:\n  squall trial surveyor_m1_8 --help")]
     Trial(trial_command::Args),
     /// Fits a boat file to recorded data, and reports the quality of the fit.

@@ -1,5 +1,4 @@
-//! Sensors compared with their specification: statistics, times, curves, and true values from
-//! perfect sensors.
+//! Sensors compared with their specification, and perfect sensors with the truth.
 
 mod common;
 

@@ -15,7 +15,7 @@ const TITLES: [&str; 4] = [
 fn sea(dir: &TempDir, file: &str, more: &[&str]) -> (String, String) {
     let boat = scenario("boats/surveyor_m1_8.toml");
     let text = printed(dir, &[&["sea", file, "--boat", &boat, "--plot", "page.svg"], more].concat());
-    assert!(text.ends_with("plot in page.svg\n"), "{text}");
+    assert!(text.ends_with("plot: page.svg\n"), "{text}");
     (text, std::fs::read_to_string(dir.path().join("page.svg")).unwrap())
 }
 
@@ -83,7 +83,7 @@ fn the_page_is_named_after_the_sea_and_changes_with_the_seed() {
     std::fs::write(&file, format!("base = {:?}\n", scenario("seas/gale.toml"))).unwrap();
     let page = |seed: &str| {
         let text = printed(&dir, &["sea", "own_gale.toml", "--boat", &boat, "--seed", seed]);
-        assert!(text.ends_with("plot in own_gale.svg\n"), "{text}");
+        assert!(text.ends_with("plot: own_gale.svg\n"), "{text}");
         std::fs::read_to_string(dir.path().join("own_gale.svg")).unwrap()
     };
     let (one, two) = (page("1"), page("2"));

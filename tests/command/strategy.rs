@@ -154,6 +154,6 @@ fn a_check_warns_of_points_within_the_turning_circle_of_the_boat() {
         said.starts_with("game.toml: valid game\n  warning: square: behaviour \"round\": 4 of 4 points lie"),
         "{said}"
     );
-    assert!(said.contains("circle of a surveyor_afloat that comes"), "{said}");
+    assert!(said.contains("circle of a surveyor_afloat coming"), "{said}");
     assert_eq!(game("[[30, 20], [30, 50], [60, 50], [60, 20]]"), "game.toml: valid game\n");
 }

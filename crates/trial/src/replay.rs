@@ -23,7 +23,7 @@ pub struct Unsound {
 /// The allowed ticks, if this one does not divide [`ROW`].
 pub fn ticks_per_row(tick: SimTime) -> Result<u32, String> {
     if tick < SimTime(1_000_000) || tick > ROW || ROW.0 % tick.0 != 0 {
-        return Err(format!("the tick is {} s, expected 0.001 to 0.1 s and a divisor of 0.1 s", tick.as_s()));
+        return Err(format!("the tick is {:.4} s, expected 0.001 to 0.1 s and a divisor of 0.1 s", tick.as_s()));
     }
     Ok((ROW.0 / tick.0) as u32)
 }
