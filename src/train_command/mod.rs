@@ -114,7 +114,7 @@ fn begin(args: &Args, training: Training, folder: &Path, jobs: usize) -> Result<
     }
     if path.exists() {
         bail!(
-            "{} already contains a training; continue it with --resume, or choose another folder with --out",
+            "{} already contains a training run; continue it with --resume, or choose another folder with --out",
             folder.display()
         );
     }

@@ -1,4 +1,4 @@
-// Reports on the page: a tournament, a league, a sweep and a training, and the games behind their tables.
+// Reports on the page: a tournament, a league, a sweep and a training run, and the games behind their tables.
 
 import assert from 'node:assert/strict';
 import { copyFileSync, mkdirSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
@@ -224,7 +224,7 @@ test('from a point of a sweep to all its games, to a replay of one, and back', a
   assert.equal(await without.get(() => document.querySelectorAll('.watch, button[aria-label^="List"]').length), 0);
 });
 
-test('a training shows curves that follow its tables, and its recorded episodes', async (t) => {
+test('a training run shows curves that follow its tables, and its recorded episodes', async (t) => {
   const place = join(folder(t), 'first_steps');
   const games = join(place, 'games');
   mkdirSync(games, { recursive: true });

@@ -33,7 +33,7 @@ fn seeds() -> Vec<Vec<u8>> {
     names.into_iter().map(read).chain([own()]).collect()
 }
 
-/// A model as a training writes it.
+/// A model as a training run writes it.
 fn own() -> Vec<u8> {
     let spec = PolicySpec {
         observation: ObservationSpace::Squall { mates: 0, enemies: 1, frames: 1 },
