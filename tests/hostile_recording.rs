@@ -142,7 +142,7 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn whatever_a_recording_says_can_be_looked_at(decisions in proptest::collection::vec(odd_decision(), 0..5)) {
+    fn recordings_with_any_content_can_be_viewed(decisions in proptest::collection::vec(odd_decision(), 0..5)) {
         let recording = Recording::of(bytes_of(decisions)).expect("it is a recording");
         assert_eq!(look_at_all_of(recording).damaged().count, 0, "its messages are sound");
     }

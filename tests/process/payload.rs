@@ -186,7 +186,7 @@ fn pace(wire: &Wire, over: Duration) -> (Duration, f64) {
 }
 
 #[test]
-fn whatever_payloads_and_their_clients_do_the_boat_is_told_ten_times_a_second() {
+fn the_boat_is_commanded_ten_times_a_second_whatever_payloads_do() {
     let camera = FakePayload::camera(Duration::from_millis(1));
     let silent = FakePayload::silent();
     let nobody = bus::free_port(false).expect("a free port");

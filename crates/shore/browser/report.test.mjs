@@ -95,7 +95,7 @@ test('from a cell of the win matrix to its games, to a replay of one, and back',
   assert.equal(await sight.get(() => [...document.querySelectorAll('#games tbody tr')].length), won);
 });
 
-test('what is wrong with a report or a game is said in words', async (t) => {
+test('faults in a report or game are explained in text', async (t) => {
   const { place, path, report } = await tournament(t);
   // Foreign texts, a game with a different result, and a seed with more digits than a JavaScript number holds.
   const seed = '9007199254740993';
@@ -130,7 +130,7 @@ test('what is wrong with a report or a game is said in words', async (t) => {
   assert.equal(await bare.get(() => document.querySelectorAll('.watch').length), 0);
 });
 
-test('who joins a league plays its own games alone, and the folder is shown', async (t) => {
+test('a new league entry plays only its own games, and the folder is shown', async (t) => {
   const { file, place } = await tournament(t);
   const league = join(place, 'league');
   const text = readFileSync(file, 'utf8');
