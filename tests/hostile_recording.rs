@@ -127,7 +127,7 @@ fn look_at_all_of(recording: Recording) -> Recorded {
             Err(e) => panic!("{topic}: {e}"),
         }
     }
-    alog::write(&recording, true, &mut |_| Ok(Box::new(std::io::sink()))).expect("whoever writes nowhere cannot fail");
+    alog::write(&recording, true, &mut |_| Ok(Box::new(std::io::sink()))).expect("writing to a sink cannot fail");
     // There may be nothing to compare.
     Comparison::of([recording.header(); 2], [&series; 2], 0.0).ok();
     let recorded = Recorded::new(Arc::new(recording), "odd.mcap".to_owned());

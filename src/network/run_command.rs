@@ -51,7 +51,7 @@ pub(crate) struct DemoArgs {
     page: PageArgs,
 }
 
-/// Plays a game for people who want to watch one.
+/// Plays a game to watch.
 pub(crate) fn demo(args: &DemoArgs) -> Result<ExitCode> {
     let words = ["run", "surveyor_2v2", "--sea", "fresh_breeze", "--blue", "learned", "--red", "strategy_3", "--view"];
     let matches = Args::augment_args(clap::Command::new("demo")).try_get_matches_from(words)?;

@@ -5,7 +5,7 @@
 //! `SQUALL_HOURS=24 cargo test --locked --release --workspace --test gale -- --nocapture` simulates
 //! a day with four boats; the default is half an hour.
 
-#![expect(clippy::print_stdout, reason = "what was measured is shown to whoever runs it by hand")]
+#![expect(clippy::print_stdout, reason = "measurements are shown when it is run by hand")]
 
 use gateway::bridge::{Bridge, Event, Input, Output, Plan, Preflight, Site};
 use gateway::emulator::{self, Emulator, Port};

@@ -11,7 +11,7 @@ fn game(pace: &str) -> (Sim, Vec<Process>) {
 fn expect_sim_gone(agents: &mut [Process]) {
     for agent in agents {
         let said = agent.refusal();
-        assert!(said.contains("the sim is gone"), "{said}");
+        assert!(said.contains("lost the sim"), "{said}");
     }
 }
 

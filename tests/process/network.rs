@@ -279,6 +279,6 @@ fn floods_a_game() {
     let bus = Bus::leaf(&Net { connect: vec![endpoint.to_owned()], ..Net::default() }).expect("the hub is there");
     let keys = [topic::matching(&name, "order/stranger"), topic::control(&name)];
     let publishers = keys.map(|key| bus.publisher(key, Priority::Normal).expect("the hub is there"));
-    // Until it is killed or the game is gone.
+    // Until it is killed or the game ends.
     while publishers.iter().all(|publisher| publisher.send_raw(vec![0xaa; 16]).is_ok()) {}
 }

@@ -135,7 +135,7 @@ fn bytes_pass_both_ways_and_are_recorded_with_what_the_sonde_measures() {
     client.write_all(b"ta\r").expect("it is taken");
     client.shutdown(Shutdown::Write).expect("it says no more");
     let mut answer = String::new();
-    client.read_to_string(&mut answer).expect("the answer comes all the same");
+    client.read_to_string(&mut answer).expect("the answer arrives anyway");
     assert_eq!(answer, "ta\r\n20.5 7.25 -8.125\r\n# ");
     wait_until("the sonde is asked again", || sonde.asked() >= before + 4);
     gateway.end();

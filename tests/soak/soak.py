@@ -84,7 +84,7 @@ class Soak:
         self.processes = {}
         self.samples = {}
         self.problems = []
-        # Boat, when, why: a gateway's status tells of the newest only.
+        # Boat, when, why: a gateway's status reports only the newest.
         self.failsafes = set()
         self.begun = time.monotonic()
         # All figures, one a line, as they come: they are there also if this is killed.

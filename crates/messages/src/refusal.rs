@@ -15,7 +15,7 @@ use std::ops::Add;
 pub enum Refusal {
     /// Bytes that do not decode as the message.
     Garbage,
-    /// A message of another version.
+    /// A message from another version.
     Version,
     /// A ticket that is unknown or has expired.
     Ticket,
@@ -42,7 +42,7 @@ pub enum Refusal {
 }
 
 impl Refusal {
-    /// All reasons, with their texts for people.
+    /// All reasons, with their user-visible texts.
     const ALL: [(Refusal, &str); 12] = [
         (Refusal::Garbage, "malformed"),
         (Refusal::Version, "from another version"),

@@ -72,7 +72,7 @@ test('a page reconnects by itself after a reload or a restart of its server', as
   await sight.until('its helm is received again', () => squall.helm?.report?.collective);
 
   await sim.kill();
-  await sight.until('the game is gone', () => squall.state.phase === 'gone' && /gone/.test(document.getElementById('over').textContent));
+  await sight.until('the game is gone', () => squall.state.phase === 'gone' && /Lost the game/.test(document.getElementById('over').textContent));
   assert(await sight.get(() => squall.connected));
   assert.equal(view.code, undefined, 'the server still runs');
   new Program(t, 'sim', file, '--speed', '5x', '--game', name, '--listen', endpoint);

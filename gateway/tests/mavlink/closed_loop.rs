@@ -208,7 +208,7 @@ fn a_pilot_who_takes_over_by_remote_control_keeps_the_boat() {
         rig.run_until(0.4, |rig| rig.state().contains(words));
         rig.operator(OperatorCommand::EStop);
         rig.run(10.0);
-        assert_eq!(rig.mode(), (mode, true), "it is left to whoever has it");
+        assert_eq!(rig.mode(), (mode, true), "it is left to its current operator");
         assert!(!rig.sent[sent..].iter().any(|(_, sent)| is_mode_command(sent)), "{mode:?}");
         rig.operator(OperatorCommand::Release);
         rig.operator(OperatorCommand::Arm);

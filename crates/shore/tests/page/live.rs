@@ -422,7 +422,9 @@ fn an_e_stop_also_goes_straight_to_gateways_during_and_after_a_game() {
     client.until("state", |state| state["phase"] == "gone");
     is_stopped(&mut client);
     client.send(r#"{"do":"control","what":"halt"}"#);
-    client.until("refused", |refused| refused["what"] == "control" && refused["reason"] == "the game is gone");
+    client.until("refused", |refused| {
+        refused["what"] == "control" && refused["reason"] == "the game is no longer running"
+    });
 }
 
 #[test]
