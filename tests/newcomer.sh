@@ -50,7 +50,7 @@ expect "after 600 s" squall run surveyor_2v2 --blue mine --in-process --no-recor
 # Played again when it is saved, with a mistake and without.
 squall run surveyor_2v2 --blue mine --in-process --no-record --watch-files >watched.txt 2>&1 &
 watching=$!
-# Waits until so many lines of what it said have a text in them.
+# Waits until this many lines of the output contain a text.
 heard() {
     for _ in $(seq 300); do
         [[ $(grep -c "$2" watched.txt) -ge $1 ]] && return

@@ -172,7 +172,7 @@ fn start_sim(
     ChildProcess::start("the sim", command, Stdio::piped())
 }
 
-/// The number of boats for one agent process: as many as asked for, or more if there are so many
+/// The number of boats for one agent process: as many as requested, or more if there are so many
 /// boats that the processes would overload the machine. The game is the same.
 fn crew_size(asked: u16, vehicles: usize) -> usize {
     const PROCESSES_MAX: usize = 64;

@@ -38,7 +38,7 @@ pub(crate) struct Played {
     pub(crate) sim: Option<Result<Report, String>>,
     /// The node number and result of each agent that was not killed.
     pub(crate) agents: Vec<(usize, Result<(), String>)>,
-    /// What the agents refused.
+    /// The messages that the agents refused.
     pub(crate) refused: Refusals,
     pub(crate) monitor: WireMonitor,
 }

@@ -129,7 +129,7 @@ class Soak:
         return child
 
     def registered(self, pattern, count=1):
-        """The entries of this kind in the registry, if there are so many."""
+        """The entries of this kind in the registry, if there are this many."""
         files = sorted((Path(self.registry.name) / "squall").glob(pattern))
         try:
             entries = [json.loads(file.read_text(encoding="utf-8")) for file in files]

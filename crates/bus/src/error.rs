@@ -30,7 +30,7 @@ pub enum BusError {
     Request {
         /// The key of the query.
         key: String,
-        /// What is wrong with the answer.
+        /// The fault in the answer.
         reason: String,
     },
     /// The sim refuses, for this reason.

@@ -300,7 +300,7 @@ fn a_search_that_was_stopped_anywhere_goes_on_without_playing_its_games_again() 
     let bytes = std::fs::read(&file).unwrap();
     std::fs::write(&file, &bytes[..bytes.len() - 5]).unwrap();
     let mut journal = Journal::resume(&cut, &plan).unwrap();
-    assert_eq!(journal.games(), 99, "what was torn off is no game");
+    assert_eq!(journal.games(), 99, "the truncated part does not count as a game");
     assert_eq!(find(&mut journal, &AtomicBool::new(false), 99).unwrap(), want);
     assert_eq!(std::fs::read(&file).unwrap(), std::fs::read(whole.join("search.csv")).unwrap());
 

@@ -319,7 +319,7 @@ fn a_boat_at_rest_is_armed_before_it_is_sent_to_its_recovery_point() {
     assert!(!rig.mode().1, "{:?}", rig.events);
 }
 
-/// What a ground station sends to disarm the boat.
+/// The command of a ground station that disarms the boat.
 fn disarm() -> Vec<u8> {
     let command = COMMAND_LONG_DATA {
         command: MavCmd::MAV_CMD_COMPONENT_ARM_DISARM,

@@ -13,7 +13,7 @@ use std::path::Path;
 pub(super) const TARGET: Target =
     Target { name: "model", seeds, change: binaries, check, allocated_max: (256 << 20, 1000) };
 
-/// What a strategy states about a model without metadata.
+/// A strategy's declaration of a model without metadata.
 const SAID: PartialSpec = PartialSpec {
     observation: Some(ObservationSpace::Pyquaticus),
     action: Some(ActionSpace::Pyquaticus),
