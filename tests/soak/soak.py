@@ -121,7 +121,7 @@ class Soak:
         self.begun = time.monotonic()
 
     def begin(self, name, *words):
-        """Starts a command; what it says goes into a file of its own."""
+        """Starts a command; its output goes to its own file."""
         with open(self.out / f"{name.replace(' ', '_')}.log", "wb") as log:
             child = subprocess.Popen([self.args.squall, *map(str, words)], env=self.env, stdin=subprocess.DEVNULL,
                                      stdout=log, stderr=subprocess.STDOUT)
