@@ -1,4 +1,4 @@
-# The program alone, with all scenarios inside of it:
+# The program alone, with all scenarios built in:
 #   docker build -t squall . && docker run --rm -it -p 8088:8088 squall demo --listen 0.0.0.0:8088 --token secret
 # Then open http://localhost:8088/#token=secret. To train and count, without network and page, in half the time:
 #   docker build -t squall-train --build-arg FEATURES=--no-default-features .

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What the programs are made of.
+/// The sources of the programs.
 const SOURCES: [&str; 9] =
     ["Cargo.toml", "Cargo.lock", "build.rs", "src", "scenarios", "crates", "sim", "agent", "gateway"];
 
@@ -26,16 +26,16 @@ fn root() -> PathBuf {
     root.unwrap_or(package)
 }
 
-/// The commit, marked if what is built is not what was committed; none outside of our repository.
+/// The commit, marked if the sources differ from it; none outside our repository.
 fn commit(root: &Path) -> Option<String> {
-    // A packed copy inside of somebody else's repository is not theirs.
+    // A packed copy inside another repository is not part of it.
     git(root, &["ls-files", "--error-unmatch", "build.rs"])?;
     let commit = git(root, &["rev-parse", "--short=12", "HEAD"])?;
     let is_clean = git(root, &[&["diff", "--quiet", "HEAD", "--"], &SOURCES[..]].concat()).is_some();
     Some(if is_clean { commit } else { format!("{commit}-dirty") })
 }
 
-/// What git says in this folder, if all is well.
+/// The output of git in this folder, if it succeeds.
 fn git(root: &Path, args: &[&str]) -> Option<String> {
     let command = Command::new("git").current_dir(root).args(args).output();
     let output = command.ok().filter(|output| output.status.success())?;

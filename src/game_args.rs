@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 #[derive(Clone, clap::Args)]
 pub(crate) struct GameArgs {
-    /// Game: a file, or the name of a game in scenarios/games or built in
+    /// Game: a file, or the name of a built-in game or of one in scenarios/games
     #[arg(value_name = "GAME", value_parser = scenario_files::game)]
     scenario: PathBuf,
     /// Random seed [default: the seed in the game file]
@@ -23,8 +23,8 @@ pub(crate) struct GameArgs {
     /// Field to use instead of the game's: a file or a name
     #[arg(long, value_name = "FIELD", value_parser = scenario_files::field)]
     field: Option<PathBuf>,
-    /// Strategy of all blue boats, instead of those in the game: a file or a name, which is searched first in the
-    /// folder strategies beside the game's folder
+    /// Strategy of all blue boats, instead of those in the game: a file, or a name, which is looked up first in
+    /// the strategies folder next to the game's folder
     #[arg(long, value_name = "STRATEGY")]
     blue: Option<String>,
     /// Strategy of all red boats, as for --blue

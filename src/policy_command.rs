@@ -75,7 +75,7 @@ fn about(name: &str, bytes: usize, network: &Network, spec: Result<PolicySpec, S
             line("decision", format!("every {} s", spec.period_s));
             said.extend(spec.metadata().map(|(key, _)| key));
         }
-        Err(why) => line("policy", format!("undeclared; the strategy that uses it must declare this: {why}")),
+        Err(why) => line("policy", format!("not declared in the file, so the strategy must declare it ({why})")),
     }
     for (key, value) in network.metadata().iter().filter(|(key, _)| !said.contains(key)) {
         line(key.strip_prefix(OWN).unwrap_or(key), value.clone());

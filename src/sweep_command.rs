@@ -109,10 +109,14 @@ fn until(args: &Args, plan: &Plan, text: &str, folder: &Path) -> Result<ExitCode
             format!("{entry}: {condition} begins to hold between {axis} = {low:.4} and {high:.4} (95 %){at}\n")
         }
         (Some(_), None) => {
-            format!("{entry}: {condition} significantly fails at one end of {axis}, but significantly holds nowhere\n")
+            format!(
+                "{entry}: {condition} fails significantly at one end of {axis}, but does not hold significantly anywhere\n"
+            )
         }
         (None, Some(_)) => {
-            format!("{entry}: {condition} significantly holds at one end of {axis}, but significantly fails nowhere\n")
+            format!(
+                "{entry}: {condition} holds significantly at one end of {axis}, but does not fail significantly anywhere\n"
+            )
         }
         (None, None) => {
             format!("{entry}: {condition} is undecided everywhere on {axis}; increase --games\n")

@@ -127,7 +127,7 @@ fn look_at_all_of(recording: Recording) -> Recorded {
             Err(e) => panic!("{topic}: {e}"),
         }
     }
-    alog::write(&recording, true, &mut |_| Ok(Box::new(std::io::sink()))).expect("whoever writes nowhere cannot fail");
+    alog::write(&recording, true, &mut |_| Ok(Box::new(std::io::sink()))).expect("writing to a sink cannot fail");
     // There may be nothing to compare.
     Comparison::of([recording.header(); 2], [&series; 2], 0.0).ok();
     let recorded = Recorded::new(Arc::new(recording), "odd.mcap".to_owned());
@@ -142,7 +142,7 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn whatever_a_recording_says_can_be_looked_at(decisions in proptest::collection::vec(odd_decision(), 0..5)) {
+    fn recordings_with_any_content_can_be_viewed(decisions in proptest::collection::vec(odd_decision(), 0..5)) {
         let recording = Recording::of(bytes_of(decisions)).expect("it is a recording");
         assert_eq!(look_at_all_of(recording).damaged().count, 0, "its messages are sound");
     }

@@ -42,7 +42,7 @@ refuse "did you mean pav01_vs_pav01?" squall run pav1_vs_pav01
 refuse "use it with --blue or --red" squall run strategy_4
 refuse "is a sea, expected a game" squall run scenarios/seas/gale.toml
 
-# A file of one's own, which takes the place of the one inside of the program.
+# The user's own file, which overrides the built-in one.
 expect "scenarios/strategies/mine.toml" squall new strategy mine
 expect "valid strategy" squall check scenarios/strategies/mine.toml
 expect "after 600 s" squall run surveyor_2v2 --blue mine --in-process --no-record
@@ -50,7 +50,7 @@ expect "after 600 s" squall run surveyor_2v2 --blue mine --in-process --no-recor
 # Played again when it is saved, with a mistake and without.
 squall run surveyor_2v2 --blue mine --in-process --no-record --watch-files >watched.txt 2>&1 &
 watching=$!
-# Waits until so many lines of what it said have a text in them.
+# Waits until this many lines of the output contain a text.
 heard() {
     for _ in $(seq 300); do
         [[ $(grep -c "$2" watched.txt) -ge $1 ]] && return

@@ -186,13 +186,13 @@ class Boat:
         self.connection = None
 
     def serve(self, seconds, until):
-        """Serves for so long, or until something is so, or the other end is closed; what came."""
+        """Serves for this time, until a condition holds, or until the other end closes; returns what was received."""
         if self.connection is None:
             self.connection, _ = self.server.accept()
         connection, self.sent = self.connection, []
         connection.settimeout(0.05)
         codec = mav.MAVLink(connection.makefile("wb", buffering=0), srcSystem=42, srcComponent=1)
-        # Anything that is no frame, or has a wrong checksum, is an error of this reader.
+        # This reader reports anything that is not a frame, or has a wrong checksum, as an error.
         codec.robust_parsing = False
         end = time.monotonic() + seconds
         beat = 0.0

@@ -170,7 +170,7 @@ class SweepStudy:
         """Adds the next game, as from `SweepPlan.lines`. Raises IndexError if it is another game, OSError if it cannot be written."""
 
     def report(self) -> tuple[str, int]:
-        """Writes the report of all games so far. Returns a summary for people, and the number of games that could not start."""
+        """Writes the report of all games so far. Returns a readable summary, and the number of games that could not start."""
 
 class TournamentPlan:
     """The games of a tournament. Immutable, so threads may share it."""
@@ -201,7 +201,7 @@ class TournamentPlan:
         """
 
     def report(self, records: list[str]) -> tuple[str, str, str, int]:
-        """Evaluates the records of the first games: a summary for people, JSON, CSV, and the number of games that could not start.
+        """Evaluates the records of the first games: a readable summary, JSON, CSV, and the number of games that could not start.
 
         Raises ValueError for an invalid record, IndexError if they are not the records of the first games in order.
         """

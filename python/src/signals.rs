@@ -12,7 +12,7 @@ const EVERY: Duration = Duration::from_millis(100);
 /// flag, which ends the work.
 ///
 /// # Errors
-/// What the signal handler raises, such as `KeyboardInterrupt`.
+/// The exception that the signal handler raises, such as `KeyboardInterrupt`.
 pub(crate) fn heeded<T: Send>(work: impl FnOnce(&AtomicBool) -> T + Send) -> PyResult<T> {
     let stop = AtomicBool::new(false);
     std::thread::scope(|scope| {

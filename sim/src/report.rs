@@ -13,7 +13,7 @@ pub struct Report {
     pub run: Run,
 }
 
-/// What depends on the machines and the network rather than on the game.
+/// Results that depend on the machines and the network rather than on the game.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Run {
     /// The pace of the game.
@@ -26,7 +26,7 @@ pub struct Run {
     pub overruns: u64,
     /// Whether it was stopped early.
     pub cut_short: bool,
-    /// What is wrong with the recording, if anything.
+    /// The fault in the recording, if any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub recording_problem: Option<String>,
 }

@@ -175,7 +175,7 @@ fn an_order_with_bad_numbers_is_refused_and_the_boat_holds() {
 }
 
 #[test]
-fn a_boat_whose_numbers_go_bad_is_taken_out_and_the_others_sail_on() {
+fn a_boat_with_bad_numbers_is_removed_and_the_others_continue() {
     let mut scenario = shipped("pav01_vs_pav01.toml");
     let (victim, flag) = (VehicleId(1), primitives::FlagId(1));
     let pose = Pose { at: scenario.field.flags[1].home, psi_rad: 0.0 };

@@ -31,7 +31,7 @@ fn follows(contest: &mut Contest, decisions: u32) -> Vec<bool> {
 }
 
 #[test]
-fn an_order_expires_by_the_age_of_the_picture_that_it_answers() {
+fn an_order_expires_with_the_age_of_its_picture() {
     for (given_s, decisions) in [(3.0, 11), (2.9, 10), (2.1, 2), (2.0, 1), (1.9, 0), (7.0, 11)] {
         let mut contest = started(&game());
         (0..30).for_each(|_| contest.advance());

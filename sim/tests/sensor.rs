@@ -130,8 +130,7 @@ fn perfect_sensors_tell_the_truth_bit_for_bit() {
 
 #[test]
 fn a_fix_says_where_the_boat_was_and_comes_out_after_its_latency() {
-    // (latency, ticks until delivery): a fix is delivered at the first tick at which it is old
-    // enough.
+    // (latency, ticks until delivery): a fix is delivered at the first tick after its latency.
     for (latency_s, late) in [(0.0, 0), (0.05, 1), (0.25, 5), (0.26, 6), (1.0, 20), (3.15, 63)] {
         for (now, reading) in record(&with_gps(Gps { latency_s, ..exact_gps() }), 1, 400, sailing) {
             let tick = now.0 / TICK.0;

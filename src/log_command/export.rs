@@ -24,7 +24,7 @@ pub(super) fn csv(source: Source<'_>, topic: &str, file: Option<&Path>) -> Resul
     };
     let is_shown = file.is_none() && std::io::stdout().is_terminal();
     match (rows(source, topic, is_shown, &mut csv::Writer::from_writer(BufWriter::new(sink))), file) {
-        // A reader that closes the pipe early is no error.
+        // It is not an error if a reader closes the pipe early.
         (Err(table::TableError::Sink(e)), None) if e.kind() == ErrorKind::BrokenPipe => Ok(Damaged::default()),
         (Err(table::TableError::Sink(e)), Some(path)) => Err(e).with_context(|| trying(path)),
         (done, _) => Ok(done?),

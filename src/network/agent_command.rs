@@ -21,7 +21,7 @@ pub(crate) struct Args {
     /// How long to look for the sim and wait for its vehicles to become free, s
     #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
     wait_s: f64,
-    /// How long the sim may send no picture before it counts as dead, s (5 s if it dies while the network works)
+    /// How long to wait for a picture before treating the sim as dead, s (5 s if the sim leaves the network)
     #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
     silence_s: f64,
     /// Strategy file to follow instead of the one in the sim's scenario

@@ -51,7 +51,7 @@ pub(crate) struct DemoArgs {
     page: PageArgs,
 }
 
-/// Plays a game for people who want to watch one.
+/// Plays a game to watch.
 pub(crate) fn demo(args: &DemoArgs) -> Result<ExitCode> {
     let words = ["run", "surveyor_2v2", "--sea", "fresh_breeze", "--blue", "learned", "--red", "strategy_3", "--view"];
     let matches = Args::augment_args(clap::Command::new("demo")).try_get_matches_from(words)?;
@@ -172,7 +172,7 @@ fn start_sim(
     ChildProcess::start("the sim", command, Stdio::piped())
 }
 
-/// The number of boats for one agent process: as many as asked for, or more if there are so many
+/// The number of boats for one agent process: as many as requested, or more if there are so many
 /// boats that the processes would overload the machine. The game is the same.
 fn crew_size(asked: u16, vehicles: usize) -> usize {
     const PROCESSES_MAX: usize = 64;

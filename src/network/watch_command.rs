@@ -92,7 +92,7 @@ fn watch_field(observer: &Observer, pause: Duration, stop: &AtomicBool) -> Resul
             if stop.load(Ordering::Relaxed) || observer.is_on()? {
                 continue;
             }
-            bail!("game {} is gone", game.as_str());
+            bail!("game {} is no longer running", game.as_str());
         };
         let rates = meter.read(frame.stamp.valid_ns, count);
         let events: Vec<String> = events.iter().map(|logged| sentence(&info.scenario, logged)).collect();

@@ -23,6 +23,6 @@ mod tests {
     #[test]
     fn all_colours_of_teams_are_found_in_the_style_sheet() {
         assert_eq!(of_team(0), RGBColor(0, 114, 178), "the first, for light ground");
-        assert_eq!((0..=TEAMS).map(of_team).collect::<Vec<_>>()[TEAMS], of_team(0), "then they begin anew");
+        assert_eq!((0..=TEAMS).map(of_team).collect::<Vec<_>>()[TEAMS], of_team(0), "then they repeat");
     }
 }

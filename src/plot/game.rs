@@ -30,7 +30,7 @@ pub(crate) fn write(dir: &Path, header: &Header, series: &GameSeries) -> Result<
     Ok(2 + series.boats.len())
 }
 
-/// Draws two games overlaid into a file in a folder.
+/// Draws two games overlaid, to a file in a folder.
 pub(crate) fn write_comparison(
     dir: &Path,
     [name_a, name_b]: [&Path; 2],

@@ -25,7 +25,7 @@ const MARK_S: f64 = 60.0;
 /// A boat that stays within this distance has not drifted, m.
 const STAYS_M: f64 = 0.01;
 
-/// Draws a sea into a file: the spectrum specified in its file, the realised sea, and the track of
+/// Draws a sea to a file: the spectrum specified in its file, the realised sea, and the track of
 /// an unsteered boat from the datum.
 pub(crate) fn write(path: &Path, title: String, sea: &Sea, model: &SeaModel, track: &[Sample]) -> Result<()> {
     let panels = vec![spectrum(sea, model), elevation(sea, model), wind(sea, model), drift(track)];

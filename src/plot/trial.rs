@@ -5,7 +5,7 @@ use anyhow::Result;
 use std::path::Path;
 use trial::{Command, Sample};
 
-/// Draws a trial into a file.
+/// Draws a trial to a file.
 pub(crate) fn write(path: &Path, title: &str, samples: &[Sample]) -> Result<()> {
     let track = samples.iter().map(|sample| (sample.at.east, sample.at.north)).collect();
     let panels = vec![

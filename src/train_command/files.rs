@@ -1,4 +1,4 @@
-//! The files that a training writes into its folder.
+//! The files that a training run writes to its folder.
 
 use crate::output_file;
 use anyhow::{Context, Result};
@@ -23,7 +23,7 @@ const SUMS: &str = "sums.csv";
 /// The subfolder of recordings.
 const GAMES: &str = "games";
 
-/// The folder of a training.
+/// The folder of a training run.
 pub(super) struct Files {
     folder: PathBuf,
     tables: [Table; 3],
@@ -58,7 +58,7 @@ impl Table {
 }
 
 impl Files {
-    /// Opens the folder of a training; on resuming, drops everything written after the saved state.
+    /// Opens the folder of a training run; on resuming, drops everything written after the saved state.
     pub(super) fn open(folder: &Path, base: &Path, trainer: &Trainer) -> Result<Files> {
         let (samples, _) = trainer.samples();
         let tables = [("updates.csv", UPDATES), ("evaluations.csv", EVALUATIONS), ("episodes.csv", EPISODES)];
@@ -92,7 +92,7 @@ impl Files {
         Ok(Files { folder: folder.to_owned(), tables, base: base_for(base) })
     }
 
-    /// The file from which a training resumes.
+    /// The file from which a training run resumes.
     pub(super) fn state(folder: &Path) -> PathBuf {
         folder.join("state.bin")
     }

@@ -52,7 +52,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     // Learning uses all threads, however few games there are.
     let jobs = args.jobs.threads(usize::MAX).get();
     let stop = stop::on_ctrl_c()?;
-    stop::exit_when_late(&stop, "stopped during an update; --resume goes on from the one before");
+    stop::exit_when_late(&stop, "stopped during an update; --resume continues from the previous one");
     let mut trainer = begin(args, training, &folder, jobs)?;
     let mut files = Files::open(&folder, &base(&args.training, trainer.training()), &trainer)?;
     let recordings = args.record_every.map(|every| record(&mut trainer, &folder, every)).transpose()?;
@@ -114,7 +114,7 @@ fn begin(args: &Args, training: Training, folder: &Path, jobs: usize) -> Result<
     }
     if path.exists() {
         bail!(
-            "{} already contains a training; continue it with --resume, or choose another folder with --out",
+            "{} already contains a training run; continue it with --resume, or choose another folder with --out",
             folder.display()
         );
     }

@@ -183,7 +183,7 @@ fn status_kb(process: &Process, name: &str) -> Option<u64> {
 }
 
 #[test]
-fn no_attack_changes_the_game_or_fills_the_memory() {
+fn no_attack_changes_the_game_or_exhausts_memory() {
     let mut game = DisturbedGame::start();
     for (what, attack) in ATTACKS {
         let start = Instant::now();
@@ -232,7 +232,7 @@ fn connections_that_say_nothing_keep_agents_out_for_seconds_only() {
 }
 
 #[test]
-fn who_crowds_the_port_keeps_nobody_out_and_disturbs_nobody() {
+fn crowding_the_port_keeps_no_client_out_and_does_not_disturb_the_game() {
     for files in FILES {
         let endpoint = free_endpoint();
         let sim = Sim::start_with(squall_with_files(files), "long", &["--listen", &endpoint, "--pace", "20x"]);

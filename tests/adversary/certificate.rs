@@ -79,7 +79,7 @@ fn traitor(sim: &Sim, keys: &TempDir, name: &str) -> Intruder {
 }
 
 #[test]
-fn who_has_no_certificate_of_the_game_gets_no_session() {
+fn a_client_without_a_certificate_gets_no_session() {
     let (own, foreign) = (keys(DAY), keys(DAY));
     let sim = sim(&own, "patient", &["--join-s", "600"]);
     let target = Target::of(&sim);
@@ -118,7 +118,7 @@ fn who_crowds_the_port_keeps_nobody_with_keys_out_and_disturbs_nobody() {
 
 /// Existing links are kept: nobody is disconnected in the middle of a game.
 #[test]
-fn whose_certificate_has_expired_is_let_in_no_more_and_who_plays_plays_on() {
+fn an_expired_certificate_is_rejected_but_open_links_continue() {
     let (valid, start) = (Duration::from_secs(20), Instant::now());
     let own = keys(valid);
     let folder = own.path().join("team-blue");
@@ -137,7 +137,7 @@ fn whose_certificate_has_expired_is_let_in_no_more_and_who_plays_plays_on() {
 }
 
 #[test]
-fn a_red_agent_learns_nothing_of_blue_and_changes_nothing() {
+fn a_red_agent_learns_nothing_about_blue_and_changes_nothing() {
     let own = keys(DAY);
     let served = sim(&own, "pav01_600s", &["--speed", "2"]);
     let playing = agents(&served, &own);
@@ -182,7 +182,7 @@ fn a_red_agent_learns_nothing_of_blue_and_changes_nothing() {
 }
 
 #[test]
-fn an_observer_stops_boats_and_controls_nothing() {
+fn an_observer_can_stop_boats_but_controls_nothing() {
     let own = keys(DAY);
     let sim = sim(&own, "long", &["--pace", "20x"]);
     let _agents = agents(&sim, &own);
@@ -207,7 +207,7 @@ fn an_observer_stops_boats_and_controls_nothing() {
 }
 
 #[test]
-fn an_agents_certificate_serves_no_game() {
+fn an_agents_certificate_cannot_serve_a_game() {
     let own = keys(DAY);
     let sim = sim(&own, "patient", &["--join-s", "600"]);
     let blue = own.path().join("team-blue");
@@ -231,7 +231,7 @@ fn an_agents_certificate_serves_no_game() {
 }
 
 #[test]
-fn a_gateway_speaks_for_its_own_boat_only() {
+fn a_gateway_can_report_only_for_its_own_boat() {
     let own = keys(DAY);
     let sim = sim(&own, "mixed_60s", &["--pace", "realtime", "--join-s", "600"]);
     let red_one = traitor(&sim, &own, "gateway-red_one");

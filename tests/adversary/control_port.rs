@@ -137,7 +137,7 @@ impl Flood {
 }
 
 #[test]
-fn an_e_stop_is_on_the_wire_in_time_whatever_befalls_the_game() {
+fn an_e_stop_is_on_the_wire_in_time_whatever_happens_to_the_game() {
     let mut rig = Rig::start(&[]);
     rig.measure("undisturbed");
     let flood = Flood::begin(&rig.sim);
@@ -159,7 +159,7 @@ fn an_e_stop_is_on_the_wire_in_time_whatever_befalls_the_game() {
 }
 
 #[test]
-fn orders_ahead_of_the_game_are_refused_and_those_of_the_sim_are_obeyed_all_the_same() {
+fn orders_ahead_of_the_game_are_refused_and_the_sims_orders_still_count() {
     // A hub without access control, unlike ours.
     let dir = temporary();
     let file = dir.path().join("open.json5");

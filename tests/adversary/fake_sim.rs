@@ -53,7 +53,7 @@ impl FakeSim {
 }
 
 #[test]
-fn a_router_that_joins_the_network_does_not_pass_for_the_sim() {
+fn a_router_that_joins_the_network_cannot_impersonate_the_sim() {
     let mut game = DisturbedGame::start();
     let target = Target::of(&game.sim);
     let observer = game.sim.bus();
@@ -84,7 +84,7 @@ fn a_router_that_joins_the_network_does_not_pass_for_the_sim() {
 
 /// Without keys an agent cannot verify the sim. It still discloses nothing.
 #[test]
-fn who_is_led_to_a_false_sim_tells_it_nothing_that_opens_the_true_one() {
+fn an_agent_lured_to_a_false_sim_reveals_nothing_that_opens_the_real_one() {
     let sim = Sim::start("patient", &["--join-s", "600"]);
     let intruder = Intruder::at(&sim);
     let endpoint = free_endpoint();
@@ -104,7 +104,7 @@ fn who_is_led_to_a_false_sim_tells_it_nothing_that_opens_the_true_one() {
 }
 
 #[test]
-fn a_second_sim_of_the_same_name_disturbs_nobody() {
+fn a_second_sim_with_the_same_name_disturbs_no_node() {
     let mut game = DisturbedGame::start();
     let name = game.sim.game.clone();
     let endpoint = free_endpoint();

@@ -15,7 +15,7 @@ use zenoh::Wait;
 const A_WHILE: Duration = Duration::from_secs(2);
 
 #[test]
-fn nobody_but_the_sim_hears_orders_and_navigation() {
+fn only_the_sim_receives_orders_and_navigation() {
     let (sim, _agents) = Sim::start_with_agents("patient", &[]);
     let intruder = Intruder::at(&sim);
     let secret = ["order/*", "order/**", "nav/*", "**", "*/*"].map(|topic| (topic, intruder.listen(topic)));

@@ -43,7 +43,7 @@ fn forged_reply() -> String {
 }
 
 #[test]
-fn a_stranger_who_answers_operators_swallows_no_command() {
+fn a_stranger_who_answers_operators_cannot_swallow_commands() {
     let rig = Rig::start(&[]);
     let operator = session(&rig.sim, Some(token()));
     let intruder = Intruder::at(&rig.sim);
@@ -81,7 +81,7 @@ fn an_answer_without_the_token_is_no_answer() {
 }
 
 #[test]
-fn a_proof_that_was_intercepted_arms_no_boat_later() {
+fn an_intercepted_proof_cannot_arm_a_boat_later() {
     let rig = Rig::start(&[]);
     let operator = session(&rig.sim, Some(token()));
     let intruder = Intruder::at(&rig.sim);
@@ -110,7 +110,7 @@ fn a_proof_that_was_intercepted_arms_no_boat_later() {
 }
 
 #[test]
-fn what_gateways_report_is_forged_by_nobody() {
+fn gateway_reports_cannot_be_forged() {
     let folder = temporary();
     let record = folder.path().join("game.mcap");
     let rig = Rig::start(&["--record", record.to_str().expect("UTF-8")]);

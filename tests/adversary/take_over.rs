@@ -107,7 +107,7 @@ fn the_ticket_of_the_dead_is_void_once_somebody_else_has_the_boat() {
 }
 
 #[test]
-fn nobody_without_a_ticket_takes_over_what_others_steer() {
+fn nobody_without_a_ticket_can_take_over_a_steered_boat() {
     let mut game = DisturbedGame::start();
     let sim = &game.sim;
     let (intruder, stranger) = (Intruder::at(sim), node(sim, None));

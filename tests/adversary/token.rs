@@ -22,7 +22,7 @@ fn join(sim: &Sim, token: Option<Token>, role: Role) -> Result<JoinReply, BusErr
 }
 
 #[test]
-fn without_the_token_nobody_joins_or_controls() {
+fn nobody_can_join_or_control_without_the_token() {
     let sim = Sim::start("patient", &["--join-s", "600"]);
     for role in [Role::Agent, Role::Gateway] {
         assert!(matches!(join(&sim, None, role), Err(BusError::NeedsToken)), "{role}");
@@ -70,7 +70,7 @@ fn what_was_seen_once_cannot_be_used_again() {
 }
 
 #[test]
-fn everybody_may_stop_the_boats_and_only_who_knows_the_token_lets_them_go() {
+fn anyone_may_stop_the_boats_but_releasing_them_needs_the_token() {
     let sim = Sim::start("long", &["--pace", "20x"]);
     let _agents = sim.agent(&FOUR);
     sim.wait_for_kind("started");

@@ -4,7 +4,7 @@
 use crate::program::{printed, refusal, scenario, squall};
 use std::path::Path;
 
-/// A training with two short stages.
+/// A training run with two short stages.
 fn training() -> String {
     let [game, rewards, idle, pav01] =
         ["games/pav01_afloat.toml", "rewards/bold.toml", "strategies/idle.toml", "strategies/pav01.toml"].map(scenario);

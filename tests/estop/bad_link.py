@@ -247,7 +247,7 @@ def open_device(name, namespace, address):
 def number_between(text, least, most):
     number = float(text)
     if not least <= number <= most:
-        raise ValueError(f"{text} is outside of {least:g} to {most:g}")
+        raise ValueError(f"{text} is outside {least:g} to {most:g}")
     return number
 
 

@@ -109,7 +109,7 @@ def end_with_parent():
 
 
 class Machines:
-    """Some machines, joined by a bad link. All of it is gone when this is left."""
+    """Some machines, joined by a bad link. All of it is removed on exit."""
 
     def __init__(self, names, out, seed):
         self.out = out

@@ -199,7 +199,7 @@ class Rig:
         self.stops_after_release += releases > (len(boats) > 1)
 
     def tell(self, machine, *words):
-        """Runs `squall gateway tell` to its end: the time before, ns, and what came of it."""
+        """Runs `squall gateway tell` to its end: the time before, ns, and its result."""
         words = self.machines.words(machine, [self.squall, "gateway", "tell", *words, *self.place()])
         env = self.machines.env(machine, SQUALL_TOKEN=self.token)
         began_ns = time.monotonic_ns()

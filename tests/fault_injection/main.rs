@@ -77,7 +77,7 @@ fn show(seed: u64) {
 }
 
 #[test]
-fn whatever_the_network_does_games_keep_their_promises() {
+fn games_keep_their_guarantees_under_any_network_faults() {
     if let Some(seed) = number("SQUALL_FAULT_SEED") {
         return show(seed);
     }

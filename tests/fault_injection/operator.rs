@@ -174,7 +174,7 @@ impl Operator<'_> {
         self.release_all();
     }
 
-    /// Ends an E-stop of all boats, whoever requested it.
+    /// Ends an E-stop of all boats, regardless of who requested it.
     fn release_all(&mut self) {
         self.note_release(true);
         // Without an answer, the operator does not know whether the release took effect.

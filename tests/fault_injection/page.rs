@@ -37,7 +37,7 @@ pub(crate) fn look(plan: &Plan, wire: &Wire, over: &Watched<bool>) {
     }
 }
 
-/// What the page has received.
+/// The messages that the page has received.
 struct Shown {
     at: Instant,
     frames: u64,

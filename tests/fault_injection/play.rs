@@ -38,7 +38,7 @@ pub(crate) struct Played {
     pub(crate) sim: Option<Result<Report, String>>,
     /// The node number and result of each agent that was not killed.
     pub(crate) agents: Vec<(usize, Result<(), String>)>,
-    /// What the agents refused.
+    /// The messages that the agents refused.
     pub(crate) refused: Refusals,
     pub(crate) monitor: WireMonitor,
 }
@@ -190,7 +190,7 @@ fn add_agent(network: &SimulatedNetwork, i: usize, vehicles: Vec<String>, result
     });
 }
 
-/// Observes frames until the game is over or the sim is gone.
+/// Observes frames until the game is over or the sim is lost.
 fn observe() {
     let stop = AtomicBool::new(false);
     let Ok((bus, game, _)) = GameSearch::new(WAIT, &stop).game(&mut |_| {}, &net(false).into(), None) else { return };

@@ -5,7 +5,7 @@
 //! `SQUALL_HOURS=24 cargo test --locked --release --workspace --test gale -- --nocapture` simulates
 //! a day with four boats; the default is half an hour.
 
-#![expect(clippy::print_stdout, reason = "what was measured is shown to whoever runs it by hand")]
+#![expect(clippy::print_stdout, reason = "measurements are shown when it is run by hand")]
 
 use gateway::bridge::{Bridge, Event, Input, Output, Plan, Preflight, Site};
 use gateway::emulator::{self, Emulator, Port};
@@ -250,7 +250,7 @@ fn hours() -> f64 {
 }
 
 #[test]
-fn in_a_gale_no_failsafe_is_a_false_alarm() {
+fn a_gale_triggers_no_false_failsafe() {
     let mut causes: BTreeMap<String, u32> = BTreeMap::new();
     let mut alarms = vec![];
     let voyages = (hours() * 3600.0 / VOYAGE_S).ceil() as u64;
@@ -275,7 +275,7 @@ fn in_a_gale_no_failsafe_is_a_false_alarm() {
 }
 
 #[test]
-fn each_fault_is_found_in_its_time_in_a_gale_too() {
+fn each_fault_is_detected_within_its_deadline_even_in_a_gale() {
     for (fault, words, limit_s) in [
         (Fault::CompassOff(0.52), "the compass is off", 240.0),
         (Fault::CompassOff(-0.52), "the compass is off", 240.0),

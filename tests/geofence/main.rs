@@ -3,7 +3,7 @@
 //!
 //! `SQUALL_APPROACHES=10000 cargo test --locked --release --workspace --test geofence -- --nocapture` runs more.
 
-#![expect(clippy::print_stdout, reason = "what was measured is shown to whoever runs it by hand")]
+#![expect(clippy::print_stdout, reason = "measurements are shown when it is run by hand")]
 
 use gateway::config::default_gateway;
 use gateway::geofence::{Coasting, GeofenceWatch};

@@ -122,7 +122,7 @@ fn a_gateway_stops_its_boat_and_serves_operators_before_there_is_a_game() {
 }
 
 #[test]
-fn a_boat_is_stopped_over_its_link_with_nothing_else_running() {
+fn a_boat_can_be_stopped_over_its_link_with_nothing_else_running() {
     let afloat = Afloat::start("alone-stop");
     afloat.set_going();
     let output = run(&["gateway", "stop", &afloat.back_seat]);
@@ -135,7 +135,7 @@ fn a_boat_is_stopped_over_its_link_with_nothing_else_running() {
 }
 
 #[test]
-fn enter_in_the_gateways_own_terminal_is_an_e_stop() {
+fn enter_in_the_gateways_own_terminal_triggers_an_e_stop() {
     let afloat = Afloat::start("alone-key");
     let words: Vec<String> =
         std::iter::once(env!("CARGO_BIN_EXE_squall").to_owned()).chain(afloat.gateway_args()).collect();

@@ -147,7 +147,7 @@ fn a_console_stops_one_boat_or_all_and_releases_them() {
 }
 
 #[test]
-fn a_sim_that_is_suspended_or_killed_keeps_no_stop_from_the_boats_nor_from_its_report() {
+fn a_suspended_or_killed_sim_blocks_neither_stops_nor_their_reports() {
     let mut fleet = Fleet::start();
     let mut console = fleet.console();
     fleet.sim.process.signal("STOP");

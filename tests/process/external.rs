@@ -105,7 +105,7 @@ impl Gateway {
 }
 
 #[test]
-fn a_real_boat_is_driven_by_its_agent_as_far_as_somebody_looks() {
+fn a_real_boat_has_one_gateway_and_holds_without_navigation_or_agent() {
     let sim = Sim::start("real_attacker", &["--pace", &format!("{FACTOR}x")]);
     let mut agent = sim.agent(&["blue_one"]);
     let _still = sim.agent(&["red_one"]);

@@ -27,7 +27,7 @@ impl FakePayload {
         std::thread::spawn(move || {
             for stream in listener.incoming().flatten() {
                 let (asked, serve) = (Arc::clone(&counted), Arc::clone(&serve));
-                // A client that disconnects is no error.
+                // It is not an error if a client disconnects.
                 std::thread::spawn(move || drop(serve(stream, &asked)));
             }
         });

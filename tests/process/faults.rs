@@ -11,12 +11,12 @@ fn game(pace: &str) -> (Sim, Vec<Process>) {
 fn expect_sim_gone(agents: &mut [Process]) {
     for agent in agents {
         let said = agent.refusal();
-        assert!(said.contains("the sim is gone"), "{said}");
+        assert!(said.contains("lost the sim"), "{said}");
     }
 }
 
 #[test]
-fn a_killed_agents_boat_holds_and_a_new_agent_takes_it_on() {
+fn a_killed_agents_boat_holds_until_a_new_agent_takes_over() {
     for pace in ["lockstep", "20x"] {
         let (sim, mut agents) = game(pace);
         sim.play_on(5.0);
@@ -37,7 +37,7 @@ fn a_killed_agents_boat_holds_and_a_new_agent_takes_it_on() {
 }
 
 #[test]
-fn an_agent_that_hangs_is_given_up_after_patience_and_may_come_back() {
+fn a_hung_agent_is_dropped_after_the_patience_and_may_return() {
     for pace in ["lockstep", "20x"] {
         let (sim, agents) = game(pace);
         sim.play_on(2.0);
@@ -79,7 +79,7 @@ fn an_agent_does_not_stay_with_a_sim_that_never_let_it_in() {
 }
 
 #[test]
-fn a_seat_that_is_taken_stays_taken() {
+fn a_taken_seat_stays_taken() {
     let (sim, _agents) = game("lockstep");
     let said = sim.refusal_of(&["agent", "--wait-s", "1", "--vehicle", "blue_one"]);
     assert!(said.contains("blue_one has another agent"), "{said}");

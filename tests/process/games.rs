@@ -98,7 +98,7 @@ fn a_mind_may_join_late() {
 }
 
 #[test]
-fn nothing_is_left_of_a_run_that_is_ended_early() {
+fn a_run_that_is_ended_early_leaves_nothing_behind() {
     for signal in ["INT", "TERM", "KILL"] {
         let mut command = squall(&["run", &own("long"), "--pace", "realtime", "--no-record"]);
         command.stdout(Stdio::null()).stderr(Stdio::null());

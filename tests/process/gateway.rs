@@ -199,7 +199,7 @@ fn a_suspended_gateway_is_replaced_by_its_guard_until_an_operator_arms_it_again(
 }
 
 #[test]
-fn a_gateway_that_is_asked_to_end_stops_the_boat_first() {
+fn a_gateway_asked_to_exit_stops_the_boat_first() {
     for signal in ["TERM", "INT"] {
         let mut all = Loop::under_way("none");
         all.gateway.signal(signal);
@@ -218,7 +218,7 @@ fn refusal_within(limit: Duration, mut gateway: Command) -> String {
 }
 
 #[test]
-fn a_gateway_that_cannot_record_ends_at_once_with_the_reason_and_leaves_the_boat_alone() {
+fn a_gateway_that_cannot_record_exits_with_the_reason_and_leaves_the_boat_alone() {
     let (dir, boat) = (temporary(), TcpListener::bind("127.0.0.1:0").expect("a port"));
     boat.set_nonblocking(true).expect("a socket");
     let link = format!("tcp://{}", boat.local_addr().expect("it is bound"));
@@ -266,7 +266,7 @@ fn gateways_that_could_not_record_begin_no_game() {
 }
 
 #[test]
-fn a_link_that_is_cut_half_open_or_comes_and_goes_leaves_the_boat_at_rest() {
+fn a_cut_half_open_or_intermittent_link_leaves_the_boat_at_rest() {
     // Cut: failsafe at once; the first command on the next connection is standby.
     let all = Loop::under_way("none");
     all.proxy.cut();

@@ -68,7 +68,7 @@ fn at_both_paces(check: fn(&str)) {
 }
 
 #[test]
-fn an_observer_whose_link_is_cut_holds_up_nobody() {
+fn an_observer_with_a_cut_link_delays_no_node() {
     at_both_paces(|pace| {
         let (sim, _agents) = game(pace);
         let proxy = Proxy::start(sim.endpoint.replace("tcp/", ""));
@@ -121,7 +121,7 @@ fn an_agent_whose_link_is_cut_costs_its_own_patience_once_and_nothing_after_it()
 }
 
 #[test]
-fn a_sim_that_was_suspended_blames_nobody_and_plays_the_same_game() {
+fn a_resumed_sim_blames_no_node_and_plays_the_same_game() {
     let want = result_of(&[&own("impatient_120s"), "--in-process"])["digest"].clone();
     let sim = Sim::start("impatient_120s", &["--speed", "20x"]);
     let mut agents = FOUR.map(|name| sim.agent(&[name]));
@@ -154,7 +154,7 @@ fn suspend(sim: &Sim) {
 }
 
 #[test]
-fn a_sim_whose_output_nobody_reads_plays_on() {
+fn a_sim_with_unread_output_continues() {
     let endpoint = free_endpoint();
     let mut command = squall(&["sim", &own("long"), "--for-parent", "--game", "unread", "--listen", &endpoint]);
     command.stdin(Stdio::piped()).stdout(Stdio::piped());
@@ -279,6 +279,6 @@ fn floods_a_game() {
     let bus = Bus::leaf(&Net { connect: vec![endpoint.to_owned()], ..Net::default() }).expect("the hub is there");
     let keys = [topic::matching(&name, "order/stranger"), topic::control(&name)];
     let publishers = keys.map(|key| bus.publisher(key, Priority::Normal).expect("the hub is there"));
-    // Until it is killed or the game is gone.
+    // Until it is killed or the game ends.
     while publishers.iter().all(|publisher| publisher.send_raw(vec![0xaa; 16]).is_ok()) {}
 }

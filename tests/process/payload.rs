@@ -135,7 +135,7 @@ fn bytes_pass_both_ways_and_are_recorded_with_what_the_sonde_measures() {
     client.write_all(b"ta\r").expect("it is taken");
     client.shutdown(Shutdown::Write).expect("it says no more");
     let mut answer = String::new();
-    client.read_to_string(&mut answer).expect("the answer comes all the same");
+    client.read_to_string(&mut answer).expect("the answer arrives anyway");
     assert_eq!(answer, "ta\r\n20.5 7.25 -8.125\r\n# ");
     wait_until("the sonde is asked again", || sonde.asked() >= before + 4);
     gateway.end();
@@ -186,7 +186,7 @@ fn pace(wire: &Wire, over: Duration) -> (Duration, f64) {
 }
 
 #[test]
-fn whatever_payloads_and_their_clients_do_the_boat_is_told_ten_times_a_second() {
+fn the_boat_is_commanded_ten_times_a_second_whatever_payloads_do() {
     let camera = FakePayload::camera(Duration::from_millis(1));
     let silent = FakePayload::silent();
     let nobody = bus::free_port(false).expect("a free port");

@@ -60,7 +60,7 @@ fn a_game_recorded_replayed_and_played_again_is_one_game() {
 }
 
 #[test]
-fn games_that_begin_together_have_a_recording_each() {
+fn simultaneous_games_have_separate_recordings() {
     let dir = temporary();
     let folder = dir.path().display().to_string();
     let args = ["run", "scenarios/games/attack_1v1.toml", "--set", "game.duration_s=5", "--record", &folder];
@@ -180,7 +180,7 @@ fn a_recording_that_the_disk_has_no_room_for_is_told_in_the_end() {
 }
 
 #[test]
-fn what_cannot_be_written_or_shown_is_refused_before_the_game() {
+fn unusable_outputs_are_refused_before_the_game() {
     let taken = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
     let taken = taken.local_addr().expect("it is bound").to_string();
     // Too long to wait for its end.

@@ -23,7 +23,7 @@ fn variable(bus: &bus::Bus, name: &GameName, info: &GameInfo, vehicle: &str, var
 }
 
 #[test]
-fn a_killed_mate_does_not_silence_the_others_and_nonsense_hurts_nobody() {
+fn a_killed_teammate_does_not_silence_the_others_and_nonsense_is_harmless() {
     let sim = Sim::start("talking", &[]);
     let mut agents: Vec<Process> =
         ["blue_1", "blue_2", "blue_3", "red_1", "red_2", "red_3"].iter().map(|name| sim.agent(&[name])).collect();

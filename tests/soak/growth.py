@@ -1,9 +1,9 @@
-"""Whether a figure grew over a run: its slope, and what that comes to over the time that was looked at."""
+"""Whether a figure grew over a run: its slope, and its total over the observed time."""
 
 from dataclasses import dataclass
 from statistics import median
 
-# The slope is the median of the slopes between pairs of samples: so many samples are paired at most.
+# The slope is the median of the slopes between pairs of samples: the maximum number of paired samples.
 PAIRED_MAX = 200
 # The first part of a run fills buffers and caches: what grows there does not go on.
 WARM_UP = 0.2

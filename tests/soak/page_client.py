@@ -8,7 +8,7 @@ import struct
 import threading
 
 TEXT, BINARY, CLOSE, PING, PONG = 1, 2, 8, 9, 10
-# A page that hears nothing for so long has lost its server, s.
+# A page that receives nothing for this time has lost its server, s.
 SILENCE_S = 30.0
 
 

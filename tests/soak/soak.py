@@ -84,7 +84,7 @@ class Soak:
         self.processes = {}
         self.samples = {}
         self.problems = []
-        # Boat, when, why: a gateway's status tells of the newest only.
+        # Boat, when, why: a gateway's status reports only the newest.
         self.failsafes = set()
         self.begun = time.monotonic()
         # All figures, one a line, as they come: they are there also if this is killed.
@@ -121,7 +121,7 @@ class Soak:
         self.begun = time.monotonic()
 
     def begin(self, name, *words):
-        """Starts a command; what it says goes into a file of its own."""
+        """Starts a command; its output goes to its own file."""
         with open(self.out / f"{name.replace(' ', '_')}.log", "wb") as log:
             child = subprocess.Popen([self.args.squall, *map(str, words)], env=self.env, stdin=subprocess.DEVNULL,
                                      stdout=log, stderr=subprocess.STDOUT)
@@ -129,7 +129,7 @@ class Soak:
         return child
 
     def registered(self, pattern, count=1):
-        """The entries of this kind in the registry, if there are so many."""
+        """The entries of this kind in the registry, if there are this many."""
         files = sorted((Path(self.registry.name) / "squall").glob(pattern))
         try:
             entries = [json.loads(file.read_text(encoding="utf-8")) for file in files]

@@ -99,7 +99,7 @@ impl Problem {
         assert!(self.functions < FUNCTIONS_MAX, "more than {FUNCTIONS_MAX} functions");
         let weight = Weight::new(weight);
         self.functions += 1;
-        // Counted all the same: whether a helm has a preference does not depend on weights that
+        // Counted anyway: whether a helm has a preference does not depend on weights that
         // happen to be zero.
         if weight.is_zero() {
             return;

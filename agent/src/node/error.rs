@@ -24,10 +24,10 @@ pub enum NodeError {
         theirs: String,
     },
     /// No picture from the sim for this long.
-    #[error("the sim is gone: no picture for {0:.1?}")]
+    #[error("lost the sim: no picture for {0:.1?}")]
     SimGone(Duration),
     /// Another sim now serves a game of the same name and does not know this agent.
-    #[error("the sim is gone, and another one serves the game: join again")]
+    #[error("lost the sim, and another one now serves the game: join again")]
     SimReplaced,
 }
 

@@ -48,8 +48,8 @@ impl TurnEstimate {
     }
 }
 
-/// A boat with this yaw rate, rad/s, as one that goes straight: its position and velocity after a
-/// brief continued turn.
+/// The straight-line equivalent of a boat with this yaw rate, rad/s: its position and velocity
+/// after a brief continued turn.
 pub(super) fn turning_on(boat: MovingPoint, yaw_rate_rad_s: f64) -> MovingPoint {
     let turn_rad = (yaw_rate_rad_s * TURNS_ON_S).clamp(-TURN_MAX_RAD, TURN_MAX_RAD);
     let half_rad = 0.5 * turn_rad;

@@ -99,10 +99,10 @@ impl GameSeries {
         }
     }
 
-    /// A remark for people if decisions were left out.
+    /// A note for the user if decisions were omitted.
     #[must_use]
     pub fn remark(&self) -> Option<String> {
-        (self.every > 1).then(|| format!("the game is long; only every {}th decision is analysed", self.every))
+        (self.every > 1).then(|| format!("the game is long; only one decision in {} is analysed", self.every))
     }
 
     /// The time between the first sample and the last, s.

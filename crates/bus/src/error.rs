@@ -30,7 +30,7 @@ pub enum BusError {
     Request {
         /// The key of the query.
         key: String,
-        /// What is wrong with the answer.
+        /// The fault in the answer.
         reason: String,
     },
     /// The sim refuses, for this reason.
@@ -41,12 +41,12 @@ pub enum BusError {
     Silent,
     /// The game requires its token.
     #[error(
-        "the game requires its token, which `squall sim` printed at its start: pass it with --token-file FILE, or in the \
-         environment as SQUALL_TOKEN"
+        "the game requires its token, which `squall sim` printed when it started: pass it with --token-file FILE, or in \
+         the environment as SQUALL_TOKEN"
     )]
     NeedsToken,
     /// The token belongs to another game.
-    #[error("wrong token for this game: `squall sim` printed the token at its start")]
+    #[error("wrong token for this game: `squall sim` printed the token when it started")]
     WrongToken,
     /// A node answered without proving that it knows this token.
     #[error(

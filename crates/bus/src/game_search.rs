@@ -144,11 +144,11 @@ fn understood(answer: &[u8]) -> Result<GameInfo, Refusal> {
     if version != primitives::VERSION {
         return Err(Refusal::Version(format!("the sim is {version}")));
     }
-    let not_understood = |e: String| Refusal::Version(format!("the sim's scenario is not understood: {e}"));
-    let info: GameInfo = serde_json::from_slice(answer).map_err(|e| not_understood(e.to_string()))?;
+    let unparseable = |e: String| Refusal::Version(format!("cannot parse the sim's scenario: {e}"));
+    let info: GameInfo = serde_json::from_slice(answer).map_err(|e| unparseable(e.to_string()))?;
     // The rest of the program indexes teams and boats by the scenario's references, and this
     // scenario comes from the network.
-    info.scenario.check_received().map_err(not_understood)?;
+    info.scenario.check_received().map_err(unparseable)?;
     Ok(info)
 }
 

@@ -89,7 +89,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_link_is_locked_once_until_whoever_has_it_lets_go() {
+    fn a_link_can_be_locked_only_once_until_its_holder_releases_it() {
         let link = format!("tcp://test-of-link-lock:{}", std::process::id());
         assert_eq!(LinkLock::holder(&link), None);
         let lock = LinkLock::take(&link).expect("nobody has it");

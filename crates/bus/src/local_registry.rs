@@ -191,7 +191,7 @@ mod tests {
     use std::os::unix::fs::PermissionsExt;
 
     #[test]
-    fn an_entry_is_for_this_user_alone() {
+    fn only_this_user_can_read_an_entry() {
         let dir = std::env::temp_dir().join(format!("squall-registry-test-{}", std::process::id()));
         let entry = Entry {
             game: "pav01".to_owned(),

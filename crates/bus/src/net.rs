@@ -279,7 +279,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_loopback_is_this_machine_only() {
+    fn only_loopback_is_limited_to_this_machine() {
         for (endpoint, is_ours) in [
             ("tcp/127.0.0.1:7447", true),
             ("tcp/127.3.2.1:7447", true),

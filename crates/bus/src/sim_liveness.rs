@@ -194,7 +194,7 @@ mod tests {
     #[test]
     fn a_game_that_does_not_begin_is_waited_for_as_long_as_the_sim_is_there() {
         assert_eq!(died(2, |_| false, |s| s <= 200), Some(203));
-        assert_eq!(died(SILENCE, |_| false, |s| !(100..140).contains(&s)), None, "the link is cut, and opened anew");
+        assert_eq!(died(SILENCE, |_| false, |s| !(100..140).contains(&s)), None, "the link is cut, and reopened");
         assert_eq!(died(2, |s| s > 100, |_| true), None, "it begins late");
         assert_eq!(died(2, |s| (100..=120).contains(&s), |_| true), Some(123), "it hangs in the game");
     }

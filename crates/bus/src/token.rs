@@ -57,8 +57,9 @@ impl Token {
     fn mac(&self, parts: &[&[u8]]) -> Hmac<Sha256> {
         let mut mac = Hmac::<Sha256>::new_from_slice(&self.0).expect("a key of any length will do");
         for part in parts {
-            // With its length, so that no two lists of parts look alike. A password in a message
-            // could be read and reused; a number used once, and a MAC under the secret, cannot.
+            // With its length, so that different lists of parts cannot encode to the same bytes.
+            // A password in a message could be read and reused; a number used once, and a MAC under
+            // the secret, cannot.
             mac.update(&(part.len() as u64).to_le_bytes());
             mac.update(part);
         }
@@ -172,7 +173,7 @@ pub fn request<B: Serialize, T: DeserializeOwned>(
     let mut payload = first(body);
     for _ in 0..ATTEMPTS {
         let Some(answer) = ask(payload)? else { return Ok(None) };
-        match read(token, key, body, &answer).map_err(|e| refused(format!("not understood: {e}")))? {
+        match read(token, key, body, &answer).map_err(|e| refused(format!("cannot parse the reply: {e}")))? {
             Answered::Answer(answer) => return Ok(Some(answer)),
             Answered::Again(again) => payload = again,
             Answered::NeedsToken => return Err(BusError::NeedsToken),

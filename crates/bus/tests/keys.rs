@@ -238,7 +238,7 @@ const ASKED: [(&str, &str); 11] = [
 ];
 
 #[test]
-fn each_may_do_what_its_part_needs_and_no_more() {
+fn each_role_may_do_only_what_it_needs() {
     check_rights("tcp");
 }
 

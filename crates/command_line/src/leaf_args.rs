@@ -48,7 +48,7 @@ pub struct TokenArgs {
     token_file: Option<PathBuf>,
 }
 
-/// Size limit of a token file, bytes: it is one line of text, so a longer file is another file.
+/// Size limit of a token file, bytes: it is one line of text, so a longer file is not a token file.
 const TOKEN_FILE_MAX: u64 = 4096;
 
 impl TokenArgs {
@@ -103,7 +103,7 @@ impl LeafArgs {
     }
 
     /// The gateways on this machine that a command may address. For a game elsewhere, these are the
-    /// gateways of that game; a stop addresses more rather than fewer.
+    /// gateways of that game. A stop errs on the side of addressing more.
     pub fn local_gateways(&self, stops: bool) -> Vec<bus::GatewayEntry> {
         let is_elsewhere = !stops && (self.lan || !self.connect.is_empty());
         let is_meant = |entry: &bus::GatewayEntry| match (&self.game, &entry.game) {
@@ -113,7 +113,8 @@ impl LeafArgs {
         bus::local_gateways().into_iter().filter(is_meant).collect()
     }
 
-    /// The same arguments for an emulated boat, which without a name means the only water here.
+    /// The same arguments for an emulated boat. Without a name, they select the only water on
+    /// this machine.
     #[must_use]
     pub fn in_water(mut self) -> LeafArgs {
         let water: Vec<bus::Entry> = bus::local_registry().into_iter().filter(|entry| entry.is_water).collect();
@@ -123,11 +124,11 @@ impl LeafArgs {
         self
     }
 
-    /// Checks that a command for all boats of a game, sent to these gateways, means only one game.
+    /// Checks that a command for all boats of a game, sent to these gateways, refers to only one game.
     /// Stops need no check: they go to as many boats as can be reached.
     ///
     /// # Errors
-    /// The names of the games.
+    /// If there are several games; the error names them.
     pub fn check_one_game(&self, gateways: &[bus::GatewayEntry]) -> Result<()> {
         let mut names: BTreeSet<String> = gateways.iter().filter_map(|entry| entry.game.clone()).collect();
         if self.connect.is_empty() && !self.lan {

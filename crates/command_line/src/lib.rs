@@ -1,4 +1,4 @@
-//! Shared by the command-line programs: arguments, text for people, complete errors, the request to
+//! Shared by the command-line programs: arguments, terminal text, complete errors, the request to
 //! stop.
 
 pub mod clock;

@@ -1,4 +1,4 @@
-//! Text for people, on standard output and standard error, with colours if the terminal supports
+//! Text for the user, on standard output and standard error, with colours if the terminal supports
 //! them.
 
 use crate::program;

@@ -210,7 +210,7 @@ fn a_named_pipe_in_place_of_a_table_is_refused_and_not_waited_for() {
         let study = Study::begin(&folder, &plan).unwrap();
         assert!(std::process::Command::new("mkfifo").arg(folder.join(name)).status().unwrap().success());
         let why = study.report(&plan).expect_err(name).to_string();
-        assert!(why.contains(name) && why.contains("it is a pipe that nobody reads"), "{why}");
+        assert!(why.contains(name) && why.contains("it is a pipe without a reader"), "{why}");
         std::fs::remove_dir_all(&folder).unwrap();
     }
 }
@@ -300,7 +300,7 @@ fn a_search_that_was_stopped_anywhere_goes_on_without_playing_its_games_again() 
     let bytes = std::fs::read(&file).unwrap();
     std::fs::write(&file, &bytes[..bytes.len() - 5]).unwrap();
     let mut journal = Journal::resume(&cut, &plan).unwrap();
-    assert_eq!(journal.games(), 99, "what was torn off is no game");
+    assert_eq!(journal.games(), 99, "the truncated part does not count as a game");
     assert_eq!(find(&mut journal, &AtomicBool::new(false), 99).unwrap(), want);
     assert_eq!(std::fs::read(&file).unwrap(), std::fs::read(whole.join("search.csv")).unwrap());
 

@@ -1,5 +1,5 @@
 //! Measures the primitive policies, which each have a single task. Plays episodes of their
-//! trainings with the policy and, for comparison, with stationary boats and with a random action
+//! training runs with the policy and, for comparison, with stationary boats and with a random action
 //! every half second.
 //!
 //! `cargo run --release -p squall-learn --example primitives -- [EPISODES] [FOLDER] [NAME…]`. By

@@ -1,7 +1,7 @@
 //! Reinforcement learning of policies.
 //!
 //! [`environment`] offers games as environments, alone or in parallel batches. [`train`] runs the
-//! trainings that [`training`] files define, with PPO ([`ppo`]), TD3 or double DQN
+//! training runs that [`training`] files define, with PPO ([`ppo`]), TD3 or double DQN
 //! ([`off_policy`]). [`rewards`] files define the rewards. Everything is reproducible to the bit on
 //! any number of threads.
 

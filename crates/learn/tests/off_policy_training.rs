@@ -1,4 +1,4 @@
-//! Trainings by TD3 and double DQN are reproducible, with or without an interruption; they learn;
+//! Training runs with TD3 and double DQN are reproducible, with or without an interruption; they learn;
 //! and their files play the trained policy.
 
 use scenario::policy::{PartialSpec, PolicyModel};

@@ -65,7 +65,7 @@ fn the_gains_of_a_place_add_up_to_what_it_is_worth_where_a_boat_has_come_to() {
 }
 
 #[test]
-fn whoever_shields_has_a_mate_that_a_strategy_sails() {
+fn the_shielder_has_a_teammate_driven_by_a_strategy() {
     let setup = setup("shield");
     assert_eq!(setup.mates.as_ref().map(|strategy| strategy.name.as_str()), Some("easy_attacker"));
     assert_eq!((setup.rows_per_game(), setup.team_size()), (1, 2));

@@ -1,4 +1,4 @@
-//! Payloads of a real boat, such as a camera or a sonde: all bytes between them and their clients,
+//! Payloads of a real boat, such as a camera or a sonde: the bytes exchanged with clients,
 //! for recordings.
 
 use crate::{Message, Stamp};

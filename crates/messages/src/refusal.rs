@@ -15,7 +15,7 @@ use std::ops::Add;
 pub enum Refusal {
     /// Bytes that do not decode as the message.
     Garbage,
-    /// A message of another version.
+    /// A message from another version.
     Version,
     /// A ticket that is unknown or has expired.
     Ticket,
@@ -42,10 +42,10 @@ pub enum Refusal {
 }
 
 impl Refusal {
-    /// All reasons, with their texts for people.
+    /// All reasons, with their user-visible texts.
     const ALL: [(Refusal, &str); 12] = [
-        (Refusal::Garbage, "not understood"),
-        (Refusal::Version, "of another version"),
+        (Refusal::Garbage, "malformed"),
+        (Refusal::Version, "from another version"),
         (Refusal::Ticket, "with an unknown ticket"),
         (Refusal::WrongTick, "for another tick"),
         (Refusal::NotYours, "about another node's boat"),
@@ -126,7 +126,7 @@ impl Add for Refusals {
 }
 
 impl fmt::Display for Refusals {
-    /// The reasons with non-zero counts: `2 x not understood, 1 x for another tick`.
+    /// The reasons with non-zero counts: `2 x malformed, 1 x for another tick`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let occurred = Refusal::ALL.iter().filter(|(refusal, _)| self.of(*refusal) > 0);
         let texts: Vec<String> = occurred.map(|(refusal, text)| format!("{} x {text}", self.of(*refusal))).collect();
@@ -150,7 +150,7 @@ mod tests {
             assert_eq!(refusals.decode::<Orders>(&bytes), None, "{bytes:?}");
         }
         assert_eq!(refusals, Refusals::from([(Refusal::Garbage, 2), (Refusal::Version, 1)]));
-        assert_eq!(refusals.to_string(), "2 x not understood, 1 x of another version");
+        assert_eq!(refusals.to_string(), "2 x malformed, 1 x from another version");
         let json = serde_json::to_value(refusals).expect("JSON");
         assert_eq!((&json["garbage"], &json["team_message_missing"]), (&2.into(), &0.into()));
         assert_eq!(serde_json::from_value::<Refusals>(json).expect("refusals"), refusals);

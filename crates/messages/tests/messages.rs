@@ -158,7 +158,7 @@ fn inputs_are_read_as_they_were_written_before_orders_had_a_time_and_no_older() 
     }
 }
 
-/// A message survives a round trip; truncated, extended or of another version it is refused.
+/// A message survives a round trip; truncated, extended or from another version, it is refused.
 fn survives_or_is_refused<M>(message: &M)
 where
     M: Message + serde::Serialize + serde::de::DeserializeOwned + PartialEq + std::fmt::Debug,

@@ -1,7 +1,7 @@
 """Reads a recording with the Python packages `mcap` and `mcap-ros2-support`, and with `rosbags`, and compares it with the
 game's result.
 
-Usage: mcap_check.py RECORDING [RESULT.json]; of a gateway there is no result.
+Usage: mcap_check.py RECORDING [RESULT.json]; a gateway has no result.
 """
 
 import io
@@ -50,7 +50,7 @@ def main(recording, result_path):
             continue
         if channel.topic == "frame":
             check(len(decoded.vehicles) == len(names), "a frame has another number of boats")
-            check(decoded.stamp.version == 3, "a frame of another version")
+            check(decoded.stamp.version == 3, "a frame from another version")
             last, events = decoded, events + len(decoded.events)
             log_times.append(message.log_time)
     check(last is not None and last.over, "the last frame is not the end of the game")

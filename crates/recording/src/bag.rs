@@ -137,7 +137,7 @@ impl Bag {
     /// Opens a recording file.
     ///
     /// # Errors
-    /// [`RecordingError`] if it cannot be read, is not a recording, or is of another version.
+    /// [`RecordingError`] if it cannot be read, is not a recording, or is from another version.
     pub fn open(path: &Path) -> Result<Bag, RecordingError> {
         let file = |reason| RecordingError::File { path: path.to_owned(), reason };
         Bag::of_source(Source::open(path).map_err(file)?)
@@ -146,7 +146,7 @@ impl Bag {
     /// Opens a recording in memory.
     ///
     /// # Errors
-    /// [`RecordingError`] if the bytes are not a recording, or of another version.
+    /// [`RecordingError`] if the bytes are not a recording, or are from another version.
     pub fn of(bytes: Vec<u8>) -> Result<Bag, RecordingError> {
         Bag::of_source(Source::of(bytes))
     }

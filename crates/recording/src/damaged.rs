@@ -30,7 +30,7 @@ impl Damaged {
         Damaged { count: self.count + others.count, first: self.first.or_else(|| others.first.clone()) }
     }
 
-    /// A remark for people, if any message is damaged.
+    /// A note for the user if any message is damaged.
     #[must_use]
     pub fn remark(&self) -> Option<String> {
         let first = self.first.as_ref()?;

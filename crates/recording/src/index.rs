@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The most messages in a stretch.
+/// Maximum number of messages in a stretch.
 const MESSAGES_MAX: usize = 256;
 
 /// The position of a message in a file.

@@ -296,7 +296,7 @@ mod tests {
     }
 
     #[test]
-    fn a_disk_that_does_not_keep_up_costs_the_newest_and_the_game_does_not_wait() {
+    fn a_slow_disk_loses_the_newest_data_and_does_not_delay_the_game() {
         let disk = Disk::default();
         let recorder = Recorder::over(disk.clone(), PathBuf::new(), &opening(), 100_000).expect("it begins");
         let stuck = disk.0.lock().expect("nobody panics");

@@ -314,7 +314,7 @@ impl Field {
     }
 
     /// The named point of `team`, seen from its own end: a column (`PP P C S SS`, port to
-    /// starboard) and a row (`B` back, `F` flag line, `H` half of the own side, `M` between there
+    /// starboard) and a row (`B` back, `F` flag line, `H` half of its side, `M` between there
     /// and the centre, `C` centre line, then `MX HX FX BX` on the other side).
     #[must_use]
     pub fn point(&self, team: TeamId, name: &str) -> Option<Ned> {

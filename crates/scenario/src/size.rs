@@ -71,7 +71,7 @@ mod tests {
     type Case = (&'static str, fn(&mut Scenario));
 
     #[test]
-    fn a_game_that_would_fill_the_memory_is_refused_with_the_number() {
+    fn a_game_that_would_exhaust_memory_is_refused_with_the_number() {
         let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/surveyor_2v2.toml");
         let sound = crate::load(&file).unwrap_or_else(|e| panic!("{e}"));
         assert_eq!(sound.check_received(), Ok(()));

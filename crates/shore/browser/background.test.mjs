@@ -69,7 +69,7 @@ test('a chart of another site is not drawn, and its place is told', async (t) =>
   assert(!(await sight.get(() => squall.background)) && !(await sight.page.isVisible('#show-chart')));
 });
 
-test('what is no chart is refused before anything begins', async (t) => {
+test('a file that is not a chart is refused before the page opens', async (t) => {
   const { geojson, image } = site(folder(t));
   const place = folder(t);
   const lone = join(place, 'lone.png');

@@ -85,7 +85,7 @@ test('ranges are measured between boats and places, by hand and by keys', async 
   same(await sight.until('both ends are chosen', () => squall.measured), want('blue_one', 'red_one'));
 });
 
-test('coordinates of what is pointed at are those of the field', async (t) => {
+test('the pointer’s coordinates are field coordinates', async (t) => {
   const sight = await paused(t);
   const [lat, lon] = await sight.get(() => squall.hello.chart.field.datum);
   const box = await sight.page.locator('#sheet').boundingBox();
@@ -101,7 +101,7 @@ test('coordinates of what is pointed at are those of the field', async (t) => {
   await sight.until('the position is hidden', () => !document.getElementById('place').checkVisibility());
 });
 
-test('a legend tells what marks are, and the dark is a switch that stays', async (t) => {
+test('a legend explains the marks, and the dark theme is remembered', async (t) => {
   const sight = await paused(t, { colorScheme: 'light', allows: /willReadFrequently/ });
   const colours = () => sight.get(() => {
     const style = getComputedStyle(document.documentElement);

@@ -42,7 +42,7 @@ const NOTE = () => {
 /** A browser reports this itself when no server listens. */
 const NOBODY = /WebSocket connection to .* failed/;
 
-test('a page that is loaded again, or whose server is, goes on by itself', async (t) => {
+test('a page reconnects by itself after a reload or a restart of its server', async (t) => {
   const file = gameFile(t, 'long', 'pav01_vs_pav01.toml', 'duration_s = 3600');
   const name = `page-test-${process.pid}`;
   const endpoint = `tcp/127.0.0.1:${await freePort()}`;
@@ -72,7 +72,7 @@ test('a page that is loaded again, or whose server is, goes on by itself', async
   await sight.until('its helm is received again', () => squall.helm?.report?.collective);
 
   await sim.kill();
-  await sight.until('the game is gone', () => squall.state.phase === 'gone' && /gone/.test(document.getElementById('over').textContent));
+  await sight.until('the game is gone', () => squall.state.phase === 'gone' && /Lost the game/.test(document.getElementById('over').textContent));
   assert(await sight.get(() => squall.connected));
   assert.equal(view.code, undefined, 'the server still runs');
   new Program(t, 'sim', file, '--speed', '5x', '--game', name, '--listen', endpoint);
@@ -81,7 +81,7 @@ test('a page that is loaded again, or whose server is, goes on by itself', async
   await until('the server still serves', async () => (await fetch(`http://${listen}/`)).ok);
 });
 
-test('a connection that dies in silence is given up; one on which nothing has to come is not', async (t) => {
+test('a silently dead connection is closed; an idle one is not', async (t) => {
   const game = gameFile(t, 'long', 'pav01_vs_pav01.toml', 'duration_s = 3600');
   const run = new Program(t, 'run', game, '--view', '--speed', '2x', '--no-record', '--listen', '127.0.0.1:0');
   const sight = await Sight.open(t, browser, await run.url(), { before: CUTTABLE });

@@ -59,7 +59,7 @@ test('a geofence is drawn by hand and by keys, and copied as the gateway file ha
   assert(!(await sight.page.isVisible('#fence-editor')));
 });
 
-test('what is drawn is what gateways then keep to, and show', async (t) => {
+test('gateways enforce and show the geofence that was drawn', async (t) => {
   const drawn = [[-10, -10], [170, -10], [170, 90], [60, 95], [-10, 90]];
   const by = await Sight.open(t, browser, (await realBoats(t)).url);
   await by.until('the field and its margin', () => squall.fences.length === 1);
@@ -97,7 +97,7 @@ const FENCED = () => {
   };
 };
 
-test('the geofence that gateways tell is drawn with its keep-outs, and who is too near to stop is seen', async (t) => {
+test('the geofence that gateways report is drawn with its keep-outs and the boats too close to stop', async (t) => {
   const boats = await realBoats(t);
   const sight = await Sight.open(t, browser, boats.url, { before: FENCED, allows: /willReadFrequently/, colorScheme: 'light' });
   await badge(sight, 'blue_one', 'disarmed');

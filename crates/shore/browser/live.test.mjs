@@ -77,7 +77,7 @@ test('pause, one decision, speed and going on', async (t) => {
   await sight.until('unlimited speed', () => squall.state.speed === null && squall.state.rate > 12);
 });
 
-test('a helm that nobody looked at before the pause says so, and shows its rose after a step', async (t) => {
+test('a helm not viewed before the pause says so, and shows its rose after a step', async (t) => {
   const run = new Program(t, 'run', pav01, '--view', '--speed', '5x', '--no-record', '--listen', '127.0.0.1:0');
   const sight = await Sight.open(t, browser, await run.url());
   // A helm without a position fix weighs nothing yet.

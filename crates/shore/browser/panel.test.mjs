@@ -87,7 +87,7 @@ const LINE = (name) => {
   return { state: what.lastElementChild.textContent, flag: carries.textContent, heading: heading.textContent, speed: speed.textContent, inked };
 };
 
-test('a line of the list tells heading, speed and its curve, mode, and what is carried', async (t) => {
+test('a line of the list shows heading, speed with its curve, mode and carried flag', async (t) => {
   const url = await replay(t, 'pav01_vs_pav01');
   const sight = await Sight.open(t, browser, url, { size: DESK });
   await sight.page.selectOption('#event-kind', { label: 'grabs' });

@@ -47,7 +47,7 @@ async function scrub(sight, t_s) {
   return sight.until(`the replay is at ${t_s} s`, ([want, off]) => Math.abs(squall.t_s - want) < off && squall.t_s, [t_s, PIXEL_S]);
 }
 
-test('a recording shows at every moment what the events say', async (t) => {
+test('a recording agrees with its events at every moment', async (t) => {
   const { file, result } = await record(t);
   const replay = new Program(t, 'replay', file, '--listen', '127.0.0.1:0');
   const sight = await Sight.open(t, browser, `${await replay.url()}#t=0`);
@@ -128,7 +128,7 @@ test('the buttons of a replay: on, back, to events, faster', async (t) => {
   assert.equal(await sight.get(() => squall.following), true);
 });
 
-test('a helm that thinks again agrees with what is recorded', async (t) => {
+test('a recomputed helm agrees with the recording', async (t) => {
   const { file } = await record(t);
   const replay = new Program(t, 'replay', file, '--listen', '127.0.0.1:0');
   const sight = await Sight.open(t, browser, `${await replay.url()}#t=0`);

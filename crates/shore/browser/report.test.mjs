@@ -1,4 +1,4 @@
-// Reports on the page: a tournament, a league, a sweep and a training, and the games behind their tables.
+// Reports on the page: a tournament, a league, a sweep and a training run, and the games behind their tables.
 
 import assert from 'node:assert/strict';
 import { copyFileSync, mkdirSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
@@ -95,7 +95,7 @@ test('from a cell of the win matrix to its games, to a replay of one, and back',
   assert.equal(await sight.get(() => [...document.querySelectorAll('#games tbody tr')].length), won);
 });
 
-test('what is wrong with a report or a game is said in words', async (t) => {
+test('faults in a report or game are explained in text', async (t) => {
   const { place, path, report } = await tournament(t);
   // Foreign texts, a game with a different result, and a seed with more digits than a JavaScript number holds.
   const seed = '9007199254740993';
@@ -130,7 +130,7 @@ test('what is wrong with a report or a game is said in words', async (t) => {
   assert.equal(await bare.get(() => document.querySelectorAll('.watch').length), 0);
 });
 
-test('who joins a league plays its own games alone, and the folder is shown', async (t) => {
+test('a new league entry plays only its own games, and the folder is shown', async (t) => {
   const { file, place } = await tournament(t);
   const league = join(place, 'league');
   const text = readFileSync(file, 'utf8');
@@ -224,7 +224,7 @@ test('from a point of a sweep to all its games, to a replay of one, and back', a
   assert.equal(await without.get(() => document.querySelectorAll('.watch, button[aria-label^="List"]').length), 0);
 });
 
-test('a training shows curves that follow its tables, and its recorded episodes', async (t) => {
+test('a training run shows curves that follow its tables, and its recorded episodes', async (t) => {
   const place = join(folder(t), 'first_steps');
   const games = join(place, 'games');
   mkdirSync(games, { recursive: true });

@@ -82,7 +82,7 @@ const sweep = async (t) => {
   await squall(t, 'sweep', file, '--out', join(place, 'out'));
   return view(t, join(place, 'out'));
 };
-/** A training's folder with invented numbers; a real one takes minutes. */
+/** A training run's folder with invented numbers; a real one takes minutes. */
 const training = async (t) => {
   const place = join(folder(t), 'first');
   mkdirSync(join(place, 'games'), { recursive: true });

@@ -178,7 +178,7 @@ test('a failsafe is seen and heard until it is acknowledged, and no flood keeps 
   await sight.until('the silent gateway raises an alarm', () => squall.alarms.some(({ boat, text }) => boat === 'red_one' && /silent/.test(text)));
 });
 
-test('a boat holds a heading and goes into other modes at an operator’s wish, and what is wrong in it is an alarm', async (t) => {
+test('a boat holds a heading and changes mode on an operator’s command, and its faults raise alarms', async (t) => {
   const file = join(folder(t), 'careful.toml');
   writeFileSync(file, '[currents]\nthruster_max_a = 1\n');
   const boats = await realBoats(t, { gateway: ['--config', file] });

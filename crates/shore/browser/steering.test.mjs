@@ -58,7 +58,7 @@ function alone(t) {
   return file;
 }
 
-test('two pages see one game; a boat goes as one of them says, and the other is told who steers', async (t) => {
+test('two pages see one game; one steers a boat, and the other sees who steers', async (t) => {
   // The others lie still, because safety moves the boat when others come near, and a slow machine needs time.
   const run = new Program(t, 'run', alone(t), '--view', '--pace', 'realtime', '--no-record', '--listen', '127.0.0.1:0');
   const url = await run.url();
@@ -157,7 +157,7 @@ test('a gamepad steers once its stick was seen at rest; the boat stops when it i
   await orders(sight, 180, 0);
 });
 
-test('whoever looks elsewhere lets go, and the boat stops', async (t) => {
+test('a driver who leaves the window releases the boat, and it stops', async (t) => {
   const sight = await Sight.open(t, browser, await person(t, '--pace', 'realtime').url());
   const away = {
     'another window is in front': () => dispatchEvent(new Event('blur')),

@@ -55,7 +55,7 @@ async function open(t, address, more = {}) {
 const metric = (report, name) => report.metrics.findIndex((each) => each.name === name);
 const percent = (mean) => `${Number((100 * mean).toPrecision(3))}`.replace('-', '−');
 
-test('the page of a sweep shows curves, a heat map and a tornado chart of what the report says', async (t) => {
+test('the page of a sweep shows the report as curves, a heat map and a tornado chart', async (t) => {
   const { page: address, report } = await sweep(t);
   const page = await open(t, address);
   assert.equal(await page.title(), report.sweep);
@@ -185,7 +185,7 @@ test('texts of a report are texts, and never script', async (t) => {
   assert.match(await page.textContent('#chips'), /30 could not start/);
 });
 
-test('a sweep that is not finished says so, and shows what there is', async (t) => {
+test('an unfinished sweep says so, and shows its results so far', async (t) => {
   const { out, report } = await sweep(t);
   const none = (list) => list.map(() => null);
   const point = (each, i) => (i < 3 ? each : { ...each, seeds: 0, entries: each.entries.map((one) => ({ ...one, metrics: none(one.metrics) })),

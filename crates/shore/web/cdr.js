@@ -113,7 +113,7 @@ function structReader(definition, readerFor) {
 
 /**
  * Returns a function that reads a message `name` from `(buffer, offset, old)`, with its encapsulation. If `old`, an
- * earlier message, is given, its objects and lists are overwritten instead of created anew.
+ * earlier message, is given, its objects and lists are overwritten instead of recreated.
  */
 export function readerOf(definitions, name) {
   const texts = new Map(Object.entries(definitions).map(([known, text]) => [short(known), text]));

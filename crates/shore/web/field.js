@@ -183,7 +183,7 @@ function drawObstacle(context, view, obstacle) {
   context.stroke();
 }
 
-/** A flag's home: the foot stays when the flag is gone. */
+/** A flag's home: the foot stays when the flag is taken. */
 function drawHome(context, view, flag) {
   const x = view.xOf(flag.x);
   const y = view.yOf(flag.y);

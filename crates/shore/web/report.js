@@ -5,7 +5,7 @@ import { Tournament } from './tournament.js';
 import { Training } from './training.js';
 import { make, plain, write } from './words.js';
 
-/** Refresh interval for a training in progress, ms. */
+/** Refresh interval for a training run in progress, ms. */
 const AGAIN_MS = 10_000;
 const KINDS = { tournament: Tournament, training: Training };
 

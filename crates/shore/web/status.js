@@ -75,7 +75,7 @@ export class Status {
     const waited = [...(state?.gateways ?? []).map((name) => `the gateway of ${plain(name)}`)];
     if (state?.minds && state.phase === 'waiting') waited.unshift(...this.agentWords(state.minds));
     if (state?.phase === 'waiting') words = waited.length > 0 ? `Waiting for ${waited.join(', ')}` : 'Waiting to start';
-    if (state?.phase === 'gone') words = 'The game is gone. Waiting for another.';
+    if (state?.phase === 'gone') words = 'Lost the game. Waiting for another.';
     const over = byId('over');
     write(over, words);
     show(over, words !== '');

@@ -1,4 +1,4 @@
-// A training: curves over samples, the newest evaluation against each opponent, and recorded episodes.
+// A training run: curves over samples, the newest evaluation against each opponent, and recorded episodes.
 
 import { addressOfGame } from './address.js';
 import { drawDiagram, partAt, sampleAt, ticksOf } from './diagram.js';

@@ -99,7 +99,7 @@ impl SimulatedSession {
     }
 
     fn new(endpoints: &[String], is_hub: bool) -> Result<SimulatedSession, String> {
-        let current = current().ok_or("not inside of a simulation")?;
+        let current = current().ok_or("not inside a simulation")?;
         let world = current.world;
         let mut state = world.state.lock();
         let id = format!("{:016x}", state.stream.bits());

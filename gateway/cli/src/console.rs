@@ -37,7 +37,7 @@ const HELP: &str = "\
   NAME estop              E-stop of one boat; NAME disarm puts it in standby
   NAME arm, NAME release  and every other command of `{gateway} tell`
   status                  states of all boats, and the time since their last reports
-  quit                    exits, like the end of the input
+  quit                    exits, as does end of input
 ";
 
 #[derive(clap::Args)]
@@ -45,7 +45,7 @@ const HELP: &str = "\
     "Reads commands from standard input, one per line, and prints the boats'\n",
     "reports with the time since each command:\n",
     "  blue_one  e-stopped  after 63 ms\n",
-    "Type help for the commands. An empty line is an E-stop of all boats.\n\n",
+    "Type help for the commands. An empty line E-stops all boats.\n\n",
     "Exits with code 0 if every boat has confirmed all requested stops.\n\n",
     "Examples:\n",
     "  {gateway} console --game day\n",
@@ -123,7 +123,7 @@ impl Console {
             }
         });
         if is_terminal {
-            terminal::print("type help for the commands; Enter alone is an E-stop of all boats\n> ");
+            terminal::print("type help for the commands; Enter alone E-stops all boats\n> ");
         }
         while !self.is_over.load(Ordering::Relaxed) {
             match lines.recv_timeout(LOOK) {
@@ -170,7 +170,7 @@ impl Console {
                     self.release_all();
                     Ok(())
                 }
-                _ => bail!("the name all accepts only estop, disarm, release and status"),
+                _ => bail!("`all` accepts only estop, disarm, release and status"),
             };
         };
         let (console, asked) = (self.clone(), clock::now());
@@ -223,7 +223,7 @@ impl Console {
                     said.clear();
                     match self.stay(&bus, &game, &boats) {
                         Ok(()) if self.is_over.load(Ordering::Relaxed) => {}
-                        Ok(()) => terminal::remark(&format!("the game {} is gone: looking for it", game.as_str())),
+                        Ok(()) => terminal::remark(&format!("lost the game {}: searching for it", game.as_str())),
                         Err(e) => terminal::remark(&e.to_string()),
                     }
                     bus.close();

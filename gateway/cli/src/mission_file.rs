@@ -26,7 +26,7 @@ pub(super) fn parse(text: &str) -> Result<Mission, String> {
 /// A mistake: its line, if it has one, and a description.
 type Mistake = (Option<usize>, String);
 
-/// What the lines of a mission have defined so far.
+/// The state defined by a mission's lines so far.
 #[derive(Default)]
 struct Lines {
     throttle_pct: Option<f64>,

@@ -60,7 +60,7 @@ impl Guide {
 
     /// Prints an instruction and listens until Enter is pressed.
     fn until_enter(&self, what: &str, listener: &mut Listener, take: &mut dyn FnMut(&Listener)) {
-        terminal::remark(&format!("{what} Press Enter when it is done."));
+        terminal::remark(&format!("{what} Press Enter when done."));
         let start = listener.now();
         listener.listen(&mut |listener| {
             take(listener);

@@ -324,7 +324,7 @@ fn tell_all(args: &Args) -> Result<ExitCode> {
     let (control, fleet) = match args.words.command {
         CommandArg::Status => (None, None),
         CommandArg::Release => (Some(Control::Release), Some(FleetCommand::Release)),
-        _ => bail!("the name all accepts only estop, disarm, release and status; address each boat by name"),
+        _ => bail!("`all` accepts only estop, disarm, release and status; address each boat by name"),
     };
     if control.is_some() {
         args.leaf.check_one_game(&args.leaf.local_gateways(false))?;

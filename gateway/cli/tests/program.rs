@@ -149,7 +149,7 @@ fn a_boat_is_checked_by_a_gateway_file_inside_of_the_program() {
 }
 
 #[test]
-fn a_disk_that_fills_up_is_reported_at_once_and_in_the_end() {
+fn a_full_disk_is_reported_at_once_and_at_the_end() {
     let mut state = 1_u64;
     let noise = move || {
         // Without compression of the recording: numbers that do not repeat.

@@ -109,12 +109,12 @@ fn same_wind(a: &Mwv, b: &nmea::sentences::mwv::MwvData) {
     near("speed", a.speed_m_s.map(|speed| speed / unit.m_s()), b.wind_speed.map(f64::from), TENTH);
 }
 
-/// What the crate makes of a line.
+/// The crate's interpretation of a line.
 fn theirs(line: &str) -> ParseResult {
     nmea::parse_str(line.trim_end()).unwrap_or_else(|e| panic!("the crate refuses {line}: {e:?}"))
 }
 
-/// What we make of a line.
+/// Our interpretation of a line.
 fn ours(line: &str) -> Sentence {
     let mut found = Vec::new();
     Framer::new().push(line.as_bytes(), &mut |body| found.push(Sentence::parse(body)));

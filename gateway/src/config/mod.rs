@@ -238,7 +238,7 @@ pub struct Geofence {
     /// Time before deceleration starts, s; at least `debounce_s` plus 0.5 s.
     #[schemars(range(min = 0, max = 10), extend("default" = 1))]
     pub reaction_s: f64,
-    /// Duration of a violation before it counts, s.
+    /// How long a violation must last before it counts, s.
     #[schemars(range(min = 0, max = 10), extend("default" = 0.5))]
     pub debounce_s: f64,
 }
@@ -269,7 +269,7 @@ pub struct BatteryWatch {
     /// Minimum voltage, V; 0: off.
     #[schemars(range(min = 0, max = 1000), extend("default" = 22))]
     pub volts_min: f64,
-    /// Duration below it before it counts, s.
+    /// How long the voltage must stay below `volts_min`, s.
     #[schemars(range(min = 0, max = 600), extend("default" = 5))]
     pub debounce_s: f64,
 }
@@ -284,10 +284,10 @@ pub struct CurrentWatch {
     /// A; 0: off.
     #[schemars(range(min = 0, max = 1000), extend("default" = 0.5))]
     pub thruster_min_a: f64,
-    /// Current from which a bilge pump counts as running, A; 0: off. It means water in the boat.
+    /// Current from which a bilge pump counts as running, A; 0: off. A running pump means water in the boat.
     #[schemars(range(min = 0, max = 1000), extend("default" = 0.1))]
     pub bilge_a: f64,
-    /// Duration before it counts, s.
+    /// How long a current must last before it counts, s.
     #[schemars(range(min = 0, max = 600), extend("default" = 3))]
     pub debounce_s: f64,
 }
@@ -336,7 +336,7 @@ pub struct ControlWatch {
     /// Maximum age of the boat's report of who is in control, s.
     #[schemars(range(min = 0.1, max = 30), extend("default" = 2))]
     pub age_max_s: f64,
-    /// Time within which the boat must show a command, s.
+    /// Time within which the boat must echo a command, s.
     #[schemars(range(min = 0.2, max = 30), extend("default" = 1.5))]
     pub echo_s: f64,
     /// Maximum difference between shown and sent thrust, %; 200: off.

@@ -54,9 +54,9 @@ pub enum NodeError {
     #[error("{0}")]
     Refused(String),
     /// The sim has died or is silent, so the emulated boat is lost too.
-    #[error("the sim is gone: no picture for {0:.1?}")]
+    #[error("lost the sim: no picture for {0:.1?}")]
     SimGone(Duration),
     /// Another sim serves a game of the same name, and does not know us.
-    #[error("the sim is gone, and another one serves the game: join again")]
+    #[error("lost the sim, and another one now serves the game: join again")]
     SimReplaced,
 }

@@ -310,7 +310,7 @@ impl GatewayLoop<'_> {
                 // Not an error: stale orders stop the boat, and the game's next sim is joined like
                 // this one.
                 self.counters.ticket = None;
-                self.remark("the sim is gone: waiting for the next");
+                self.remark("lost the sim; waiting for the next");
                 Ok(())
             }
             Call::Remark(text) => {

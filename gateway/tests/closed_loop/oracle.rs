@@ -21,7 +21,7 @@ pub(crate) struct Oracle {
     /// E-stops in force: boat, fleet.
     pub(crate) stops: [bool; 2],
     pub(crate) armed: bool,
-    /// How long after a stop for want of orders the gateway may arm the boat itself, s, and when
+    /// How long after a stop for lack of orders the gateway may arm the boat itself, s, and when
     /// the boat was stopped so last.
     pub(crate) rearm_within_s: f64,
     pub(crate) starved: SimTime,

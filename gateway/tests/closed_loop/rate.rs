@@ -10,7 +10,7 @@ fn steer(heading_deg: f64, speed_m_s: f64) -> Order {
 }
 
 #[test]
-fn ten_thousand_orders_a_second_come_out_as_twenty_sentences() {
+fn ten_thousand_orders_a_second_become_twenty_sentences() {
     let mut rig = played("under-way\norder none");
     let (start, before) = (rig.now, rig.oracle.all);
     let mut last_deg = 0.0;

@@ -248,7 +248,7 @@ impl Rig {
         self.bridge.status(self.now).counts.into_iter().chain(boat).collect()
     }
 
-    /// Starts counting positions, sentences, reports and events anew.
+    /// Restarts the counts of positions, sentences, reports and events.
     pub(crate) fn mark(&mut self) {
         self.marked = (self.boat.at, self.counts());
         (self.sent, self.navs, self.events) = (vec![], vec![], vec![]);

@@ -62,7 +62,7 @@ fn what_is_no_serial_line_is_tried_again() {
 #[test]
 fn a_speed_that_no_line_has_is_refused() {
     let address = LinkAddress::Serial { path: "/dev/ttyUSB0".into(), baud: 1234 };
-    let refused = Link::open(&address, patient(), drop).err().expect("it is no speed");
+    let refused = Link::open(&address, patient(), drop).err().expect("not a valid speed");
     assert!(matches!(refused, LinkError::Baud { baud: 1234, .. }), "{refused}");
     assert!(refused.to_string().contains("allowed: [4800, 9600"), "{refused}");
     // The same with a valid baud rate starts, even though the device does not exist.

@@ -210,7 +210,7 @@ fn a_peer_that_does_not_read_gets_the_newest_late_instead_of_all_in_order() {
 }
 
 #[test]
-fn a_peer_that_takes_nothing_for_two_seconds_is_dropped_with_what_it_did_not_take() {
+fn a_peer_that_reads_nothing_for_two_seconds_is_dropped_with_its_unread_data() {
     let (link, log, mut boat, _listener) = joined(patient());
     let start = Instant::now();
     link.send(vec![b'x'; 16 << 20], 0);

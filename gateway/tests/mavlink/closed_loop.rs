@@ -164,7 +164,7 @@ fn an_emulated_boat_takes_the_sign_of_its_speed_from_the_north_as_rover_does() {
 }
 
 #[test]
-fn what_fails_stops_the_boat_in_its_time() {
+fn every_failure_stops_the_boat_within_its_deadline() {
     type Fail = fn(&mut Rig);
     let cases: [(&str, Fail, f64, &str); 5] = [
         ("no orders", |rig| rig.order = None, 1.2, "no fresh order"),
@@ -185,7 +185,7 @@ fn what_fails_stops_the_boat_in_its_time() {
 }
 
 #[test]
-fn a_boat_that_hears_nothing_more_forgets_its_set_point_after_three_seconds() {
+fn a_boat_without_messages_drops_its_set_point_after_three_seconds() {
     let mut rig = Rig::under_way();
     rig.open.0 = false;
     rig.run(2.9);
@@ -195,7 +195,7 @@ fn a_boat_that_hears_nothing_more_forgets_its_set_point_after_three_seconds() {
 }
 
 #[test]
-fn who_takes_the_boat_by_remote_control_keeps_it() {
+fn a_pilot_who_takes_over_by_remote_control_keeps_the_boat() {
     for (mode, words) in [
         (RoverMode::Manual, "the remote control has taken over"),
         (RoverMode::Acro, "the remote control has taken over"),
@@ -208,7 +208,7 @@ fn who_takes_the_boat_by_remote_control_keeps_it() {
         rig.run_until(0.4, |rig| rig.state().contains(words));
         rig.operator(OperatorCommand::EStop);
         rig.run(10.0);
-        assert_eq!(rig.mode(), (mode, true), "it is left to whoever has it");
+        assert_eq!(rig.mode(), (mode, true), "it is left to its current operator");
         assert!(!rig.sent[sent..].iter().any(|(_, sent)| is_mode_command(sent)), "{mode:?}");
         rig.operator(OperatorCommand::Release);
         rig.operator(OperatorCommand::Arm);
@@ -224,7 +224,7 @@ fn who_takes_the_boat_by_remote_control_keeps_it() {
 }
 
 #[test]
-fn a_boat_that_leaves_guided_for_hold_is_not_taken_back() {
+fn a_boat_that_switches_from_guided_to_hold_is_not_retaken() {
     let mut rig = Rig::under_way();
     rig.ardupilot.set_mode(RoverMode::Hold);
     rig.run(2.0);
@@ -235,7 +235,7 @@ fn a_boat_that_leaves_guided_for_hold_is_not_taken_back() {
 }
 
 #[test]
-fn the_first_word_takes_nothing_from_a_pilot_and_stops_a_boat_in_guided() {
+fn the_first_command_leaves_a_pilot_in_control_and_stops_a_boat_in_guided() {
     for (mode, want) in [(RoverMode::Manual, (RoverMode::Manual, true)), (RoverMode::Guided, HOLD)] {
         let mut rig = Rig::under_way();
         rig.give(&Input::LinkDown);
@@ -319,7 +319,7 @@ fn a_boat_at_rest_is_armed_before_it_is_sent_to_its_recovery_point() {
     assert!(!rig.mode().1, "{:?}", rig.events);
 }
 
-/// What a ground station sends to disarm the boat.
+/// The command of a ground station that disarms the boat.
 fn disarm() -> Vec<u8> {
     let command = COMMAND_LONG_DATA {
         command: MavCmd::MAV_CMD_COMPONENT_ARM_DISARM,
@@ -387,7 +387,7 @@ fn messages_of_other_systems_are_counted_and_ignored() {
 }
 
 #[test]
-fn arming_that_the_boat_refuses_is_a_failsafe_with_its_own_words() {
+fn refused_arming_triggers_a_failsafe_with_the_boats_reason() {
     let mut rig = Rig::new();
     rig.order = Some(Order::Hold);
     rig.run(2.0);

@@ -104,7 +104,7 @@ fn position() -> MavMessage {
 }
 
 #[test]
-fn a_ground_station_that_steers_in_guided_is_found_by_what_the_boat_follows() {
+fn a_ground_station_that_steers_in_guided_is_detected_by_the_orders_shown() {
     for (message, limit_s, words) in [
         (velocity(0.0, 1.5), 1.0, "orders that are not ours"),
         (velocity(180.0, 1.0), 1.0, "orders that are not ours"),
@@ -116,7 +116,7 @@ fn a_ground_station_that_steers_in_guided_is_found_by_what_the_boat_follows() {
 }
 
 #[test]
-fn a_boat_that_does_not_show_what_it_follows_is_found_by_its_motion_and_its_positions() {
+fn foreign_orders_that_the_boat_does_not_show_are_detected_by_its_motion() {
     for (message, rate_hz, words) in [
         (velocity(0.0, 1.5), 20.0, "moves against its orders"),
         (velocity(270.0, 1.5), 20.0, "moves against its orders"),

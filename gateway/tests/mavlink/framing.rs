@@ -93,7 +93,7 @@ fn unknown_messages_and_values_are_counted_and_left() {
     assert_eq!(framer.counts().bad_checksum, 0);
 }
 
-/// What begins like a frame of an unknown message, and states that it has 267 bytes.
+/// Bytes that begin like a frame of an unknown message with a stated length of 267 bytes.
 const FALSE_START: [u8; 10] = [0xFD, 0xFF, 0, 0, 1, 1, 1, 0xAA, 0xAA, 0xAA];
 
 #[test]

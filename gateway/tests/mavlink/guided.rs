@@ -13,7 +13,7 @@ use primitives::angle::wrap_pi;
 use primitives::frame::Ned;
 use std::f64::consts::FRAC_PI_2;
 
-/// What ground stations leave of a set-point: a position, a velocity, a heading, a rate of turn.
+/// The part of a set-point that ground stations fill in: a position, a velocity, a heading, a rate of turn.
 const POSITION: u16 = 0b1101_1111_1000;
 const VELOCITY: u16 = 0b1101_1100_0111;
 const HEADING: u16 = 0b1001_1111_1111;

@@ -67,7 +67,7 @@ impl Station {
         self.run(0.9)
     }
 
-    /// Runs for so long; returns what the boat sent.
+    /// Runs for this time; returns what the boat sent.
     pub(crate) fn run(&mut self, seconds: f64) -> Vec<MavMessage> {
         let mut heard = vec![];
         for _ in 0..(seconds / STEP_S).round() as u64 {

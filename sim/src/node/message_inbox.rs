@@ -94,7 +94,7 @@ impl MessageInbox {
             }
             has_room
         });
-        // A notification without space is no loss, because another one is already waiting.
+        // A notification without space is not lost, because another one is already waiting.
         if !has_room && sender != Sender::Inboxes {
             self.refuse(Refusal::Flood);
         }

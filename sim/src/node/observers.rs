@@ -12,8 +12,8 @@ pub(super) fn water_json(contest: &Contest) -> Vec<u8> {
     serde_json::to_vec(&contest.world().sea().water()).expect("waves are JSON")
 }
 
-/// Maximum number of events in a reply: no link carries more than a megabyte at once, and no
-/// observer waits for it.
+/// Maximum number of events in a reply: a link carries at most a megabyte at once, and
+/// observers do not wait long.
 const EVENTS_MAX: usize = 5000;
 
 /// The events so far, as JSON; the last ones if there are too many.

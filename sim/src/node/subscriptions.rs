@@ -30,7 +30,7 @@ pub(super) enum Incoming {
     Join(Query),
     /// Only for the recorder: the topic's index in the list, and the message.
     RecordedMessage(usize, Vec<u8>),
-    /// The link to this node is gone.
+    /// The link to this node is lost.
     Gone(String),
     /// Makes the sim read the inboxes for commands and questions.
     Look,

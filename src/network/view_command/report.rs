@@ -1,4 +1,4 @@
-//! Reports on the page: tournaments, leagues, sweeps and trainings.
+//! Reports on the page: tournaments, leagues, sweeps and training runs.
 
 use super::games::{Game, Games, Source};
 use super::training::TrainingReport;
@@ -16,7 +16,7 @@ use std::sync::atomic::AtomicBool;
 /// Size limit of a report file, bytes.
 const BYTES_MAX: u64 = 256 << 20;
 
-/// The path of the page that shows tournaments and trainings.
+/// The path of the page that shows tournaments and training runs.
 pub(super) const PAGE: &str = "/report.html";
 
 /// Opens the report at a path: a file, or the folder that contains it.
@@ -37,7 +37,7 @@ pub(super) fn open(path: &Path, stop: &Arc<AtomicBool>) -> Result<Arc<dyn Report
         return Ok(Arc::new(TrainingReport::open(folder, games)?));
     }
     bail!(
-        "there is no report in {}, expected report.json (of a league or a sweep) or updates.csv (of a training)",
+        "there is no report in {}, expected report.json (of a league or a sweep) or updates.csv (of a training run)",
         folder.display()
     )
 }

@@ -1,4 +1,4 @@
-//! A training folder on the page: learning curves, evaluation results and recorded episodes.
+//! A training run's folder on the page: learning curves, evaluation results and recorded episodes.
 
 use super::games::{Game, Games, Source};
 use super::report::{PAGE, read};
@@ -17,7 +17,7 @@ const UPDATES: [&str; 7] = ["reward", "policy_loss", "value_loss", "entropy", "d
 const EVALUATIONS: [&str; 6] = ["won", "drawn", "lost", "points", "points_against", "left_field"];
 const EPISODES: [&str; 3] = ["points", "points_against", "steps"];
 
-/// The folder of a training, which may still be running.
+/// The folder of a training run, which may still be running.
 pub(super) struct TrainingReport {
     folder: PathBuf,
     name: String,
@@ -25,7 +25,7 @@ pub(super) struct TrainingReport {
 }
 
 impl TrainingReport {
-    /// Whether a folder contains a training.
+    /// Whether a folder contains a training run.
     pub(super) fn is_in(folder: &Path) -> bool {
         folder.join("updates.csv").exists()
     }
@@ -67,7 +67,7 @@ impl TrainingReport {
         let heads = reader.headers().with_context(|| format!("{} is not a CSV table", path.display()))?.clone();
         let column = |name: &str| {
             let found = heads.iter().position(|head| head == name);
-            found.with_context(|| format!("{} has no column {name}, expected those of a training", path.display()))
+            found.with_context(|| format!("{} has no column {name}, expected those of a training run", path.display()))
         };
         let texts = texts.iter().map(|name| Ok((*name, column(name)?))).collect::<Result<Vec<_>>>()?;
         let numbers = ["samples"].iter().chain(numbers);

@@ -2,8 +2,8 @@
 //! anybody attacks.
 //!
 //! [`GameQuality`] processes a game step by step, recorded or running, and produces a [`Quality`];
-//! several games add up. Results are split by strategy, role and mode, because these can be
-//! improved.
+//! results of several games can be added. They are split by strategy, role and mode, because those
+//! are what can be improved.
 
 mod encounter;
 mod orbit;

@@ -1,4 +1,4 @@
-//! The quality of play as tables for people, 80 columns wide.
+//! The quality of play as text tables, 80 columns wide.
 
 use super::encounter::{Encounters, Nearness};
 use super::{ModeQuality, Quality, StrategyQuality};

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::path::Path;
 
-/// What varies between points. It has one of `values`, `range`, `normal` and `log_normal`.
+/// A quantity that varies between points. It has one of `values`, `range`, `normal` and `log_normal`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Axis {
     /// A kind of file and its key, such as `sea.wind.speed_m_s`, `boat.gps.noise_m`,

@@ -276,7 +276,7 @@ fn grid(sweep: &Sweep) -> Result<Vec<Point>, Problems> {
     let levels: Vec<Vec<AxisValue>> = sweep.axes.iter().map(Axis::levels).collect();
     let count = levels.iter().try_fold(1_usize, |count, levels| count.checked_mul(levels.len()));
     if count.is_none_or(|count| count > POINTS_MAX) {
-        let message = format!("the grid has more than {POINTS_MAX} points, expected fewer levels, or another design");
+        let message = format!("the grid has more than {POINTS_MAX} points; use fewer levels or another design");
         return Err(Problems(vec![Problem::of_file(sweep.path.clone(), message)]));
     }
     let mut points = vec![Point::from(vec![])];

@@ -18,7 +18,7 @@ const COLUMNS: [(&str, &str, f64); 5] = [
 /// The maximum number of interactions and of worst games shown.
 const SHOWN: usize = 6;
 
-/// The report for people, at most 80 columns wide except for commands.
+/// The report as text, at most 80 columns wide except for commands.
 #[must_use]
 pub fn text(report: &Report) -> String {
     let mut text = String::new();
@@ -108,7 +108,7 @@ fn interactions(all: &[Interaction], line: &mut impl FnMut(String)) {
     }
 }
 
-/// The result of a search for rare failures, for people.
+/// The result of a search for rare failures, as text.
 #[must_use]
 pub fn found_text(found: &Found) -> String {
     let Found { entry, condition, games, failures, rate, .. } = found;

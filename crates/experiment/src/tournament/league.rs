@@ -26,7 +26,7 @@ pub struct League {
 #[derive(Serialize, Deserialize)]
 struct Line {
     pairing: String,
-    /// The names of the two entries, for people.
+    /// The displayed names of the two entries.
     blue: String,
     red: String,
     seed: u64,

@@ -1,11 +1,11 @@
-//! The report of a tournament as tables: for people, and as CSV.
+//! The report of a tournament as tables: as text, and as CSV.
 
 use super::rating::Rating;
 use super::report::{Cell, Report, Row};
 use crate::estimate::Estimate;
 use primitives::printable::add_line;
 
-/// A column: its name in the CSV file, its heading for people, and its value.
+/// A column: its name in the CSV file, its heading in the text, and its value.
 type Column = (&'static str, &'static str, fn(&Row) -> Estimate);
 
 const COLUMNS: [Column; 7] = [
@@ -21,7 +21,7 @@ const COLUMNS: [Column; 7] = [
 /// The default width of tables without a terminal, characters.
 pub const WIDTH: usize = 120;
 
-/// The report for people, in tables of at most `columns` characters if names allow it; each command
+/// The report as text, in tables of at most `columns` characters if names allow it; each command
 /// stays on one line.
 #[must_use]
 pub fn text(report: &Report, columns: usize) -> String {

@@ -13,7 +13,7 @@ use std::path::Path;
 pub(super) const TARGET: Target =
     Target { name: "model", seeds, change: binaries, check, allocated_max: (256 << 20, 1000) };
 
-/// What a strategy states about a model without metadata.
+/// A strategy's declaration of a model without metadata.
 const SAID: PartialSpec = PartialSpec {
     observation: Some(ObservationSpace::Pyquaticus),
     action: Some(ActionSpace::Pyquaticus),
@@ -33,7 +33,7 @@ fn seeds() -> Vec<Vec<u8>> {
     names.into_iter().map(read).chain([own()]).collect()
 }
 
-/// A model as a training writes it.
+/// A model as a training run writes it.
 fn own() -> Vec<u8> {
     let spec = PolicySpec {
         observation: ObservationSpace::Squall { mates: 0, enemies: 1, frames: 1 },

@@ -61,7 +61,7 @@ impl<A: Copy> Replay<A> {
     /// If either is 0.
     #[must_use]
     pub fn new(size: usize, capacity: usize) -> Replay<A> {
-        // The buffer is part of a training's saved state, about 100 MB by default. Refilling it by
+        // The buffer is part of a training run's saved state, about 100 MB by default. Refilling it by
         // playing would need the games' earlier state.
         assert!(size > 0 && capacity > 0, "{size}, {capacity}");
         Replay {

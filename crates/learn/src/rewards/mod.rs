@@ -115,7 +115,7 @@ pub struct Place {
     /// At the capture or untag place; 0 a field's width away.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub home: f64,
-    /// At the nearest intruder, an untagged enemy on the own side; 0 a field's width away, and
+    /// At the nearest intruder, an untagged enemy on the team's side; 0 a field's width away, and
     /// without intruders.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub intruder: f64,

@@ -1,4 +1,4 @@
-//! The learner of a training: a policy with the whole learning state of its algorithm.
+//! The learner of a training run: a policy with the whole learning state of its algorithm.
 
 use super::off_policy::OffPolicy;
 use crate::environment::Setup;

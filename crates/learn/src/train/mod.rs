@@ -31,12 +31,12 @@ use std::sync::Arc;
 const SAMPLES: &str = "squall.samples";
 /// First seed of evaluation games, beyond any training seed.
 const EVALUATION_SEED: u64 = 1 << 62;
-/// Seed spacing between a training's environments, as a power of two.
+/// Seed spacing between a training run's environments, as a power of two.
 const SEEDS_BITS: u32 = 24;
 /// All games restart after this many times their length, so that the training can be resumed there.
 const LENGTHS: i64 = 4;
 
-/// A training in progress.
+/// A training run in progress.
 pub struct Trainer {
     training: Training,
     setups: Vec<Setup>,
@@ -85,7 +85,7 @@ struct Update {
 }
 
 impl Trainer {
-    /// Starts a training on `threads` threads.
+    /// Starts a training run on `threads` threads.
     ///
     /// # Errors
     /// [`SetupError`] if a file cannot be used or a setup cannot be played.
@@ -93,10 +93,10 @@ impl Trainer {
         Trainer::with(training, threads, None)
     }
 
-    /// Resumes a training from [`Trainer::state`]. The results are those without an interruption.
+    /// Resumes a training run from [`Trainer::state`]. The results are those without an interruption.
     ///
     /// # Errors
-    /// [`StateError`] if the state belongs to another training or version, or a file cannot be used.
+    /// [`StateError`] if the state belongs to another training run or version, or a file cannot be used.
     pub fn resume(training: Training, threads: usize, state: &[u8]) -> Result<Trainer, StateError> {
         let state = State::read(state, &training)?;
         Ok(Trainer::with(training, threads, Some(state))?)
@@ -136,7 +136,7 @@ impl Trainer {
     }
 
     /// Adds watches for all episodes from now on except those of evaluations. Numbers count up
-    /// through a training as if games were played to the end; where games end early, a number may
+    /// through a training run as if games were played to the end; where games end early, a number may
     /// recur with another seed. Watches do not affect learning.
     ///
     /// # Errors
@@ -187,7 +187,7 @@ impl Trainer {
         self.state.stage >= self.training.stage.len()
     }
 
-    /// The state from which a training can be resumed; valid where [`Progress::can_be_resumed`].
+    /// The state from which a training run can be resumed; valid where [`Progress::can_be_resumed`].
     #[must_use]
     pub fn state(&self) -> Vec<u8> {
         self.state.write(&self.training)

@@ -1,4 +1,4 @@
-//! The state from which a training is resumed.
+//! The state from which a training run is resumed.
 
 use super::evaluation::Played;
 use super::league::League;
@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 use xxhash_rust::xxh3::xxh3_64;
 
-/// A training's state at a restart of all games.
+/// A training run's state at a restart of all games.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct State {
     pub(super) learner: Learner,
@@ -45,7 +45,7 @@ impl Evaluated {
     }
 }
 
-/// The best policy of a training.
+/// The best policy of a training run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Best {
     /// Samples learnt by then.
@@ -71,11 +71,11 @@ impl Head {
     }
 }
 
-/// Why a training cannot be resumed.
+/// Why a training run cannot be resumed.
 #[derive(Debug, Error)]
 pub enum StateError {
-    /// Not the state of a training.
-    #[error("it is not the state of a training, or it is damaged")]
+    /// Not the state of a training run.
+    #[error("it is not the state of a training run, or it is damaged")]
     Damaged,
     /// The state was written by another version.
     #[error("it was written by version {found}, expected {}", primitives::VERSION)]
@@ -83,8 +83,8 @@ pub enum StateError {
         /// The version in the state.
         found: String,
     },
-    /// The state is from another training.
-    #[error("it is the state of another training: the training file has changed since")]
+    /// The state is from another training run.
+    #[error("it is the state of another training run: the training file has changed since")]
     Other,
     /// A setup cannot be played.
     #[error(transparent)]

@@ -1,4 +1,4 @@
-//! The learning algorithm of a training, selected by the table in its file.
+//! The learning algorithm of a training run, selected by the table in its file.
 
 use super::{Dqn, Ppo, Td3, Training};
 

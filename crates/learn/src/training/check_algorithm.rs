@@ -1,4 +1,4 @@
-//! Checks the algorithm of a training: exactly one, with a suitable action space.
+//! Checks the algorithm of a training run: exactly one, with a suitable action space.
 
 use super::{Algorithm, CriticInput, Training};
 use scenario::{Diagnostics, Document};

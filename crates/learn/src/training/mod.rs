@@ -30,7 +30,7 @@ pub struct Training {
     /// Description, in one line.
     #[schemars(extend("default" = ""))]
     pub about: String,
-    /// What the policy receives.
+    /// The policy's inputs.
     pub observation: ObservationSpace,
     /// The policy's actions.
     #[schemars(extend("default" = "pyquaticus"))]
@@ -76,7 +76,7 @@ impl ScenarioFile for Training {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum CriticInput {
-    /// What the policy receives.
+    /// The policy's inputs.
     #[default]
     Observation,
     /// That and the truth about all boats, the flags and the sea, which no policy receives (a
@@ -90,7 +90,7 @@ pub struct Layers {
     /// Size of each hidden layer.
     #[schemars(length(min = 1, max = 8), inner(range(min = 1, max = 1024)), extend("default" = [128, 128]))]
     pub hidden: Vec<usize>,
-    /// What the critic receives.
+    /// The critic's inputs.
     #[schemars(extend("default" = "observation"))]
     pub critic: CriticInput,
 }

@@ -46,7 +46,7 @@ fn opened(line: &str) -> Told<Scene> {
                 let (team, x, y) = read(value)?;
                 extra_flags.push(flag(team, x, y));
             }
-            key => *rules.pointer_mut(&pointer(key)).ok_or(format!("{key} is no rule"))? = read(value)?,
+            key => *rules.pointer_mut(&pointer(key)).ok_or(format!("unknown rule {key}"))? = read(value)?,
         }
     }
     let rules = serde_json::from_value(rules).map_err(|e| e.to_string())?;
@@ -99,7 +99,7 @@ fn step(scene: &mut Scene, words: &str) -> Told<()> {
             scene.wait(read(seconds)?);
         }
         ["clock", seconds] => scene.now = SimTime::from_s(read(seconds)?),
-        _ => return Err(format!("{words} is no step")),
+        _ => return Err(format!("unknown step {words}")),
     }
     Ok(())
 }

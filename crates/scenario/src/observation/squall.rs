@@ -2,7 +2,7 @@
 
 use super::names_of;
 
-/// Incremented when the meaning of a value changes: models of another version are rejected.
+/// Incremented when the meaning of a value changes: models from another version are rejected.
 pub(super) const VERSION: u32 = 1;
 
 /// Number of values of the own boat, its goals and the game.

@@ -42,6 +42,6 @@ pub struct Name(pub(crate) String);
 pub(super) enum Position {
     /// [x east, y north] in metres from the datum.
     At(#[schemars(inner(range(min = -1000000, max = 1000000)))] [f64; 2]),
-    /// A named point of the own team.
+    /// A named point of the team.
     Point(String),
 }

@@ -54,7 +54,7 @@ pub enum Fact {
     EnemyFlagTaken,
     /// A mate carries a flag.
     MateHasFlag,
-    /// An untagged enemy is on the own side.
+    /// An untagged enemy is on the team's side.
     EnemyInZone,
     /// Number of such enemies.
     EnemiesInZone,
@@ -68,7 +68,7 @@ pub enum Fact {
     MatesTagged,
     /// Index in the team, from 0, in the order of the game file.
     Rank,
-    /// Points of the own team.
+    /// Points of the team.
     Score,
     /// Points of the enemy.
     EnemyScore,
@@ -97,7 +97,7 @@ pub enum Measure {
     Speed,
     /// Whether it exists now.
     Known,
-    /// Whether it is on the own side.
+    /// Whether it is on the team's side.
     OnOwnSide,
     /// Whether it is a tagged boat.
     IsTagged,

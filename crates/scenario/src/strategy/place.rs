@@ -14,7 +14,7 @@ use strum::{EnumMessage, IntoStaticStr, VariantArray};
 pub enum Place {
     /// A fixed position.
     At(Ned),
-    /// A named point of the own team, such as `CFX`.
+    /// A named point of the team, such as `CFX`.
     Point(String),
     /// A place that depends on the game.
     Mark(Mark),
@@ -42,14 +42,14 @@ pub enum Mark {
 pub enum Boat {
     /// Nearest untagged enemy.
     NearestEnemy,
-    /// Nearest untagged enemy on the own side.
+    /// Nearest untagged enemy on the team's side.
     NearestIntruder,
     /// Untagged enemy nearest to an own flag.
     NearestAttacker,
     /// Enemy, tagged or not, nearest to the enemy's flag.
     NearestDefender,
-    /// Untagged enemy on the own side assigned to this boat. Starting with the enemy nearest to an
-    /// own flag, each goes to the boat of the team that meets it soonest, one boat per enemy.
+    /// Untagged enemy on the team's side assigned to this boat. Starting with the enemy nearest to
+    /// an own flag, each goes to the boat of the team that meets it soonest, one boat per enemy.
     AssignedIntruder,
     /// Enemy that carries an own flag.
     FlagCarrier,
@@ -99,7 +99,7 @@ impl JsonSchema for Place {
             "type": "array", "items": number, "minItems": 2, "maxItems": 2
         });
         let named = json!({
-            "description": "A mark, a boat, or a named point of the own team.",
+            "description": "A mark, a boat, or a named point of the team.",
             "type": "string", "enum": Place::names(), "x-expected": format!("[x, y], {}", Place::names_in_short())
         });
         json_schema!({

@@ -42,10 +42,10 @@ struct ModelKeys {
     #[schemars(extend("minLength" = 1, "x-expected" = "the path of a file"))]
     #[expect(dead_code, reason = "only the schema is used")]
     model: Option<String>,
-    /// What the model receives. Default: as in its metadata.
+    /// The model's inputs. Default: as in its metadata.
     #[expect(dead_code, reason = "only the schema is used")]
     observation: Option<ObservationSpace>,
-    /// What the model chooses. Default: as in its metadata.
+    /// The model's actions. Default: as in its metadata.
     #[expect(dead_code, reason = "only the schema is used")]
     action: Option<ActionSpace>,
     /// Time between the model's decisions, s. Default: as in its metadata.

@@ -283,8 +283,8 @@ pub struct AvoidCollision {
     /// It resumes when all boats are farther than this, m. Default: 3 × `halt_m`.
     #[schemars(range(min = 0, max = 1000))]
     pub release_m: Option<Parameter>,
-    /// It also resumes after this time, and stops again only once it has been clear, s. Default:
-    /// never.
+    /// It also resumes after this time, and stops again only once it has been clear of other boats,
+    /// s. Default: never.
     #[schemars(range(min = 0.1, max = 86_400))]
     pub release_s: Option<Parameter>,
 }
@@ -389,7 +389,7 @@ pub struct MaxSpeed {
     /// Excess speed of utility 0, m/s.
     #[schemars(range(min = 0, max = 60), extend("default" = 0.5))]
     pub tolerance_m_s: Parameter,
-    /// Distance of boats below which it applies, m; 0: always.
+    /// Applies to boats closer than this, m; 0: always.
     #[schemars(range(min = 0, max = 10_000), extend("default" = 20))]
     pub range_m: Parameter,
     /// Only for boats within this angle of the bow, to either side, degrees.

@@ -127,7 +127,7 @@ fn world_matrix(text: &str, [width, height]: [f64; 2]) -> Result<[f64; 6], Strin
     }
     let [a, d, b, e, c, f] = numbers;
     if a * e - b * d == 0.0 {
-        return Err("lines 1 to 4 give the pixels no size".to_owned());
+        return Err("lines 1 to 4 describe pixels of zero size".to_owned());
     }
     let mut extent = Extent::default();
     for [column, row] in [[-0.5, -0.5], [width - 0.5, -0.5], [width - 0.5, height - 0.5], [-0.5, height - 0.5]] {
@@ -344,7 +344,7 @@ mod tests {
             (vec![("site.png", PNG)], "has no world file beside it"),
             (vec![("site.png", PNG), ("site.wld", b"1 2 3".as_slice())], "/site.wld: has 3 numbers, expected 6"),
             (vec![("site.png", PNG), ("site.wld", b"1 0 0 x 5 6")], "line 4: \"x\" is not a number"),
-            (vec![("site.png", PNG), ("site.wld", b"0 0 0 0 5 6")], "give the pixels no size"),
+            (vec![("site.png", PNG), ("site.wld", b"0 0 0 0 5 6")], "describe pixels of zero size"),
             (
                 vec![("site.png", PNG), ("site.wld", b"1 0 0 -1 712345 4512345")],
                 "a corner of the image is at [712344.5, ",

@@ -4,7 +4,7 @@ use super::view::View;
 use std::sync::{Arc, OnceLock};
 use tokio::sync::watch;
 
-/// A summary of many games: a tournament, a sweep or a training.
+/// A summary of many games: a tournament, a sweep or a training run.
 pub trait Report: Send + Sync {
     /// The path of its page.
     fn page(&self) -> &'static str;

@@ -83,7 +83,7 @@ impl PageSession {
         outgoing
     }
 
-    /// What the page can take now. Limits the frames and text in flight, so that none arrives late.
+    /// The page's free capacity. Limits the frames and text in flight, so that none arrives late.
     fn budget(&self) -> Budget {
         let (made, back) = self.pings;
         match self.undrawn < UNDRAWN_MAX {

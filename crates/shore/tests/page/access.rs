@@ -41,7 +41,7 @@ fn the_page_is_served_under_its_own_names_and_sealed() {
 }
 
 #[test]
-fn other_pages_open_no_websocket() {
+fn other_pages_cannot_open_a_websocket() {
     let page = page(show(), None, &[]);
     let own = format!("http://{}", page.address());
     for (headers, refused) in [
@@ -55,7 +55,7 @@ fn other_pages_open_no_websocket() {
 }
 
 #[test]
-fn with_a_token_only_those_who_show_it_have_rights() {
+fn only_clients_that_present_the_token_have_rights() {
     let page = page(show(), Some("a secret"), &[]);
     for (path, rights) in [("/ws", false), ("/ws?token=guess", false), ("/ws?token=a%20secret", true)] {
         let mut client = Client::connect(page.address(), path, &[]).expect("everyone may watch");
@@ -70,7 +70,7 @@ fn seek(client: &mut Client, t_s: f64) {
 }
 
 #[test]
-fn of_too_many_pages_the_one_that_idles_longest_makes_room_for_a_newcomer() {
+fn a_new_page_replaces_the_longest_idle_of_too_many() {
     let page = page(show(), None, &[]);
     let mut clients: Vec<Client> = (0..64).map(|_| open_viewer(&page)).collect();
     seek(&mut clients[0], 3.0);

@@ -389,7 +389,7 @@ fn gateways_tell_and_real_boats_keep_their_pace() {
 }
 
 #[test]
-fn an_e_stop_goes_straight_to_gateways_too_with_a_game_and_after_it() {
+fn an_e_stop_also_goes_straight_to_gateways_during_and_after_a_game() {
     let (sim, _page, mut client) = meet("mixed_2v2.toml");
     let gateway = TcpListener::bind("127.0.0.1:0").expect("a free port");
     let control = Some(gateway.local_addr().expect("bound").to_string());
@@ -422,11 +422,13 @@ fn an_e_stop_goes_straight_to_gateways_too_with_a_game_and_after_it() {
     client.until("state", |state| state["phase"] == "gone");
     is_stopped(&mut client);
     client.send(r#"{"do":"control","what":"halt"}"#);
-    client.until("refused", |refused| refused["what"] == "control" && refused["reason"] == "the game is gone");
+    client.until("refused", |refused| {
+        refused["what"] == "control" && refused["reason"] == "the game is no longer running"
+    });
 }
 
 #[test]
-fn a_game_that_goes_is_gone_and_the_next_is_another() {
+fn a_game_that_ends_is_removed_and_the_next_is_a_new_one() {
     let port = port();
     let (_page, mut client) = visit(live(port, None));
     assert_eq!(client.rest(), [], "no game has been found yet");

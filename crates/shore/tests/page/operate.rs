@@ -51,7 +51,7 @@ fn command(vehicle: &str, command: &str) -> String {
 }
 
 #[test]
-fn only_who_shows_the_operators_token_arms_and_everybody_who_may_stop_disarms() {
+fn arming_needs_the_operators_token_and_disarming_only_the_right_to_stop() {
     let (sim, page, mut control) = meet("mixed_2v2.toml");
     let (told, standing) = gateway(&sim.bus, Duration::ZERO);
     let mut operator = operator(&page);
@@ -91,7 +91,7 @@ fn only_who_shows_the_operators_token_arms_and_everybody_who_may_stop_disarms() 
 }
 
 #[test]
-fn no_flood_of_commands_keeps_a_stop_waiting() {
+fn no_flood_of_commands_delays_a_stop() {
     let (sim, page, mut control) = meet("mixed_2v2.toml");
     // A separate process has its own link. It takes longer than a reply's timeout.
     let net = Net { connect: vec![format!("tcp/127.0.0.1:{}", sim.port)], token: token(), ..Net::default() };

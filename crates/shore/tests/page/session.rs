@@ -63,7 +63,7 @@ fn a_page_that_draws_nothing_gets_two_frames() {
 }
 
 #[test]
-fn a_page_is_heard_while_it_takes_nothing() {
+fn a_page_that_does_not_read_can_still_send() {
     let (asked, asks) = channel();
     let (_page, mut client) = visit(Arc::new(Talker(asked, Changes::default())));
     // The connection's buffers fill up once the page has read nothing for a while.

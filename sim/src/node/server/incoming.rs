@@ -166,7 +166,7 @@ impl GameServer<'_> {
         let reply = match self.guard.check::<JoinRequest>(query.key(), query.payload(), |_| true) {
             Checked::Granted(request) => self.join_at(query.key(), &request),
             Checked::Challenged(challenge) => return query.answer(challenge),
-            Checked::Garbage(e) => JoinReply::Refused { reason: format!("the request is not understood: {e}") },
+            Checked::Garbage(e) => JoinReply::Refused { reason: format!("cannot parse the request: {e}") },
         };
         // Before the node can send its ticket.
         self.inbox.accept_tickets(self.agents.tickets().chain(self.gateways.tickets()).collect());
@@ -205,7 +205,7 @@ impl GameServer<'_> {
                 Checked::Challenged(challenge) => return query.answer(challenge),
                 Checked::Garbage(e) => {
                     self.refusals.count(Refusal::Garbage);
-                    Err(format!("the request is not understood: {e}"))
+                    Err(format!("cannot parse the request: {e}"))
                 }
             };
         query.answer(token::answer(&reply));

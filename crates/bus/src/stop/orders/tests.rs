@@ -69,7 +69,7 @@ fn a_status_that_a_lost_packet_held_up_shows_no_later_stop() {
     let now = as_of(&mut orders, 10_720, 10.67);
     orders.report(start + MS(10_720), "blue_one", "e-stopped", Source::Published(now));
     assert!(orders.unfinished().is_empty());
-    // A restarted gateway starts anew.
+    // A restarted gateway starts over.
     assert_eq!(as_of(&mut orders, 60_000, 1.0), start + MS(60_000));
 }
 

@@ -21,7 +21,9 @@ pub fn check_thrust_map<T>(diagnostics: &mut Diagnostics, document: &Document<T>
     }
     for (i, [last, (thrust_pct, speed_m_s)]) in points.array_windows().enumerate() {
         if *thrust_pct <= last.0 || *speed_m_s < last.1 {
-            let message = format!("thrust_map has [{thrust_pct}, {speed_m_s}] here, expected both to increase");
+            let message = format!(
+                "thrust_map has [{thrust_pct}, {speed_m_s}] here; both numbers must exceed those of the previous row"
+            );
             diagnostics.note(document.at(&format!("{path}.{}", i + 1)), message);
         }
     }

@@ -42,7 +42,10 @@ fn table(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, rows: &[
     if document.is_sound(path) {
         for (i, row) in rows.iter().enumerate().skip(1) {
             if points[i].0 <= points[i - 1].0 || points[i].1 <= points[i - 1].1 {
-                let message = format!("table_pct_newton has [{}, {}] here, expected both to increase", row.0, row.1);
+                let message = format!(
+                    "table_pct_newton has [{}, {}] here; both numbers must exceed those of the previous row",
+                    row.0, row.1
+                );
                 diagnostics.note(document.at(&format!("{path}.{i}")), message);
             }
         }

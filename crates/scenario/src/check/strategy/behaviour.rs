@@ -144,7 +144,7 @@ fn sets(scope: &mut Scope<'_>, path: &str, keys: &mut Map<String, Json>) -> Opti
             let known: Vec<&str> =
                 scope.variables.iter().filter(of_texts).map(|variable| variable.name.as_str()).collect();
             let expected = match known.as_slice() {
-                [] => "a variable with `values`, and there is none in [variables]".to_owned(),
+                [] => "a variable with `values`, but [variables] has none".to_owned(),
                 _ => format!("one of the variables with texts, {}{}", known.join(", "), did_you_mean(&name, &known)),
             };
             scope.refuse(&at, &format!("is {name:?}, expected {expected}"))

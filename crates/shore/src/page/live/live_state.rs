@@ -119,7 +119,7 @@ impl LiveState {
     /// The current game, or an error if it has gone.
     pub(super) fn on(&self) -> Result<Arc<LiveGame>, String> {
         let game = self.game.clone().filter(|_| !self.is_gone);
-        game.ok_or_else(|| "the game is gone".to_owned())
+        game.ok_or_else(|| "the game is no longer running".to_owned())
     }
 
     pub(super) fn end(&mut self) {

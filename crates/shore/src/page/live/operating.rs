@@ -74,7 +74,7 @@ pub(super) fn operate(
     if !game.scenario().externals().any(|external| external == vehicle) {
         return Err(format!("{name} is simulated and has no gateway"));
     }
-    let Some(bus) = state.bus.clone() else { return Err("the game is gone".to_owned()) };
+    let Some(bus) = state.bus.clone() else { return Err("the game is no longer running".to_owned()) };
     state.operating.begin(page, vehicle, &command)?;
     // A stop takes every path, and this query is one of them. The latest command counts.
     let stop = StopCommand::of(&command);

@@ -59,7 +59,7 @@ mod tests {
     use bus::clock;
 
     #[test]
-    fn one_page_has_the_wheel_until_it_lets_go_goes_or_is_silent() {
+    fn one_page_steers_until_it_releases_closes_or_falls_silent() {
         let start = clock::now();
         let later = |s: f64| start + Duration::from_secs_f64(s);
         let (a, b) = (VehicleId(0), VehicleId(1));

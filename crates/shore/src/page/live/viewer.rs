@@ -26,7 +26,7 @@ pub(super) struct PageViewer {
     sent: Sent,
 }
 
-/// What has been sent to a page about one game.
+/// The data already sent to a page about one game.
 #[derive(Default)]
 struct Sent {
     /// The number of the game.
