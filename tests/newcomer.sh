@@ -70,7 +70,7 @@ kill -TERM $watching
 wait $watching || [[ $? -eq 130 ]]
 refuse "the file scenarios/strategies/mine.toml exists already" squall new strategy mine
 for kind in boat sea game sweep training tournament; do
-    expect "created scenarios/${kind}s/mine.toml" squall new "$kind" mine
+    expect "created scenarios/$kind" squall new "$kind" mine
 done
 for kind in boats seas games sweeps training tournaments; do
     expect "valid" squall check "scenarios/$kind/mine.toml"
