@@ -253,9 +253,8 @@ fn items_of(about: &Value) -> String {
 
 /// The type in a schema, in words.
 fn kind_of(about: &Value) -> String {
-    match about["title"].as_str() {
-        Some(title @ ("boat" | "place")) => return title.to_owned(),
-        _ => {}
+    if let Some(title @ ("boat" | "place")) = about["title"].as_str() {
+        return title.to_owned();
     }
     match about["anyOf"][0]["type"].as_str() {
         Some("array") => return "pair or text".to_owned(),
