@@ -47,7 +47,7 @@ fn template(word: &str) -> Result<(Kind, &'static str), String> {
 
 fn name(word: &str) -> Result<String, String> {
     let is_name = !word.is_empty() && word.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_');
-    if is_name { Ok(word.to_owned()) } else { Err(format!("expected only the characters a-z, 0-9 and _")) }
+    if is_name { Ok(word.to_owned()) } else { Err("expected only the characters a-z, 0-9 and _".to_owned()) }
 }
 
 pub(crate) fn new(NewArgs { kind: (kind, text), name }: &NewArgs) -> Result<ExitCode> {

@@ -116,10 +116,7 @@ fn what_a_helm_reports_of_a_policy_is_told_in_words() {
 #[test]
 fn a_model_that_says_nothing_of_itself_is_told_from_a_file_that_is_none() {
     let text = printed(project(), &["policy", "crates/onnx/tests/network/sb3_dynamo.onnx"]);
-    assert!(
-        text.contains("obs (45) -> logits (17)") && text.contains("the strategy that uses it must declare this"),
-        "{text}"
-    );
+    assert!(text.contains("obs (45) -> logits (17)") && text.contains("the strategy must declare it"), "{text}");
     let why = refusal(project(), &["policy", "README.md"]);
     assert!(why.contains("README.md is not a usable model"), "{why}");
 }

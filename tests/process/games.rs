@@ -189,5 +189,5 @@ fn a_token_that_is_none_is_refused_before_the_game() {
     let mut run = squall(&["run", "scenarios/games/attack_1v1.toml", "--no-record"]);
     let output = run.env(bus::token::TOKEN_VARIABLE, "abc").output().expect("the program starts");
     let said = stderr(&output);
-    assert!(!output.status.success() && said.contains("SQUALL_TOKEN: a game's token is 64"), "{said}");
+    assert!(!output.status.success() && said.contains("SQUALL_TOKEN: not a token (3 characters)"), "{said}");
 }

@@ -104,8 +104,8 @@ impl<'w> GameServer<'w> {
         let bus = Bus::hub(&settings.net, &settings.game, contest.scenario())?;
         let (questions_sender, questions) = inbox(QUESTIONS);
         let (controls, messages) = (Arc::new(ControlInbox::default()), Arc::new(MessageInbox::default()));
-        let (to_controls, others) = (Arc::clone(&controls), Arc::clone(&messages));
-        let inboxes = Inboxes { controls: to_controls, questions: questions_sender, others };
+        let others = Arc::clone(&messages);
+        let inboxes = Inboxes { controls: Arc::clone(&controls), questions: questions_sender, others };
         let game = &settings.game;
         // A game's inputs use memory, and only the recorder takes them.
         if recorder.is_some() {
@@ -115,20 +115,18 @@ impl<'w> GameServer<'w> {
         let recorded_topics = if recorder.is_some() { observers::recorded_topics(scenario) } else { vec![] };
         let declarations = subscriptions::open(&bus, game, scenario, &inboxes, &recorded_topics)?;
         let is_lockstep = settings.pace == Pace::Lockstep;
-        let timing = if is_lockstep { Timing::Lockstep } else { Timing::Realtime };
         let speed = if let Pace::Realtime { factor } = settings.pace { Some(factor) } else { settings.speed };
-        let teams = (0..scenario.teams.len()).map(|team| topic::picture(game, scenario, TeamId(team as u8)));
         // In lockstep every picture counts. In real time the next one replaces it.
-        let delivery = if is_lockstep { Delivery::Reliable } else { Delivery::Newest };
-        let pictures = teams.map(|key| bus.publisher_with(key, Priority::Normal, delivery));
-        let pictures: Result<Vec<Publisher>, _> = pictures.collect();
+        let (timing, delivery) =
+            if is_lockstep { (Timing::Lockstep, Delivery::Reliable) } else { (Timing::Realtime, Delivery::Newest) };
+        let teams = (0..scenario.teams.len()).map(|team| topic::picture(game, scenario, TeamId(team as u8)));
+        let pictures =
+            teams.map(|key| bus.publisher_with(key, Priority::Normal, delivery)).collect::<Result<_, _>>()?;
         // Commands to boats are urgent: they overtake everything that waits on a link.
-        let to_boat = |v| {
-            Ok((v, bus.publisher_with(topic::external_order(game, scenario, v), Priority::Urgent, Delivery::Newest)?))
-        };
+        let urgent = |key| bus.publisher_with(key, Priority::Urgent, Delivery::Newest);
+        let to_boat = |v| Ok((v, urgent(topic::external_order(game, scenario, v))?));
         let external_orders: Vec<_> = scenario.externals().map(to_boat).collect::<Result<_, NodeError>>()?;
         let reports = subscriptions::report_publishers(&bus, game, scenario)?;
-        let is_real = !external_orders.is_empty();
         let real: Vec<String> = scenario.externals().map(|v| scenario.vehicles[v.index()].name.clone()).collect();
         let stop_port = HubStopPort::open(&bus, &settings.net, game, &real)?;
         let game_info = GameInfo {
@@ -144,7 +142,7 @@ impl<'w> GameServer<'w> {
             questions,
             inbox: messages,
             time: WorkingTime::new(clock::now()),
-            pictures: pictures?,
+            pictures,
             link_reports: BTreeMap::new(),
             throttles: scenario.teams.iter().filter(|_| !is_lockstep).map(|_| Throttle::new(clock::now())).collect(),
             asked: None,
@@ -161,7 +159,7 @@ impl<'w> GameServer<'w> {
             run_recorded: clock::now(),
             overruns: 0,
             recorded_topics,
-            pacing: Pacing::new(speed, is_lockstep, is_real),
+            pacing: Pacing::new(speed, is_lockstep, !real.is_empty()),
             recorder,
             game_info: serde_json::to_vec(&game_info).expect("a scenario is JSON"),
             stop: Arc::clone(&settings.stop),
