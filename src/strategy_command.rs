@@ -16,7 +16,7 @@ pub(crate) struct Args {
     /// Prints the modes and their possible behaviours as a Graphviz graph
     #[arg(long)]
     dot: bool,
-    /// Prints a reference of all keys and names in strategy files, as Markdown
+    /// Prints a reference for all keys and names in strategy files, as Markdown
     #[arg(long, conflicts_with_all = ["file", "dot"])]
     reference: bool,
 }

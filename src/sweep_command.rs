@@ -175,7 +175,7 @@ fn planned(args: &Args) -> Result<Plan> {
     let file = load_file::<Sweep>(&args.sweep).with_context(context)?;
     let games = args.games.unwrap_or(file.games);
     if !games.is_multiple_of(2) {
-        screen::remark(&format!("{games} games per point become {}, half of them on each side", games + 1));
+        screen::remark(&format!("{games} games per point become {}: half of them are played on each side", games + 1));
     }
     Plan::new(&Sweep { games, seed: args.seed.unwrap_or(file.seed), ..file }).with_context(context)
 }

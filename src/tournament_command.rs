@@ -157,7 +157,10 @@ fn planned(args: &Args) -> Result<Plan> {
     let file = load_file::<Tournament>(path).with_context(context)?;
     let games = args.games.unwrap_or(file.games);
     if !games.is_multiple_of(2) {
-        screen::remark(&format!("{games} games per pairing become {}, half of them on each side", games + 1));
+        screen::remark(&format!(
+            "{games} games per pairing become {}: half of them are played on each side",
+            games + 1
+        ));
     }
     let tournament = Tournament { games, seed: args.seed.unwrap_or(file.seed), ..file };
     Plan::new(&tournament).with_context(context)

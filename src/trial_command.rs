@@ -23,10 +23,10 @@ pub(crate) struct Args {
     /// _newton), or thrust_pct and rudder_pct, or speed_m_s and heading_deg
     #[arg(long, value_name = "FILE")]
     orders: Option<PathBuf>,
-    /// Standard manoeuvre to drive
+    /// Standard manoeuvre to perform
     #[arg(long, value_name = "NAME", value_parser = manoeuvre_name())]
     manoeuvre: Option<Manoeuvre>,
-    /// Writes the track to this CSV file, every 0.1 s; required with --orders [default: BOAT_MANOEUVRE.csv in the
+    /// Writes the track, sampled every 0.1 s, to this CSV file; required with --orders [default: BOAT_MANOEUVRE.csv in the
     /// current folder]
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,

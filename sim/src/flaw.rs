@@ -1,6 +1,6 @@
 //! Thruster flaws: command latency, gain and saturation, ventilation, and a sagging battery.
 //!
-//! The front seat does not know them: it assumes the nominal thrusters.
+//! The front seat is unaware of them: it assumes the nominal thrusters.
 
 use crate::battery::BatteryModel;
 use scenario::boat::{Flaws, Ventilation};
@@ -25,7 +25,7 @@ pub(crate) struct FlawModel {
 /// ones.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FlawState {
-    /// Settings in transit to the thrusters, oldest first; as many as the latency has ticks.
+    /// Settings in transit to the thrusters, oldest first; one for each tick of latency.
     under_way: VecDeque<[f64; 2]>,
     /// Charge of the thrusters' battery, 0 to 1; 0 without effect if they have none.
     pub charge: f64,

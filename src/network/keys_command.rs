@@ -83,7 +83,7 @@ fn new(args: &NewArgs) -> Result<()> {
     if let Some(there) =
         identities.iter().map(|identity| args.folder.join(identity.to_string())).find(|path| path.exists())
     {
-        bail!("{} exists already; new keys replace all old ones, so choose a new folder", there.display());
+        bail!("{} exists already; new keys would replace all the old ones, so choose a new folder", there.display());
     }
     let mut hosts: Vec<String> = ["localhost", "127.0.0.1", "::1"].map(str::to_owned).to_vec();
     if args.hosts.is_empty() {

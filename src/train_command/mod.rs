@@ -23,7 +23,7 @@ const STATE_BYTES_MAX: u64 = 4 << 30;
 
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Training to run: a file or a name
+    /// Training file to run: a path or a name
     #[arg(value_parser = crate::scenario_files::file_of::<learn::training::Training>)]
     training: PathBuf,
     /// Folder for the policy and all tables [default: runs/train/NAME]

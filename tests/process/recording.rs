@@ -145,7 +145,7 @@ fn what_is_no_recording_is_refused_with_the_reason() {
         (&["replay", "--check", "README.md", "--listen", "127.0.0.1:0"][..], "--check shows no page"),
         (&["run", game, "--in-process", "--record", &taken], "cannot create the folder"),
         (&["run", game, "--no-record", "--token", "secret"], "require --view"),
-        (&["view", "--listen", "0.0.0.0:0"], "or give a token"),
+        (&["view", "--listen", "0.0.0.0:0"], "or require a token"),
     ] {
         let said = refusal_of(args);
         assert!(said.contains(part), "{args:?}: {said}");
@@ -176,7 +176,7 @@ fn a_recording_that_the_disk_has_no_room_for_is_told_in_the_end() {
     let file = dir.path().join("game.mcap").display().to_string();
     let args = ["sim", "scenarios/games/attack_1v1.toml", "--record", &file, "--join-s", "0"];
     let (is_good, said) = run_on_a_full_disk(&args);
-    assert!(!is_good && said.lines().last().is_some_and(|last| last.contains("is not complete")), "{said}");
+    assert!(!is_good && said.lines().last().is_some_and(|last| last.contains("is incomplete")), "{said}");
 }
 
 #[test]

@@ -165,7 +165,7 @@ fn a_long_game_is_thinned_out_evenly_with_its_end_and_all_its_events() {
     let thinned = GameSeries::of_at_most(&recording, 20);
     let kept = [0, 3, 6, 9, 11];
     assert_eq!((thinned.every, &thinned.times_s), (3, &kept.map(|i| whole.times_s[i]).to_vec()));
-    assert!(thinned.remark().is_some_and(|remark| remark.contains("one decision of 3")), "{:?}", thinned.remark());
+    assert!(thinned.remark().is_some_and(|remark| remark.contains("one decision in 3")), "{:?}", thinned.remark());
     assert_eq!((&thinned.events, thinned.score.len()), (&whole.events, kept.len()));
     for (boat, all) in thinned.boats.iter().zip(&whole.boats) {
         assert_eq!(boat.samples, kept.map(|i| all.samples[i]), "{}", boat.name);

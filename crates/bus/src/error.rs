@@ -61,7 +61,7 @@ pub enum BusError {
     Keys(String),
     /// A session with keys in a process with more than one zenoh thread: its TLS links are not safe
     /// there.
-    #[error("a node with keys needs the environment variable ZENOH_RUNTIME = {KEYS_RUNTIME} from its start; {0}")]
+    #[error("a node with keys must be started with ZENOH_RUNTIME={KEYS_RUNTIME} in its environment; {0}")]
     Threads(String),
     /// The game has keys, and this node has none.
     #[error("{0} uses TLS: the game has keys, pass yours with --keys FOLDER (see `squall keys`)")]

@@ -234,7 +234,7 @@ mod tests {
         std::os::unix::fs::symlink(&own, &link).expect("a link");
         assert!(!is_private(&link));
         let refused = make_private(&link).expect_err("it is refused").to_string();
-        assert!(refused.contains("squall is a link, or belongs or is open to others"), "{refused}");
+        assert!(refused.contains("squall is a link or accessible to other users"), "{refused}");
         assert_eq!(folder_in(Some("/run/user/7".into())), Path::new("/run/user/7/squall"));
         for given in [Some("".into()), Some("run".into()), None] {
             assert!(folder_in(given).starts_with(std::env::temp_dir()));

@@ -34,7 +34,7 @@ pub enum UnpackError {
     /// The unpacked plan has another digest.
     #[error(
         "the packed games differ on this machine: expected digest {expected}, found {found}; \
-         both machines need the same version of Squall, this is {}",
+         both machines need the same version of Squall, and this one has {}",
         primitives::VERSION
     )]
     Other {

@@ -7,8 +7,7 @@ use thiserror::Error;
 /// A game with real boats cannot run without a clock.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error(
-    "{} (source = \"external\") can be played in real time only: run or serve this game with --pace realtime, or with \
-     --rehearse, a rehearsal in which every boat is simulated",
+    "{} (source = \"external\") can run in real time only: use --pace realtime, or --rehearse to simulate every boat",
     .names.join(", ")
 )]
 pub struct RealBoats {

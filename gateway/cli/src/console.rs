@@ -223,7 +223,10 @@ impl Console {
                     said.clear();
                     match self.stay(&bus, &game, &boats) {
                         Ok(()) if self.is_over.load(Ordering::Relaxed) => {}
-                        Ok(()) => terminal::remark(&format!("lost the game {}: searching for it", game.as_str())),
+                        Ok(()) => terminal::remark(&format!(
+                            "lost the connection to game {}; searching for it again",
+                            game.as_str()
+                        )),
                         Err(e) => terminal::remark(&e.to_string()),
                     }
                     bus.close();

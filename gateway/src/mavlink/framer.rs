@@ -1,7 +1,7 @@
 //! Splits incoming bytes into messages, and counts what it discards.
 //!
 //! It keeps at most one frame. After damage it searches for the next frame from the byte after the
-//! start of the damaged one, so it finds a frame within the range of a wrong length.
+//! start of the damaged one, so it still finds a frame inside a wrongly stated length.
 
 use super::dialect::MavMessage;
 use ::mavlink::{MAV_STX, MAV_STX_V2, MavlinkVersion, Message, calculate_crc};

@@ -33,7 +33,7 @@ pub(crate) struct Args {
     /// (MAVLink only)
     #[arg(long, value_name = "URL", conflicts_with = "primary")]
     ground_station: Option<String>,
-    /// Magnetic declination, degrees east [default: the World Magnetic Model's, for the field and today]
+    /// Magnetic declination, degrees east [default: from the World Magnetic Model, for the field and today]
     #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
     declination_deg: Option<f64>,
     /// Time without a command after which the boat goes to standby, s, or none; the real boat's value is unknown
@@ -51,7 +51,7 @@ pub(crate) struct Args {
     /// How long to look for the game, s
     #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
     wait_s: f64,
-    /// How long the sim may send no picture before it counts as lost, s
+    /// How long the sim may go without sending a picture before it counts as lost, s
     #[arg(long, value_name = "S", default_value_t = 20.0, value_parser = seconds)]
     silence_s: f64,
     #[command(flatten)]

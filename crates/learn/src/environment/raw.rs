@@ -138,7 +138,7 @@ pub(super) fn decisions_per_step(decision_s: f64, scenario: &Scenario) -> Result
     if (1.0..=1e6).contains(&times) && (times * least_s - decision_s).abs() < 1e-6 {
         return Ok(times as u32);
     }
-    let allowed = format!("a multiple of {least_s} s, the game's decision_s, up to 1,000,000 times");
+    let allowed = format!("a multiple of the game's decision_s ({least_s} s), at most 1,000,000 times that");
     Err(wrong("decision_s", decision_s, &allowed))
 }
 

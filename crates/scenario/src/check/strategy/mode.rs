@@ -49,7 +49,7 @@ fn parent(scope: &mut Scope<'_>, before: &[Mode], mode: usize, parent: &str) -> 
     };
     let depth = std::iter::successors(Some(found), |mode| before[*mode].parent).count();
     if depth >= DEEPEST {
-        scope.note(&path, &format!("has {} nested modes, expected at most {DEEPEST}", depth + 1));
+        scope.note(&path, &format!("is nested {} levels deep, expected at most {DEEPEST}", depth + 1));
     }
     Some(found)
 }

@@ -122,7 +122,7 @@ fn ask(bus: &Bus, game: &LiveGame, vehicle: VehicleId, command: &OperatorCommand
     if reply.status.vehicle == name {
         Ok(reply)
     } else {
-        Err(format!("the gateway of {} answers for {name}", reply.status.vehicle))
+        Err(format!("the gateway of {} answered a request meant for {name}", reply.status.vehicle))
     }
 }
 
