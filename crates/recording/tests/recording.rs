@@ -296,7 +296,7 @@ fn a_header_that_refers_to_nothing_is_refused() {
             "the team of red_one is 2, expected less than 2",
         ),
         (refused(|scenario| scenario.field.flags[1].team = primitives::TeamId(5)), "the team of flag 1 is 5"),
-        (refused(|scenario| scenario.vehicles[1].name = "../x".to_owned()), "\"../x\" is no name"),
+        (refused(|scenario| scenario.vehicles[1].name = "../x".to_owned()), "\"../x\" is not a valid name"),
     ] {
         assert!(message.contains("its scenario cannot be parsed") && message.contains(part), "{message}");
     }

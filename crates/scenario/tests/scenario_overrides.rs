@@ -181,7 +181,7 @@ fn a_single_value_is_checked_as_if_it_stood_in_the_file() {
         ("rules.tag_radius=3", "tag_radius is unknown"),
         ("boat.gps.noise_m=often", "--set boat.gps.noise_m:1:15: noise_m is the string \"often\""),
         ("game.field=nonesuch.toml", "nonesuch.toml cannot be read"),
-        ("rules.time_limit_s=9", "duration_s of the game takes the place of rules.time_limit_s"),
+        ("rules.time_limit_s=9", "duration_s of the game overrides rules.time_limit_s"),
     ] {
         let said = load_with(&game, &settings(&[text])).unwrap_err().to_string();
         assert!(said.contains(want), "{text}: {said}");
