@@ -135,10 +135,10 @@ test('a new league entry plays only its own games, and the folder is shown', asy
   const league = join(place, 'league');
   const text = readFileSync(file, 'utf8');
   writeFileSync(file, text.replace(entry('idle'), ''));
-  assert.match(await squall(t, 'tournament', file, '--league', league), /0 of 4 games were played before/);
+  assert.match(await squall(t, 'tournament', file, '--league', league), /0 of 4 games already played/);
   writeFileSync(file, text);
   const said = await squall(t, 'tournament', file, '--league', league);
-  assert.match(said, /4 of 12 games were played before/);
+  assert.match(said, /4 of 12 games already played/);
   assert.match(said, /8 games in/);
   const sight = await Sight.load(t, browser, await view(t, league));
   await sight.until('all three are rated', () => document.querySelectorAll('.ratings tbody tr').length === 3);
@@ -217,7 +217,7 @@ test('from a point of a sweep to all its games, to a replay of one, and back', a
   rmSync(join(out, 'games.csv'));
   const bare = await Sight.load(t, browser, `${await view(t, out)}#point=0`);
   await bare.page.waitForSelector('#games-table .watch');
-  assert.match(await bare.text('#games-note'), /8 games of point 0\..*not known: cannot read .*games\.csv/);
+  assert.match(await bare.text('#games-note'), /8 games of point 0\..*unknown: cannot read .*games\.csv/);
   rmSync(join(out, 'plan.json'));
   const without = await Sight.load(t, browser, `${await view(t, out)}#point=0`);
   await without.page.waitForSelector('#points-table tbody button');
