@@ -145,7 +145,10 @@ fn standings_are_what_the_outcome_says() {
 fn what_is_wrong_with_a_setup_is_said() {
     let nowhere = || Some(scenario("strategies/nowhere.toml"));
     for (raw, message) in [
-        (RawSetup { decision_s: Some(0.25), ..raw() }, "decision_s is 0.25, expected a multiple of 0.1 s"),
+        (
+            RawSetup { decision_s: Some(0.25), ..raw() },
+            "decision_s is 0.25, expected a multiple of the game's decision_s (0.1 s)",
+        ),
         (RawSetup { decision_s: Some(-0.5), ..raw() }, "decision_s is -0.5"),
         (RawSetup { episode_max_s: Some(f64::NAN), ..raw() }, "episode_max_s is NaN, expected more than 0"),
         (RawSetup { starts: Some(0), ..raw() }, "starts is 0"),
