@@ -18,7 +18,7 @@ use crate::mavlink::dialect::{
     PositionTargetTypemask, SET_ATTITUDE_TARGET_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA, SYS_STATUS_DATA,
     SYSTEM_TIME_DATA,
 };
-use crate::mavlink::{AUTOPILOT, Framer, Received, RoverMode, Writer};
+use crate::mavlink::{AUTOPILOT, Framer, Received, RoverMode, Writer, lat_lon};
 use crate::nmea::Mode;
 use crate::set_point::SetPoint;
 use crate::supervisor::Task;
@@ -134,7 +134,8 @@ impl Mavlink {
             MavMessage::HOME_POSITION(home) => {
                 let upload = self.upload.iter_mut();
                 upload.for_each(|upload| upload.take_home((home.latitude, home.longitude), now));
-                take(Report::Home([1e-7 * f64::from(home.latitude), 1e-7 * f64::from(home.longitude)]));
+                let at = lat_lon((home.latitude, home.longitude));
+                take(Report::Home([at.lat_deg, at.lon_deg]));
             }
             MavMessage::MISSION_ACK(ack) if (ack.target_system, ack.target_component) == ours => {
                 // For our system and component: ground stations on the same link upload missions,
@@ -347,7 +348,7 @@ impl Mavlink {
         out
     }
 
-    /// The stop message for a boat, whoever commands it.
+    /// The stop message for a boat, regardless of who commands it.
     pub(super) fn forced_stop_message(&self) -> Vec<u8> {
         let (mut copy, mut out) = (self.clone(), Vec::new());
         copy.write_set_point(SetPoint::ZERO, &mut out);
@@ -428,11 +429,6 @@ fn item_request(message: &MavMessage) -> Option<(u16, (u8, u8))> {
         MavMessage::MISSION_REQUEST(request) => Some((request.seq, (request.target_system, request.target_component))),
         _ => None,
     }
-}
-
-/// Degrees in the format of messages.
-pub(super) fn global_e7(deg: f64) -> i32 {
-    (1e7 * deg).round() as i32
 }
 
 pub(super) fn shown(command: Command) -> Shown {

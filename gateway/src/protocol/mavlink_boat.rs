@@ -7,11 +7,11 @@ use crate::mavlink::dialect::{
     ATTITUDE_DATA, COMMAND_ACK_DATA, GLOBAL_POSITION_INT_DATA, GPS_RAW_INT_DATA, GpsFixType, HEARTBEAT_DATA,
     MavAutopilot, MavCmd, MavMessage, MavModeFlag, MavResult, MavSeverity, MavType, NAV_CONTROLLER_OUTPUT_DATA,
 };
-use crate::mavlink::{AUTOPILOT, Received, RoverMode};
+use crate::mavlink::{AUTOPILOT, Received, RoverMode, on_globe};
 use crate::nmea::{FixQuality, Mode, Operator, date_and_time};
 use ::mavlink::Message;
+use primitives::SimTime;
 use primitives::frame::Ned;
-use primitives::{LatLon, SimTime};
 
 /// A receiver that has not reported a fix for this long has none, s.
 const FIX_TYPE_AGE_MAX_S: f64 = 2.0;
@@ -255,9 +255,7 @@ impl Boat {
         // The position is an estimate that continues without a receiver: its fix shows its quality.
         let fix = self.fix.filter(|(at, _)| (now - *at).as_s() <= FIX_TYPE_AGE_MAX_S);
         let fix = fix.map_or(Fix { quality: Some(FixQuality::NONE), ..Fix::default() }, |(_, fix)| fix);
-        let at = LatLon { lat_deg: 1e-7 * f64::from(lat), lon_deg: 1e-7 * f64::from(lon) };
-        let is_on_globe = at.lat_deg.abs() <= 90.0 && at.lon_deg.abs() <= 180.0;
-        take(Report::Fix(Fix { at: is_on_globe.then_some(at), ..fix }));
+        take(Report::Fix(Fix { at: on_globe((lat, lon)), ..fix }));
     }
 }
 

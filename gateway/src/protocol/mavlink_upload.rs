@@ -1,12 +1,13 @@
 //! The upload of a mission by MAVLink: the boat's home is set and confirmed, then the boat requests
 //! one item after the other.
 
-use super::mavlink::{Target, global_e7};
+use super::mavlink::Target;
 use crate::mavlink::dialect::HOME_POSITION_DATA;
 use crate::mavlink::dialect::{
     COMMAND_INT_DATA, COMMAND_LONG_DATA, MISSION_COUNT_DATA, MISSION_ITEM_INT_DATA, MavCmd, MavFrame, MavMessage,
     MavMissionResult,
 };
+use crate::mavlink::e7;
 use ::mavlink::MessageData;
 use messages::external::Mission;
 use primitives::SimTime;
@@ -56,8 +57,8 @@ impl Upload {
     /// numbering.
     pub(super) fn new(mission: &Mission, speed_m_s: f64, target: Target, now: SimTime) -> Upload {
         let item = |command: MavCmd, [lat_deg, lon_deg]: [f64; 2]| MISSION_ITEM_INT_DATA {
-            x: global_e7(lat_deg),
-            y: global_e7(lon_deg),
+            x: e7(lat_deg),
+            y: e7(lon_deg),
             command,
             target_system: target.system,
             target_component: target.component,
@@ -78,7 +79,7 @@ impl Upload {
             item.seq = seq as u16;
         }
         let [lat_deg, lon_deg] = mission.erp;
-        Upload { items, home: (global_e7(lat_deg), global_e7(lon_deg)), phase: Phase::Home, tries: 0, due: now }
+        Upload { items, home: (e7(lat_deg), e7(lon_deg)), phase: Phase::Home, tries: 0, due: now }
     }
 
     /// When the next step is due.

@@ -137,7 +137,7 @@ impl Protocol {
         }
     }
 
-    /// Like [`Protocol::stop_message`], whoever commands the boat, as far as its protocol allows.
+    /// Like [`Protocol::stop_message`], regardless of who commands the boat, as far as its protocol allows.
     #[must_use]
     pub fn forced_stop_message(&self) -> Vec<u8> {
         match self {

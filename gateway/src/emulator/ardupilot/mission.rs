@@ -8,6 +8,7 @@ use crate::mavlink::dialect::{
     MISSION_ACK_DATA, MISSION_COUNT_DATA, MISSION_CURRENT_DATA, MISSION_ITEM_DATA, MISSION_ITEM_INT_DATA,
     MISSION_REQUEST_DATA, MavCmd, MavFrame, MavMessage, MavMissionResult, MavMissionType,
 };
+use crate::mavlink::{LAT_MAX_E7, LON_MAX_E7, e7, lat_lon};
 use primitives::{LatLon, SimTime};
 
 /// Maximum number of items accepted.
@@ -77,12 +78,8 @@ impl MissionStore {
             let items = self.items.iter().skip(1);
             let waypoints = items.clone().filter(|item| is_waypoint(item));
             let speeds = items.filter(|item| item.command == MavCmd::MAV_CMD_DO_CHANGE_SPEED);
-            let place = |item: &MISSION_ITEM_INT_DATA| LatLon {
-                lat_deg: 1e-7 * f64::from(item.x),
-                lon_deg: 1e-7 * f64::from(item.y),
-            };
             let speed = speeds.map(|item| f64::from(item.param2)).find(|speed_m_s| *speed_m_s > 0.0);
-            (waypoints.map(place).collect(), speed)
+            (waypoints.map(|item| lat_lon((item.x, item.y))).collect(), speed)
         })
     }
 
@@ -99,8 +96,12 @@ impl MissionStore {
 
     /// Ends an upload for lack of the requested item; returns the reply to its sender.
     pub(super) fn refuse(&mut self, from: (u8, u8), reason: MavMissionResult) -> MavMessage {
-        self.upload = self.upload.take().filter(|upload| upload.from != from);
+        self.end_upload(from);
         ack(from, reason)
+    }
+
+    fn end_upload(&mut self, from: (u8, u8)) {
+        self.upload = self.upload.take().filter(|upload| upload.from != from);
     }
 
     /// Handles a message of the mission protocol from a system and component; returns the reply, if
@@ -125,7 +126,7 @@ impl MissionStore {
             MavMessage::MISSION_ITEM_INT(item) => Some(self.take_item(now, from, item)),
             MavMessage::MISSION_ITEM(item) => Some(self.take_item(now, from, &int_from_float(item))),
             MavMessage::MISSION_ACK(_) => {
-                self.upload = self.upload.take().filter(|upload| upload.from != from);
+                self.end_upload(from);
                 None
             }
             MavMessage::MISSION_REQUEST_LIST(_) => Some(MavMessage::MISSION_COUNT(MISSION_COUNT_DATA {
@@ -200,10 +201,10 @@ fn fault_of(item: &MISSION_ITEM_INT_DATA) -> Option<MavMissionResult> {
     match item.command {
         MavCmd::MAV_CMD_DO_CHANGE_SPEED => None,
         MavCmd::MAV_CMD_NAV_WAYPOINT if !is_global(item.frame) => Some(MavMissionResult::MAV_MISSION_UNSUPPORTED_FRAME),
-        MavCmd::MAV_CMD_NAV_WAYPOINT if item.x.unsigned_abs() > 900_000_000 => {
+        MavCmd::MAV_CMD_NAV_WAYPOINT if item.x.unsigned_abs() > LAT_MAX_E7 => {
             Some(MavMissionResult::MAV_MISSION_INVALID_PARAM5_X)
         }
-        MavCmd::MAV_CMD_NAV_WAYPOINT if item.y.unsigned_abs() > 1_800_000_000 => {
+        MavCmd::MAV_CMD_NAV_WAYPOINT if item.y.unsigned_abs() > LON_MAX_E7 => {
             Some(MavMissionResult::MAV_MISSION_INVALID_PARAM6_Y)
         }
         MavCmd::MAV_CMD_NAV_WAYPOINT => None,
@@ -232,8 +233,7 @@ fn type_of(message: &MavMessage) -> Option<MavMissionType> {
 /// An item in the older message, whose positions are in degrees.
 pub(super) fn int_from_float(item: &MISSION_ITEM_DATA) -> MISSION_ITEM_INT_DATA {
     let MISSION_ITEM_DATA { param1, param2, param3, param4, z, seq, command, frame, current, autocontinue, .. } = *item;
-    let e7 = |deg: f32| (1e7 * f64::from(deg)).round() as i32;
-    let (x, y, mission_type) = (e7(item.x), e7(item.y), item.mission_type);
+    let (x, y, mission_type) = (e7(item.x.into()), e7(item.y.into()), item.mission_type);
     let item = MISSION_ITEM_INT_DATA { param1, param2, param3, param4, x, y, z, seq, ..Default::default() };
     MISSION_ITEM_INT_DATA { command, frame, current, autocontinue, mission_type, ..item }
 }
@@ -241,8 +241,8 @@ pub(super) fn int_from_float(item: &MISSION_ITEM_DATA) -> MISSION_ITEM_INT_DATA 
 fn float_from_int(item: &MISSION_ITEM_INT_DATA) -> MISSION_ITEM_DATA {
     let MISSION_ITEM_INT_DATA { param1, param2, param3, param4, z, seq, command, frame, .. } = *item;
     let MISSION_ITEM_INT_DATA { target_system, target_component, current, autocontinue, mission_type, .. } = *item;
-    let deg = |e7: i32| (1e-7 * f64::from(e7)) as f32;
-    let (x, y) = (deg(item.x), deg(item.y));
+    let at = lat_lon((item.x, item.y));
+    let (x, y) = (at.lat_deg as f32, at.lon_deg as f32);
     let item = MISSION_ITEM_DATA { param1, param2, param3, param4, x, y, z, seq, command, frame, ..Default::default() };
     MISSION_ITEM_DATA { target_system, target_component, current, autocontinue, mission_type, ..item }
 }

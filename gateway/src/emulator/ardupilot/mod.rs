@@ -17,7 +17,7 @@ use super::battery::{Battery, Pack};
 use super::sensed::Sensed;
 use crate::geodesy::LocalFrame;
 use crate::mavlink::dialect::{MISSION_ITEM_INT_DATA, MavCmd, MavMessage, MavMissionResult, MavSeverity};
-use crate::mavlink::{AUTOPILOT, Frame, Framer, Received, RoverMode, Writer};
+use crate::mavlink::{AUTOPILOT, Frame, Framer, Received, RoverMode, Writer, e7, on_globe};
 use ::mavlink::Message;
 use failsafe::StationWatch;
 use messages::Order;
@@ -313,16 +313,14 @@ impl ArduPilot {
     }
 
     /// The point on the field for a latitude and longitude, 1e-7 degrees, if they are on the globe.
-    fn place(&self, (lat_e7, lon_e7): (i32, i32)) -> Option<Ned> {
-        let is_on_globe = lat_e7.unsigned_abs() <= 900_000_000 && lon_e7.unsigned_abs() <= 1_800_000_000;
-        let at = LatLon { lat_deg: 1e-7 * f64::from(lat_e7), lon_deg: 1e-7 * f64::from(lon_e7) };
-        is_on_globe.then(|| self.frame.ned(at))
+    fn place(&self, at_e7: (i32, i32)) -> Option<Ned> {
+        on_globe(at_e7).map(|at| self.frame.ned(at))
     }
 
     /// The latitude and longitude of a place on the field, 1e-7 degrees.
     fn e7(&self, place: Ned) -> (i32, i32) {
         let at = self.frame.lat_lon(place);
-        ((1e7 * at.lat_deg).round() as i32, (1e7 * at.lon_deg).round() as i32)
+        (e7(at.lat_deg), e7(at.lon_deg))
     }
 
     /// UTC from its receiver, µs since 1970.
