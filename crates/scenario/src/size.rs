@@ -8,6 +8,13 @@ use std::ops::RangeInclusive;
 
 /// Maximum number of vehicles of a game.
 pub(crate) const VEHICLES_MAX: usize = 10_000;
+/// Bounds of a helm's courses and speeds.
+pub(crate) const COURSES_MIN: usize = 8;
+pub(crate) const COURSES_MAX: usize = 3600;
+pub(crate) const SPEEDS_MIN: usize = 2;
+pub(crate) const SPEEDS_MAX: usize = 1000;
+/// Maximum number of wave components.
+pub(crate) const COMPONENTS_MAX: u32 = 1024;
 /// Maximum number of candidate decisions (courses by speeds) of all boats together. Each may need
 /// 4 bytes in its helm: 512 MB.
 const CANDIDATES_MAX: usize = 1 << 27;
@@ -24,7 +31,7 @@ impl Scenario {
         within("the physics tick in ns", self.tick.0, 1_000_000..=500_000_000)?;
         within("the number of physics ticks per decision", self.ticks_per_decision, 1..=10_000)?;
         if let Some(waves) = &self.sea.waves {
-            within("the number of wave components", waves.components, 1..=1024)?;
+            within("the number of wave components", waves.components, 1..=COMPONENTS_MAX)?;
         }
         if let Some(eddies) = &self.sea.current.random_eddies {
             within("the number of random eddies", eddies.count, 0..=100)?;
@@ -39,8 +46,8 @@ impl Scenario {
             }
         }
         for program in self.strategies.iter().flat_map(|strategy| &strategy.roles) {
-            within(&format!("helm.courses of {}", program.name), program.helm.courses, 8..=3600)?;
-            within(&format!("helm.speeds of {}", program.name), program.helm.speeds, 2..=1000)?;
+            within(&format!("helm.courses of {}", program.name), program.helm.courses, COURSES_MIN..=COURSES_MAX)?;
+            within(&format!("helm.speeds of {}", program.name), program.helm.speeds, SPEEDS_MIN..=SPEEDS_MAX)?;
         }
         let (mut candidates, mut observed) = (0, 0);
         for vehicle in &self.vehicles {

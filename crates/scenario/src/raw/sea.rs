@@ -1,6 +1,7 @@
 //! A sea file as typed.
 
 use crate::sea::{Eddy, PROFILE_EXPONENT, RandomEddies, Wander};
+use crate::size::COMPONENTS_MAX;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -53,7 +54,7 @@ pub(crate) struct Waves {
     #[schemars(range(min = 1, max = 200), extend("default" = 10))]
     pub(crate) spread_s: f64,
     /// Number of components of the spectrum.
-    #[schemars(range(min = 1, max = 1024), extend("default" = 64))]
+    #[schemars(range(min = 1, max = COMPONENTS_MAX), extend("default" = 64))]
     pub(crate) components: u32,
     /// Factor on the second-order (drift) force.
     #[schemars(range(min = 0, max = 10), extend("default" = 1))]

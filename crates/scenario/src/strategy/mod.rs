@@ -25,6 +25,7 @@ pub use task::{
 };
 
 use crate::policy::PolicyModel;
+use crate::size::{COURSES_MAX, COURSES_MIN, SPEEDS_MAX, SPEEDS_MIN};
 use serde::{Deserialize, Serialize};
 use strum::{EnumMessage, IntoStaticStr, VariantArray};
 
@@ -83,10 +84,10 @@ pub struct Program {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Helm {
     /// Number of courses compared.
-    #[schemars(range(min = 8, max = 3600), extend("default" = 360))]
+    #[schemars(range(min = COURSES_MIN, max = COURSES_MAX), extend("default" = 360))]
     pub courses: usize,
     /// Number of speeds compared, from 0 to the maximum.
-    #[schemars(range(min = 2, max = 1000), extend("default" = 36))]
+    #[schemars(range(min = SPEEDS_MIN, max = SPEEDS_MAX), extend("default" = 36))]
     pub speeds: usize,
     /// Maximum speed, m/s, at most the boat's. Default: the boat's.
     #[schemars(range(min = 0.1, max = 60))]
