@@ -66,7 +66,7 @@ impl AgentLoop {
         // it, so that a late mate cannot cost this agent the game.
         let half_patience = Duration::from_secs_f64(0.5 * scenario.patience_s);
         let is_lockstep = info.pace == "lockstep";
-        let delivery = if is_lockstep { Delivery::Reliable } else { Delivery::Newest };
+        let delivery = Delivery::per_decision(is_lockstep);
         let limit = |wait: Duration| if is_lockstep { wait.min(half_patience) } else { Duration::ZERO };
         let subscriptions = Subscriptions::open(bus, game, scenario, &runner, settings.silence)?;
         let orders = topic::orders(game, scenario, &subscriptions.teams, &bus.id());

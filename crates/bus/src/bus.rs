@@ -33,6 +33,15 @@ pub enum Delivery {
     Newest,
 }
 
+impl Delivery {
+    /// For what is sent at every decision: in lockstep each message counts, in real time the next
+    /// one replaces it.
+    #[must_use]
+    pub fn per_decision(is_lockstep: bool) -> Delivery {
+        if is_lockstep { Delivery::Reliable } else { Delivery::Newest }
+    }
+}
+
 /// The session of a node, with its token and keys. Clones share the session.
 #[derive(Clone)]
 pub struct Bus {

@@ -116,9 +116,8 @@ impl<'w> GameServer<'w> {
         let declarations = subscriptions::open(&bus, game, scenario, &inboxes, &recorded_topics)?;
         let is_lockstep = settings.pace == Pace::Lockstep;
         let speed = if let Pace::Realtime { factor } = settings.pace { Some(factor) } else { settings.speed };
-        // In lockstep every picture counts. In real time the next one replaces it.
-        let (timing, delivery) =
-            if is_lockstep { (Timing::Lockstep, Delivery::Reliable) } else { (Timing::Realtime, Delivery::Newest) };
+        let timing = if is_lockstep { Timing::Lockstep } else { Timing::Realtime };
+        let delivery = Delivery::per_decision(is_lockstep);
         let teams = (0..scenario.teams.len()).map(|team| topic::picture(game, scenario, TeamId(team as u8)));
         let pictures =
             teams.map(|key| bus.publisher_with(key, Priority::Normal, delivery)).collect::<Result<_, _>>()?;

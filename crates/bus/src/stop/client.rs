@@ -4,12 +4,9 @@
 use super::datagram::States;
 use super::gateway_link::{Asked, DatagramPath, GatewayPath, OnNews, PathNews};
 use super::orders::{Saying, Source, StopOrders};
-use super::{StopCommand, StopNews};
+use super::{StopCommand, StopNews, publisher};
 use crate::net::address;
-use crate::{
-    Bus, BusError, CurrentToken, Declaration, Delivery, Priority, Publisher, Token, Watched, clock, control,
-    start_thread,
-};
+use crate::{Bus, BusError, CurrentToken, Declaration, Publisher, Token, Watched, clock, control, start_thread};
 use messages::Control;
 use messages::external::{FleetCommand, GatewayCommand, GatewayStatus, OperatorCommand};
 use messages::topic::{self, GameName};
@@ -116,14 +113,13 @@ impl StopClient {
     pub fn join(&self, bus: &Bus, game: &GameName, boats: &[String]) -> Result<(), BusError> {
         let (mut stops, mut statuses, is_here) = (BTreeMap::new(), Vec::new(), bus.is_on_this_machine());
         for boat in boats {
-            stops
-                .insert(boat.clone(), bus.publisher_with(topic::stop(game, boat), Priority::Urgent, Delivery::Newest)?);
+            stops.insert(boat.clone(), publisher(bus, topic::stop(game, boat))?);
             let shared = Arc::downgrade(&self.0);
             statuses.push(bus.subscribe_status(game, boat, move |status| {
                 shared.upgrade().iter().for_each(|shared| shared.hear(&status, is_here));
             })?);
         }
-        let control = bus.publisher_with(topic::control(game), Priority::Urgent, Delivery::Newest)?;
+        let control = publisher(bus, topic::control(game))?;
         let path = GamePath { bus: bus.clone(), name: game.clone(), control, stops, _statuses: statuses };
         let before = self.0.game.lock().replace(Arc::new(path));
         // A callback of a dropped subscription may still be running, so no lock is held here.

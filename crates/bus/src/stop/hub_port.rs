@@ -2,9 +2,10 @@
 
 use super::datagram::{States, StopRequest};
 use super::datagram_port::DatagramPort;
+use super::publisher;
 use crate::net::address;
 use crate::runtime::runtime;
-use crate::{Bus, BusError, Declaration, Delivery, Net, Priority, Publisher, Watched, clock};
+use crate::{Bus, BusError, Declaration, Net, Publisher, Watched, clock};
 use messages::Control;
 use messages::external::{FleetCommand, GatewayCommand, OperatorCommand};
 use messages::topic::{self, GameName};
@@ -48,14 +49,13 @@ impl HubStopPort {
             return Ok(HubStopPort { _ports: vec![], _statuses: vec![] });
         }
         for boat in boats {
-            stops
-                .insert(boat.clone(), bus.publisher_with(topic::stop(game, boat), Priority::Urgent, Delivery::Newest)?);
+            stops.insert(boat.clone(), publisher(bus, topic::stop(game, boat))?);
             let heard = Arc::clone(&heard);
             statuses.push(bus.subscribe_status(game, boat, move |status| {
                 heard.visit(|heard| heard.insert(status.vehicle, Some((status.state, clock::now()))));
             })?);
         }
-        let control = bus.publisher_with(topic::control(game), Priority::Urgent, Delivery::Newest)?;
+        let control = publisher(bus, topic::control(game))?;
         let server = Arc::new(Server { game: game.clone(), bus: bus.clone(), control, stops, heard });
         let mut ports = Vec::new();
         for endpoint in net.listen.iter().filter(|endpoint| endpoint.starts_with("tcp/")) {

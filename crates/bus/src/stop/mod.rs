@@ -18,7 +18,14 @@ pub use datagram_port::DatagramPort;
 pub use hub_port::HubStopPort;
 pub use orders::{KnownBoat, StopNews, StopOrders};
 
+use crate::{Bus, BusError, Delivery, Priority, Publisher};
 use messages::external::OperatorCommand;
+
+/// A publisher of stops: before everything else, and not behind a lost packet, because stops are
+/// repeated.
+fn publisher(bus: &Bus, key: String) -> Result<Publisher, BusError> {
+    bus.publisher_with(key, Priority::Urgent, Delivery::Newest)
+}
 
 /// A command that stops boats.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
