@@ -10,7 +10,7 @@ const BYTES_MAX: u64 = 1 << 20;
 /// Writes a report and its text copy.
 pub(super) fn write(path: &Path, report: &Report) -> Result<()> {
     let write = |path: &Path, text: &str| {
-        std::fs::write(path, text).with_context(|| format!("cannot write {}", path.display()))
+        primitives::output_file::write(path, text).with_context(|| format!("cannot write {}", path.display()))
     };
     write(path, &(serde_json::to_string_pretty(report).context("a report is JSON")? + "\n"))?;
     write(&path.with_extension("txt"), &report.text())
