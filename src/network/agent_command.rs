@@ -43,7 +43,7 @@ fn load_strategy(path: &Path) -> Result<Strategy> {
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let stop = stop::on_ctrl_c_or_parent(args.for_parent)?;
-    stop::exit_when_late(&stop, "");
+    stop::exit_when_late(&stop, None);
     let names = args.vehicle.join(", ");
     let strategy = args.strategy.as_deref().map(load_strategy).transpose()?;
     let settings = Settings {

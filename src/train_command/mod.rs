@@ -52,7 +52,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     // Learning uses all threads, however few games there are.
     let jobs = args.jobs.threads(usize::MAX).get();
     let stop = stop::on_ctrl_c()?;
-    stop::exit_when_late(&stop, "stopped during an update; --resume continues from the previous one");
+    stop::exit_when_late(&stop, Some("stopped during an update; --resume continues from the previous one"));
     let mut trainer = begin(args, training, &folder, jobs)?;
     let mut files = Files::open(&folder, &base(&args.training, trainer.training()), &trainer)?;
     let recordings = args.record_every.map(|every| record(&mut trainer, &folder, every)).transpose()?;

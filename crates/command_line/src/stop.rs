@@ -29,15 +29,13 @@ pub fn on_ctrl_c() -> anyhow::Result<Arc<AtomicBool>> {
 
 /// Ends the process soon after the flag is set, even if it is still busy or waits for the network:
 /// for commands that leave complete files whenever they end. Prints `remark` then, if there is one.
-pub fn exit_when_late(stop: &Arc<AtomicBool>, remark: &'static str) {
+pub fn exit_when_late(stop: &Arc<AtomicBool>, remark: Option<&'static str>) {
     const LATE: Duration = Duration::from_millis(1400);
     let flag = Arc::clone(stop);
     std::thread::spawn(move || {
         wait(&flag);
         clock::rest(LATE);
-        if !remark.is_empty() {
-            terminal::remark(remark);
-        }
+        remark.into_iter().for_each(terminal::remark);
         std::process::exit(130);
     });
 }

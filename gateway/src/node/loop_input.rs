@@ -123,7 +123,7 @@ pub(super) fn loop_input() -> (LoopInput, LoopOutput) {
 impl LoopInput {
     /// Adds a stop. Returns the number of stops received.
     pub(super) fn stop(&self, stop: Stop) -> u64 {
-        // Sequentially consistent, like everything about stops: whoever sees the count also sees
+        // Sequentially consistent, like everything about stops: a thread that sees the count also sees
         // the flag.
         let is_first = !self.stops.of(stop).swap(true, Ordering::SeqCst);
         // Counted once it is visible.

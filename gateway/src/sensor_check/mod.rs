@@ -248,14 +248,13 @@ impl SensorCheck {
             let about = [at.saturating_sub(ns(*CLOCK_BEHIND_S.end())), at + ns(-CLOCK_BEHIND_S.start())];
             if about.iter().any(|at| date_and_time(*at).0 == date) { 0 } else { date_and_time(at).0.days_since(date) }
         });
-        let side = |is_ahead| if is_ahead { "AHEAD of" } else { "behind" };
         if days != 0 {
             // A receiver counts weeks modulo 1024: after a rollover it is wrong by this much.
             let rollover = if days >= GPS_WEEKS_DAYS { ", as after a GPS week rollover (7168 days)" } else { "" };
             let (days, side) = (days.abs(), side(days < 0));
             return Some(format!("the date is {days} days {side} this host's{rollover}: one of the two is wrong"));
         }
-        off.map(|s| format!("fixes are {:.2} s {} this host's clock: one of the two is wrong", s.abs(), side(s < 0.0)))
+        off.map(|behind_s| format!("{}: one of the two is wrong", fixes_in_words(behind_s)))
     }
 
     /// The boat's reports as text.
@@ -280,8 +279,7 @@ impl SensorCheck {
             let date = self
                 .date
                 .map_or("it sends no date".to_owned(), |(_, d)| format!("date {}-{:02}-{:02}", d.year, d.month, d.day));
-            let side = if behind_s < 0.0 { "AHEAD of" } else { "behind" };
-            found.push(format!("clock: fixes are {:.2} s {side} this host's clock; {date}", behind_s.abs()));
+            found.push(format!("clock: {}; {date}", fixes_in_words(behind_s)));
         }
         found.extend(self.clock_fault(host).map(|fault| format!("clock: {fault}")));
         found.extend(self.rejected());
@@ -447,6 +445,14 @@ impl SensorCheck {
             Report::Fix(_) | Report::Tilt(_) | Report::Home(_) | Report::ForeignOrder | Report::Station(_) => {}
         }
     }
+}
+
+fn side(is_ahead: bool) -> &'static str {
+    if is_ahead { "AHEAD of" } else { "behind" }
+}
+
+fn fixes_in_words(behind_s: f64) -> String {
+    format!("fixes are {:.2} s {} this host's clock", behind_s.abs(), side(behind_s < 0.0))
 }
 
 /// Notes received data: its text, and why it could not be read.

@@ -47,7 +47,7 @@ pub struct Value {
     pub value: f64,
 }
 
-/// The state of a sonde, whoever queries it.
+/// The state of a sonde, regardless of who queries it.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Sonde {
     /// The codes of its output parameters, as last reported.
