@@ -18,6 +18,7 @@ pub(super) struct Plan {
     pub(super) places: Vec<Range<usize>>,
     pub(super) steps: Vec<Step>,
     pub(super) metadata: BTreeMap<String, String>,
+    pub(super) warnings: Vec<String>,
     pub(super) digest: u128,
 }
 
@@ -93,8 +94,7 @@ impl Planner {
         if let Some(place) = self.placed.get(name) {
             return Ok(place.clone());
         }
-        let place = self.room(Some(floats.len()))?;
-        self.values[place.clone()].copy_from_slice(floats);
+        let Row { place, .. } = self.new_constant(vec![], floats)?;
         self.placed.insert(name.to_owned(), place.clone());
         Ok(place)
     }
@@ -122,13 +122,43 @@ impl Planner {
         }
     }
 
-    /// Input `index` of a node as a single constant number, if any.
-    pub(super) fn scalar(&self, node: &Node, index: usize) -> Result<Option<f32>, NetworkError> {
+    /// A new constant that steps can read.
+    pub(super) fn new_constant(&mut self, shape: Vec<usize>, floats: &[f32]) -> Result<Row, NetworkError> {
+        let place = self.room(Some(floats.len()))?;
+        self.values[place.clone()].copy_from_slice(floats);
+        Ok(Row { place, shape, element: Element::Float })
+    }
+
+    /// Evaluates the steps from number `first` on, which read only constants, and takes them and
+    /// their values off the plan.
+    pub(super) fn fold(&mut self, first: usize, values: usize, row: Row) -> Result<Value, NetworkError> {
+        for step in self.steps.drain(first..) {
+            step.take(&mut self.values);
+        }
+        let floats = self.values[row.place].to_vec();
+        self.values.truncate(values);
+        self.placed.retain(|_, place| place.end <= values);
+        self.count_weights(Some(floats.len()), 0)?;
+        let numbers = match row.element {
+            Element::Float => Numbers::Floats(floats),
+            Element::Integer => Numbers::Integers(floats.into_iter().map(|float| float as i64).collect()),
+        };
+        Ok(Value::Constant(Tensor::new(row.shape, numbers)))
+    }
+
+    /// Whether all inputs of a node are constants.
+    pub(super) fn is_constant(&self, node: &Node) -> bool {
+        let mut names = node.proto.input.iter().filter(|name| !name.is_empty()).peekable();
+        names.peek().is_some() && names.all(|name| matches!(self.known.get(name), Some(Value::Constant(_))))
+    }
+
+    /// Input `index` of a node as a bound: a single constant number, possibly infinite, if any.
+    pub(super) fn bound(&self, node: &Node, index: usize) -> Result<Option<f32>, NetworkError> {
         if node.input(index).is_none() {
             return Ok(None);
         }
         let tensor = self.constant(node, index)?;
-        match floats(node, index, &tensor)? {
+        match numbers(node, index, &tensor)? {
             [number] => Ok(Some(*number)),
             several => Err(node.wrong(format!("{} numbers as input {index}", several.len()), "a single number")),
         }
@@ -170,8 +200,18 @@ impl Planner {
     }
 }
 
-/// A constant of a node as a non-empty list of floats.
+/// A constant of a node as a non-empty list of finite floats.
 pub(super) fn floats<'a>(node: &Node, index: usize, tensor: &'a Tensor) -> Result<&'a [f32], NetworkError> {
+    let floats = numbers(node, index, tensor)?;
+    if floats.iter().all(|float| float.is_finite()) {
+        return Ok(floats);
+    }
+    let found = format!("a number in input {index} that is infinite in single precision");
+    Err(node.wrong(found, "finite numbers"))
+}
+
+/// A constant of a node as a non-empty list of floats, none of them NaN.
+fn numbers<'a>(node: &Node, index: usize, tensor: &'a Tensor) -> Result<&'a [f32], NetworkError> {
     match &*tensor.numbers {
         Numbers::Floats(floats) if !floats.is_empty() => Ok(floats),
         Numbers::Floats(_) => {
