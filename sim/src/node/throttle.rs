@@ -84,7 +84,9 @@ mod tests {
             assert!(share > 0.999 && round_trip <= 2 * delay + ms(10), "{delay:?}: {share}, {round_trip:?}");
             let (share, round_trip) = play(delay, ms(200));
             assert!((0.4..0.6).contains(&share), "{delay:?}: {share}");
-            assert!(round_trip < 2 * delay + ms(1000), "{delay:?}: {round_trip:?}");
+            // What is sent before an answer shows the queue is queued as well. Without skipping,
+            // the last round trip would take a minute.
+            assert!(round_trip < 4 * delay + ms(1100), "{delay:?}: {round_trip:?}");
         }
     }
 
