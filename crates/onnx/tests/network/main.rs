@@ -13,7 +13,7 @@ use std::path::PathBuf;
 /// Absolute and relative tolerance against ONNX Runtime, which rounds its sums in another order.
 const ERROR_MAX: f32 = 1e-5;
 
-const MODELS: [&str; 8] = [
+const MODELS: [&str; 9] = [
     "operators",
     "old_operators",
     "two_inputs",
@@ -22,6 +22,7 @@ const MODELS: [&str; 8] = [
     "activations",
     "normalisations",
     "wide_numbers",
+    "sb3_full",
 ];
 
 #[derive(Deserialize)]

@@ -6,6 +6,7 @@
 
 `sb3_torchscript.onnx` and `sb3_dynamo.onnx` are the logits of one policy: PPO of Stable-Baselines3 2.9.2 with layers of 48, from
 both exporters of PyTorch 2.15 (`dynamo=False`; `dynamo=True, external_data=False`), without their notes about source lines.
+`sb3_full.onnx` is a whole policy of PPO as Stable-Baselines3 describes its export: action, value and log probability.
 """
 
 import json
@@ -258,5 +259,5 @@ if __name__ == "__main__":
     activations()
     normalisations()
     wide_numbers()
-    for model in ["activations", "normalisations", "wide_numbers"]:
+    for model in ["activations", "normalisations", "wide_numbers", "sb3_full"]:
         run(model)
