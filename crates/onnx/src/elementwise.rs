@@ -5,7 +5,7 @@ use super::activation;
 use super::arrangement;
 use super::error::{shape_text, shown};
 use super::node::Node;
-use super::plan::{Planner, Row, Value};
+use super::plan::{Element, Planner, Row, Value};
 use super::step::Step;
 use super::tensor::{Numbers, Tensor};
 use std::ops::Range;
@@ -189,12 +189,19 @@ pub(super) fn binary(planner: &mut Planner, node: &Node, operation: Operation) -
     if let Some(integers) = integers(planner, node, operation)? {
         return Ok(Value::Constant(integers));
     }
-    let mut left = planner.row(node, 0)?;
+    // Sums and the like of integers are exact in floats, unlike quotients.
+    let is_whole = !matches!(operation, Operation::Divide | Operation::Power | Operation::Slope);
+    let is_of_integers = |index| planner.value(node, index).is_ok_and(|value| value.is_integer());
+    let element = match is_whole && (0..node.proto.input.len()).all(is_of_integers) {
+        true => Element::Integer,
+        false => Element::Float,
+    };
+    let mut left = planner.row_of(node, 0, element)?;
     for index in 1..node.proto.input.len() {
-        let right = planner.row(node, index)?;
+        let right = planner.row_of(node, index, element)?;
         left = combine(planner, node, operation, left, right)?;
     }
-    Ok(Value::Computed(left))
+    Ok(Value::Computed(Row { element, ..left }))
 }
 
 /// The result of an operation on two constants with integers, such as parts of a shape.

@@ -22,6 +22,9 @@ pub(super) struct Plan {
     pub(super) digest: u128,
 }
 
+/// The largest integer up to which floats have all integers.
+const INTEGER_MAX: u64 = 1 << 24;
+
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Element {
     Float,
@@ -42,6 +45,15 @@ pub(super) struct Row {
 pub(super) enum Value {
     Constant(Tensor),
     Computed(Row),
+}
+
+impl Value {
+    pub(super) fn is_integer(&self) -> bool {
+        match self {
+            Value::Constant(tensor) => matches!(&*tensor.numbers, Numbers::Integers(_)),
+            Value::Computed(row) => row.element == Element::Integer,
+        }
+    }
 }
 
 /// A plan under construction.
@@ -87,6 +99,26 @@ impl Planner {
         };
         let place = self.place(node.input(index).unwrap_or_default(), floats(node, index, &tensor)?)?;
         Ok(Row { place, shape: tensor.shape, element: Element::Float })
+    }
+
+    /// Input `index` of a node as numbers of this kind.
+    pub(super) fn row_of(&mut self, node: &Node, index: usize, element: Element) -> Result<Row, NetworkError> {
+        if element == Element::Float {
+            return self.row(node, index);
+        }
+        let tensor = match self.value(node, index)? {
+            Value::Computed(row) => return Ok(row),
+            Value::Constant(tensor) => tensor,
+        };
+        let Numbers::Integers(integers) = &*tensor.numbers else {
+            return Err(node.wrong(format!("floats as input {index}"), "INT64 numbers"));
+        };
+        if let Some(large) = integers.iter().find(|integer| integer.unsigned_abs() > INTEGER_MAX) {
+            return Err(node.wrong(format!("the integer {large}"), format!("at most {INTEGER_MAX}")));
+        }
+        let floats: Vec<f32> = integers.iter().map(|integer| *integer as f32).collect();
+        let row = self.new_constant(tensor.shape, &floats)?;
+        Ok(Row { element, ..row })
     }
 
     /// The place of this constant among the values.
