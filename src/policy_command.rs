@@ -77,6 +77,9 @@ fn about(name: &str, bytes: usize, network: &Network, spec: Result<PolicySpec, S
         }
         Err(why) => line("policy", format!("not declared in the file, so the strategy must declare it ({why})")),
     }
+    for warning in network.warnings() {
+        line("warning", warning.clone());
+    }
     for (key, value) in network.metadata().iter().filter(|(key, _)| !said.contains(key)) {
         line(key.strip_prefix(OWN).unwrap_or(key), value.clone());
     }

@@ -203,7 +203,11 @@ fn replay(args: &Args, path: &Path, boat: &Boat, trial_boat: &mut TrialBoat) -> 
 /// A CSV file with named columns.
 pub(crate) fn read_sheet(path: &Path) -> Result<Sheet> {
     let file = primitives::input_file::open(path).with_context(|| format!("cannot read {}", path.display()))?;
-    Ok(Sheet::read(&path.display().to_string(), file)?)
+    let sheet = Sheet::read(&path.display().to_string(), file)?;
+    for note in sheet.notes() {
+        screen::remark(&note.to_string());
+    }
+    Ok(sheet)
 }
 
 fn write_track(path: &Path, samples: &[Sample], with_orders: bool) -> Result<()> {

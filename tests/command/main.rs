@@ -4,6 +4,7 @@
 mod full_disk;
 mod log;
 mod memory;
+mod names;
 mod policy;
 mod program;
 mod refusals;

@@ -37,6 +37,23 @@ pub(super) fn sigmoid(x: f32) -> f32 {
     1.0 / (1.0 + exp(-x))
 }
 
+/// ln(1 + exp(x)), which does not overflow.
+pub(super) fn softplus(x: f32) -> f32 {
+    if x > 0.0 { x + libm::log1pf(exp(-x)) } else { libm::log1pf(exp(x)) }
+}
+
+/// The Gaussian error linear unit: x times the normal distribution function.
+pub(super) fn gelu(x: f32) -> f32 {
+    0.5 * x * (1.0 + libm::erff(x * std::f32::consts::FRAC_1_SQRT_2))
+}
+
+/// The approximation of [`gelu`] by a hyperbolic tangent.
+pub(super) fn gelu_by_tanh(x: f32) -> f32 {
+    // sqrt(2 / pi)
+    const FACTOR: f32 = 0.797_884_6;
+    0.5 * x * (1.0 + tanh(FACTOR * (x + 0.044_715 * x * x * x)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::tanh;

@@ -3,8 +3,9 @@
 //! Reshaping is free: the output shares the input's place because the order stays the same.
 
 use super::NetworkError;
+use super::elementwise::{self, Function};
 use super::error::{shape_text, shown};
-use super::limit::RANK_MAX;
+use super::limit::{PARAMETERS_MAX, RANK_MAX, VALUES_MAX, at_most};
 use super::node::Node;
 use super::plan::{Element, Planner, Row, Value};
 use super::proto::{self, data_type_name};
@@ -43,22 +44,36 @@ pub(super) fn constant(_: &mut Planner, node: &Node) -> Result<Value, NetworkErr
     Ok(Value::Constant(tensor))
 }
 
-/// Plans `Cast` to floats.
+/// Plans `Cast` between floats, which are all in single precision here, and integers.
 pub(super) fn cast(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
     let to = node.integer("to", 0)?;
-    if to != i64::from(proto::FLOAT) {
-        return Err(node.wrong(format!("a Cast to {}", data_type_name(to)), "a Cast to FLOAT"));
-    }
+    let is_among = |types: &[i32]| types.iter().any(|each| i64::from(*each) == to);
+    let element = if is_among(&proto::FLOATS) {
+        Element::Float
+    } else if is_among(&[proto::INT32, proto::INT64]) {
+        Element::Integer
+    } else {
+        return Err(node.wrong(format!("a Cast to {}", data_type_name(to)), "a Cast to FLOAT or INT64"));
+    };
     Ok(match planner.value(node, 0)? {
-        Value::Computed(row) => Value::Computed(Row { element: Element::Float, ..row }),
-        Value::Constant(tensor) => match &*tensor.numbers {
-            Numbers::Floats(_) => Value::Constant(tensor),
-            Numbers::Integers(integers) => {
-                planner.count_weights(Some(integers.len()), 0)?;
-                let floats = integers.iter().map(|integer| *integer as f32).collect();
-                Value::Constant(Tensor::new(tensor.shape, Numbers::Floats(floats)))
-            }
-        },
+        Value::Computed(row) if row.element == Element::Float && element == Element::Integer => {
+            let row = elementwise::apply(planner, Function::Truncate, row)?;
+            Value::Computed(Row { element, ..row })
+        }
+        Value::Computed(row) => Value::Computed(Row { element, ..row }),
+        Value::Constant(tensor) => {
+            planner.count_weights(Some(tensor.len()), 0)?;
+            let numbers = match (&*tensor.numbers, element) {
+                (Numbers::Floats(floats), Element::Integer) => {
+                    Numbers::Integers(floats.iter().map(|float| *float as i64).collect())
+                }
+                (Numbers::Integers(integers), Element::Float) => {
+                    Numbers::Floats(integers.iter().map(|integer| *integer as f32).collect())
+                }
+                _ => return Ok(Value::Constant(tensor)),
+            };
+            Value::Constant(Tensor::new(tensor.shape, numbers))
+        }
     })
 }
 
@@ -143,6 +158,9 @@ pub(super) fn unsqueeze(planner: &mut Planner, node: &Node) -> Result<Value, Net
 }
 
 pub(super) fn concat(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
+    if let Some(joined) = joined_integers(planner, node)? {
+        return Ok(Value::Constant(joined));
+    }
     let rows = (0..node.proto.input.len()).map(|i| planner.row(node, i)).collect::<Result<Vec<Row>, _>>()?;
     let mut shape = rows[0].shape.clone();
     if !node.has("axis") {
@@ -172,9 +190,23 @@ pub(super) fn concat(planner: &mut Planner, node: &Node) -> Result<Value, Networ
     Ok(Value::Computed(output))
 }
 
+/// The lists of constant integers that are all inputs of a node, as one list: a shape.
+fn joined_integers(planner: &Planner, node: &Node) -> Result<Option<Tensor>, NetworkError> {
+    let mut joined = vec![];
+    for index in 0..node.proto.input.len() {
+        let Value::Constant(tensor) = planner.value(node, index)? else { return Ok(None) };
+        match &*tensor.numbers {
+            Numbers::Integers(integers) if tensor.shape.len() == 1 => joined.extend_from_slice(integers),
+            _ => return Ok(None),
+        }
+        at_most("numbers of a constant", Some(joined.len()), PARAMETERS_MAX)?;
+    }
+    Ok(Some(Tensor::new(vec![joined.len()], Numbers::Integers(joined))))
+}
+
 /// Plans `Slice`, one axis after the other. In old files its bounds are attributes.
 pub(super) fn slice(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
-    let mut row = planner.row(node, 0)?;
+    let mut value = planner.value(node, 0)?;
     let attribute = |name: &str| node.integers(name).map(|integers| integers.map(<[i64]>::to_vec));
     let starts = planner.integers(node, 1)?.map_or_else(|| attribute("starts"), |numbers| Ok(Some(numbers)))?;
     let ends = planner.integers(node, 2)?.map_or_else(|| attribute("ends"), |numbers| Ok(Some(numbers)))?;
@@ -188,51 +220,229 @@ pub(super) fn slice(planner: &mut Planner, node: &Node) -> Result<Value, Network
         return Err(node.wrong(found, "the same number of each, one per axis"));
     }
     for (i, axis) in axes.iter().enumerate() {
-        let axis = node.axis(*axis, row.shape.len())?;
-        row = slice_axis(planner, node, row, axis, (starts[i], ends[i], steps[i]))?;
+        let axis = node.axis(*axis, shape_of(&value).len())?;
+        value = slice_axis(planner, node, value, axis, (starts[i], ends[i], steps[i]))?;
     }
-    Ok(Value::Computed(row))
+    Ok(value)
 }
 
-/// Selects every `step`-th element of an axis from `start` to `end`.
+/// Selects every `step`-th element of an axis from `start` to `end`; backwards if `step` is
+/// negative.
 fn slice_axis(
     planner: &mut Planner,
     node: &Node,
-    input: Row,
+    value: Value,
     axis: usize,
     (start, end, step): (i64, i64, i64),
-) -> Result<Row, NetworkError> {
-    let length = input.shape[axis];
-    let clamped = |index: i64| {
-        let from_start = if index < 0 { index.saturating_add_unsigned(length as u64) } else { index };
-        usize::try_from(from_start.max(0)).unwrap_or(usize::MAX).min(length)
+) -> Result<Value, NetworkError> {
+    let shape = shape_of(&value).to_vec();
+    let length = shape[axis] as i64;
+    let from_start = |index: i64| if index < 0 { index.saturating_add(length) } else { index };
+    let selected: Vec<usize> = match step {
+        0 => return Err(node.wrong("step 0", "another step")),
+        1.. => {
+            let (from, to) = (from_start(start).clamp(0, length), from_start(end).clamp(0, length));
+            (from..to).step_by(usize::try_from(step).unwrap_or(usize::MAX)).map(|i| i as usize).collect()
+        }
+        _ => {
+            let (from, to) = (from_start(start).min(length - 1), from_start(end).max(-1));
+            let size = usize::try_from(step.unsigned_abs()).unwrap_or(usize::MAX);
+            (to + 1..=from).rev().step_by(size).map(|i| i as usize).collect()
+        }
     };
-    let (from, to) = (clamped(start), clamped(end));
-    if to <= from {
-        let found = format!("the empty range {start} to {end} of axis {axis} of {}", shape_text(&input.shape));
+    if selected.is_empty() {
+        let found = format!("the empty range {start} to {end} of axis {axis} of {}", shape_text(&shape));
         return Err(node.wrong(found, "at least one number"));
     }
-    let outer = product(&input.shape[..axis]).unwrap_or(0);
-    let inner = product(&input.shape[axis + 1..]).unwrap_or(0);
-    let Some(step) = usize::try_from(step).ok().filter(|step| *step == 1 || *step > 1 && outer == 1) else {
-        return Err(node.wrong(format!("step {step} of axis {axis}"), "1, or more on the first axis after the batch"));
+    select(planner, value, axis, &selected, &[selected.len()])
+}
+
+/// Plans `Gather` with constant indices.
+pub(super) fn gather(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
+    let value = planner.value(node, 0)?;
+    let shape = shape_of(&value);
+    let axis = node.axis(node.integer("axis", 0)?, shape.len())?;
+    let indices = planner.constant(node, 1)?;
+    let Numbers::Integers(integers) = &*indices.numbers else {
+        return Err(node.wrong("floats as input 1", "INT64 numbers"));
     };
-    let count = (to - from).div_ceil(step);
-    let mut shape = input.shape;
-    shape[axis] = count;
-    let output = planner.new_row(shape)?;
-    let blocks = if step == 1 {
-        let size = count * inner;
-        Blocks { count: outer, size, from: (from * inner, length * inner), to: (0, size) }
-    } else {
-        Blocks { count, size: inner, from: (from * inner, step.min(length) * inner), to: (0, inner) }
+    let length = shape[axis] as i64;
+    let index = |index: &i64| {
+        let from_start = if *index < 0 { index.saturating_add(length) } else { *index };
+        let wrong = || node.wrong(format!("index {index}"), format!("an index of {length} numbers"));
+        if (0..length).contains(&from_start) { Ok(from_start as usize) } else { Err(wrong()) }
     };
-    planner.steps.push(Step::Copy { blocks, input: input.place, output: output.place.clone() });
+    let selected = integers.iter().map(index).collect::<Result<Vec<usize>, _>>()?;
+    select(planner, value, axis, &selected, &indices.shape)
+}
+
+/// Takes these elements of an axis, which becomes the dimensions `dims`.
+fn select(
+    planner: &mut Planner,
+    value: Value,
+    axis: usize,
+    selected: &[usize],
+    dims: &[usize],
+) -> Result<Value, NetworkError> {
+    let before = shape_of(&value);
+    let outer = product(&before[..axis]).unwrap_or(0);
+    let inner = product(&before[axis + 1..]).unwrap_or(0);
+    let length = before[axis];
+    let shape = [&before[..axis], dims, &before[axis + 1..]].concat();
+    rearranged(planner, value, shape, || {
+        let rows = (0..outer).flat_map(|row| selected.iter().map(move |index| row * length + index));
+        rows.flat_map(|row| (0..inner).map(move |i| (row * inner + i) as u32)).collect()
+    })
+}
+
+pub(super) fn transpose(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
+    let value = planner.value(node, 0)?;
+    let rank = shape_of(&value).len();
+    let order = match node.integers("perm")? {
+        Some(axes) => axes.iter().map(|axis| node.axis(*axis, rank)).collect::<Result<Vec<usize>, _>>()?,
+        None => (0..rank).rev().collect(),
+    };
+    let mut sorted = order.clone();
+    sorted.sort_unstable();
+    if !sorted.into_iter().eq(0..rank) {
+        return Err(node.wrong(format!("perm = {order:?}"), format!("each of {rank} axes once")));
+    }
+    transposed(planner, value, &order)
+}
+
+/// The value with its axes in another order.
+fn transposed(planner: &mut Planner, value: Value, order: &[usize]) -> Result<Value, NetworkError> {
+    let (shape, strides) = permuted(shape_of(&value), order);
+    rearranged(planner, value, shape.clone(), || strided(&shape, &strides))
+}
+
+/// Like [`transposed`].
+pub(super) fn transposed_row(planner: &mut Planner, row: Row, order: &[usize]) -> Result<Row, NetworkError> {
+    let (shape, strides) = permuted(&row.shape, order);
+    picked(planner, row, shape.clone(), || strided(&shape, &strides))
+}
+
+/// The dimensions and strides of a shape in another order of its axes.
+fn permuted(before: &[usize], order: &[usize]) -> (Vec<usize>, Vec<usize>) {
+    let strides = strides(before);
+    order.iter().map(|axis| (before[*axis], strides[*axis])).unzip()
+}
+
+/// Plans `Expand` to a constant shape.
+pub(super) fn expand(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
+    let value = planner.value(node, 0)?;
+    let asked = planner.integers(node, 1)?.unwrap_or_default();
+    let dims = asked.iter().map(|dim| usize::try_from(*dim).ok()).collect::<Option<Vec<usize>>>();
+    let shape = dims.and_then(|dims| elementwise::broadcast(shape_of(&value), &dims));
+    let Some(shape) = shape.filter(|shape| shape.len() <= RANK_MAX) else {
+        let found = format!("{} expanded to {asked:?}", shape_text(shape_of(&value)));
+        return Err(node.wrong(found, "dimensions that are equal or 1"));
+    };
+    expanded(planner, value, shape)
+}
+
+/// Repeats a value along its dimensions of 1.
+fn expanded(planner: &mut Planner, value: Value, shape: Vec<usize>) -> Result<Value, NetworkError> {
+    let strides = repeating_strides(shape_of(&value), &shape);
+    rearranged(planner, value, shape.clone(), || strided(&shape, &strides))
+}
+
+/// Like [`expanded`].
+pub(super) fn expanded_row(planner: &mut Planner, row: Row, shape: &[usize]) -> Result<Row, NetworkError> {
+    let strides = repeating_strides(&row.shape, shape);
+    picked(planner, row, shape.to_vec(), || strided(shape, &strides))
+}
+
+/// The strides by which a value repeats along its dimensions of 1, and along new leading ones.
+fn repeating_strides(before: &[usize], shape: &[usize]) -> Vec<usize> {
+    let own = strides(before).into_iter().zip(before).map(|(stride, dim)| if *dim == 1 { 0 } else { stride });
+    vec![0; shape.len() - before.len()].into_iter().chain(own).collect()
+}
+
+/// Plans `Shape`: the dimensions of its input, all of which are constant.
+pub(super) fn shape(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
+    let value = planner.value(node, 0)?;
+    let dims: Vec<i64> = shape_of(&value).iter().map(|dim| *dim as i64).collect();
+    let rank = dims.len() as i64;
+    let at = |index: i64| if index < 0 { index.saturating_add(rank) } else { index }.clamp(0, rank) as usize;
+    let (start, end) = (at(node.integer("start", 0)?), at(node.integer("end", rank)?));
+    let dims = dims.get(start..end).unwrap_or_default().to_vec();
+    Ok(Value::Constant(Tensor::new(vec![dims.len()], Numbers::Integers(dims))))
+}
+
+/// Plans `ConstantOfShape`.
+pub(super) fn constant_of_shape(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
+    let asked = planner.integers(node, 0)?.unwrap_or_default();
+    let dims = asked.iter().map(|dim| usize::try_from(*dim).ok()).collect::<Option<Vec<usize>>>();
+    let size = dims.as_deref().and_then(product);
+    let size = at_most("numbers of a constant", size, VALUES_MAX)?;
+    let value = match node.tensor("value")?.and_then(|attribute| attribute.t.as_ref()) {
+        Some(proto) => Some(Tensor::read(proto, "value")?),
+        None => None,
+    };
+    let numbers = match value.as_ref().map(|tensor| &*tensor.numbers) {
+        None => Numbers::Floats(vec![0.0; size]),
+        Some(Numbers::Floats(floats)) if floats.len() == 1 => Numbers::Floats(vec![floats[0]; size]),
+        Some(Numbers::Integers(integers)) if integers.len() == 1 => Numbers::Integers(vec![integers[0]; size]),
+        Some(_) => return Err(node.wrong("several values", "a single number")),
+    };
+    Ok(Value::Constant(Tensor::new(dims.unwrap_or_default(), numbers)))
+}
+
+/// The distance between neighbours along each dimension.
+fn strides(shape: &[usize]) -> Vec<usize> {
+    (0..shape.len()).map(|axis| product(&shape[axis + 1..]).unwrap_or(0)).collect()
+}
+
+/// The indices of a shape's numbers, in order, if each dimension has this stride.
+fn strided(shape: &[usize], strides: &[usize]) -> Vec<u32> {
+    let mut indices = vec![0_u32];
+    for (dim, stride) in shape.iter().zip(strides) {
+        let along = |base: &u32| {
+            let base = *base;
+            (0..*dim).map(move |i| base + (i * stride) as u32)
+        };
+        indices = indices.iter().flat_map(along).collect();
+    }
+    indices
+}
+
+/// The numbers at these indices of a value, in a new shape. `from` is called once the shape is
+/// known to be small enough.
+fn rearranged(
+    planner: &mut Planner,
+    value: Value,
+    shape: Vec<usize>,
+    from: impl FnOnce() -> Vec<u32>,
+) -> Result<Value, NetworkError> {
+    match value {
+        Value::Constant(tensor) => {
+            planner.count_weights(product(&shape), 0)?;
+            let from = from();
+            let numbers = match &*tensor.numbers {
+                Numbers::Floats(floats) => Numbers::Floats(from.iter().map(|i| floats[*i as usize]).collect()),
+                Numbers::Integers(integers) => Numbers::Integers(from.iter().map(|i| integers[*i as usize]).collect()),
+            };
+            Ok(Value::Constant(Tensor::new(shape, numbers)))
+        }
+        Value::Computed(row) => Ok(Value::Computed(picked(planner, row, shape, from)?)),
+    }
+}
+
+/// Like [`rearranged`], for computed numbers.
+fn picked(
+    planner: &mut Planner,
+    row: Row,
+    shape: Vec<usize>,
+    from: impl FnOnce() -> Vec<u32>,
+) -> Result<Row, NetworkError> {
+    let output = Row { element: row.element, ..planner.new_row(shape)? };
+    planner.steps.push(Step::Pick { from: from(), input: row.place, output: output.place.clone() });
     Ok(output)
 }
 
-/// The axes of a `Squeeze` or `Unsqueeze`: an attribute in old files, an input in newer ones.
-fn axes(planner: &Planner, node: &Node) -> Result<Option<Vec<i64>>, NetworkError> {
+/// The axes of a `Squeeze`, `Unsqueeze` or `Reduce…`: an attribute in old files, an input in newer ones.
+pub(super) fn axes(planner: &Planner, node: &Node) -> Result<Option<Vec<i64>>, NetworkError> {
     let axes = match planner.integers(node, 1)? {
         Some(axes) => Some(axes),
         None => node.integers("axes")?.map(<[i64]>::to_vec),
@@ -245,7 +455,7 @@ fn axes(planner: &Planner, node: &Node) -> Result<Option<Vec<i64>>, NetworkError
     }
 }
 
-fn shape_of(value: &Value) -> &[usize] {
+pub(super) fn shape_of(value: &Value) -> &[usize] {
     match value {
         Value::Constant(tensor) => &tensor.shape,
         Value::Computed(row) => &row.shape,

@@ -2,40 +2,102 @@
 
 use super::NetworkError;
 use super::activation;
-use super::error::shape_text;
+use super::arrangement;
+use super::error::{shape_text, shown};
 use super::node::Node;
-use super::plan::{Planner, Row, Value};
+use super::plan::{Element, Planner, Row, Value};
 use super::step::Step;
+use super::tensor::{Numbers, Tensor};
+use std::ops::Range;
 
 /// A function of one number. NaN in gives NaN out.
 #[derive(Clone, Copy)]
 pub(super) enum Function {
-    Clip { min: f32, max: f32 },
-    Elu { alpha: f32 },
-    LeakyRelu { alpha: f32 },
+    Absolute,
+    Celu {
+        alpha: f32,
+    },
+    Clip {
+        min: f32,
+        max: f32,
+    },
+    Elu {
+        alpha: f32,
+    },
+    Erf,
+    Exp,
+    Gelu,
+    GeluByTanh,
+    HardSigmoid {
+        alpha: f32,
+        beta: f32,
+    },
+    HardSwish,
+    LeakyRelu {
+        alpha: f32,
+    },
+    Logarithm,
+    Mish,
     Negative,
+    Reciprocal,
     Relu,
+    Selu {
+        alpha: f32,
+        gamma: f32,
+    },
     Sigmoid,
+    Softplus,
+    Softsign,
+    SquareRoot,
+    Swish {
+        alpha: f32,
+    },
     Tanh,
+    /// Rounds towards zero.
+    Truncate,
 }
 
 impl Function {
     pub(super) fn apply(self, input: &[f32], output: &mut [f32]) {
         match self {
-            Function::Clip { min, max } => each(input, output, |x| {
-                let above = if x < min { min } else { x };
-                if above > max { max } else { above }
-            }),
+            Function::Absolute => each(input, output, f32::abs),
+            Function::Celu { alpha } => {
+                each(input, output, |x| if x < 0.0 { alpha * (activation::exp(x / alpha) - 1.0) } else { x });
+            }
+            Function::Clip { min, max } => each(input, output, |x| clip_to(x, min, max)),
             Function::Elu { alpha } => {
                 each(input, output, |x| if x < 0.0 { alpha * (activation::exp(x) - 1.0) } else { x });
             }
+            Function::Erf => each(input, output, libm::erff),
+            Function::Exp => each(input, output, activation::exp),
+            Function::Gelu => each(input, output, activation::gelu),
+            Function::GeluByTanh => each(input, output, activation::gelu_by_tanh),
+            Function::HardSigmoid { alpha, beta } => each(input, output, |x| clip_to(alpha * x + beta, 0.0, 1.0)),
+            Function::HardSwish => each(input, output, |x| x * clip_to(x / 6.0 + 0.5, 0.0, 1.0)),
             Function::LeakyRelu { alpha } => each(input, output, |x| if x < 0.0 { alpha * x } else { x }),
+            Function::Logarithm => each(input, output, activation::ln),
+            Function::Mish => each(input, output, |x| x * activation::tanh(activation::softplus(x))),
             Function::Negative => each(input, output, |x| -x),
+            Function::Reciprocal => each(input, output, |x| 1.0 / x),
             Function::Relu => each(input, output, |x| if x < 0.0 { 0.0 } else { x }),
+            Function::Selu { alpha, gamma } => {
+                each(input, output, |x| gamma * if x < 0.0 { alpha * (activation::exp(x) - 1.0) } else { x });
+            }
             Function::Sigmoid => each(input, output, activation::sigmoid),
+            Function::Softplus => each(input, output, activation::softplus),
+            Function::Softsign => each(input, output, |x| x / (1.0 + x.abs())),
+            Function::SquareRoot => each(input, output, f32::sqrt),
+            Function::Swish { alpha } => each(input, output, |x| x * activation::sigmoid(alpha * x)),
             Function::Tanh => each(input, output, activation::tanh),
+            Function::Truncate => each(input, output, f32::trunc),
         }
     }
+}
+
+/// NaN remains NaN.
+fn clip_to(x: f32, min: f32, max: f32) -> f32 {
+    let above = if x < min { min } else { x };
+    if above > max { max } else { above }
 }
 
 fn each(input: &[f32], output: &mut [f32], function: impl Fn(f32) -> f32) {
@@ -51,6 +113,13 @@ pub(super) enum Operation {
     Subtract,
     Multiply,
     Divide,
+    /// 1 if both are equal, else 0.
+    Equal,
+    Least,
+    Greatest,
+    Power,
+    /// The left number, times the right one if it is negative.
+    Slope,
 }
 
 impl Operation {
@@ -61,6 +130,11 @@ impl Operation {
             Operation::Subtract => pairs(left, right, output, |a, b| a - b),
             Operation::Multiply => pairs(left, right, output, |a, b| a * b),
             Operation::Divide => pairs(left, right, output, |a, b| a / b),
+            Operation::Equal => pairs(left, right, output, |a, b| f32::from(u8::from(a == b))),
+            Operation::Least => pairs(left, right, output, |a, b| if b < a || b.is_nan() { b } else { a }),
+            Operation::Greatest => pairs(left, right, output, |a, b| if b > a || b.is_nan() { b } else { a }),
+            Operation::Power => pairs(left, right, output, power),
+            Operation::Slope => pairs(left, right, output, |a, b| if a < 0.0 { a * b } else { a }),
         }
     }
 }
@@ -78,44 +152,148 @@ fn pairs(left: &[f32], right: &[f32], output: &mut [f32], operation: impl Fn(f32
     }
 }
 
+/// Squares, which normalisations use, are exact products.
+fn power(base: f32, exponent: f32) -> f32 {
+    if exponent == 2.0 { base * base } else { libm::powf(base, exponent) }
+}
+
 /// Plans a function of single numbers.
 pub(super) fn function(planner: &mut Planner, node: &Node, function: Function) -> Result<Value, NetworkError> {
     let input = planner.row(node, 0)?;
+    Ok(Value::Computed(apply(planner, function, input)?))
+}
+
+pub(super) fn apply(planner: &mut Planner, function: Function, input: Row) -> Result<Row, NetworkError> {
     let output = planner.new_row(input.shape)?;
     planner.steps.push(Step::Function { function, input: input.place, output: output.place.clone() });
-    Ok(Value::Computed(output))
+    Ok(output)
+}
+
+pub(super) fn gelu(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
+    match node.text("approximate", "none")? {
+        "none" => function(planner, node, Function::Gelu),
+        "tanh" => function(planner, node, Function::GeluByTanh),
+        other => Err(node.wrong(format!("approximate = {}", shown(other)), "none or tanh")),
+    }
 }
 
 /// Plans `Clip`. In old files its bounds are attributes.
 pub(super) fn clip(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
-    let min = planner.scalar(node, 1)?.map_or_else(|| node.float("min", f32::MIN), Ok)?;
-    let max = planner.scalar(node, 2)?.map_or_else(|| node.float("max", f32::MAX), Ok)?;
+    let min = planner.bound(node, 1)?.map_or_else(|| node.float("min", f32::MIN), Ok)?;
+    let max = planner.bound(node, 2)?.map_or_else(|| node.float("max", f32::MAX), Ok)?;
     function(planner, node, Function::Clip { min, max })
 }
 
-/// Plans a function of pairs of numbers.
+/// Plans a function of pairs of numbers, from left to right if there are more than two inputs.
 pub(super) fn binary(planner: &mut Planner, node: &Node, operation: Operation) -> Result<Value, NetworkError> {
-    let (left, right) = (planner.row(node, 0)?, planner.row(node, 1)?);
-    let (long, short) = if left.shape.len() >= right.shape.len() { (&left, &right) } else { (&right, &left) };
-    let mut shape = long.shape.clone();
-    let offset = shape.len() - short.shape.len();
-    for (dim, other) in shape[offset..].iter_mut().zip(&short.shape) {
-        *dim = if *dim == 1 { *other } else { *dim };
+    if let Some(integers) = integers(planner, node, operation)? {
+        return Ok(Value::Constant(integers));
     }
-    for operand in [&left, &right] {
-        if !repeats(operand, &shape) {
-            let found = format!("{} with {}", shape_text(&left.shape), shape_text(&right.shape));
-            return Err(node.wrong(found, "equal shapes, a shape that ends the other one, or a single number"));
-        }
+    // Sums and the like of integers are exact in floats, unlike quotients.
+    let is_whole = !matches!(operation, Operation::Divide | Operation::Power | Operation::Slope);
+    let is_of_integers = |index| planner.value(node, index).is_ok_and(|value| value.is_integer());
+    let element = match is_whole && (0..node.proto.input.len()).all(is_of_integers) {
+        true => Element::Integer,
+        false => Element::Float,
+    };
+    let mut left = planner.row_of(node, 0, element)?;
+    for index in 1..node.proto.input.len() {
+        let right = planner.row_of(node, index, element)?;
+        left = combine(planner, node, operation, left, right)?;
     }
-    let output = planner.new_row(shape)?;
-    let (left, right) = (left.place, right.place);
-    planner.steps.push(Step::Binary { operation, left, right, output: output.place.clone() });
-    Ok(Value::Computed(output))
+    Ok(Value::Computed(Row { element, ..left }))
 }
 
-/// Whether the row can be repeated to this shape: without leading ones, its own is a suffix of it.
-fn repeats(row: &Row, shape: &[usize]) -> bool {
+/// The result of an operation on two constants with integers, such as parts of a shape.
+fn integers(planner: &Planner, node: &Node, operation: Operation) -> Result<Option<Tensor>, NetworkError> {
+    let [Value::Constant(left), Value::Constant(right)] = [planner.value(node, 0)?, planner.value(node, 1)?] else {
+        return Ok(None);
+    };
+    let (Numbers::Integers(a), Numbers::Integers(b)) = (&*left.numbers, &*right.numbers) else { return Ok(None) };
+    let function: fn(i64, i64) -> Option<i64> = match operation {
+        Operation::Add => i64::checked_add,
+        Operation::Subtract => i64::checked_sub,
+        Operation::Multiply => i64::checked_mul,
+        Operation::Divide => i64::checked_div,
+        Operation::Least => |a, b| Some(a.min(b)),
+        Operation::Greatest => |a, b| Some(a.max(b)),
+        Operation::Equal => |a, b| Some((a == b).into()),
+        Operation::Power | Operation::Slope => return Ok(None),
+    };
+    let shape = if a.len() >= b.len() { &left.shape } else { &right.shape };
+    let count = a.len().max(b.len());
+    let fits = [a, b].iter().all(|each| each.len() == count || each.len() == 1);
+    let numbers: Option<Vec<i64>> =
+        fits.then(|| (0..count).map(|i| function(a[i % a.len()], b[i % b.len()])).collect()).flatten();
+    match numbers {
+        Some(numbers) => Ok(Some(Tensor::new(shape.clone(), Numbers::Integers(numbers)))),
+        None => Err(node.wrong(format!("{a:?} with {b:?}"), "equally many integers, or one, and a result in 64 bits")),
+    }
+}
+
+/// Plans `Where` with a constant condition.
+pub(super) fn choose(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
+    let condition = planner.constant(node, 0)?;
+    let Numbers::Integers(condition) = &*condition.numbers else {
+        return Err(node.wrong("floats as input 0", "BOOL numbers"));
+    };
+    let choices = [planner.constant(node, 1)?, planner.constant(node, 2)?];
+    let [Numbers::Integers(if_true), Numbers::Integers(if_false)] = [&*choices[0].numbers, &*choices[1].numbers] else {
+        return Err(node.wrong("a choice between floats", "a choice between constant integers"));
+    };
+    let count = condition.len();
+    if [if_true, if_false].iter().any(|list| list.len() != count && list.len() != 1) || count == 0 {
+        let found = format!("{count} conditions, {} and {} numbers", if_true.len(), if_false.len());
+        return Err(node.wrong(found, "equally many"));
+    }
+    let chosen = condition.iter().enumerate().map(|(i, is_true)| {
+        let list = if *is_true == 0 { if_false } else { if_true };
+        list[i % list.len()]
+    });
+    Ok(Value::Constant(Tensor::new(vec![count], Numbers::Integers(chosen.collect()))))
+}
+
+/// Applies an operation to two rows of equal shapes, or of shapes that broadcast to one.
+pub(super) fn combine(
+    planner: &mut Planner,
+    node: &Node,
+    operation: Operation,
+    left: Row,
+    right: Row,
+) -> Result<Row, NetworkError> {
+    let Some(shape) = broadcast(&left.shape, &right.shape) else {
+        let found = format!("{} with {}", shape_text(&left.shape), shape_text(&right.shape));
+        return Err(node.wrong(found, "shapes whose dimensions are equal or 1"));
+    };
+    let left = repeatable(planner, left, &shape)?;
+    let right = repeatable(planner, right, &shape)?;
+    let output = planner.new_row(shape)?;
+    planner.steps.push(Step::Binary { operation, left, right, output: output.place.clone() });
+    Ok(output)
+}
+
+/// The place of a row that repeats to this shape: its own if, without leading ones, its shape is a
+/// suffix of it.
+fn repeatable(planner: &mut Planner, row: Row, shape: &[usize]) -> Result<Range<usize>, NetworkError> {
     let ones = row.shape.iter().take_while(|dim| **dim == 1).count();
-    shape.ends_with(&row.shape[ones..])
+    if shape.ends_with(&row.shape[ones..]) {
+        return Ok(row.place);
+    }
+    Ok(arrangement::expanded_row(planner, row, shape)?.place)
+}
+
+/// The common shape of two shapes, if each dimension, counted from the last, is equal or 1.
+pub(super) fn broadcast(left: &[usize], right: &[usize]) -> Option<Vec<usize>> {
+    let (long, short) = if left.len() >= right.len() { (left, right) } else { (right, left) };
+    let mut shape = long.to_vec();
+    let offset = long.len() - short.len();
+    for (dim, other) in shape[offset..].iter_mut().zip(short) {
+        match (*dim, *other) {
+            (1, other) => *dim = other,
+            (_, 1) => {}
+            (dim, other) if dim == other => {}
+            _ => return None,
+        }
+    }
+    Some(shape)
 }

@@ -27,6 +27,9 @@ pub enum NetworkError {
         /// The fault.
         found: String,
     },
+    /// The bytes are a Git LFS pointer.
+    #[error("a Git LFS pointer, expected the ONNX file that it stands for: run `git lfs pull`")]
+    LfsPointer,
     /// The model as a whole cannot be evaluated.
     #[error("the model: found {found}, expected {expected}")]
     Model {
@@ -55,7 +58,7 @@ pub enum NetworkError {
         tensor: String,
     },
     /// An unsupported operator.
-    #[error("node `{node}`: found the operator {operator}, expected one of {allowed}")]
+    #[error("node `{node}`: found the operator {operator}, expected one of {allowed}: export the model without it")]
     Operator {
         /// The node's name.
         node: String,

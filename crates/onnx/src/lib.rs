@@ -14,6 +14,7 @@ mod error;
 mod limit;
 mod linear;
 mod node;
+mod normalisation;
 mod operator;
 mod perceptron;
 mod plan;
@@ -41,6 +42,8 @@ pub struct Port {
     pub name: String,
     /// Values per row.
     pub size: usize,
+    /// Whether the values are integers, such as the index of an action.
+    pub is_integer: bool,
 }
 
 /// An evaluable network. Clones share their weights.
@@ -79,6 +82,12 @@ impl Network {
     #[must_use]
     pub fn metadata(&self) -> &BTreeMap<String, String> {
         &self.plan.metadata
+    }
+
+    /// What in the file deviates from what it computes, such as a declared shape of an output.
+    #[must_use]
+    pub fn warnings(&self) -> &[String] {
+        &self.plan.warnings
     }
 
     /// 128-bit XXH3 digest of the file.

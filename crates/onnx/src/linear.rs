@@ -1,6 +1,7 @@
 //! MatMul and Gemm with constant weights.
 
 use super::NetworkError;
+use super::arrangement::transposed_row;
 use super::error::shape_text;
 use super::node::Node;
 use super::plan::{Planner, Row, Value, floats};
@@ -75,12 +76,12 @@ pub(super) fn mat_mul(planner: &mut Planner, node: &Node) -> Result<Value, Netwo
 
 /// Plans `Gemm`: alpha · input · weights + beta · bias, with constant weights and bias.
 pub(super) fn gemm(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
-    if node.integer("transA", 0)? != 0 {
-        return Err(node.wrong("transA = 1", "transA = 0"));
-    }
-    let input = planner.row(node, 0)?;
+    let mut input = planner.row(node, 0)?;
     if input.shape.len() != 2 {
         return Err(node.wrong(format!("{} as input 0", shape_text(&input.shape)), "two dimensions"));
+    }
+    if node.integer("transA", 0)? != 0 {
+        input = transposed_row(planner, input, &[1, 0])?;
     }
     let (alpha, beta) = (node.float("alpha", 1.0)?, node.float("beta", 1.0)?);
     let tensor = planner.constant(node, 1)?;

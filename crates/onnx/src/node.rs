@@ -7,6 +7,7 @@ use super::proto::{AttributeProto, NodeProto};
 /// The supported codes of `AttributeProto.AttributeType`.
 const FLOAT: i32 = 1;
 const INT: i32 = 2;
+const STRING: i32 = 3;
 const TENSOR: i32 = 4;
 const FLOATS: i32 = 6;
 const INTS: i32 = 7;
@@ -49,6 +50,13 @@ impl<'a> Node<'a> {
             return Err(self.wrong(format!("{name} = {number}"), "a finite number"));
         }
         Ok(number)
+    }
+
+    pub(super) fn text(&self, name: &str, default: &'a str) -> Result<&'a str, NetworkError> {
+        let attribute = self.attribute(name, STRING, "a text")?;
+        let bytes = attribute.map(|attribute| attribute.s.as_deref().unwrap_or_default());
+        let text = bytes.map_or(Ok(default), str::from_utf8);
+        text.map_err(|_| self.wrong(format!("{name} in an unknown encoding"), "UTF-8 text"))
     }
 
     pub(super) fn integers(&self, name: &str) -> Result<Option<&'a [i64]>, NetworkError> {

@@ -18,8 +18,12 @@ pub(super) struct Plan {
     pub(super) places: Vec<Range<usize>>,
     pub(super) steps: Vec<Step>,
     pub(super) metadata: BTreeMap<String, String>,
+    pub(super) warnings: Vec<String>,
     pub(super) digest: u128,
 }
+
+/// The largest integer up to which floats have all integers.
+const INTEGER_MAX: u64 = 1 << 24;
 
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Element {
@@ -41,6 +45,15 @@ pub(super) struct Row {
 pub(super) enum Value {
     Constant(Tensor),
     Computed(Row),
+}
+
+impl Value {
+    pub(super) fn is_integer(&self) -> bool {
+        match self {
+            Value::Constant(tensor) => matches!(&*tensor.numbers, Numbers::Integers(_)),
+            Value::Computed(row) => row.element == Element::Integer,
+        }
+    }
 }
 
 /// A plan under construction.
@@ -88,13 +101,32 @@ impl Planner {
         Ok(Row { place, shape: tensor.shape, element: Element::Float })
     }
 
+    /// Input `index` of a node as numbers of this kind.
+    pub(super) fn row_of(&mut self, node: &Node, index: usize, element: Element) -> Result<Row, NetworkError> {
+        if element == Element::Float {
+            return self.row(node, index);
+        }
+        let tensor = match self.value(node, index)? {
+            Value::Computed(row) => return Ok(row),
+            Value::Constant(tensor) => tensor,
+        };
+        let Numbers::Integers(integers) = &*tensor.numbers else {
+            return Err(node.wrong(format!("floats as input {index}"), "INT64 numbers"));
+        };
+        if let Some(large) = integers.iter().find(|integer| integer.unsigned_abs() > INTEGER_MAX) {
+            return Err(node.wrong(format!("the integer {large}"), format!("at most {INTEGER_MAX}")));
+        }
+        let floats: Vec<f32> = integers.iter().map(|integer| *integer as f32).collect();
+        let row = self.new_constant(tensor.shape, &floats)?;
+        Ok(Row { element, ..row })
+    }
+
     /// The place of this constant among the values.
     pub(super) fn place(&mut self, name: &str, floats: &[f32]) -> Result<Range<usize>, NetworkError> {
         if let Some(place) = self.placed.get(name) {
             return Ok(place.clone());
         }
-        let place = self.room(Some(floats.len()))?;
-        self.values[place.clone()].copy_from_slice(floats);
+        let Row { place, .. } = self.new_constant(vec![], floats)?;
         self.placed.insert(name.to_owned(), place.clone());
         Ok(place)
     }
@@ -122,13 +154,43 @@ impl Planner {
         }
     }
 
-    /// Input `index` of a node as a single constant number, if any.
-    pub(super) fn scalar(&self, node: &Node, index: usize) -> Result<Option<f32>, NetworkError> {
+    /// A new constant that steps can read.
+    pub(super) fn new_constant(&mut self, shape: Vec<usize>, floats: &[f32]) -> Result<Row, NetworkError> {
+        let place = self.room(Some(floats.len()))?;
+        self.values[place.clone()].copy_from_slice(floats);
+        Ok(Row { place, shape, element: Element::Float })
+    }
+
+    /// Evaluates the steps from number `first` on, which read only constants, and takes them and
+    /// their values off the plan.
+    pub(super) fn fold(&mut self, first: usize, values: usize, row: Row) -> Result<Value, NetworkError> {
+        for step in self.steps.drain(first..) {
+            step.take(&mut self.values);
+        }
+        let floats = self.values[row.place].to_vec();
+        self.values.truncate(values);
+        self.placed.retain(|_, place| place.end <= values);
+        self.count_weights(Some(floats.len()), 0)?;
+        let numbers = match row.element {
+            Element::Float => Numbers::Floats(floats),
+            Element::Integer => Numbers::Integers(floats.into_iter().map(|float| float as i64).collect()),
+        };
+        Ok(Value::Constant(Tensor::new(row.shape, numbers)))
+    }
+
+    /// Whether all inputs of a node are constants.
+    pub(super) fn is_constant(&self, node: &Node) -> bool {
+        let mut names = node.proto.input.iter().filter(|name| !name.is_empty()).peekable();
+        names.peek().is_some() && names.all(|name| matches!(self.known.get(name), Some(Value::Constant(_))))
+    }
+
+    /// Input `index` of a node as a bound: a single constant number, possibly infinite, if any.
+    pub(super) fn bound(&self, node: &Node, index: usize) -> Result<Option<f32>, NetworkError> {
         if node.input(index).is_none() {
             return Ok(None);
         }
         let tensor = self.constant(node, index)?;
-        match floats(node, index, &tensor)? {
+        match numbers(node, index, &tensor)? {
             [number] => Ok(Some(*number)),
             several => Err(node.wrong(format!("{} numbers as input {index}", several.len()), "a single number")),
         }
@@ -170,8 +232,18 @@ impl Planner {
     }
 }
 
-/// A constant of a node as a non-empty list of floats.
+/// A constant of a node as a non-empty list of finite floats.
 pub(super) fn floats<'a>(node: &Node, index: usize, tensor: &'a Tensor) -> Result<&'a [f32], NetworkError> {
+    let floats = numbers(node, index, tensor)?;
+    if floats.iter().all(|float| float.is_finite()) {
+        return Ok(floats);
+    }
+    let found = format!("a number in input {index} that is infinite in single precision");
+    Err(node.wrong(found, "finite numbers"))
+}
+
+/// A constant of a node as a non-empty list of floats, none of them NaN.
+fn numbers<'a>(node: &Node, index: usize, tensor: &'a Tensor) -> Result<&'a [f32], NetworkError> {
     match &*tensor.numbers {
         Numbers::Floats(floats) if !floats.is_empty() => Ok(floats),
         Numbers::Floats(_) => {

@@ -5,14 +5,22 @@
 
 use prost::Message;
 
-/// `TensorProto.DataType.FLOAT`, the only element type evaluated.
+/// `TensorProto.DataType.FLOAT`, in which everything is evaluated.
 pub(super) const FLOAT: i32 = 1;
 /// `TensorProto.DataType.INT32`.
 pub(super) const INT32: i32 = 6;
 /// `TensorProto.DataType.INT64`.
 pub(super) const INT64: i32 = 7;
+/// `TensorProto.DataType.BOOL`.
+pub(super) const BOOL: i32 = 9;
+/// `TensorProto.DataType.FLOAT16`.
+pub(super) const FLOAT16: i32 = 10;
 /// `TensorProto.DataType.DOUBLE`.
 pub(super) const DOUBLE: i32 = 11;
+/// `TensorProto.DataType.BFLOAT16`.
+pub(super) const BFLOAT16: i32 = 16;
+/// The types of floats.
+pub(super) const FLOATS: [i32; 4] = [FLOAT, FLOAT16, DOUBLE, BFLOAT16];
 /// `TensorProto.DataLocation.EXTERNAL`.
 pub(super) const EXTERNAL: i32 = 1;
 
@@ -111,6 +119,8 @@ pub(super) struct AttributeProto {
     pub(super) f: Option<f32>,
     #[prost(int64, optional, tag = "3")]
     pub(super) i: Option<i64>,
+    #[prost(bytes = "vec", optional, tag = "4")]
+    pub(super) s: Option<Vec<u8>>,
     #[prost(message, optional, tag = "5")]
     pub(super) t: Option<TensorProto>,
     #[prost(float, repeated, tag = "7")]

@@ -4,8 +4,8 @@ use super::error::{shape_text, shown};
 use super::limit::{self, PARAMETERS_MAX, RANK_MAX, at_most};
 use super::node::{self, Node};
 use super::operator::OPERATORS;
-use super::plan::{Plan, Planner, Row, Value};
-use super::proto::{self, GraphProto, ModelProto, NodeProto, ValueInfoProto, data_type_name};
+use super::plan::{Element, Plan, Planner, Row, Value};
+use super::proto::{self, DimensionProto, GraphProto, ModelProto, NodeProto, ValueInfoProto, data_type_name};
 use super::tensor::Tensor;
 use super::{NetworkError, Port};
 use prost::Message;
@@ -18,10 +18,20 @@ use xxhash_rust::xxh3::xxh3_128;
 const VERSIONS: RangeInclusive<i64> = 7..=28;
 
 /// Allowed types of outputs. Indices are output as floats regardless.
-const OUTPUT_TYPES: [i32; 3] = [proto::FLOAT, proto::INT32, proto::INT64];
+const OUTPUT_TYPES: [i32; 6] =
+    [proto::FLOAT, proto::FLOAT16, proto::DOUBLE, proto::BFLOAT16, proto::INT32, proto::INT64];
+
+/// How the file of a large model begins in a repository without its large files.
+const LFS_POINTER: &[u8] = b"version https://git-lfs.github.com/spec/";
+
+/// Operators whose outputs after the first may be unused.
+const WITH_SPARE_OUTPUTS: [&str; 3] = ["BatchNormalization", "Dropout", "LayerNormalization"];
 
 /// Reads a file. Returns its plan and the values before the first evaluation.
 pub(super) fn read(file: &[u8]) -> Result<(Plan, Vec<f32>), NetworkError> {
+    if file.starts_with(LFS_POINTER) {
+        return Err(NetworkError::LfsPointer);
+    }
     limit::check(file)?;
     let model = ModelProto::decode(file)
         .map_err(|_| NetworkError::NotOnnx { byte: 0, found: "a message that is not a ModelProto".to_owned() })?;
@@ -32,14 +42,33 @@ pub(super) fn read(file: &[u8]) -> Result<(Plan, Vec<f32>), NetworkError> {
     let mut planner = Planner::default();
     let inputs = inputs(&mut planner, graph)?;
     let input_size = planner.values.len();
-    constants(&mut planner, graph)?;
-    for proto in &graph.node {
-        add(&mut planner, proto, version)?;
+    let needed = needed(graph);
+    constants(&mut planner, graph, &needed)?;
+    for proto in graph.node.iter().filter(|node| computes(node, &needed)) {
+        add(&mut planner, proto, version, &needed)?;
     }
-    let (outputs, places) = outputs(&mut planner, graph)?.into_iter().unzip();
+    let mut warnings = vec![];
+    let (outputs, places) = outputs(&mut planner, graph, &mut warnings)?.into_iter().unzip();
     let Planner { values, steps, .. } = planner;
     let metadata = metadata(&model)?;
-    Ok((Plan { inputs, outputs, input_size, places, steps, metadata, digest: xxh3_128(file) }, values))
+    let digest = xxh3_128(file);
+    Ok((Plan { inputs, outputs, input_size, places, steps, metadata, warnings, digest }, values))
+}
+
+/// The names on which an output depends. The others' nodes are not evaluated.
+fn needed(graph: &GraphProto) -> BTreeSet<&str> {
+    let mut needed: BTreeSet<&str> = graph.output.iter().map(|info| info.name.as_str()).collect();
+    for node in graph.node.iter().rev() {
+        if computes(node, &needed) {
+            needed.extend(node.input.iter().map(String::as_str));
+        }
+    }
+    needed
+}
+
+/// Whether a node computes one of these names.
+fn computes(node: &NodeProto, names: &BTreeSet<&str>) -> bool {
+    node.output.iter().any(|name| names.contains(name.as_str()))
 }
 
 /// The version of ONNX's own operator set.
@@ -74,7 +103,7 @@ fn inputs(planner: &mut Planner, graph: &GraphProto) -> Result<Vec<Port>, Networ
     let constants: BTreeSet<&str> = graph.initializer.iter().map(|tensor| tensor.name.as_str()).collect();
     let mut ports = vec![];
     for info in graph.input.iter().filter(|info| !constants.contains(info.name.as_str())) {
-        let Some(shape) = shape(info, &[proto::FLOAT])? else {
+        let Some(shape) = shape(info, &proto::FLOATS)? else {
             return Err(NetworkError::tensor(&info.name, "an input without a shape", "a shape"));
         };
         let shape: Vec<usize> = shape.into_iter().map(|dim| dim.unwrap_or(1)).collect();
@@ -86,7 +115,7 @@ fn inputs(planner: &mut Planner, graph: &GraphProto) -> Result<Vec<Port>, Networ
             return Err(NetworkError::tensor(&info.name, shape_text(&shape), expected));
         }
         let row = planner.new_row(shape)?;
-        ports.push(Port { name: info.name.clone(), size: row.place.len() });
+        ports.push(Port { name: info.name.clone(), size: row.place.len(), is_integer: false });
         planner.define(&info.name, Value::Computed(row))?;
     }
     if ports.is_empty() {
@@ -125,9 +154,9 @@ fn shape(info: &ValueInfoProto, allowed: &[i32]) -> Result<Option<Vec<Option<usi
     Ok(Some(dims))
 }
 
-fn constants(planner: &mut Planner, graph: &GraphProto) -> Result<(), NetworkError> {
+fn constants(planner: &mut Planner, graph: &GraphProto, needed: &BTreeSet<&str>) -> Result<(), NetworkError> {
     let mut numbers = Some(0_usize);
-    for proto in &graph.initializer {
+    for proto in graph.initializer.iter().filter(|proto| needed.contains(proto.name.as_str())) {
         let tensor = Tensor::read(proto, &proto.name)?;
         numbers = numbers.and_then(|all| all.checked_add(tensor.len()));
         at_most("numbers of the initializers", numbers, PARAMETERS_MAX)?;
@@ -136,7 +165,7 @@ fn constants(planner: &mut Planner, graph: &GraphProto) -> Result<(), NetworkErr
     Ok(())
 }
 
-fn add(planner: &mut Planner, proto: &NodeProto, version: i64) -> Result<(), NetworkError> {
+fn add(planner: &mut Planner, proto: &NodeProto, version: i64, needed: &BTreeSet<&str>) -> Result<(), NetworkError> {
     let known = OPERATORS.iter().find(|operator| operator.name == proto.op_type && is_own(&proto.domain));
     let Some(operator) = known else {
         let names: Vec<&str> = OPERATORS.iter().map(|operator| operator.name).collect();
@@ -154,34 +183,66 @@ fn add(planner: &mut Planner, proto: &NodeProto, version: i64) -> Result<(), Net
         let expected = if least == most { least.to_string() } else { format!("{least} to {most}") };
         return Err(node.wrong(format!("{} inputs", proto.input.len()), expected));
     }
-    let [output] = proto.output.as_slice() else {
-        return Err(node.wrong(format!("{} outputs", proto.output.len()), "one"));
+    let output = match proto.output.as_slice() {
+        [output] => output,
+        [output, spare @ ..] if WITH_SPARE_OUTPUTS.contains(&operator.name) => {
+            if let Some(name) = spare.iter().find(|name| needed.contains(name.as_str())) {
+                return Err(node.wrong(format!("a use of the output `{}`", shown(name)), "a use of the first output"));
+            }
+            output
+        }
+        outputs => return Err(node.wrong(format!("{} outputs", outputs.len()), "one")),
     };
-    let value = (operator.plan)(planner, &node)?;
+    let is_constant = planner.is_constant(&node);
+    let (steps, values) = (planner.steps.len(), planner.values.len());
+    let value = match (operator.plan)(planner, &node)? {
+        Value::Computed(row) if is_constant => planner.fold(steps, values, row)?,
+        value => value,
+    };
     planner.define(output, value)
 }
 
 /// The graph's outputs and their places.
-fn outputs(planner: &mut Planner, graph: &GraphProto) -> Result<Vec<(Port, Range<usize>)>, NetworkError> {
+fn outputs(
+    planner: &mut Planner,
+    graph: &GraphProto,
+    warnings: &mut Vec<String>,
+) -> Result<Vec<(Port, Range<usize>)>, NetworkError> {
     let mut names = BTreeSet::new();
     let mut outputs = vec![];
     for info in &graph.output {
-        let Row { place, shape: found, .. } = planner.output(&info.name)?;
-        let declared = if info.r#type.is_some() { shape(info, &OUTPUT_TYPES)? } else { None };
-        let fits = |declared: Vec<Option<usize>>| {
-            let same = |(declared, found): (&Option<usize>, &usize)| declared.is_none_or(|dim| dim == *found);
-            declared.len() == found.len() && declared.iter().zip(&found).all(same)
-        };
-        if !declared.is_none_or(fits) {
-            return Err(NetworkError::tensor(&info.name, shape_text(&found), "the shape that the file declares"));
-        }
+        let Row { place, shape: found, element } = planner.output(&info.name)?;
+        warnings.extend(deviation(info, &found));
         if !names.insert(&info.name) {
             return Err(NetworkError::tensor(&info.name, "an output named twice", "each output once"));
         }
-        outputs.push((Port { name: info.name.clone(), size: place.len() }, place));
+        let is_integer = element == Element::Integer;
+        outputs.push((Port { name: info.name.clone(), size: place.len(), is_integer }, place));
     }
     if outputs.is_empty() {
         return Err(NetworkError::model("no output", "at least one"));
     }
     Ok(outputs)
+}
+
+/// How the declared shape or type of an output deviates from what is computed, which no evaluation
+/// depends on.
+fn deviation(info: &ValueInfoProto, found: &[usize]) -> Option<String> {
+    let tensor = info.r#type.as_ref()?.tensor_type.as_ref()?;
+    let name = shown(&info.name);
+    if !OUTPUT_TYPES.contains(&tensor.elem_type) {
+        let declared = data_type_name(tensor.elem_type.into());
+        return Some(format!("output `{name}`: declared as {declared}, computed as floats"));
+    }
+    let dims = &tensor.shape.as_ref()?.dim;
+    let fits = |(dim, found): (&DimensionProto, &usize)| {
+        dim.dim_value.is_none_or(|value| usize::try_from(value) == Ok(*found))
+    };
+    if dims.len() == found.len() && dims.iter().zip(found).all(fits) {
+        return None;
+    }
+    let dim = |dim: &DimensionProto| dim.dim_value.map_or_else(|| shown(dim.dim_param()), |value| value.to_string());
+    let declared: Vec<String> = dims.iter().take(RANK_MAX).map(dim).collect();
+    let declared = if dims.is_empty() { "a single number".to_owned() } else { declared.join(" x ") };
+    Some(format!("output `{name}`: declared as {declared}, computed as {}", shape_text(found)))
 }

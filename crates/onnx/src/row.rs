@@ -2,9 +2,10 @@
 
 use super::NetworkError;
 use super::activation::{exp, ln};
+use super::arrangement;
 use super::error::shape_text;
 use super::node::Node;
-use super::plan::{Element, Planner, Value};
+use super::plan::{Element, Planner, Row, Value};
 use super::step::Step;
 use super::tensor::product;
 
@@ -50,7 +51,79 @@ pub(super) fn arg_max(planner: &mut Planner, node: &Node) -> Result<Value, Netwo
     }
     let output = planner.new_row(shape)?;
     planner.steps.push(Step::ArgMax { tie, row_size, input: input.place, output: output.place.clone() });
-    Ok(Value::Computed(super::plan::Row { element: Element::Integer, ..output }))
+    Ok(Value::Computed(Row { element: Element::Integer, ..output }))
+}
+
+/// How the numbers of a row become one.
+#[derive(Clone, Copy)]
+pub(super) enum Reduction {
+    Sum,
+    Mean,
+    Least,
+    Greatest,
+    /// The square root of the sum of squares.
+    Length,
+    LogSumExp,
+}
+
+/// Plans the `Reduce…` operators. In old files the axes are an attribute.
+pub(super) fn reduce(planner: &mut Planner, node: &Node, reduction: Reduction) -> Result<Value, NetworkError> {
+    let input = planner.row(node, 0)?;
+    let rank = input.shape.len();
+    let asked = arrangement::axes(planner, node)?.unwrap_or_default();
+    if asked.is_empty() && node.integer("noop_with_empty_axes", 0)? != 0 {
+        return Ok(Value::Computed(input));
+    }
+    let mut is_reduced = vec![asked.is_empty(); rank];
+    for axis in asked {
+        is_reduced[node.axis(axis, rank)?] = true;
+    }
+    let keeps_dims = node.integer("keepdims", 1)? != 0;
+    let shape = input.shape.iter().zip(&is_reduced);
+    let shape = match keeps_dims {
+        true => shape.map(|(dim, is_reduced)| if *is_reduced { 1 } else { *dim }).collect(),
+        false => shape.filter(|(_, is_reduced)| !**is_reduced).map(|(dim, _)| *dim).collect(),
+    };
+    // The reduced axes become the last ones, so that their numbers are adjacent.
+    let mut order: Vec<usize> = (0..rank).collect();
+    order.sort_by_key(|axis| is_reduced[*axis]);
+    let input = if order.is_sorted() { input } else { arrangement::transposed_row(planner, input, &order)? };
+    let row = reduced(planner, reduction, input, shape)?;
+    Ok(Value::Computed(row))
+}
+
+/// Reduces adjacent numbers, so that a value of this shape remains.
+pub(super) fn reduced(
+    planner: &mut Planner,
+    reduction: Reduction,
+    input: Row,
+    shape: Vec<usize>,
+) -> Result<Row, NetworkError> {
+    let output = planner.new_row(shape)?;
+    let row_size = input.place.len() / output.place.len().max(1);
+    planner.steps.push(Step::Reduce { reduction, row_size, input: input.place, output: output.place.clone() });
+    Ok(output)
+}
+
+/// Plans `GatherElements` along the last axis, with computed indices.
+pub(super) fn gather_elements(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
+    let input = planner.row(node, 0)?;
+    let axis = node.axis(node.integer("axis", 0)?, input.shape.len())?;
+    check_is_last(node, &input.shape, axis)?;
+    let Value::Computed(indices) = planner.value(node, 1)? else {
+        return Err(node.wrong("constant indices", "computed ones; use Gather"));
+    };
+    let row_size = input.shape[axis];
+    let rows = input.place.len() / row_size;
+    let fits = indices.shape.len() == input.shape.len() && indices.shape[..axis] == input.shape[..axis];
+    if !fits || rows == 0 {
+        let found = format!("{} by {}", shape_text(&input.shape), shape_text(&indices.shape));
+        return Err(node.wrong(found, "shapes that differ only in the last axis"));
+    }
+    let output = planner.new_row(indices.shape)?;
+    let place = output.place.clone();
+    planner.steps.push(Step::Lookup { row_size, input: input.place, indices: indices.place, output: place });
+    Ok(Value::Computed(output))
 }
 
 /// Rejects an axis whose elements are not adjacent.
@@ -59,6 +132,34 @@ fn check_is_last(node: &Node, shape: &[usize], axis: usize) -> Result<(), Networ
         return Ok(());
     }
     Err(node.wrong(format!("axis {axis} of {}", shape_text(shape)), "the last axis"))
+}
+
+impl Reduction {
+    pub(super) fn apply(self, row_size: usize, input: &[f32], output: &mut [f32]) {
+        for (to, row) in output.iter_mut().zip(input.chunks_exact(row_size)) {
+            *to = self.of(row);
+        }
+    }
+
+    /// Numbers are added one by one, in order.
+    fn of(self, row: &[f32]) -> f32 {
+        let sum = |of: fn(f32) -> f32| row.iter().fold(0.0, |sum, x| sum + of(*x));
+        let greatest = || row.iter().fold(f32::NEG_INFINITY, |best, x| if *x > best || x.is_nan() { *x } else { best });
+        match self {
+            Reduction::Sum => sum(|x| x),
+            Reduction::Mean => sum(|x| x) / row.len() as f32,
+            Reduction::Least => {
+                row.iter().fold(f32::INFINITY, |best, x| if *x < best || x.is_nan() { *x } else { best })
+            }
+            Reduction::Greatest => greatest(),
+            Reduction::Length => sum(|x| x * x).sqrt(),
+            // The maximum is subtracted first to prevent overflow.
+            Reduction::LogSumExp => {
+                let greatest = greatest();
+                greatest + ln(row.iter().fold(0.0, |sum, x| sum + exp(x - greatest)))
+            }
+        }
+    }
 }
 
 impl Scale {

@@ -2,8 +2,9 @@
 
 use super::error::shape_text;
 use super::limit::{PARAMETERS_MAX, RANK_MAX, at_most};
-use super::proto::{DOUBLE, EXTERNAL, FLOAT, INT32, INT64, TensorProto, data_type_name};
+use super::proto::{BFLOAT16, BOOL, DOUBLE, EXTERNAL, FLOAT, FLOAT16, INT32, INT64, TensorProto, data_type_name};
 use super::{NetworkError, error};
+use half::f16;
 use std::rc::Rc;
 
 /// Numbers with a shape; the last dimension varies fastest.
@@ -15,7 +16,7 @@ pub(super) struct Tensor {
 }
 
 pub(super) enum Numbers {
-    /// Finite floats.
+    /// Floats, none of them NaN.
     Floats(Vec<f32>),
     Integers(Vec<i64>),
 }
@@ -39,8 +40,16 @@ impl Tensor {
             return Err(NetworkError::tensor(name, "a negative dimension", "dimensions of 0 or more"));
         };
         let count = at_most(&format!("numbers of tensor `{}`", error::shown(name)), product(&shape), PARAMETERS_MAX)?;
+        // Fields hold 16-bit floats and booleans as 32-bit integers.
+        let bits = || listed(proto, &low_halves(&proto.int32_data), u16::from_le_bytes).into_iter();
         let numbers = match proto.data_type {
             FLOAT => Numbers::Floats(listed(proto, &proto.float_data, f32::from_le_bytes)),
+            FLOAT16 => Numbers::Floats(bits().map(|bits| f16::from_bits(bits).to_f32()).collect()),
+            BFLOAT16 => Numbers::Floats(bits().map(|bits| f32::from_bits(u32::from(bits) << 16)).collect()),
+            BOOL => Numbers::Integers(match &proto.raw_data {
+                Some(raw) => raw.iter().map(|byte| i64::from(*byte)).collect(),
+                None => proto.int32_data.iter().map(|number| i64::from(*number)).collect(),
+            }),
             DOUBLE => Numbers::Floats(
                 listed(proto, &proto.double_data, f64::from_le_bytes).into_iter().map(|number| number as f32).collect(),
             ),
@@ -50,23 +59,23 @@ impl Tensor {
             ),
             other => {
                 let found = data_type_name(other.into());
-                return Err(NetworkError::tensor(name, found, "FLOAT, DOUBLE, INT32 or INT64 numbers"));
+                return Err(NetworkError::tensor(
+                    name,
+                    found,
+                    "FLOAT, FLOAT16, BFLOAT16, DOUBLE, INT32, INT64 or BOOL numbers",
+                ));
             }
         };
-        let (found, is_finite) = match &numbers {
-            Numbers::Floats(floats) => (floats.len(), floats.iter().all(|float| float.is_finite())),
-            Numbers::Integers(integers) => (integers.len(), true),
+        let (found, has_nan) = match &numbers {
+            Numbers::Floats(floats) => (floats.len(), floats.iter().any(|float| float.is_nan())),
+            Numbers::Integers(integers) => (integers.len(), false),
         };
         if found != count || !whole(proto) {
             let found = format!("{found} numbers");
             return Err(NetworkError::tensor(name, found, format!("{count} for {}", shape_text(&shape))));
         }
-        if !is_finite {
-            return Err(NetworkError::tensor(
-                name,
-                "a number that is NaN or infinite in single precision",
-                "finite numbers",
-            ));
+        if has_nan {
+            return Err(NetworkError::tensor(name, "NaN", "numbers"));
         }
         Ok(Tensor::new(shape, numbers))
     }
@@ -98,8 +107,17 @@ fn listed<T: Copy, const SIZE: usize>(proto: &TensorProto, field: &[T], read: fn
     }
 }
 
+fn low_halves(integers: &[i32]) -> Vec<u16> {
+    integers.iter().map(|integer| *integer as u16).collect()
+}
+
 /// Whether the raw data divides into whole elements.
 fn whole(proto: &TensorProto) -> bool {
-    let size = if matches!(proto.data_type, DOUBLE | INT64) { 8 } else { 4 };
+    let size = match proto.data_type {
+        BOOL => 1,
+        FLOAT16 | BFLOAT16 => 2,
+        DOUBLE | INT64 => 8,
+        _ => 4,
+    };
     proto.raw_data.as_ref().is_none_or(|raw| raw.len() % size == 0)
 }

@@ -1,6 +1,6 @@
 //! Built-in scenario files, used in place of files missing on disk.
 
-use std::path::Path;
+use std::path::{Component, Path};
 use std::sync::OnceLock;
 
 /// Returns the content of a built-in file by folder and name, as in `seas/gale.toml`.
@@ -15,10 +15,21 @@ pub fn set_built_in(files: BuiltIn) {
 }
 
 /// The built-in replacement for a missing file in a folder of `scenarios`, such as
-/// `scenarios/seas/gale.toml`.
+/// `scenarios/seas/gale.toml`, however the path is written.
 #[must_use]
 pub fn built_in(path: &Path) -> Option<&'static [u8]> {
-    let mut parts = path.components().rev().map(|part| part.as_os_str().to_str());
-    let [name, folder, root] = [parts.next()??, parts.next()??, parts.next()??];
-    if root == "scenarios" { BUILT_IN.get()?(&format!("{folder}/{name}")) } else { None }
+    // A path typed within `scenarios` lacks its name.
+    let whole = std::path::absolute(path).ok()?;
+    let mut parts = vec![];
+    for component in whole.components() {
+        match component {
+            Component::Normal(part) => parts.push(part.to_str()?),
+            Component::ParentDir => _ = parts.pop(),
+            _ => {}
+        }
+    }
+    match parts[..] {
+        [.., "scenarios", folder, name] => BUILT_IN.get()?(&format!("{folder}/{name}")),
+        _ => None,
+    }
 }

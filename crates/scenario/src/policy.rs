@@ -279,7 +279,8 @@ fn check_input(network: &Network, observation: ObservationSpace) -> Result<(), P
 }
 
 /// The index of the output with the action: the only one of the right size, or else the only one
-/// for an action index. The number of options is the output's size.
+/// for an action index, which is an integer if a value is beside it. The number of options is the
+/// output's size.
 fn output_of(network: &Network, action: ActionSpace) -> Result<usize, PolicyError> {
     let of_size = |size: usize| -> Vec<usize> {
         let outputs = network.outputs().iter().enumerate();
@@ -295,7 +296,10 @@ fn output_of(network: &Network, action: ActionSpace) -> Result<usize, PolicyErro
     }
     let numbers = action.outputs();
     let whole = of_size(numbers);
-    let index = if action.count().is_some() && whole.is_empty() { of_size(1) } else { vec![] };
+    let mut index = if action.count().is_some() && whole.is_empty() { of_size(1) } else { vec![] };
+    if index.len() > 1 {
+        index.retain(|i| network.outputs()[*i].is_integer);
+    }
     match (whole.as_slice(), index.as_slice()) {
         ([output], _) | ([], [output]) => Ok(*output),
         _ => {

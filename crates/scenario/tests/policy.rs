@@ -107,13 +107,16 @@ fn of_several_outputs_the_one_that_fits_makes_the_action() {
 /// entirely third-party.
 #[test]
 fn a_model_of_another_trainer_loads() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../onnx/tests/network/sb3_dynamo.onnx");
-    let bytes = std::fs::read(path).expect("the model");
     let said = PartialSpec {
         observation: Some(ObservationSpace::Pyquaticus),
         action: Some(ActionSpace::Pyquaticus),
         period_s: Some(0.1),
     };
-    let model = PolicyModel::read("sb3.onnx", &bytes, said).unwrap_or_else(|error| panic!("{error}"));
-    assert_eq!((model.input_size(), model.output()), (ObservationSpace::Pyquaticus.size(1, 2), 0));
+    // The whole policy has a value and a probability beside the action.
+    for name in ["sb3_dynamo.onnx", "sb3_full.onnx"] {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../onnx/tests/network").join(name);
+        let bytes = std::fs::read(path).expect("the model");
+        let model = PolicyModel::read(name, &bytes, said).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!((model.input_size(), model.output()), (ObservationSpace::Pyquaticus.size(1, 2), 0));
+    }
 }

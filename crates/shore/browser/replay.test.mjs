@@ -145,8 +145,8 @@ test('a recomputed helm agrees with the recording', async (t) => {
     assert(functions.length > 0 && functions.every((each) => each.utilities.length === collective.length));
     modes.add(mode);
     await sight.until('the page says so', () => /matches the recorded order/.test(document.getElementById('helm-reason').textContent));
-    const facts = await sight.text('#boat-facts');
-    assert(facts.includes('Mode'), facts);
+    const facts = await sight.text('#boat-summary');
+    assert(facts.includes(mode.replaceAll('_', ' ').replaceAll(':', ' › ')) && /m\/s · \d{3}°$/.test(facts), facts);
     // The chosen decision has a high utility, and the disc is not bare.
     const painted = await sight.get(() => {
       const { width, height } = document.getElementById('rose');
@@ -173,6 +173,12 @@ test('a game that is over becomes its replay', async (t) => {
   assert(Math.abs((await sight.get(() => squall.player.to_s)) - 200) < 1e-6);
   await scrub(sight, 200);
   const score = await sight.get(() => squall.score);
+  const won = score[0] === score[1] ? 'A draw.' : score[0] > score[1] ? 'Blue wins.' : 'Red wins.';
+  await sight.until('the result is shown', (text) => document.getElementById('over').textContent === text,
+    `pav01 ${score[0]} : ${score[1]} pav01. ${won}`);
+  await sight.press('#watch');
+  await sight.until('it plays from the start', () => squall.player.playing && squall.t_s < 60 && document.getElementById('over').hidden);
+  await sight.press('#pause');
   const grab = await sight.get(() => squall.events.find((each) => each.event === 'grabbed').at_s);
   await scrub(sight, grab + JUST_AFTER_S);
   assert(await sight.get(() => squall.flags.some((flag) => flag.carrier !== null)));

@@ -48,8 +48,7 @@ export class Capture {
     context.font = `600 ${15 * ratio}px system-ui, sans-serif`;
     context.textBaseline = 'middle';
     context.fillStyle = palette.ink;
-    const score = game.chart.teams.map(({ name }, team) => `${plain(name)} ${game.score[team] ?? '–'}`).join('   ');
-    context.fillText(`${plain(game.hello?.game ?? '')}   ${score}   ${clock(game.t_s)}`, 12 * ratio, head / 2);
+    context.fillText(`${game.scoreWords}   ${clock(game.t_s)}   ${plain(game.chart.name ?? '')}`, 12 * ratio, head / 2);
   }
 
   png() {

@@ -11,6 +11,25 @@ const UNSEEN = 'No utilities yet for this decision. Step once to compute them.';
 /** Whether a report has functions without their utilities. */
 export const isBare = (report) => report?.functions?.length > 0 && !report.functions.some((each) => each.utilities?.length > 0);
 
+const KEY = 'squall.rose';
+
+/** Whether the rose is unfolded. */
+function remembered() {
+  try {
+    return localStorage.getItem(KEY) !== 'false';
+  } catch {
+    return true;
+  }
+}
+
+function remember(open) {
+  try {
+    localStorage.setItem(KEY, String(open));
+  } catch {
+    // Not stored: it lasts as long as the page.
+  }
+}
+
 export class Details {
   /** `on` has `follow()`, `drive()` and `close()`, and what `Operate` needs. */
   constructor(on) {
@@ -31,6 +50,8 @@ export class Details {
     this.close = this.button('deselect', '×', 'Deselect the boat (Escape)', on.close);
     this.close.setAttribute('aria-label', 'Close');
     this.matter = make('p', 'trouble');
+    this.summary = make('p', 'boat-summary');
+    this.summary.id = 'boat-summary';
     const head = make('div', 'boat-head', '', make('div', 'boat-name', '', this.name, this.about, this.matter), this.follow, this.drive, this.close);
     this.steeringNote = make('p', 'note');
     this.facts = make('dl', 'facts');
@@ -44,7 +65,8 @@ export class Details {
     this.chooser.setAttribute('aria-label', 'Objective function');
     this.reason = make('p', 'faint');
     this.reason.id = 'helm-reason';
-    this.key = make('p', 'rose-key faint', 'Angle: course. Distance: speed. Bright: high utility. Ring: chosen. Diamond: the boat now.');
+    this.key = make('p', 'rose-key faint', '', make('span', '', 'Angle: course. Distance: speed. Ring: chosen. Diamond: the boat now.'),
+      make('span', 'heat-scale', '', make('span', '', 'utility 0'), make('span', 'heat'), make('span', '', '100')));
     this.behaviours = make('div', 'behaviours');
     this.behaviours.id = 'behaviours';
     this.policy = make('dl', 'facts');
@@ -55,10 +77,12 @@ export class Details {
     this.policyBox = make('div', '', '', make('h3', '', 'Policy'), this.policy, this.observedBox);
     this.variables = make('dl', 'facts');
     this.variables.id = 'variables';
-    // The rose comes first: people look for it most, and it must be visible as a whole.
-    this.picture = make('div', 'helm-picture', '', this.chooser, this.canvas, this.key);
+    // The facts fit on one line, so that the rose below is visible as a whole.
+    this.picture = make('details', 'helm-picture', '', make('summary', '', 'Helm'), make('div', 'helm-rose', '', this.chooser, this.canvas, this.key));
+    this.picture.open = remembered();
+    this.picture.addEventListener('toggle', () => remember(this.picture.open));
     this.helmBox = make('div', '', '', this.policyBox, this.behaviourHead = make('h3', '', 'Behaviours'), this.behaviours, this.variableHead = make('h3', '', 'Variables'), this.variables);
-    this.body = make('div', 'boat', '', head, this.steeringNote, this.operate.element, this.picture, this.reason, this.facts,
+    this.body = make('div', 'boat', '', head, this.summary, this.steeringNote, this.operate.element, this.picture, this.reason, this.facts,
       make('h3', '', 'Thrust'), this.thrust, this.helmBox);
     this.pane.replaceChildren(this.none, this.body);
     this.operate.bind();
@@ -116,18 +140,20 @@ export class Details {
     const report = game.helm?.report;
     const error = game.estimateError();
     const flag = game.chart.field.flags?.[game.carrying[index]];
+    const carries = flag ? `carries the ${plain(game.chart.teams[flag.team]?.name ?? '')} flag` : '';
+    const mode = report?.mode ? plain(report.mode).replaceAll(':', ' › ') : '';
+    const motion = [number(game.speed[index], 1, 'm/s'), bearing((game.course[index] * 180) / Math.PI)];
+    write(this.summary, [mode, carries, ...motion].filter(Boolean).join(' · '));
     const facts = [
       ['Heading', bearing((game.toH[index] * 180) / Math.PI)],
       ['Over ground', `${bearing((game.course[index] * 180) / Math.PI)} at ${number(game.speed[index], 2, 'm/s')}`],
     ];
-    if (flag) facts.push(['Carries', `the ${plain(game.chart.teams[flag.team]?.name ?? '')} flag`]);
     if (game.estimate) {
       const fix_age_s = game.estimate.fix_age_s;
       const fix = Number.isFinite(fix_age_s) ? `; fix ${number(fix_age_s, 1, 's')} old` : '';
       facts.push(['Navigation error', error === null ? `–${fix}` : `${number(error, 2, 'm')}${fix}`]);
     }
     if (report) {
-      facts.push(['Mode', plain(report.mode || '–').replaceAll(':', ' › ')]);
       facts.push(['Decision', report.hold ? `hold: ${report.hold}` : `${bearing(report.course_deg)} at ${number(report.speed_m_s, 2, 'm/s')}`]);
     }
     this.tellPairs(this.facts, facts);

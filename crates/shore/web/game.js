@@ -2,6 +2,7 @@
 
 import { readerOf } from './cdr.js';
 import { Trails } from './trail.js';
+import { plain } from './words.js';
 
 /** Marks of a boat, as bit flags. */
 export const TAGGED = 1;
@@ -242,6 +243,21 @@ export class Game {
     // The time line of a replay needs all of them, and gets them only once.
     if (this.mode === 'live' && this.events.length > EVENTS_MAX) this.events.splice(0, this.events.length - EVENTS_MAX);
     this.eventVersion += 1;
+  }
+
+  /** Who plays for a team: its strategies, or the team's name if it has none. */
+  playersOf(team) {
+    const strategies = this.vehicles.filter((vehicle) => vehicle.team === team && !vehicle.external).map(({ strategy }) => strategy);
+    const different = [...new Set(strategies.filter(Boolean))];
+    return different.length > 0 ? different.map(plain).join(' + ') : plain(this.chart.teams[team]?.name ?? '');
+  }
+
+  /** `learned 3 : 3 strategy 3` */
+  get scoreWords() {
+    const teams = this.chart.teams.map((_, team) => [this.playersOf(team), this.score[team] ?? '–']);
+    if (teams.length !== 2) return teams.map(([name, points]) => `${name} ${points}`).join(', ');
+    const [[home, own], [other, theirs]] = teams;
+    return `${home} ${own} : ${theirs} ${other}`;
   }
 
   /** The boat that carries the flag, or -1. */

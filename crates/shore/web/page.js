@@ -26,7 +26,7 @@
 // fence, fence-toml, fence-part, fence-<action>,
 // deselect, steering, pause, step, step-back, speed, halt, halt-confirm, halt-cancel, estop, estop-confirm, estop-cancel, stop,
 // stop-confirm, stop-cancel, timeline, event-kind, event-back, event-next, event-filter, tab-boats, tab-boat, tab-events, tab-game,
-// zoom-in, zoom-out, fit, show-names, show-trails, show-circles, show-waves, show-legend, dark, measure, measured, place, help, help-
+// watch, zoom-in, zoom-out, fit, show-names, show-trails, show-circles, show-waves, show-legend, dark, measure, measured, place, help, help-
 // box, sheet.
 
 import { addressOfReport, gameOfReport, name as nameMoment, wanted } from './address.js';
@@ -92,7 +92,7 @@ class Page {
     this.legend = new Legend();
     this.measure = new Measure({ changed: () => { this.drawnBoats = ''; } });
     this.fenceEditor = new FenceEditor({ changed: () => { this.drawnBoats = ''; } });
-    this.status = new Status();
+    this.status = new Status(() => this.timeline.watch());
     this.controls = new Controls(send);
     this.drive = new Drive(send);
     this.timeline = new Timeline(send);

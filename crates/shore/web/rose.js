@@ -99,7 +99,8 @@ export class Rose {
     context.fillStyle = palette.faint;
     context.textAlign = 'left';
     const at = radius * Math.SQRT1_2;
-    if (speedMax > 0) context.fillText(number(speedMax, 1), middle + at + 3, middle + at + 7);
+    // A small rose has no space for the unit.
+    if (speedMax > 0) context.fillText(number(speedMax, 1, radius > 80 ? 'm/s' : ''), middle + at + 3, middle + at + 7);
   }
 
   /** The chosen course and speed as a ring with a point, those of the boat as a small diamond. */

@@ -10,7 +10,9 @@ const byId = (id) => document.getElementById(id);
 const idOf = (name) => String(name).replace(/[^\w-]/g, '_');
 
 export class Status {
-  constructor() {
+  /** `watch()` plays the replay from its start. */
+  constructor(watch) {
+    byId('watch').addEventListener('click', watch);
     this.score = byId('score');
     this.pane = byId('pane-game');
     this.facts = make('dl', 'facts');
@@ -23,12 +25,12 @@ export class Status {
 
   greet(game) {
     const { chart, hello } = game;
-    write(byId('game-name'), plain(hello.game || chart.name || 'Squall'));
-    document.title = `${plain(hello.game || chart.name || '')} – Squall`;
+    write(byId('game-name'), plain(chart.name || hello.game || 'Squall'));
     this.values = chart.teams.map((team, index) => {
       const value = make('span', 'value', '–');
       value.id = `score-${idOf(team.name)}`;
-      const box = make('div', `team team-${index}`, '', make('span', 'swatch'), make('span', 'name', plain(team.name)), value);
+      const box = make('div', `team team-${index}`, '', make('span', 'swatch'), make('span', 'name', game.playersOf(index)), value);
+      box.title = `Team ${plain(team.name)}`;
       return { box, value };
     });
     this.score.replaceChildren(...this.values.map(({ box }) => box));
@@ -38,6 +40,8 @@ export class Status {
   /** Score and clock, which change with every frame. */
   tellFrame(game) {
     this.values?.forEach(({ value }, team) => write(value, String(game.score[team] ?? '–')));
+    const title = `${game.scoreWords} – Squall`;
+    if (document.title !== title) document.title = title;
     const duration = game.chart.duration_s;
     write(byId('clock'), Number.isFinite(game.t_s) ? clock(game.t_s) : '–');
     write(byId('rate'), this.rateWords(game, duration));
@@ -76,9 +80,12 @@ export class Status {
     if (state?.minds && state.phase === 'waiting') waited.unshift(...this.agentWords(state.minds));
     if (state?.phase === 'waiting') words = waited.length > 0 ? `Waiting for ${waited.join(', ')}` : 'Waiting to start';
     if (state?.phase === 'gone') words = 'Lost the game. Waiting for another.';
+    const ended = isAtItsEnd(game);
+    if (ended) words = `${game.scoreWords}. ${resultWords(game)}`;
     const over = byId('over');
     write(over, words);
     show(over, words !== '');
+    show(byId('watch'), ended && game.mode === 'replay');
   }
 
   agentWords(minds) {
@@ -88,7 +95,7 @@ export class Status {
 
   tellPane(game) {
     const { chart, hello, state, player } = game;
-    const pairs = [['Field', plain(chart.field?.name ?? '–')], ['Rules', plain(chart.rules ?? '–')], ['Sea', plain(chart.sea ?? '–')],
+    const pairs = [['Game', plain(hello?.game || chart.name || '–')], ['Field', plain(chart.field?.name ?? '–')], ['Rules', plain(chart.rules ?? '–')], ['Sea', plain(chart.sea ?? '–')],
       ['Seed', String(chart.seed ?? '–')], ['Boats', String(game.count)], ['Decision period', number(chart.decision_s, 2, 's')]];
     if (state) pairs.push(...this.stateFacts(state));
     if (player) {
@@ -132,6 +139,18 @@ export class Status {
       write(row.lastElementChild, value);
     });
   }
+}
+
+/** Whether the game, or its replay, stands at its end. */
+function isAtItsEnd({ mode, state, player, t_s }) {
+  if (mode !== 'replay') return state?.phase === 'over';
+  return Boolean(player) && !player.playing && t_s >= player.to_s - 1e-6 && player.to_s > player.from_s;
+}
+
+function resultWords(game) {
+  const best = Math.max(...game.score);
+  const winners = game.chart.teams.filter((_, team) => game.score[team] === best);
+  return winners.length === 1 ? `${plain(winners[0].name).replace(/^./, (letter) => letter.toUpperCase())} wins.` : 'A draw.';
 }
 
 /** How long a notice is shown, ms. */

@@ -126,6 +126,12 @@ export class Timeline {
     else this.timer = setTimeout(() => this.sendSeek(), wait_ms);
   }
 
+  /** Plays the replay from its start. */
+  watch() {
+    this.seek(this.from_s);
+    this.send({ do: 'control', what: 'resume' });
+  }
+
   sendSeek() {
     this.timer = 0;
     this.sent_ms = performance.now();

@@ -22,8 +22,8 @@ const AGAINST = [
   ['Left the field', 'times per game', ({ left_field }) => left_field],
 ];
 /** Curves of updates: title, unit, column. */
-const OF_UPDATES = [['Reward', 'per step', 'reward'], ['Policy entropy', 'nats', 'entropy'], ['Policy loss', '', 'policy_loss'],
-  ['Value loss', '', 'value_loss'], ['Divergence from the previous policy', 'nats', 'divergence']];
+const OF_UPDATES = [['Reward', 'per step', 'reward'], ['Entropy', 'nats', 'entropy'], ['Policy loss', '', 'policy_loss'],
+  ['Value loss', '', 'value_loss'], ['KL divergence', 'nats', 'divergence']];
 
 const isNumber = (value) => typeof value === 'number' && Number.isFinite(value);
 

@@ -21,16 +21,20 @@ impl Orders {
     /// If the columns are missing or ambiguous, the boat does not accept them, or a number is out
     /// of its range.
     pub fn of_sheet(sheet: &Sheet, engine: &Engine) -> Result<Orders, Mistake> {
-        let times_s = sheet.times(LONGEST_S)?;
+        Orders::at_times(sheet, &sheet.times(LONGEST_S)?, engine)
+    }
+
+    /// Like [`Orders::of_sheet`], with the times of the rows.
+    pub(crate) fn at_times(sheet: &Sheet, times_s: &[f64], engine: &Engine) -> Result<Orders, Mistake> {
         let (pair, columns) = pair_of(sheet)?;
         let ranges = engine
             .ranges(pair)
             .map_err(|lack| sheet.mistake(Some(1), format!("columns {}: {lack}", pair.columns().join(","))))?;
         let mut steps = Vec::with_capacity(times_s.len());
-        for (row, t_s) in times_s.into_iter().enumerate() {
+        for (row, t_s) in times_s.iter().enumerate() {
             let a = sheet.number(row, columns[0], ranges[0])?;
             let b = sheet.number(row, columns[1], ranges[1])?;
-            steps.push((SimTime::from_s(t_s), engine.command(pair, [a, b])));
+            steps.push((SimTime::from_s(*t_s), engine.command(pair, [a, b])));
         }
         Ok(Orders { steps })
     }

@@ -1,4 +1,7 @@
-//! A CSV file from users: a line of names, then numbers. Errors give file, line and column.
+//! A table from users: a line of names, then numbers. Errors give file, line and column.
+//!
+//! Reads what loggers and spreadsheets write: columns separated by commas, semicolons or tabs,
+//! decimal commas, UTF-16, a line of units, and a last line that a power loss cut off.
 
 use std::io::Read;
 use thiserror::Error;
@@ -17,7 +20,13 @@ pub struct Sheet {
     /// Normalised names: lower case, with `_` between words.
     heads: Vec<String>,
     rows: Vec<(u64, csv::StringRecord)>,
+    /// Whether numbers have decimal commas: only where commas do not separate columns.
+    decimal_commas: bool,
+    notes: Vec<Mistake>,
 }
+
+/// How cells without a value are spelt, in lower case.
+const MISSING: [&str; 6] = ["", "nan", "na", "n/a", "null", "none"];
 
 /// A fault of a file.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -35,7 +44,7 @@ impl Sheet {
     /// Reads a file whose name in messages is `file`.
     ///
     /// # Errors
-    /// If it is not CSV, has no rows, or has two columns with the same name.
+    /// If it is no table, has no rows, or has two columns with the same name.
     pub fn read(file: &str, input: impl Read) -> Result<Sheet, Mistake> {
         let mut bytes = vec![];
         let whole = |message| Mistake { file: file.to_owned(), line: None, message };
@@ -43,6 +52,9 @@ impl Sheet {
         if length.map_err(|error| whole(format!("cannot be read: {error}")))? as u64 > BYTES_MAX {
             return Err(whole(format!("longer than {BYTES_MAX} bytes")));
         }
+        let mut bytes = utf_8(bytes).map_err(&whole)?;
+        // A logger that loses its power cuts its last line off.
+        let is_cut = !bytes.ends_with(b"\n");
         // The reader turns a final comment into a row unless its line ends.
         bytes.push(b'\n');
         let wrong = |error: csv::Error| Mistake {
@@ -50,25 +62,38 @@ impl Sheet {
             line: error.position().map(|position| line_of(&bytes, position)),
             message: reason(&error),
         };
+        let separator = separator(&bytes);
         let mut reader = csv::ReaderBuilder::new();
-        let reader = reader.comment(Some(b'#')).trim(csv::Trim::All).flexible(true);
+        let reader = reader.comment(Some(b'#')).trim(csv::Trim::All).flexible(true).delimiter(separator);
         let mut reader = reader.from_reader(&bytes[..]);
         let heads: Vec<String> = reader.headers().map_err(wrong)?.iter().map(plain_head).collect();
-        let mut sheet = Sheet { file: file.to_owned(), heads, rows: vec![] };
+        let decimal_commas = separator != b',';
+        let mut sheet = Sheet { file: file.to_owned(), heads, rows: vec![], decimal_commas, notes: vec![] };
         for (i, head) in sheet.heads.iter().enumerate() {
             if !head.is_empty() && sheet.heads[..i].contains(head) {
                 return Err(sheet.mistake(Some(1), format!("two columns {head}, expected one")));
             }
         }
-        for record in reader.records() {
+        let mut is_first = true;
+        let mut records = reader.records().peekable();
+        while let Some(record) = records.next() {
             let record = record.map_err(wrong)?;
             let line = record.position().map_or(0, |position| line_of(&bytes, position));
             if record.len() == 1 && record[0].is_empty() {
                 // A blank line.
                 continue;
             }
+            let is_units = std::mem::take(&mut is_first) && sheet.are_units(&record, line)?;
+            if is_units {
+                continue;
+            }
             if record.len() != sheet.heads.len() {
                 let (found, wanted) = (record.len(), sheet.heads.len());
+                if is_cut && found < wanted && !sheet.rows.is_empty() && records.peek().is_none() {
+                    let note = format!("{found} of {wanted} columns in the last line, which is cut off and ignored");
+                    sheet.notes.push(sheet.mistake(Some(line), note));
+                    break;
+                }
                 let message = format!("{found} columns, expected {wanted} as in the header");
                 return Err(sheet.mistake(Some(line), message));
             }
@@ -101,6 +126,46 @@ impl Sheet {
         self.rows[row].1.get(column).unwrap_or_default()
     }
 
+    /// What was ignored when the file was read.
+    #[must_use]
+    pub fn notes(&self) -> &[Mistake] {
+        &self.notes
+    }
+
+    /// Whether a cell is without a value: empty, NaN, N/A or the like.
+    #[must_use]
+    pub fn is_missing(&self, row: usize, column: usize) -> bool {
+        MISSING.contains(&self.text(row, column).to_lowercase().as_str())
+    }
+
+    /// Whether a row, the first, has the units of the columns. Its cells repeat the ends of their
+    /// names, or are empty.
+    fn are_units(&self, record: &csv::StringRecord, line: u64) -> Result<bool, Mistake> {
+        let is_word = |cell: &str| self.parse(cell).is_none() && !MISSING.contains(&cell.to_lowercase().as_str());
+        if !record.iter().any(is_word) || !record.iter().all(|cell| cell.is_empty() || is_word(cell)) {
+            return Ok(false);
+        }
+        for (head, unit) in self.heads.iter().zip(record) {
+            // As the end of a name, so that `N` is `newton` and `deg/s` is `deg_s`.
+            let of_port = plain_head(&format!("port {unit}"));
+            let end = of_port.strip_prefix("port").unwrap_or(&of_port);
+            if !unit.is_empty() && head.contains('_') && !head.ends_with(end) {
+                let message = format!("{head} has the unit {unit}, expected that of its name");
+                return Err(self.mistake(Some(line), message));
+            }
+        }
+        Ok(true)
+    }
+
+    fn parse(&self, text: &str) -> Option<f64> {
+        match text.split_once(',') {
+            Some((whole, decimals)) if self.decimal_commas && !decimals.contains([',', '.']) => {
+                format!("{whole}.{decimals}").parse().ok()
+            }
+            _ => text.parse().ok(),
+        }
+    }
+
     /// The number in a row and column, within `low` to `high`.
     ///
     /// # Errors
@@ -110,8 +175,8 @@ impl Sheet {
         let found = if text.is_empty() { "empty".to_owned() } else { text.to_owned() };
         // A setting computed as full ahead may exceed it by a rounding error.
         let slack = 1e-9 * low.abs().max(high.abs());
-        match text.parse::<f64>() {
-            Ok(number) if (low - slack..=high + slack).contains(&number) => Ok(number.clamp(low, high)),
+        match self.parse(text) {
+            Some(number) if (low - slack..=high + slack).contains(&number) => Ok(number.clamp(low, high)),
             _ => {
                 let expected = format!("expected {} to {}", short(low), short(high));
                 Err(self.row_mistake(row, format!("{} is {found}, {expected}", self.heads[column])))
@@ -131,21 +196,37 @@ impl Sheet {
         Mistake { file: self.file.clone(), line, message }
     }
 
-    /// The times in column `t_s`, strictly increasing.
+    /// The times in column `t_s`, strictly increasing, from 0 to `high_s`.
     ///
     /// # Errors
     /// If they are not.
     pub fn times(&self, high_s: f64) -> Result<Vec<f64>, Mistake> {
+        self.times_from(high_s, |_| 0.0)
+    }
+
+    /// Like [`Sheet::times`], counted from the first row, whose time may be that of any clock.
+    ///
+    /// # Errors
+    /// If they are not strictly increasing, or span more than `high_s`.
+    pub fn times_from_first(&self, high_s: f64) -> Result<Vec<f64>, Mistake> {
+        self.times_from(high_s, |first_s| first_s)
+    }
+
+    fn times_from(&self, high_s: f64, start: fn(f64) -> f64) -> Result<Vec<f64>, Mistake> {
         let missing = || self.mistake(Some(1), format!("no column t_s among {}", self.heads.join(", ")));
         let column = self.column("t_s").ok_or_else(missing)?;
+        let first_s = self.rows.first().and_then(|_| self.parse(self.text(0, column))).filter(|t_s| t_s.is_finite());
+        let start_s = first_s.map_or(0.0, start);
         let mut times_s: Vec<f64> = Vec::with_capacity(self.rows.len());
         for row in 0..self.rows.len() {
-            let t_s = self.number(row, column, (0.0, high_s))?;
-            if let Some(before_s) = times_s.last().filter(|before_s| t_s <= **before_s) {
+            let t_s = self.number(row, column, (start_s, start_s + high_s))?;
+            let since_s = t_s - start_s;
+            if let Some(before_s) = times_s.last().filter(|before_s| since_s <= **before_s) {
+                let before_s = before_s + start_s;
                 let message = format!("t_s is {t_s}, expected more than {before_s}, its value in the row before");
                 return Err(self.row_mistake(row, message));
             }
-            times_s.push(t_s);
+            times_s.push(since_s);
         }
         Ok(times_s)
     }
@@ -157,6 +238,30 @@ fn line_of(bytes: &[u8], position: &csv::Position) -> u64 {
     let rest = bytes.get(position.byte() as usize..).unwrap_or_default();
     let lines = rest.split(|byte| *byte == b'\n').map(|line| line.strip_suffix(b"\r").unwrap_or(line));
     position.line() + lines.take_while(|line| line.is_empty() || line.starts_with(b"#")).count() as u64
+}
+
+/// The text of a file in UTF-8, without its byte order mark: Excel writes UTF-16 as "Unicode
+/// text".
+fn utf_8(bytes: Vec<u8>) -> Result<Vec<u8>, String> {
+    let order: fn([u8; 2]) -> u16 = match bytes.get(..2) {
+        Some(b"\xff\xfe") => u16::from_le_bytes,
+        Some(b"\xfe\xff") => u16::from_be_bytes,
+        _ => return Ok(bytes),
+    };
+    let (units, rest) = bytes[2..].as_chunks();
+    let text = char::decode_utf16(units.iter().map(|unit| order(*unit))).collect::<Result<String, _>>();
+    match text {
+        Ok(text) if rest.is_empty() => Ok(text.into_bytes()),
+        _ => Err("damaged UTF-16 text, expected UTF-8".to_owned()),
+    }
+}
+
+/// What separates the columns: a semicolon or a tab if the first line has one, else commas.
+fn separator(bytes: &[u8]) -> u8 {
+    let mut lines = bytes.split(|byte| *byte == b'\n');
+    let header = lines.find(|line| !line.trim_ascii().is_empty() && !line.starts_with(b"#")).unwrap_or_default();
+    let others = [b';', b'\t'].into_iter().find(|separator| header.trim_ascii().contains(separator));
+    others.unwrap_or(b',')
 }
 
 /// A normalised column name: `Port (rad/s)` is `port_rad_s`.
@@ -221,7 +326,10 @@ mod tests {
             ("t_s,t_s\n0,1\n", "in.csv:1: two columns t_s"),
             ("t_s,a\n0,1\n1\n", "in.csv:3: 1 columns, expected 2"),
             ("t_s,a\n0,1\n \n1,2,3\n", "in.csv:4: 3 columns, expected 2"),
-            ("t_s,a\n0,1\n # no remark", "in.csv:3: 1 columns, expected 2"),
+            ("t_s,a\n0,1\n # no remark\n", "in.csv:3: 1 columns, expected 2"),
+            ("t_s,a\n0", "in.csv:2: 1 columns, expected 2"),
+            ("t_s;a\n0,0;1\n0,5,5;1\n", "in.csv:3: t_s is 0,5,5, expected 0 to 100"),
+            ("t_s,speed_m_s\ns,kn\n0,1\n", "in.csv:2: speed_m_s has the unit kn, expected that of its name"),
             ("x,a\n0,1\n", "in.csv:1: no column t_s among x, a"),
             ("t_s,a\n0,1\nnan,1\n", "in.csv:3: t_s is nan, expected 0 to 100"),
             ("t_s,a\n0,1\n-1,1\n", "in.csv:3: t_s is -1, expected 0 to 100"),
@@ -247,6 +355,38 @@ mod tests {
             let times_s = sheet(text).and_then(|sheet| sheet.times(100.0));
             assert_eq!(times_s, Ok(vec![0.0, 2.0]), "{text:?}");
         }
+    }
+
+    /// Each as some logger or spreadsheet writes it.
+    #[test]
+    fn tables_of_other_programs_are_read() {
+        let utf_16: Vec<u8> =
+            "\u{feff}t_s\ta\r\n0\t1\r\n1,5\t3\r\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
+        for bytes in [
+            &b"t_s;a\n0,0;1,0\n1,5;3,0\n"[..],
+            b"t_s;a\n0.0;1.0\n1.5;3.0\n",
+            b"t_s\ta\n0\t1\n1.5\t3\n",
+            b"t_s,a\ns,\n0,1\n1.5,3\n",
+            b"# a comment; with a semicolon\nt_s,a\n0,1\n1.5,3\n",
+            b"t_s,a\n0,1\n1.5,3\n1",
+            &utf_16,
+        ] {
+            let sheet = Sheet::read("in.csv", bytes).unwrap_or_else(|error| panic!("{error}"));
+            assert_eq!(sheet.times(100.0), Ok(vec![0.0, 1.5]), "{}", String::from_utf8_lossy(bytes));
+            assert_eq!(sheet.number(1, 1, (0.0, 9.0)), Ok(3.0));
+        }
+        let cut = sheet("t_s,a\n0,1\n1.5").expect("the rest is good");
+        let notes: Vec<String> = cut.notes().iter().map(ToString::to_string).collect();
+        assert_eq!(notes, ["in.csv:3: 1 of 2 columns in the last line, which is cut off and ignored"]);
+    }
+
+    #[test]
+    fn times_of_a_clock_count_from_the_first_row() {
+        let sheet = sheet("t_s,a\n1718000000.0,1\n1718000000.5,n/a\n").expect("a table");
+        assert_eq!(sheet.times_from_first(100.0), Ok(vec![0.0, 0.5]));
+        assert!(sheet.is_missing(1, 1) && !sheet.is_missing(0, 1));
+        let error = sheet.times(100.0).expect_err("no time of a trial").to_string();
+        assert!(error.contains("t_s is 1718000000.0, expected 0 to 100"), "{error}");
     }
 
     #[test]

@@ -13,7 +13,17 @@ use std::path::PathBuf;
 /// Absolute and relative tolerance against ONNX Runtime, which rounds its sums in another order.
 const ERROR_MAX: f32 = 1e-5;
 
-const MODELS: [&str; 5] = ["operators", "old_operators", "two_inputs", "sb3_torchscript", "sb3_dynamo"];
+const MODELS: [&str; 9] = [
+    "operators",
+    "old_operators",
+    "two_inputs",
+    "sb3_torchscript",
+    "sb3_dynamo",
+    "activations",
+    "normalisations",
+    "wide_numbers",
+    "sb3_full",
+];
 
 #[derive(Deserialize)]
 struct Case {

@@ -6,6 +6,7 @@
 
 `sb3_torchscript.onnx` and `sb3_dynamo.onnx` are the logits of one policy: PPO of Stable-Baselines3 2.9.2 with layers of 48, from
 both exporters of PyTorch 2.15 (`dynamo=False`; `dynamo=True, external_data=False`), without their notes about source lines.
+`sb3_full.onnx` is a whole policy of PPO as Stable-Baselines3 describes its export: action, value and log probability.
 """
 
 import json
@@ -141,6 +142,100 @@ def two_inputs():
     graph.write("two_inputs", [("own", ["batch", 5]), ("boats", ["batch", 3, 4])], 21, 10)
 
 
+def activations():
+    graph = Graph()
+    node, constant = graph.node, graph.constant
+    row = ["batch", 6]
+    for operator in ["Abs", "Celu", "Erf", "Exp", "Gelu", "HardSigmoid", "HardSwish", "Mish", "Selu", "Softplus", "Softsign", "Swish"]:
+        node(operator, ["x"], operator.lower(), row)
+    node("Gelu", ["x"], "gelu_tanh", row, approximate="tanh")
+    node("HardSigmoid", ["x"], "hard_sigmoid_factors", row, alpha=0.3, beta=0.4)
+    node("Celu", ["x"], "celu_alpha", row, alpha=0.4)
+    node("Swish", ["x"], "swish_alpha", row, alpha=1.5)
+    node("PRelu", ["x", constant("slope", normal(6))], "p_relu", row)
+    node("Sqrt", ["abs"], "sqrt", row)
+    node("Log", ["exp"], "log", row)
+    node("Reciprocal", ["exp"], "reciprocal", row)
+    node("Pow", ["abs", constant("exponent", np.float32(1.7).reshape(()))], "pow", row)
+    node("Pow", ["x", constant("two", np.float32(2).reshape(()))], "square", row)
+    node("Max", ["x", constant("floor", normal(6)), "erf"], "max", row)
+    node("Min", ["x", "floor"], "min", row)
+    low, high = constant("low", np.float32(-np.inf).reshape(())), constant("high", np.float32(np.inf).reshape(()))
+    node("Clip", ["x", low, high], "clip", row)
+    graph.write("activations", [("x", row)], 24, 11)
+
+
+def normalisations():
+    """Layers that normalise, reductions, and what exporters write around them."""
+    graph = Graph()
+    node, constant = graph.node, graph.constant
+    row = ["batch", 6]
+    scale, bias = constant("scale", normal(6)), constant("bias", normal(6))
+    node("LayerNormalization", ["x", scale, bias], "layer", row, epsilon=1e-4)
+    node("LayerNormalization", ["x", scale], "layer_no_bias", row)
+    mean, variance = constant("mean", normal(6)), constant("variance", np.abs(normal(6)))
+    node("BatchNormalization", ["x", scale, bias, mean, variance], "batch_norm", row)
+    node("Reshape", ["x", constant("two_rows", integers(0, 2, 3))], "rows")
+    pair = [constant(f"pair_{i}", np.abs(normal(2))) for i in range(4)]
+    node("BatchNormalization", ["rows", *pair], "batch_norm_rows", ["batch", 2, 3])
+    node("LayerNormalization", ["rows", constant("scale_rows", normal(2, 3))], "layer_rows", ["batch", 2, 3], axis=1)
+    node("Dropout", ["x"], "dropout", row)
+    last, middle = constant("last", integers(-1)), constant("middle", integers(1))
+    for operator in ["ReduceMean", "ReduceSum", "ReduceMax", "ReduceMin", "ReduceL2", "ReduceLogSumExp"]:
+        node(operator, ["rows", last], operator.lower(), ["batch", 2, 1])
+        node(operator, ["rows", middle], f"{operator.lower()}_middle", ["batch", 3], keepdims=0)
+    # Layer normalisation as exported before it was an operator, by rows.
+    node("Sub", ["rows", "reducemean"], "centred")
+    node("Mul", ["centred", "centred"], "squares")
+    node("ReduceMean", ["squares", last], "spread")
+    node("Add", ["spread", constant("epsilon", np.float32(1e-5).reshape(()))], "positive")
+    node("Sqrt", ["positive"], "deviation")
+    node("Div", ["centred", "deviation"], "layer_by_hand", ["batch", 2, 3])
+    node("Transpose", ["rows"], "transposed", [3, 2, "batch"])
+    node("Transpose", ["rows"], "transposed_rows", ["batch", 3, 2], perm=[0, 2, 1])
+    node("Transpose", [constant("weights", normal(4, 6))], "weights_t")
+    node("MatMul", ["x", "weights_t"], "linear", ["batch", 4])
+    node("Exp", [constant("factor_log", normal(6, 4))], "factor")
+    node("Mul", ["weights_t", "factor"], "weights_scaled")
+    node("MatMul", ["x", "weights_scaled"], "linear_scaled", ["batch", 4])
+    node("Gather", ["x", constant("columns", integers(4, -6, 4))], "gather", ["batch", 3], axis=1)
+    node("Slice", ["x", constant("from", integers(5)), constant("to", integers(-7)), middle, constant("back", integers(-2))],
+         "slice_back", ["batch", 3])
+    # The most likely action and its logarithm, as Stable-Baselines3 exports them.
+    node("ReduceLogSumExp", ["x", last], "sum")
+    node("Sub", ["x", "sum"], "logs")
+    node("ArgMax", ["logs"], "action", ["batch"], TensorProto.INT64, axis=1, keepdims=0)
+    node("Unsqueeze", ["action", last], "actions")
+    node("GatherElements", ["logs", "actions"], "log_of_action", ["batch", 1], axis=1)
+    # A view of dynamic size.
+    node("Shape", ["x"], "dims")
+    node("Gather", ["dims", constant("first", integers(0).reshape(()))], "rows_count", axis=0)
+    node("Unsqueeze", ["rows_count", constant("front", integers(0))], "rows_counts")
+    node("Concat", ["rows_counts", constant("rest", integers(3, -1))], "view", axis=0)
+    node("Reshape", ["x", "view"], "viewed", ["batch", 3, 2])
+    node("Concat", ["rows_counts", constant("six", integers(6))], "whole", axis=0)
+    node("Expand", [constant("deviation_log", normal(6)), "whole"], "expanded", row)
+    node("ConstantOfShape", ["whole"], "zeros", row)
+    graph.write("normalisations", [("x", row)], 18, 8)
+
+
+def wide_numbers():
+    """Inputs, weights and outputs that are not in single precision."""
+    graph = Graph()
+    node, constant = graph.node, graph.constant
+    # Products in half precision differ between runtimes, so only the weights are.
+    node("Cast", [constant("halves", normal(6, 4).astype(np.float16))], "weights", to=TensorProto.FLOAT)
+    node("MatMul", ["x", "weights"], "half_weights", ["batch", 4])
+    listed = constant("halves_listed", normal(6).astype(np.float16), listed=True)
+    node("Cast", [listed], "listed", to=TensorProto.FLOAT)
+    node("Add", ["x", "listed"], "half_listed", ["batch", 6])
+    node("Cast", ["x"], "double", to=TensorProto.DOUBLE)
+    node("MatMul", ["double", constant("doubles", numbers.standard_normal((6, 4)))], "double_precision", ["batch", 4],
+         TensorProto.DOUBLE)
+    node("Cast", ["x"], "whole", ["batch", 6], TensorProto.INT64, to=TensorProto.INT64)
+    graph.write("wide_numbers", [("x", ["batch", 6])], 17, 8)
+
+
 def run(name):
     """Writes rows of inputs, with the outputs of ONNX Runtime."""
     session = onnxruntime.InferenceSession(HERE / f"{name}.onnx", providers=["CPUExecutionProvider"])
@@ -159,4 +254,10 @@ if __name__ == "__main__":
     old_operators()
     two_inputs()
     for model in ["operators", "old_operators", "two_inputs", "sb3_torchscript", "sb3_dynamo"]:
+        run(model)
+    # The first models keep their numbers when others are added.
+    activations()
+    normalisations()
+    wide_numbers()
+    for model in ["activations", "normalisations", "wide_numbers", "sb3_full"]:
         run(model)

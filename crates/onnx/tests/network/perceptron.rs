@@ -140,7 +140,7 @@ fn what_does_not_fit_together_is_not_written() {
         (|p| _ = p.hidden.remove(1), "node `head.0` (Gemm): found the shape 1 x 20 with 13 x 17 weights"),
         (|p| p.heads.clear(), "the model: found no output, expected at least one"),
         (|p| p.heads[1].name = "logits".to_owned(), "tensor `logits`: found a second definition"),
-        (|p| p.heads[0].layer.weights[3] = f32::NAN, "tensor `head.0.weight`: found a number that is NaN or infinite"),
+        (|p| p.heads[0].layer.weights[3] = f32::NAN, "tensor `head.0.weight`: found NaN, expected numbers"),
         (
             |p| p.normalisation = Some(Normalisation { mean: vec![0.0], scale: vec![1.0] }),
             "tensor `input.mean`: found 1",

@@ -44,8 +44,8 @@ const ROWS_MIN: usize = 20;
 
 impl Log {
     /// Reads a log from a sheet: `t_s`, commands for the thrusters, and at least the trial columns
-    /// `heading_deg`, `surge_m_s` and `yaw_rate_deg_s`. An empty cell or NaN is a missing
-    /// measurement.
+    /// `heading_deg`, `surge_m_s` and `yaw_rate_deg_s`. An empty cell, NaN or N/A is a missing
+    /// measurement. Times count from the first row.
     ///
     /// # Errors
     /// If columns are missing or a cell is not a number.
@@ -53,8 +53,8 @@ impl Log {
         if matches!(boat.drive, Drive::Kinematic(_)) {
             return Err(sheet.mistake(None, format!("{} is kinematic and has no hull to identify", boat.name)));
         }
-        let orders = Orders::of_sheet(sheet, &Engine::new(boat))?;
-        let times_s = sheet.times(LONGEST_S)?;
+        let times_s = sheet.times_from_first(LONGEST_S)?;
+        let orders = Orders::at_times(sheet, &times_s, &Engine::new(boat))?;
         let columns = CHANNELS.map(|(_, head, _)| sheet.column(head));
         for needed in [HEADING, SURGE, YAW_RATE] {
             if columns[needed].is_none() {
@@ -106,8 +106,7 @@ impl Log {
 
 /// A measured value in SI; NaN if missing.
 fn cell(sheet: &Sheet, row: usize, column: usize, unit: Unit) -> Result<f64, Mistake> {
-    let text = sheet.text(row, column);
-    if text.is_empty() || text.eq_ignore_ascii_case("nan") {
+    if sheet.is_missing(row, column) {
         return Ok(f64::NAN);
     }
     let number = sheet.number(row, column, (-1e7, 1e7))?;
