@@ -30,6 +30,15 @@ pub struct Plan {
     pub preflight: Preflight,
 }
 
+impl Plan {
+    /// A boat without a site yet, which is armed by an operator and needs no pre-flight check.
+    #[must_use]
+    pub fn new(vehicle: &str, gateway: Gateway) -> Plan {
+        let (vehicle, preflight) = (vehicle.to_owned(), Preflight::NotRequired);
+        Plan { vehicle, gateway, site: None, arms_itself: false, dry_run: false, preflight }
+    }
+}
+
 /// Whether a boat's pre-flight check allows arming.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

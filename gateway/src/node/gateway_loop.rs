@@ -1,13 +1,13 @@
 //! The gateway loop: passes inputs from the boat, the sim and operators to the core, and its
 //! outputs on.
 
-use super::clock::{Clock, LastRun};
+use super::clock::{Clock, Moment};
 use super::error::NodeError;
-use super::found_game::FoundGame;
+use super::game_finder::FoundGame;
 use super::guard::{Guarded, HEARTBEAT, HUNG};
 use super::join::Join;
 use super::latency::Latency;
-use super::loop_input::{Call, LoopInput, LoopOutput, Stop};
+use super::loop_input::{Call, LoopOutput, Stop};
 use super::node_event::NodeEvent;
 use super::settings::Settings;
 use super::subscriptions::subscribe;
@@ -57,8 +57,6 @@ pub(super) struct GatewayLoop<'a> {
     pub(super) in_game: Option<InGame>,
     pub(super) settings: &'a Settings,
     pub(super) guarded: Option<Guarded>,
-    /// The queue for input from the game.
-    pub(super) back: LoopInput,
     pub(super) recorder: Option<Recorder>,
     pub(super) encoder: StepEncoder,
     pub(super) counters: Counters,
@@ -128,7 +126,7 @@ impl Counters {
 impl GatewayLoop<'_> {
     /// Runs until it is stopped.
     pub(super) fn run(&mut self, stop: &AtomicBool) -> Result<(), NodeError> {
-        let mut beat_at = LastRun::now();
+        let mut beat_at = Moment::now();
         while !stop.load(Ordering::Relaxed) {
             beat_at = self.beat(beat_at)?;
             let stop_count = self.input.stop_count();
@@ -173,11 +171,11 @@ impl GatewayLoop<'_> {
     /// Shows the guard that the loop is running, and reports to the core a pause long enough for
     /// the guard to have stopped the boat. Input from before a suspension of the machine is
     /// discarded.
-    fn beat(&mut self, last: LastRun) -> Result<LastRun, NodeError> {
-        let now = LastRun::now();
+    fn beat(&mut self, last: Moment) -> Result<Moment, NodeError> {
+        let now = Moment::now();
         let (gap, suspended) = last.gap(now);
         if let Some(suspended) = suspended {
-            self.counters.awake_since = now.moment();
+            self.counters.awake_since = now.at;
             self.warn(&format!("this machine was suspended for {:.1} s", suspended.as_secs_f64()));
         }
         if let Some(guarded) = &self.guarded {
@@ -199,11 +197,7 @@ impl GatewayLoop<'_> {
     }
 
     pub(super) fn warn(&mut self, text: &str) {
-        let (at, event) = (self.clock.now(), Event::Warning(text.to_owned()));
-        (self.notify)(NodeEvent::Event { at_s: at.as_s(), event: &event });
-        if let Some(recorder) = &self.recorder {
-            recorder.record(StepEncoder::event(at, Event::Remark(text.to_owned())));
-        }
+        self.log(&Event::Warning(text.to_owned()), text);
     }
 
     /// Handles stops before everything else, then at most one request from the control port and one
@@ -253,7 +247,7 @@ impl GatewayLoop<'_> {
     /// Enters the game that was found.
     fn enter(&mut self, found: FoundGame) -> Result<(), NodeError> {
         let FoundGame { bus, game, info, vehicle, factor, site } = found;
-        let (scenario, name) = (&info.scenario, &self.settings.vehicle);
+        let (scenario, name) = (&info.scenario, &self.settings.plan.vehicle);
         let newest = |key| bus.publisher_with(key, Priority::Normal, Delivery::Newest);
         let in_game = InGame {
             nav: newest(topic::nav(&game, scenario, vehicle))?,
@@ -261,8 +255,8 @@ impl GatewayLoop<'_> {
             link_bytes: newest(topic::report(&game, Reported::Link, name))?,
             vehicle,
             others: scenario.externals().filter(|other| *other != vehicle).collect(),
-            _subscriptions: subscribe(&bus, &game, &info, vehicle, &self.back)?,
-            _join: Join::begin(&bus, &self.settings.place, (&game, scenario), name, self.back.calls.clone())?,
+            _subscriptions: subscribe(&bus, &game, &info, vehicle, &self.input.back)?,
+            _join: Join::begin(&bus, &self.settings.place, (&game, scenario), name, self.input.back.calls.clone())?,
             bus,
         };
         // The link has been served before: only what needs a field starts here.
@@ -356,7 +350,7 @@ impl GatewayLoop<'_> {
 
     fn take_order(&mut self) -> Result<(), NodeError> {
         // Only the newest order: executing an older one first would delay it.
-        let taken = self.input.latest_order.lock().take();
+        let taken = self.input.back.latest_order.lock().take();
         let Some((message, came)) = taken else { return Ok(()) };
         if self.is_too_old(came) {
             return self.step(Input::OldOrder, None);
@@ -467,10 +461,16 @@ impl GatewayLoop<'_> {
             return;
         }
         self.counters.remarked = (now, text.to_owned());
-        let (at, event) = (self.clock.now(), Event::Remark(text.to_owned()));
-        (self.notify)(NodeEvent::Event { at_s: at.as_s(), event: &event });
+        self.log(&Event::Remark(text.to_owned()), text);
+    }
+
+    /// Reports an event of the shell; the recording has its text, since only events of the core
+    /// are compared in a replay.
+    fn log(&mut self, event: &Event, text: &str) {
+        let at = self.clock.now();
+        (self.notify)(NodeEvent::Event { at_s: at.as_s(), event });
         if let Some(recorder) = &self.recorder {
-            recorder.record(StepEncoder::event(at, event));
+            recorder.record(StepEncoder::event(at, Event::Remark(text.to_owned())));
         }
     }
 }

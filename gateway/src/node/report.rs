@@ -33,14 +33,15 @@ impl GatewayLoop<'_> {
             [self.counters.sentence_to_topic.summary_us(), self.counters.order_to_sentence.summary_us()];
         let lost =
             self.recorder.as_ref().map_or([0; 2], |recorder| [recorder.state().dropped, recorder.bulk_dropped()]);
-        let more = [("nav reports", self.counters.reports), ("displaced writes", self.link.displaced())];
-        let rest = [
+        let more = [
+            ("nav reports", self.counters.reports),
+            ("displaced writes", self.link.displaced()),
             ("calls dropped", self.input.calls.dropped()),
             ("messages not recorded", lost[0]),
             ("payload messages not recorded", lost[1]),
         ];
         status.alarms.extend(self.counters.recording_fault.clone());
-        status.counts.extend(more.into_iter().chain(rest).map(|(name, count)| (name.to_owned(), count)));
+        status.counts.extend(more.map(|(name, count)| (name.to_owned(), count)));
         status
     }
 

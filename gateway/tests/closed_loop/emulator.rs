@@ -11,7 +11,7 @@ use messages::Order;
 use primitives::SimTime;
 
 fn boat(change: impl FnOnce(&mut emulator::Plan)) -> Emulator {
-    let mut plan = emulated(plan("surveyor.toml", false).site.expect("the rig has one").field.plan.datum, 0.0);
+    let mut plan = emulated(plan("surveyor.toml").site.expect("the rig has one").field.plan.datum, 0.0);
     change(&mut plan);
     Emulator::new(plan)
 }

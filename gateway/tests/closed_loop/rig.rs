@@ -4,7 +4,7 @@
 use crate::boat::{Boat, STEP_S, emulated};
 use crate::oracle::Oracle;
 use crate::tamper::{Tamper, with_checksum};
-use gateway::bridge::{Bridge, Event, Input, NavOut, Output, Plan, Preflight, Site};
+use gateway::bridge::{Bridge, Event, Input, NavOut, Output, Plan, Site};
 use gateway::emulator::{self, Emulator, Port};
 use messages::Order;
 use messages::external::{FleetCommand, OperatorCommand};
@@ -53,23 +53,13 @@ pub(crate) struct Rig {
 }
 
 /// The plan of a gateway with the settings of this file, on the field of the first game.
-pub(crate) fn plan(file: &str, arms_itself: bool) -> Plan {
+pub(crate) fn plan(file: &str) -> Plan {
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios");
     let game = scenario::load(&scenarios.join("games/pav01_vs_pav01.toml")).unwrap_or_else(|e| panic!("{e}"));
-    let gateway = scenarios.join("gateways").join(file);
-    Plan {
-        vehicle: "blue_one".to_owned(),
-        gateway: scenario::load_file::<gateway::config::Gateway>(&gateway).unwrap_or_else(|e| panic!("{e}")),
-        site: Some(Site {
-            length_m: 1.83,
-            field: game.field,
-            declination_rad: (-12.5_f64).to_radians(),
-            coasting: None,
-        }),
-        arms_itself,
-        dry_run: false,
-        preflight: Preflight::NotRequired,
-    }
+    let gateway = scenario::load_file(&scenarios.join("gateways").join(file)).unwrap_or_else(|e| panic!("{e}"));
+    let declination_rad = (-12.5_f64).to_radians();
+    let site = Some(Site { length_m: 1.83, field: game.field, declination_rad, coasting: None });
+    Plan { site, ..Plan::new("blue_one", gateway) }
 }
 
 impl Rig {
