@@ -71,7 +71,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     listener.hello = format!("listening for {for_s} s, sending {sends}");
     listener.listen(&mut |listener| listener.now().as_s() >= for_s);
     let check = &listener.check;
-    if check.received().is_empty() {
+    if check.received.is_empty() {
         let reason = listener.reason.clone().unwrap_or_else(|| check.unread());
         bail!("received nothing readable from {address} within {for_s} s: {reason} ({})", counted(check));
     }
@@ -186,9 +186,9 @@ fn counted(check: &SensorCheck) -> String {
 }
 
 fn report(check: &SensorCheck, host: HostTime) -> String {
-    let width = check.received().keys().map(String::len).max().unwrap_or(0).max(10);
+    let width = check.received.keys().map(String::len).max().unwrap_or(0).max(10);
     let mut lines = vec![format!("{:<width$} {:>7} {:>8}  last", "name", "count", "1/s")];
-    for (name, received) in check.received() {
+    for (name, received) in &check.received {
         let rate = received.rate_hz().map_or("-".to_owned(), |rate| format!("{rate:.2}"));
         let note = if received.unreadable > 0 { "  (not read)" } else { "" };
         let last: String = received.last.chars().take(LAST_MAX).collect();
