@@ -1,6 +1,6 @@
 //! The interface of a bridge: its inputs and outputs.
 
-use crate::config::{CompassFrame, Gateway};
+use crate::config::Gateway;
 use crate::geofence::Coasting;
 use messages::Order;
 use messages::external::{FleetCommand, OperatorCommand};
@@ -74,17 +74,6 @@ pub struct Site {
     /// How the boat coasts, if its boat file is known.
     #[serde(default)]
     pub coasting: Option<Coasting>,
-}
-
-impl Site {
-    /// Correction to add to a heading in this compass frame to make it true, rad.
-    #[must_use]
-    pub fn compass_to_true_rad(&self, compass: CompassFrame) -> f64 {
-        match compass {
-            CompassFrame::Magnetic => self.declination_rad,
-            CompassFrame::True => 0.0,
-        }
-    }
 }
 
 /// An input of the bridge.
