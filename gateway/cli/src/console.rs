@@ -1,7 +1,7 @@
 //! `gateway console`: operator commands, line by line, over connections that stay open.
 
 use super::log_line::full;
-use super::tell::{ALL, CommandArg, Port, Words, release_all, to_boat};
+use super::tell::{ALL, CommandArg, Port, Words, real_boats, release_all, to_boat};
 use anyhow::{Result, bail};
 use bus::game_search::find_game;
 use bus::stop::{StopClient, StopCommand, StopNews, StopOrders};
@@ -217,11 +217,8 @@ impl Console {
             self.read_registry();
             match find_game(place, self.leaf.game.as_ref(), &mut session) {
                 Ok((bus, game, info)) => {
-                    let scenario = &info.scenario;
-                    let boats = scenario.externals().map(|boat| scenario.vehicles[boat.index()].name.clone());
-                    let boats: Vec<String> = boats.collect();
                     said.clear();
-                    match self.stay(&bus, &game, &boats) {
+                    match self.stay(&bus, &game, &real_boats(&info.scenario)) {
                         Ok(()) if self.is_over.load(Ordering::Relaxed) => {}
                         Ok(()) => terminal::remark(&format!(
                             "lost the connection to game {}; searching for it again",
