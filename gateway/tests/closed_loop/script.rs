@@ -162,6 +162,10 @@ fn boat(options: &[&str]) -> Rig {
             ["dry-run", "yes"] => plan.dry_run = true,
             ["preflight", "missing"] => plan.preflight = Preflight::Missing("a passed pre-flight check".to_owned()),
             ["arms-itself", "once"] => plan.arms_itself = true,
+            ["currents", "off"] => {
+                let currents = &mut plan.gateway.currents;
+                (currents.thruster_max_a, currents.thruster_min_a, currents.bilge_a) = (0.0, 0.0, 0.0);
+            }
             other => panic!("no boat has {other:?}"),
         }
     }

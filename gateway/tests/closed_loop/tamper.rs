@@ -30,7 +30,7 @@ pub(crate) fn tamper(words: &[&str]) -> Option<Tamper> {
             let place = [lat, north, lon, east].map(|field| (*field).to_owned());
             changed("GPGGA", move |fields| fields[2..6].clone_from_slice(&place))
         }
-        ["battery", fields @ ..] => battery_fields(fields),
+        ["fields", name, pairs @ ..] => replaced_fields(name, pairs),
         ["frozen-compass"] => frozen_compass(),
         ["turned-compass", degrees] => turned_compass(degrees.parse().expect("degrees")),
         ["stuck-speed"] => {
@@ -58,7 +58,8 @@ fn rewritten(mut change: impl FnMut(&str) -> String + 'static) -> Tamper {
 }
 
 /// Changes the fields of the sentences with this name.
-fn changed(name: &'static str, mut change: impl FnMut(&mut Vec<String>) + 'static) -> Tamper {
+fn changed(name: &str, mut change: impl FnMut(&mut Vec<String>) + 'static) -> Tamper {
+    let name = name.to_owned();
     rewritten(move |body| {
         let mut fields: Vec<String> = body.split(',').map(str::to_owned).collect();
         if fields[0] == name {
@@ -68,11 +69,11 @@ fn changed(name: &'static str, mut change: impl FnMut(&mut Vec<String>) + 'stati
     })
 }
 
-/// Replaces fields of `PSEAB`, given by number.
-fn battery_fields(pairs: &[&str]) -> Tamper {
+/// Replaces fields of the sentences with this name, given by number.
+fn replaced_fields(name: &str, pairs: &[&str]) -> Tamper {
     let said = |two: &[&str]| (two[0].parse::<usize>().expect("a field's number"), two[1].to_owned());
     let pairs: Vec<_> = pairs.chunks(2).map(said).collect();
-    changed("PSEAB", move |fields| pairs.iter().for_each(|(field, text)| fields[*field].clone_from(text)))
+    changed(name, move |fields| pairs.iter().for_each(|(field, text)| fields[*field].clone_from(text)))
 }
 
 /// A receiver that repeats its first fix with its time, and still reports it as good.
