@@ -56,8 +56,7 @@ pub enum Preflight {
 
 impl Preflight {
     /// What prevents arming, if anything.
-    #[must_use]
-    pub fn missing(&self) -> Option<&String> {
+    pub(crate) fn missing(&self) -> Option<&String> {
         if let Preflight::Missing(why) = self { Some(why) } else { None }
     }
 }

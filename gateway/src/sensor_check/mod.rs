@@ -190,14 +190,12 @@ impl SensorCheck {
     }
 
     /// The heading that the gateway would use, degrees.
-    #[must_use]
-    pub fn heading_deg(&self) -> Option<f64> {
+    pub(crate) fn heading_deg(&self) -> Option<f64> {
         self.compass_deg.or(self.true_deg)
     }
 
     /// How far the boat's time of day is behind the host's, s.
-    #[must_use]
-    pub fn clock_behind_s(&self, host: HostTime) -> Option<f64> {
+    pub(crate) fn clock_behind_s(&self, host: HostTime) -> Option<f64> {
         self.clock.map(|(came, time)| date_and_time(host.utc_ns_at(came)).1.since_s(time))
     }
 

@@ -105,8 +105,7 @@ pub enum NavFault {
 impl Cause {
     /// Whether the boat still receives commands, knows its position and heading, and responds to
     /// thrust.
-    #[must_use]
-    pub fn leaves_control(self) -> bool {
+    pub(crate) fn leaves_control(self) -> bool {
         // Only for these may a file name a task after a failsafe. A table of every cause with every
         // action would let somebody keep station on a lost fix.
         matches!(self, Cause::OrderStale | Cause::BatteryLow | Cause::Geofence | Cause::Hung(_))
@@ -122,8 +121,7 @@ impl Cause {
     }
 
     /// The condition that is missing for arming, as text.
-    #[must_use]
-    pub fn missing(self) -> String {
+    pub(crate) fn missing(self) -> String {
         match self {
             Cause::Hung(_) => "a gateway that does not hang".to_owned(),
             Cause::LinkLost => "the link to the boat".to_owned(),
