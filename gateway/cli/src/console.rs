@@ -178,8 +178,7 @@ impl Console {
         std::thread::spawn(move || {
             let ports = console.ports();
             let session = console.session.visit(|session| session.clone());
-            let reply = to_boat(&ports, session.as_ref().map(|(bus, game)| (bus, game)), &name, &command);
-            match reply {
+            match to_boat(&ports, session.as_ref(), &name, &command) {
                 Ok(OperatorReply { refused: None, status }) if words.command == CommandArg::Status => {
                     terminal::show(&full(&status));
                 }
@@ -197,7 +196,7 @@ impl Console {
         let (console, asked) = (self.clone(), clock::now());
         std::thread::spawn(move || {
             let session = console.session.visit(|session| session.clone());
-            let failed = release_all(&console.ports(), session.as_ref().map(|(bus, game)| (bus, game)));
+            let failed = release_all(&console.ports(), session.as_ref());
             failed.iter().for_each(|failed| terminal::complain(failed));
             if failed.is_empty() {
                 tell(ALL, "released", asked);

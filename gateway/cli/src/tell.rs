@@ -217,7 +217,7 @@ fn ask(bus: &Bus, game: &GameName, vehicle: &str, command: &OperatorCommand) -> 
 /// game's network.
 pub(super) fn to_boat(
     ports: &[Port],
-    game: Option<(&Bus, &GameName)>,
+    game: Option<&(Bus, GameName)>,
     vehicle: &str,
     command: &OperatorCommand,
 ) -> Result<OperatorReply> {
@@ -232,7 +232,7 @@ pub(super) fn to_boat(
 }
 
 /// Ends an E-stop of all boats in the game and at these ports; returns the failures.
-pub(super) fn release_all(ports: &[Port], game: Option<(&Bus, &GameName)>) -> Vec<String> {
+pub(super) fn release_all(ports: &[Port], game: Option<&(Bus, GameName)>) -> Vec<String> {
     std::thread::scope(|scope| {
         let release = |port: &Port| match port.ask(&GatewayCommand::Fleet(FleetCommand::Release)) {
             Ok(OperatorReply { refused: Some(reason), status }) => {

@@ -2,6 +2,7 @@
 //! outputs on.
 
 use super::clock::{Clock, Moment};
+use super::control_port::ControlPort;
 use super::error::NodeError;
 use super::game_finder::FoundGame;
 use super::guard::{Guarded, HEARTBEAT, HUNG};
@@ -17,14 +18,13 @@ use crate::link::{BoatLink, LinkEvent};
 use crate::record::StepEncoder;
 use crate::supervisor::Scope;
 use bus::token::{self, Checked, Guard};
-use bus::{Bus, CurrentToken, Declaration, Delivery, Priority, Publisher, Query, clock};
+use bus::{Bus, Declaration, Delivery, Priority, Publisher, Query, clock};
 use messages::external::{FleetCommand, GatewayCommand, OperatorCommand, OperatorReply, Reported};
 use messages::{Frame, Order, topic};
 use primitives::frame::Ned;
 use primitives::{SimTime, VehicleId, codec};
 use recording::Recorder;
 use std::collections::VecDeque;
-use std::net::SocketAddr;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -62,8 +62,7 @@ pub(super) struct GatewayLoop<'a> {
     pub(super) counters: Counters,
     pub(super) notify: &'a mut dyn FnMut(NodeEvent<'_>),
     pub(super) guard: Guard,
-    /// The control port, if any, and the token that it requires.
-    pub(super) port: Option<(SocketAddr, CurrentToken)>,
+    pub(super) port: Option<&'a ControlPort>,
 }
 
 /// The game that the gateway is in.
@@ -272,46 +271,41 @@ impl GatewayLoop<'_> {
 
     fn handle_call(&mut self, call: Call) -> Result<(), NodeError> {
         match call {
-            Call::Link(event) => self.take_link(event),
-            Call::Order => self.take_order(),
-            Call::Frame(bytes) => self.take_frame(&bytes),
-            Call::Release => self.step(Input::Fleet(FleetCommand::Release), None),
+            Call::Link(event) => self.take_link(event)?,
+            Call::Order => self.take_order()?,
+            Call::Frame(bytes) => self.take_frame(&bytes)?,
+            Call::Release => self.step(Input::Fleet(FleetCommand::Release), None)?,
             // Its subject was read before.
-            Call::Look => Ok(()),
-            Call::Looking(reason) => {
-                (self.notify)(NodeEvent::Looking { reason: &reason });
-                Ok(())
-            }
+            Call::Look => {}
+            Call::Looking(reason) => (self.notify)(NodeEvent::Looking { reason: &reason }),
             Call::Joined(joined) if self.vehicle().is_some_and(|vehicle| joined.vehicles == [vehicle]) => {
                 self.counters.ticket = Some(joined.ticket);
                 self.counters.game_now = joined.now;
                 self.game_clock.join(self.clock.at(joined.asked), joined.now);
-                if let Some((address, token)) = &self.port {
+                if let Some(port) = self.port {
                     // In a game with keys the port keeps its own.
                     if let Some(known) = self.settings.place.token().get() {
-                        token.set(Some(known));
+                        port.token().set(Some(known));
                     }
-                    (self.notify)(NodeEvent::ControlPort { address: *address, token: token.get() });
+                    (self.notify)(NodeEvent::ControlPort { address: port.address, token: port.token().get() });
                 }
                 self.remark("joined: the sim accepts the boat's reports");
-                self.step(Input::Joined, None)
+                self.step(Input::Joined, None)?;
             }
             // The ticket would be another boat's: its reports would move that one.
             Call::Joined(_) => {
-                Err(NodeError::Refused("the sim admitted a different boat from the one that asked".to_owned()))
+                let reason = "the sim admitted a different boat from the one that asked".to_owned();
+                return Err(NodeError::Refused(reason));
             }
             Call::SimGone => {
                 // Not an error: stale orders stop the boat, and the game's next sim is joined like
                 // this one.
                 self.counters.ticket = None;
                 self.remark("lost the sim; waiting for the next");
-                Ok(())
             }
-            Call::Remark(text) => {
-                self.remark(&text);
-                Ok(())
-            }
+            Call::Remark(text) => self.remark(&text),
         }
+        Ok(())
     }
 
     fn take_link(&mut self, event: LinkEvent) -> Result<(), NodeError> {

@@ -185,7 +185,7 @@ fn connect(
         counters: Counters::new(),
         notify: &mut *notify,
         guard: Guard::new(settings.place.token().clone()),
-        port: port.as_ref().map(|port| (port.address, port.token().clone())),
+        port: port.as_ref(),
     };
     // On its own thread: a gateway that searched for its game first abandoned a moving boat
     // meanwhile.

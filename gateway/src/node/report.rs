@@ -24,7 +24,7 @@ impl GatewayLoop<'_> {
     /// The status of core and shell.
     pub(super) fn full_status(&self) -> GatewayStatus {
         let mut status = self.bridge.status(self.clock.now());
-        status.control = self.port.as_ref().map(|(address, _)| address.to_string());
+        status.control = self.port.map(|port| port.address.to_string());
         // The core knows whether the link is up; the shell knows why it is down.
         if status.link != "up" {
             status.link.clone_from(&self.counters.link);
