@@ -26,11 +26,6 @@ static GATEWAY: LazyLock<Gateway> = LazyLock::new(|| {
     Gateway { declination_rad: Some(DECLINATION_RAD), ..gateway }
 });
 
-/// Time to live of an order in the gateway, s.
-pub(crate) fn order_ttl_s() -> f64 {
-    GATEWAY.order_ttl_s
-}
-
 /// Runs the gateway of a boat until `stop` is set.
 pub(crate) fn connect(wire: &Arc<Wire>, vehicle: &str, stop: &Arc<AtomicBool>) {
     let settings = Settings {
