@@ -7,7 +7,7 @@ use primitives::frame::{Ned, Rotation, body_from_ned};
 
 /// The box around the bow.
 #[derive(Clone, Debug)]
-pub struct BowWatch {
+pub(crate) struct BowWatch {
     rules: Halt,
     half_length_m: f64,
     /// When a boat was last in it.
@@ -16,13 +16,12 @@ pub struct BowWatch {
 
 impl BowWatch {
     /// The box for a boat of this length.
-    #[must_use]
-    pub fn new(rules: Halt, length_m: f64) -> BowWatch {
+    pub(crate) fn new(rules: Halt, length_m: f64) -> BowWatch {
         BowWatch { rules, half_length_m: 0.5 * length_m, blocked_at: SimTime::LONG_AGO }
     }
 
     /// Whether another boat is in the box, or was within the last `clear_s`.
-    pub fn is_blocked(&mut self, now: SimTime, nav: &Nav, others: &[Ned]) -> bool {
+    pub(crate) fn is_blocked(&mut self, now: SimTime, nav: &Nav, others: &[Ned]) -> bool {
         // A box of zero length disables the check: fleets that keep clear by themselves do not need
         // it.
         if self.rules.ahead_m <= 0.0 {

@@ -11,7 +11,7 @@ use primitives::SimTime;
 /// estimate. When the boat joins, the difference is at most that between the time in the sim's
 /// answer and our own time of the request.
 #[derive(Clone, Copy, Debug)]
-pub struct GameClock {
+pub(crate) struct GameClock {
     ahead_max: SimTime,
     joined: Option<Joined>,
 }
@@ -28,7 +28,7 @@ struct Joined {
 
 /// The verdict on the time of an order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum OrderTime {
+pub(crate) enum OrderTime {
     /// The order may be current.
     Plausible,
     /// The game has not reached it, or not the picture that it answers.
@@ -39,14 +39,13 @@ pub enum OrderTime {
 
 impl GameClock {
     /// A clock without a game yet, which accepts stamps ahead of it by at most this much.
-    #[must_use]
-    pub fn new(ahead_max: SimTime) -> GameClock {
+    pub(crate) fn new(ahead_max: SimTime) -> GameClock {
         GameClock { ahead_max, joined: None }
     }
 
     /// Notes that the boat, which asked at our own time `asked`, has joined a game whose time was
     /// `since` at some moment after that.
-    pub fn join(&mut self, asked: SimTime, since: SimTime) {
+    pub(crate) fn join(&mut self, asked: SimTime, since: SimTime) {
         // The answer was created after the request, so the game cannot be further ahead of our
         // clock than this. The answer's travel time is unknown, and only makes the bound safer.
         let most = SimTime(since.0.saturating_sub(asked.0));
@@ -54,7 +53,7 @@ impl GameClock {
     }
 
     /// Checks the time of an order that arrived at `now`.
-    pub fn check(&mut self, now: SimTime, order: &ExternalOrder) -> OrderTime {
+    pub(crate) fn check(&mut self, now: SimTime, order: &ExternalOrder) -> OrderTime {
         let (stamp, given) = (order.stamp.valid_ns, order.given_ns);
         let Some(joined) = &mut self.joined else { return OrderTime::BeforeJoining };
         if stamp < joined.since {

@@ -5,20 +5,21 @@
 //! [`payload`] handles other equipment on board. Sockets and clocks are only in [`link`] and
 //! `node`.
 
-pub mod bow_watch;
+mod bow_watch;
 pub mod bridge;
 mod compass_check;
 pub mod config;
 pub mod declination;
 #[cfg(feature = "emulator")]
 pub mod emulator;
-pub mod game_clock;
+#[cfg(feature = "net")]
+mod game_clock;
 pub mod geodesy;
 pub mod geofence;
 pub mod link;
 pub mod mavlink;
 mod motion_check;
-pub mod nav_estimate;
+mod nav_estimate;
 pub mod nmea;
 #[cfg(feature = "net")]
 pub mod node;

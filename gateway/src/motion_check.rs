@@ -183,19 +183,4 @@ mod tests {
             assert_eq!(check.fault(now), None, "at {now}");
         }
     }
-
-    #[test]
-    fn a_fix_that_steps_by_some_metres_is_no_fault() {
-        let mut check = MotionCheck::default();
-        for i in 0..200_i32 {
-            let now = SimTime::from_s(0.1 * f64::from(i));
-            check.take_fix(
-                now,
-                Ned { north: if i / 40 % 2 == 0 { 0.0 } else { 4.0 }, east: 0.0 },
-                Some(Ned::default()),
-            );
-            check.take_heading(1.0);
-            assert_eq!(check.fault(now), None, "at {now}");
-        }
-    }
 }

@@ -48,7 +48,7 @@ struct Heading {
 
 /// Estimates a boat's motion from its reports.
 #[derive(Clone, Debug)]
-pub struct NavEstimator {
+pub(crate) struct NavEstimator {
     frame: LocalFrame,
     watch: NavWatch,
     /// From magnetic (or whatever the boat's compass shows) to true, rad.
@@ -83,25 +83,28 @@ struct Known {
 
 impl NavEstimator {
     /// An estimate without data.
-    #[must_use]
-    pub fn new(frame: LocalFrame, watch: NavWatch, compass_to_true_rad: f64, speed_max_m_s: f64) -> NavEstimator {
+    pub(crate) fn new(
+        frame: LocalFrame,
+        watch: NavWatch,
+        compass_to_true_rad: f64,
+        speed_max_m_s: f64,
+    ) -> NavEstimator {
         NavEstimator { frame, watch, compass_to_true_rad, speed_max_m_s, known: Known::default() }
     }
 
     /// A position on the field.
-    #[must_use]
-    pub fn place(&self, lat_deg: f64, lon_deg: f64) -> Ned {
+    pub(crate) fn place(&self, lat_deg: f64, lon_deg: f64) -> Ned {
         self.frame.ned(LatLon { lat_deg, lon_deg })
     }
 
     /// Discards everything: the next data may come from another boat, or from the same one
     /// elsewhere.
-    pub fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         self.known = Known::default();
     }
 
     /// Adds a report; returns whether it changed the estimate.
-    pub fn update(&mut self, now: SimTime, report: &Report) -> bool {
+    pub(crate) fn update(&mut self, now: SimTime, report: &Report) -> bool {
         match report {
             Report::Fix(fix) => self.take_fix(now, fix),
             Report::Velocity(velocity) => {
@@ -114,7 +117,7 @@ impl NavEstimator {
     }
 
     /// Notes a command just sent to the boat.
-    pub fn note_order(&mut self, now: SimTime, ordered: Ordered) {
+    pub(crate) fn note_order(&mut self, now: SimTime, ordered: Ordered) {
         self.known.ordered = Some((now, ordered));
         if ordered.ahead_m_s.abs() >= THRUST_FROM_M_S {
             self.known.thrust_at = Some(now);
@@ -125,14 +128,12 @@ impl NavEstimator {
     }
 
     /// The order that the boat does not follow.
-    #[must_use]
-    pub fn thrust_fault(&self, now: SimTime) -> Option<ThrustFault> {
+    pub(crate) fn thrust_fault(&self, now: SimTime) -> Option<ThrustFault> {
         self.known.thrust.fault(now)
     }
 
     /// The boat's motion, and the age of its fix, s; `None` before the first fix and heading.
-    #[must_use]
-    pub fn nav(&self, now: SimTime) -> Option<(Nav, f64)> {
+    pub(crate) fn nav(&self, now: SimTime) -> Option<(Nav, f64)> {
         let (fix, Heading { psi_rad, yaw_rate_rad_s, .. }) = (self.known.fix?, self.known.heading?);
         let velocity = self.velocity_m_s();
         let body: Body = body_from_ned(Rotation::from_heading(psi_rad), velocity);
@@ -148,23 +149,20 @@ impl NavEstimator {
     }
 
     /// Velocity over the ground, m/s.
-    #[must_use]
-    pub fn velocity_m_s(&self) -> Ned {
+    pub(crate) fn velocity_m_s(&self) -> Ned {
         self.known.velocity.map_or_else(Ned::default, |(_, velocity)| velocity)
     }
 
     /// Velocity over the ground, m/s, for stopping in time: the reported one, or that of the
     /// positions if it is faster.
-    #[must_use]
-    pub fn fastest_velocity_m_s(&self) -> Ned {
+    pub(crate) fn fastest_velocity_m_s(&self) -> Ned {
         let reported = self.velocity_m_s();
         let measured = self.known.motion.velocity_m_s().unwrap_or_default();
         if measured.length() > reported.length() { measured } else { reported }
     }
 
     /// The present navigation fault.
-    #[must_use]
-    pub fn fault(&self, now: SimTime) -> Option<NavFault> {
+    pub(crate) fn fault(&self, now: SimTime) -> Option<NavFault> {
         let Some(fix) = &self.known.fix else { return Some(self.known.doubt.unwrap_or(NavFault::NoFix)) };
         let Some(heading) = self.known.heading else { return Some(NavFault::NoHeading) };
         let fix_age_s = (now - fix.at).as_s();

@@ -160,21 +160,13 @@ fn add_step(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bridge::Preflight;
 
     #[test]
     fn a_plan_from_before_some_settings_is_read_with_their_defaults_and_keeps_its_own() {
         let mut gateway = default_gateway();
         gateway.order_ttl_s = 2.5;
         gateway.control.echo_s = 4.0;
-        let plan = Plan {
-            vehicle: "blue_one".to_owned(),
-            gateway,
-            site: None,
-            arms_itself: true,
-            dry_run: false,
-            preflight: Preflight::NotRequired,
-        };
+        let plan = Plan { arms_itself: true, ..Plan::new("blue_one", gateway) };
         let mut told = serde_json::to_value(&plan).unwrap();
         assert_eq!(plan_of(&told.to_string()).unwrap(), plan);
         let gateway = told["gateway"].as_object_mut().unwrap();

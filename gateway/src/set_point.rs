@@ -124,8 +124,7 @@ impl SetPointMapper {
     }
 
     /// A true heading in the reference of the boat's compass, degrees.
-    #[must_use]
-    pub fn compass_deg(&self, true_rad: f64) -> f64 {
+    pub(crate) fn compass_deg(&self, true_rad: f64) -> f64 {
         compass_deg_from_rad(true_rad - self.compass_to_true_rad)
     }
 

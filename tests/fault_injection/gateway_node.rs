@@ -3,7 +3,7 @@
 use crate::play::{WAIT, name, net};
 use crate::real_boat::{DECLINATION_RAD, Wire};
 use bus::{NodeThread, clock};
-use gateway::bridge::{Event, Preflight};
+use gateway::bridge::{Event, Plan};
 use gateway::config::Gateway;
 use gateway::link::{BoatLink, LinkEvent};
 use gateway::node::{NodeError, NodeEvent, OnLinkEvent, Settings, serve_over};
@@ -26,21 +26,12 @@ static GATEWAY: LazyLock<Gateway> = LazyLock::new(|| {
     Gateway { declination_rad: Some(DECLINATION_RAD), ..gateway }
 });
 
-/// Time to live of an order in the gateway, s.
-pub(crate) fn order_ttl_s() -> f64 {
-    GATEWAY.order_ttl_s
-}
-
 /// Runs the gateway of a boat until `stop` is set.
 pub(crate) fn connect(wire: &Arc<Wire>, vehicle: &str, stop: &Arc<AtomicBool>) {
     let settings = Settings {
+        plan: Plan::new(vehicle, GATEWAY.clone()),
         game: Some(name()),
         place: net(false).into(),
-        vehicle: vehicle.to_owned(),
-        gateway: GATEWAY.clone(),
-        arms_itself: false,
-        dry_run: false,
-        preflight: Preflight::NotRequired,
         at_game_pace: false,
         commit: "",
         wait: WAIT,

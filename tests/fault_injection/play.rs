@@ -121,7 +121,7 @@ impl Drop for SaysOver {
 fn add_real_boat(network: &SimulatedNetwork, plan: &Plan, scenario: &Scenario, over: &Arc<Watched<bool>>) {
     let vehicle = scenario.externals().next().expect("there is a real boat");
     let vehicle = scenario.vehicles[vehicle.index()].name.clone();
-    let (wire, stop) = (Arc::new(Wire::new(gateway_node::order_ttl_s(), plan.forges())), Arc::<AtomicBool>::default());
+    let (wire, stop) = (Arc::new(Wire::new(plan.forges())), Arc::<AtomicBool>::default());
     let taken = Arc::clone(&wire);
     network.on_take(move |published| {
         if published.node == "gateway" && published.key.contains("/external/") {

@@ -56,15 +56,8 @@ pub(crate) struct State {
 }
 
 impl Wire {
-    pub(crate) fn new(ttl_s: f64, is_forged: bool) -> Wire {
-        let fresh = Oracle::new();
-        let oracle = Oracle {
-            ttl_s: ttl_s + WAITED_S,
-            nav_age_max_s: fresh.nav_age_max_s + WAITED_S,
-            control_age_max_s: fresh.control_age_max_s + WAITED_S,
-            link_up: true,
-            ..fresh
-        };
+    pub(crate) fn new(is_forged: bool) -> Wire {
+        let oracle = Oracle { waited_s: WAITED_S, link_up: true, ..Oracle::default() };
         let state = State {
             start: None,
             links: 0,
@@ -102,7 +95,7 @@ impl Wire {
             if !state.is_connected || std::thread::panicking() {
                 return;
             }
-            state.oracle.ordered = self.order.lock().1;
+            state.oracle.ordered = Some(self.order.lock().1);
             let before = state.oracle.driving;
             state.oracle.judge(now, bytes);
             let drives = state.oracle.driving > before;

@@ -7,7 +7,7 @@
 
 #![expect(clippy::print_stdout, reason = "measurements are shown when it is run by hand")]
 
-use gateway::bridge::{Bridge, Event, Input, Output, Plan, Preflight, Site};
+use gateway::bridge::{Bridge, Event, Input, Output, Plan, Site};
 use gateway::emulator::{self, Emulator, Port};
 use gateway::nmea::{Date, TimeOfDay};
 use messages::Order;
@@ -156,15 +156,8 @@ impl Voyage {
             .unwrap_or_else(|e| panic!("{e}"));
         gateway.geofence.margin_m = 10_000.0;
         let site = Site { field: game.field.clone(), length_m: 1.83, declination_rad: -0.2, coasting: None };
-        let plan = |_| Plan {
-            vehicle: "boat".to_owned(),
-            gateway: gateway.clone(),
-            site: Some(site.clone()),
-            arms_itself: false,
-            dry_run: false,
-            preflight: Preflight::NotRequired,
-        };
-        let boats = (0..BOATS).map(|i| Boat::new(i, seed, plan(i))).collect();
+        let plan = Plan { site: Some(site), ..Plan::new("boat", gateway) };
+        let boats = (0..BOATS).map(|i| Boat::new(i, seed, plan.clone())).collect();
         Voyage { world, ticks: game.ticks_per_decision, boats, fault: (SimTime::from_s(fault.0), fault.1) }
     }
 

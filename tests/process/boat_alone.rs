@@ -1,12 +1,11 @@
 //! A boat with no node but its gateway, or not even that: it can be stopped without a sim, and it
 //! stops when its gateway dies.
 
-use crate::support::{LIMIT, Process, Sim, newest, run, squall, stderr, stdout, wait_until, wait_within};
+use crate::gateway::Water;
+use crate::support::{LIMIT, Process, run, squall, stderr, stdout, wait_until, wait_within};
+use bus::Watched;
 use bus::token::TOKEN_VARIABLE;
-use bus::{Bus, Declaration, Watched};
 use gateway::link::{Link, LinkAddress, LinkEvent, LinkSettings};
-use messages::{Frame, topic};
-use primitives::codec;
 use std::io::Write;
 use std::net::TcpStream;
 use std::process::{Child, Command, Stdio};
@@ -18,41 +17,26 @@ use std::time::{Duration, Instant};
 /// 0.25 s: from 43 % it gives less than `STILL_NEWTON` after 2.2 + 1.1 s. The rest allows for a
 /// busy machine.
 const STOPS: Duration = Duration::from_millis(3300 + 1500);
-const STILL_NEWTON: f64 = 0.5;
 
 /// Water with an emulated boat that has no watchdog: it follows the last command for ever.
 struct Afloat {
     /// The name of a game that does not exist.
     game: &'static str,
-    water: Sim,
-    _emulator: Process,
-    /// The address for a back seat.
-    back_seat: String,
-    frame: Arc<Watched<Frame>>,
-    _observer: (Bus, Declaration),
+    water: Water,
+    /// The link to the boat.
+    link: String,
 }
 
 impl Afloat {
     fn start(game: &'static str) -> Afloat {
-        let water = Sim::start("real_attacker", &["--pace", "realtime", "--afloat", "blue_one"]);
-        let mut command =
-            water.squall(&["gateway", "emulate", "--vehicle", "blue_one", "--listen", "tcp://127.0.0.1:0"]);
-        command.stdout(Stdio::piped()).stderr(Stdio::null());
-        let mut emulator = Process::start(command);
-        let mut lines = emulator.lines();
-        let line = lines.find(|line| line.starts_with("back seat at ")).expect("it prints where it listens");
-        let back_seat = line.rsplit("back seat at ").next().expect("an address").trim().to_owned();
-        std::thread::spawn(move || lines.for_each(drop));
-        let bus = water.bus();
-        let key = topic::frame(&water.name());
-        let (frame, frames) = newest(&bus, key, |bytes| codec::decode(bytes).expect("a frame"));
-        Afloat { game, water, _emulator: emulator, back_seat, frame, _observer: (bus, frames) }
+        let water = Water::start(&[]);
+        let link = format!("tcp://{}", water.back_seat);
+        Afloat { game, water, link }
     }
 
     /// Sets the boat going like a back seat that then dies: it stays at 43 %.
     fn set_going(&self) {
-        let address = self.back_seat.trim_start_matches("tcp://");
-        let mut stream = TcpStream::connect(address).expect("it accepts");
+        let mut stream = TcpStream::connect(&self.water.back_seat).expect("it accepts");
         stream.write_all(b"$PSEAC,T,0,43,0,*3B\r\n").expect("a command");
         wait_within(LIMIT, "the boat sails", || !self.is_still());
         drop(stream);
@@ -61,8 +45,7 @@ impl Afloat {
     }
 
     fn is_still(&self) -> bool {
-        let boat = self.frame.visit(|frame| frame.vehicles.first().cloned());
-        boat.is_none_or(|boat| boat.port_newton.abs() < STILL_NEWTON && boat.starboard_newton.abs() < STILL_NEWTON)
+        self.water.boat().1
     }
 
     fn stops(&self) {
@@ -71,27 +54,30 @@ impl Afloat {
         assert!(self.is_still(), "it goes on again");
     }
 
-    /// Arguments of a gateway whose game has no other node.
-    fn gateway_args(&self) -> Vec<String> {
+    /// The command for a gateway whose game has no other node.
+    fn command(&self) -> Command {
         let args = ["gateway", "surveyor", "--vehicle", "blue_one", "--no-record", "--game", self.game, "--link"];
-        args.iter().map(|arg| (*arg).to_owned()).chain([self.back_seat.clone()]).collect()
+        squall(&[&args[..], &[&self.link]].concat())
     }
 
-    /// Runs an operator's command on the gateway's machine.
     fn tell(&self, command: &str) -> String {
-        let mut tell = squall(&["gateway", "tell", "blue_one", command, "--game", self.game]);
-        let output = tell.env_remove(TOKEN_VARIABLE).output().expect("the program starts");
-        let told = format!("{}{}", stdout(&output), stderr(&output));
-        assert!(!told.contains('\x1b') && !told.contains("u001b"), "colours where there is no terminal: {told}");
-        told
+        tell(self.game, command)
     }
 
     fn gateway(&self) -> Process {
-        let args = self.gateway_args();
-        let mut command = squall(&args.iter().map(String::as_str).collect::<Vec<_>>());
+        let mut command = self.command();
         command.env_remove(TOKEN_VARIABLE).stdout(Stdio::null()).stderr(Stdio::null());
         Process::start(command)
     }
+}
+
+/// Runs an operator's command on the machine of a gateway in this game.
+pub(crate) fn tell(game: &str, command: &str) -> String {
+    let mut tell = squall(&["gateway", "tell", "blue_one", command, "--game", game]);
+    let output = tell.env_remove(TOKEN_VARIABLE).output().expect("the program starts");
+    let told = format!("{}{}", stdout(&output), stderr(&output));
+    assert!(!told.contains('\x1b') && !told.contains("u001b"), "colours where there is no terminal: {told}");
+    told
 }
 
 #[test]
@@ -108,14 +94,13 @@ fn a_gateway_stops_its_boat_and_serves_operators_before_there_is_a_game() {
     let released = afloat.tell("release");
     assert!(released.contains("safed"), "by the gateway's own token: {released}");
     // A second gateway on this machine is refused without any effect on the boat.
-    let second = afloat.gateway_args();
-    let output = run(&second.iter().map(String::as_str).collect::<Vec<_>>());
+    let output = afloat.command().output().expect("the program starts");
     assert!(!output.status.success());
     let said = stderr(&output);
     assert!(said.contains("another gateway on this machine has the link"), "{said}");
     assert!(afloat.tell("status").contains("safed"));
     // A stop over the link goes to the gateway that holds it.
-    let output = run(&["gateway", "stop", &afloat.back_seat]);
+    let output = run(&["gateway", "stop", &afloat.link]);
     assert!(output.status.success() && stdout(&output).contains("the gateway of blue_one has the link: e-stopped"));
     gateway.signal("TERM");
     assert!(gateway.wait().success());
@@ -125,7 +110,7 @@ fn a_gateway_stops_its_boat_and_serves_operators_before_there_is_a_game() {
 fn a_boat_can_be_stopped_over_its_link_with_nothing_else_running() {
     let afloat = Afloat::start("alone-stop");
     afloat.set_going();
-    let output = run(&["gateway", "stop", &afloat.back_seat]);
+    let output = run(&["gateway", "stop", &afloat.link]);
     assert!(output.status.success(), "{}", stderr(&output));
     assert!(stdout(&output).contains("the boat reports standby"), "{}", stdout(&output));
     afloat.stops();
@@ -137,8 +122,9 @@ fn a_boat_can_be_stopped_over_its_link_with_nothing_else_running() {
 #[test]
 fn enter_in_the_gateways_own_terminal_triggers_an_e_stop() {
     let afloat = Afloat::start("alone-key");
-    let words: Vec<String> =
-        std::iter::once(env!("CARGO_BIN_EXE_squall").to_owned()).chain(afloat.gateway_args()).collect();
+    let gateway = afloat.command();
+    let words = std::iter::once(gateway.get_program()).chain(gateway.get_args());
+    let words: Vec<&str> = words.map(|word| word.to_str().expect("UTF-8")).collect();
     // Give it a terminal.
     let mut command = Command::new("script");
     command.args(["-qfec", &words.join(" "), "/dev/null"]).current_dir(env!("CARGO_MANIFEST_DIR"));
@@ -152,7 +138,7 @@ fn enter_in_the_gateways_own_terminal_triggers_an_e_stop() {
     stdin.write_all(b"\n").expect("a key");
     stdin.flush().expect("a key");
     wait_within(Duration::from_secs(2), "it is e-stopped", || afloat.tell("status").contains("e-stopped"));
-    drop((terminal, afloat.water));
+    drop(terminal);
 }
 
 /// The guard's time limit.

@@ -13,6 +13,7 @@ use bus::{Bus, Declaration, Watched};
 use messages::external::{GatewayStatus, OperatorCommand, OperatorReply};
 use messages::{Frame, topic};
 use primitives::codec;
+use serde_json::Value;
 use std::io::{Read, Write};
 use std::net::{TcpListener, TcpStream};
 use std::process::{Command, Stdio};
@@ -30,18 +31,57 @@ const LAG: Duration = Duration::from_millis(4600);
 /// The first sentences to a boat: thrust zero, then standby.
 const STANDBY: &str = "$PSEAC,T,0,0,0,*0C\r\n$PSEAC,L,0,0,0,*14\r\n";
 
-/// All processes of the loop.
-pub(crate) struct Loop {
-    pub(crate) sim: Sim,
-    pub(crate) agents: Process,
-    pub(crate) gateway: Process,
-    emulator: Process,
-    pub(crate) proxy: Proxy,
+/// Water with one emulated boat.
+pub(crate) struct Water {
+    _emulator: Process,
+    _sim: Sim,
+    /// The addresses for a back seat and, if there is one, for a primary operator.
+    pub(crate) back_seat: String,
     primary: Option<String>,
-    water: Sim,
     /// The newest true state of the water.
     frame: Arc<Watched<Frame>>,
     _observer: (Bus, Declaration),
+}
+
+impl Water {
+    /// Starts a boat at rest, with these options of its emulator.
+    pub(crate) fn start(more: &[&str]) -> Water {
+        let sim = Sim::start("real_attacker", &["--pace", "realtime", "--afloat", "blue_one"]);
+        let listen = ["gateway", "emulate", "--vehicle", "blue_one", "--listen", "tcp://127.0.0.1:0"];
+        let mut command = sim.squall(&[&listen[..], more].concat());
+        command.stdout(Stdio::piped()).stderr(Stdio::null());
+        let mut emulator = Process::start(command);
+        let mut lines = emulator.lines();
+        let mut reach = |what: &str| {
+            let line = lines.find(|line| line.starts_with(what)).expect("it prints where it listens");
+            line.rsplit("tcp://").next().expect("an address").trim().to_owned()
+        };
+        let back_seat = reach("back seat at ");
+        let primary = more.contains(&"--primary").then(|| reach("primary operator at "));
+        std::thread::spawn(move || lines.for_each(drop));
+        let bus = sim.bus();
+        let key = topic::frame(&sim.name());
+        let (frame, frames) = newest(&bus, key, |bytes| codec::decode(bytes).expect("a frame"));
+        Water { _emulator: emulator, _sim: sim, back_seat, primary, frame, _observer: (bus, frames) }
+    }
+
+    /// The boat's speed, m/s, and whether its thrusters are stopped.
+    pub(crate) fn boat(&self) -> (f64, bool) {
+        let boat = self.frame.visit(|frame| frame.vehicles.first().cloned());
+        boat.map_or((0.0, true), |boat| {
+            let still = boat.port_newton.abs() < STILL_NEWTON && boat.starboard_newton.abs() < STILL_NEWTON;
+            (boat.nav.surge_m_s, still)
+        })
+    }
+}
+
+/// All processes of the loop.
+pub(crate) struct Loop {
+    pub(crate) sim: Sim,
+    agents: Process,
+    gateway: Process,
+    pub(crate) proxy: Proxy,
+    water: Water,
 }
 
 impl Loop {
@@ -60,24 +100,16 @@ impl Loop {
     /// Starts a boat that need not be under way.
     pub(crate) fn begin(emulator: &[&str], gateway: &[&str]) -> Loop {
         let sim = Sim::start("real_attacker", &["--pace", "realtime"]);
-        let water = Sim::start("real_attacker", &["--pace", "realtime", "--afloat", "blue_one"]);
-        let (emulator, back_seat, primary) = start_emulator(&water, emulator);
-        let proxy = Proxy::start(back_seat);
+        let water = Water::start(emulator);
+        let proxy = Proxy::start(water.back_seat.clone());
         let gateway = start_gateway(&sim, proxy.port, gateway);
         let agents = sim.agent(&["blue_one", "red_one"]);
-        let bus = water.bus();
-        let key = topic::frame(&water.name());
-        let (frame, frames) = newest(&bus, key, |bytes| codec::decode(bytes).expect("a frame"));
-        Loop { sim, agents, gateway, emulator, proxy, primary, water, frame, _observer: (bus, frames) }
+        Loop { sim, agents, gateway, proxy, water }
     }
 
     /// The boat's speed, m/s, and whether its thrusters are stopped.
     pub(crate) fn boat(&self) -> (f64, bool) {
-        let boat = self.frame.visit(|frame| frame.vehicles.first().cloned());
-        boat.map_or((0.0, true), |boat| {
-            let still = boat.port_newton.abs() < STILL_NEWTON && boat.starboard_newton.abs() < STILL_NEWTON;
-            (boat.nav.surge_m_s, still)
-        })
+        self.water.boat()
     }
 
     fn wait(&self, limit: Duration, what: &str, is_so: impl Fn((f64, bool)) -> bool) -> Duration {
@@ -129,25 +161,62 @@ impl Loop {
         wait_until("it can be armed", || self.ask(&OperatorCommand::Arm).refused.is_none());
         self.wait(LIMIT, "it sails again", |boat| boat.0 > 0.6);
     }
+
+    /// Ends the gateway: the boat serves one program at a time.
+    pub(crate) fn end_gateway(&mut self) {
+        self.gateway.signal("INT");
+        self.gateway.wait();
+    }
+
+    /// Starts another gateway, with these options.
+    pub(crate) fn restart_gateway(&mut self, more: &[&str]) {
+        self.gateway = start_gateway(&self.sim, self.proxy.port, more);
+        self.await_gateway();
+    }
+
+    pub(crate) fn await_gateway(&self) {
+        wait_until("it is in the game", || self.try_ask(&OperatorCommand::Status).is_some());
+    }
+
+    /// Checks that a killed agent stops the boat, and that only an operator arms it again.
+    pub(crate) fn outlive_an_agent(&mut self) {
+        self.agents.kill();
+        self.stops_within(Duration::from_secs(1));
+        self.wait_for_state("no fresh order");
+        self.agents = self.sim.agent(&["blue_one", "red_one"]);
+        self.sim.wait_for_event("agent_back", "blue_one");
+        self.stays_at_rest();
+        self.arm();
+    }
+
+    /// Checks that the guard outlives a killed gateway and stops the boat.
+    pub(crate) fn outlive_a_gateway(&mut self, more: &[&str]) {
+        self.gateway.kill();
+        self.stops_within(Duration::from_millis(500));
+        self.restart_gateway(more);
+        self.wait_for_state("safed");
+        self.arm();
+    }
+
+    /// Checks that the guard replaces a suspended gateway until an operator arms it again.
+    pub(crate) fn suspend_the_gateway(&self) {
+        self.gateway.signal("STOP");
+        self.stops_within(Duration::from_millis(500));
+        self.gateway.signal("CONT");
+        wait_until("it says what happened", || !self.status().failsafes.is_empty());
+        let failsafes = self.status().failsafes;
+        assert!(failsafes[0].cause.contains("the gateway hung for"), "{failsafes:?}");
+        self.stays_at_rest();
+        self.arm();
+    }
+
+    fn stays_at_rest(&self) {
+        std::thread::sleep(Duration::from_secs(1));
+        assert!(self.boat().1, "it does not go on by itself");
+    }
 }
 
-fn start_emulator(water: &Sim, more: &[&str]) -> (Process, String, Option<String>) {
-    let listen = ["gateway", "emulate", "--vehicle", "blue_one", "--listen", "tcp://127.0.0.1:0"];
-    let mut command = water.squall(&[&listen[..], more].concat());
-    command.stdout(Stdio::piped()).stderr(Stdio::null());
-    let mut process = Process::start(command);
-    let mut lines = process.lines();
-    let mut reach = |what: &str| {
-        let line = lines.find(|line| line.starts_with(what)).expect("it prints where it listens");
-        line.rsplit("tcp://").next().expect("an address").to_owned()
-    };
-    let back_seat = reach("back seat at ");
-    let primary = more.contains(&"--primary").then(|| reach("primary operator at "));
-    std::thread::spawn(move || lines.for_each(drop));
-    (process, back_seat, primary)
-}
-
-pub(crate) fn start_gateway(sim: &Sim, port: u16, more: &[&str]) -> Process {
+fn start_gateway(sim: &Sim, port: u16, more: &[&str]) -> Process {
     let link = format!("tcp://127.0.0.1:{port}");
     let args = ["gateway", "surveyor", "--vehicle", "blue_one", "--link", &link, "--no-record"];
     sim.quiet(&[&args[..], more].concat())
@@ -155,15 +224,7 @@ pub(crate) fn start_gateway(sim: &Sim, port: u16, more: &[&str]) -> Process {
 
 #[test]
 fn a_killed_agent_stops_the_boat_and_only_an_operator_arms_it_again() {
-    let mut all = Loop::under_way("none");
-    all.agents.kill();
-    all.stops_within(Duration::from_secs(1));
-    all.wait_for_state("no fresh order");
-    all.agents = all.sim.agent(&["blue_one", "red_one"]);
-    all.sim.wait_for_event("agent_back", "blue_one");
-    std::thread::sleep(Duration::from_secs(1));
-    assert!(all.boat().1, "new orders alone do not set it going");
-    all.arm();
+    Loop::under_way("none").outlive_an_agent();
 }
 
 #[test]
@@ -175,27 +236,12 @@ fn a_killed_sim_stops_the_boat_when_its_orders_are_too_old() {
 
 #[test]
 fn a_killed_gateway_is_outlived_by_its_guard_which_stops_the_boat() {
-    let mut all = Loop::under_way("none");
-    all.gateway.kill();
-    all.stops_within(Duration::from_millis(500));
-    all.gateway = start_gateway(&all.sim, all.proxy.port, &[]);
-    wait_until("it is in the game", || all.try_ask(&OperatorCommand::Status).is_some());
-    all.wait_for_state("safed");
-    all.arm();
+    Loop::under_way("none").outlive_a_gateway(&[]);
 }
 
 #[test]
 fn a_suspended_gateway_is_replaced_by_its_guard_until_an_operator_arms_it_again() {
-    let all = Loop::under_way("none");
-    all.gateway.signal("STOP");
-    all.stops_within(Duration::from_millis(500));
-    all.gateway.signal("CONT");
-    wait_until("it says what happened", || !all.status().failsafes.is_empty());
-    let failsafes = all.status().failsafes;
-    assert!(failsafes[0].cause.contains("the gateway hung for"), "{failsafes:?}");
-    std::thread::sleep(Duration::from_secs(1));
-    assert!(all.boat().1, "it does not go on by itself");
-    all.arm();
+    Loop::under_way("none").suspend_the_gateway();
 }
 
 #[test]
@@ -260,7 +306,7 @@ fn gateways_that_could_not_record_begin_no_game() {
     let file = dir.path().join("blue_one.mcap").display().to_string();
     std::fs::write(&file, "of the run before").expect("a file can be written");
     let records = dir.path().display().to_string();
-    let args = ["run", "scenarios/games/mixed_2v2.toml", "--emulate", "--pace", "10x", "--no-record"];
+    let args = ["run", MIXED, "--emulate", "--pace", "10x", "--no-record"];
     let said = refusal_of(&[&args[..], &["--gateway", gateways, "--record-gateways", &records]].concat());
     assert!(said.contains(&format!("cannot record to {file}")) && said.contains("File exists"), "{said}");
 }
@@ -298,7 +344,7 @@ fn a_cut_half_open_or_intermittent_link_leaves_the_boat_at_rest() {
 #[test]
 fn the_primary_operator_and_an_e_stop_stop_the_boat_through_the_whole_loop() {
     let all = Loop::under_way("none");
-    let mut operator = TcpStream::connect(all.primary.as_deref().expect("it listens")).expect("it accepts");
+    let mut operator = TcpStream::connect(all.water.primary.as_deref().expect("it listens")).expect("it accepts");
     operator.write_all(b"$PSEAC,L,0,0,0,*14\r\n").expect("a command");
     all.stops_within(Duration::from_millis(300));
     all.wait_for_state("the primary operator has taken over");
@@ -307,20 +353,45 @@ fn the_primary_operator_and_an_e_stop_stop_the_boat_through_the_whole_loop() {
     all.arm();
     all.e_stop_and_release();
     all.arm();
-    drop((all.emulator, all.water));
+}
+
+/// The games through gateways have this scenario.
+const MIXED: &str = "scenarios/games/mixed_2v2.toml";
+
+/// Plays a game through the gateways of this file and emulated boats: no boat is lost, and the
+/// gateways' recordings are replayed. Returns its result.
+pub(crate) fn emulated_game(gateways: &str) -> Value {
+    let dir = temporary();
+    let records = dir.path().display().to_string();
+    let result =
+        result_of(&[MIXED, "--emulate", "--pace", "10x", "--gateway", gateways, "--record-gateways", &records]);
+    assert_no_boat_was_lost(&result);
+    for name in ["blue_one", "red_one"] {
+        let file = dir.path().join(format!("{name}.mcap")).display().to_string();
+        let output = run(&["gateway", "replay", &file]);
+        let printed = stdout(&output);
+        assert!(output.status.success() && printed.contains("the recording, byte for byte"), "{printed}");
+    }
+    result
+}
+
+pub(crate) fn assert_no_boat_was_lost(result: &Value) {
+    let events = result["events"].as_array().expect("events");
+    for bad in ["nav_lost", "agent_lost", "quarantined"] {
+        assert!(!events.iter().any(|event| event["event"] == bad), "{bad}: {events:?}");
+    }
+}
+
+/// The sum of a count of all teams.
+pub(crate) fn count(result: &Value, what: &str) -> u64 {
+    let teams = result["counts"]["teams"].as_object().expect("teams");
+    teams.values().map(|counts| counts[what].as_u64().expect("a count")).sum()
 }
 
 #[test]
 fn a_game_through_gateways_and_emulated_boats_is_like_one_without() {
-    let dir = temporary();
-    let (game, gateways) = ("scenarios/games/mixed_2v2.toml", "scenarios/gateways/emulated.toml");
-    let records = dir.path().display().to_string();
-    let looped = result_of(&[game, "--emulate", "--pace", "10x", "--gateway", gateways, "--record-gateways", &records]);
-    let pure = result_of(&[game, "--rehearse", "--in-process"]);
-    let count = |result: &serde_json::Value, what: &str| -> u64 {
-        let teams = result["counts"]["teams"].as_object().expect("teams");
-        teams.values().map(|counts| counts[what].as_u64().expect("a count")).sum()
-    };
+    let looped = emulated_game("scenarios/gateways/emulated.toml");
+    let pure = result_of(&[MIXED, "--rehearse", "--in-process"]);
     for what in ["grabs", "tags"] {
         let (got, want) = (count(&looped, what), count(&pure, what));
         assert!(
@@ -328,15 +399,5 @@ fn a_game_through_gateways_and_emulated_boats_is_like_one_without() {
             "{what}: {got} through gateways, {want} without"
         );
     }
-    let events = looped["events"].as_array().expect("events");
-    for bad in ["nav_lost", "agent_lost", "quarantined"] {
-        assert!(!events.iter().any(|event| event["event"] == bad), "{bad}: {events:?}");
-    }
     assert_eq!(looped["duration_s"], pure["duration_s"]);
-    for name in ["blue_one", "red_one"] {
-        let file = dir.path().join(format!("{name}.mcap")).display().to_string();
-        let output = run(&["gateway", "replay", &file]);
-        let printed = stdout(&output);
-        assert!(output.status.success() && printed.contains("the recording, byte for byte"), "{printed}");
-    }
 }

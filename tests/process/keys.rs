@@ -1,5 +1,6 @@
 //! Games with keys: the same game as without; nodes with the wrong keys get an error that says so.
 
+use crate::gateway::assert_no_boat_was_lost;
 use crate::support::{
     FOUR, LIMIT, Process, Sim, free_endpoint, game_itself, own, result_of, run, squall, stderr, stdout, temporary,
     wait_until,
@@ -60,11 +61,7 @@ fn sixteen_agents_with_keys_play_the_game_in_one_process() {
 fn a_real_boat_plays_in_a_game_with_keys() {
     let (_dir, folder) = keys();
     let game = [&own("mixed_30s"), "--pace", "10x", "--emulate", "--keys", text(&folder)];
-    let result = result_of(&game);
-    let events = result["events"].as_array().expect("a list");
-    for bad in ["nav_lost", "agent_lost", "quarantined"] {
-        assert!(!events.iter().any(|event| event["event"] == bad), "{bad}: {events:?}");
-    }
+    assert_no_boat_was_lost(&result_of(&game));
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Payloads behind a boat's gateway: traffic, recording, and the priority of the boat.
 
-use crate::boat_alone::Wire;
+use crate::boat_alone::{Wire, tell};
 use crate::fake_payload::{FakePayload, VALUES};
 use crate::support::{LIMIT, Process, run, squall, stderr, stdout, temporary, wait_until, wait_within};
 use bus::token::TOKEN_VARIABLE;
@@ -67,9 +67,7 @@ impl Gateway {
 
     /// Runs an operator's command.
     fn tell(&self, command: &str) -> String {
-        let mut tell = squall(&["gateway", "tell", "blue_one", command, "--game", self.game]);
-        let output = tell.env_remove(TOKEN_VARIABLE).output().expect("the program starts");
-        format!("{}{}", stdout(&output), stderr(&output))
+        tell(self.game, command)
     }
 
     fn end(&mut self) {

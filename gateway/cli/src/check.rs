@@ -65,13 +65,14 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let take = move |event| drop(sender.try_send(event));
     let link = Link::open(&address, LinkSettings { silence: None, ..LinkSettings::default() }, take)?;
     let for_s = args.for_s.unwrap_or(LISTEN_S[usize::from(args.vehicle.is_some())]);
-    let mut listener = Listener::new((link, events), stop, &gateway);
     let sends =
         if gateway.protocol == BoatProtocol::Mavlink { "nothing but requests for telemetry" } else { "nothing" };
-    listener.hello = format!("listening for {for_s} s, sending {sends}");
+    let hello = format!("listening for {for_s} s, sending {sends}");
+    let (check, start) = (SensorCheck::new(&gateway), bus::clock::now());
+    let mut listener = Listener { check, link, events, start, stop, reason: None, hello };
     listener.listen(&mut |listener| listener.now().as_s() >= for_s);
     let check = &listener.check;
-    if check.received().is_empty() {
+    if check.received.is_empty() {
         let reason = listener.reason.clone().unwrap_or_else(|| check.unread());
         bail!("received nothing readable from {address} within {for_s} s: {reason} ({})", counted(check));
     }
@@ -131,11 +132,6 @@ pub(super) struct Listener {
 }
 
 impl Listener {
-    fn new((link, events): (Link, Receiver<LinkEvent>), stop: Arc<AtomicBool>, gateway: &Gateway) -> Listener {
-        let (start, reason) = (bus::clock::now(), None);
-        Listener { check: SensorCheck::new(gateway), link, events, start, stop, reason, hello: String::new() }
-    }
-
     /// Sends the queries for data that the boat sends only on request.
     fn ask(&mut self) {
         let (now, mut bytes) = (self.now(), vec![]);
@@ -186,9 +182,9 @@ fn counted(check: &SensorCheck) -> String {
 }
 
 fn report(check: &SensorCheck, host: HostTime) -> String {
-    let width = check.received().keys().map(String::len).max().unwrap_or(0).max(10);
+    let width = check.received.keys().map(String::len).max().unwrap_or(0).max(10);
     let mut lines = vec![format!("{:<width$} {:>7} {:>8}  last", "name", "count", "1/s")];
-    for (name, received) in check.received() {
+    for (name, received) in &check.received {
         let rate = received.rate_hz().map_or("-".to_owned(), |rate| format!("{rate:.2}"));
         let note = if received.unreadable > 0 { "  (not read)" } else { "" };
         let last: String = received.last.chars().take(LAST_MAX).collect();

@@ -1,7 +1,7 @@
 //! `gateway console`: operator commands, line by line, over connections that stay open.
 
 use super::log_line::full;
-use super::tell::{ALL, CommandArg, Port, Words, release_all, to_boat};
+use super::tell::{ALL, CommandArg, Port, Words, real_boats, release_all, to_boat};
 use anyhow::{Result, bail};
 use bus::game_search::find_game;
 use bus::stop::{StopClient, StopCommand, StopNews, StopOrders};
@@ -178,8 +178,7 @@ impl Console {
         std::thread::spawn(move || {
             let ports = console.ports();
             let session = console.session.visit(|session| session.clone());
-            let reply = to_boat(&ports, session.as_ref().map(|(bus, game)| (bus, game)), &name, &command);
-            match reply {
+            match to_boat(&ports, session.as_ref(), &name, &command) {
                 Ok(OperatorReply { refused: None, status }) if words.command == CommandArg::Status => {
                     terminal::show(&full(&status));
                 }
@@ -197,7 +196,7 @@ impl Console {
         let (console, asked) = (self.clone(), clock::now());
         std::thread::spawn(move || {
             let session = console.session.visit(|session| session.clone());
-            let failed = release_all(&console.ports(), session.as_ref().map(|(bus, game)| (bus, game)));
+            let failed = release_all(&console.ports(), session.as_ref());
             failed.iter().for_each(|failed| terminal::complain(failed));
             if failed.is_empty() {
                 tell(ALL, "released", asked);
@@ -217,11 +216,8 @@ impl Console {
             self.read_registry();
             match find_game(place, self.leaf.game.as_ref(), &mut session) {
                 Ok((bus, game, info)) => {
-                    let scenario = &info.scenario;
-                    let boats = scenario.externals().map(|boat| scenario.vehicles[boat.index()].name.clone());
-                    let boats: Vec<String> = boats.collect();
                     said.clear();
-                    match self.stay(&bus, &game, &boats) {
+                    match self.stay(&bus, &game, &real_boats(&info.scenario)) {
                         Ok(()) if self.is_over.load(Ordering::Relaxed) => {}
                         Ok(()) => terminal::remark(&format!(
                             "lost the connection to game {}; searching for it again",

@@ -2,8 +2,7 @@
 
 use anyhow::{Context, Result};
 use command_line::{program, terminal};
-use gateway::node::GuardCommand;
-use std::process::ExitCode;
+use std::process::{Command, ExitCode};
 
 pub(crate) fn run() -> Result<ExitCode> {
     // A signal that ends the gateway must not end its guard; the guard exits by itself soon after.
@@ -13,9 +12,9 @@ pub(crate) fn run() -> Result<ExitCode> {
 }
 
 /// The command line that starts the guard: this program with its `guard` subcommand.
-pub(crate) fn own_command() -> Result<GuardCommand> {
-    let program = std::env::current_exe().context("cannot find this program's executable")?;
+pub(crate) fn own_command() -> Result<Command> {
+    let mut command = Command::new(std::env::current_exe().context("cannot find this program's executable")?);
     // The first word is the program itself.
-    let words = program::gateway().split_whitespace().skip(1).chain(["guard"]);
-    Ok(GuardCommand { program, args: words.map(str::to_owned).collect() })
+    command.args(program::gateway().split_whitespace().skip(1)).arg("guard");
+    Ok(command)
 }

@@ -15,10 +15,11 @@ mod surveyor;
 mod swing_guide;
 mod tell;
 
+pub use mission_file::read_mission;
+
 use anyhow::{Context, Result};
 use clap::Subcommand;
 use gateway::config::Gateway;
-use messages::external::Mission;
 use scenario::Kind;
 use std::path::Path;
 use std::process::ExitCode;
@@ -53,11 +54,6 @@ fn gateway_file(path: Option<&Path>) -> Result<Gateway> {
         scenario::load_file::<Gateway>(path).with_context(|| format!("cannot use the gateway file {}", path.display()))
     };
     path.map_or_else(|| Ok(gateway::config::default_gateway()), load)
-}
-
-/// Parses the text of a mission file; the error describes the mistake.
-pub fn read_mission(text: &str) -> Result<Mission, String> {
-    mission_file::parse(text)
 }
 
 /// Runs the command. The gateway's recording names the program's `commit`.

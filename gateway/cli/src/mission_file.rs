@@ -19,7 +19,7 @@ pub(super) fn read(path: &Path) -> Result<Mission> {
 }
 
 /// Parses the text of a mission file; the error names the line and the mistake.
-pub(super) fn parse(text: &str) -> Result<Mission, String> {
+pub fn read_mission(text: &str) -> Result<Mission, String> {
     mission_of(text).map_err(|(line, why)| line.map_or(why.clone(), |line| format!("line {line}: {why}")))
 }
 

@@ -7,7 +7,7 @@ use bus::{Registration, Token};
 use command_line::leaf_args::LeafArgs;
 use command_line::number::{address, seconds};
 use command_line::{program, stop};
-use gateway::bridge::Preflight;
+use gateway::bridge::{Plan, Preflight};
 use gateway::config::Gateway;
 use gateway::link::LinkAddress;
 use gateway::node::{NodeEvent, Outside, Settings, on_enter};
@@ -93,13 +93,9 @@ pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
     }
     let game = args.leaf.game.as_ref().map(|game| game.as_str().to_owned());
     let settings = Settings {
+        plan: Plan { arms_itself: args.arm, dry_run: args.dry_run, preflight, ..Plan::new(&args.vehicle, gateway) },
         game: args.leaf.game.clone(),
         place: args.leaf.place()?,
-        vehicle: args.vehicle.clone(),
-        gateway,
-        arms_itself: args.arm,
-        dry_run: args.dry_run,
-        preflight,
         at_game_pace: args.at_game_pace,
         commit,
         wait: args.wait_s.map_or(Duration::MAX, Duration::from_secs_f64),
@@ -140,7 +136,7 @@ pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
         NodeEvent::Status(status) => log.status(status),
         NodeEvent::Ended(status) => last = format!("\n{}", full(status)),
     };
-    let served = gateway::node::serve(&settings, record, &outside, &mut notify);
+    let served = gateway::node::serve(&settings, record, outside, &mut notify);
     drop(registration);
     log.end(last);
     served.with_context(|| format!("the gateway of {}", args.vehicle))?;

@@ -92,7 +92,7 @@ fn swing(guide: &Guide, listener: &mut Listener, gateway: &Gateway) -> Check {
     let what =
         "Turn the boat slowly through two full circles; if it reports no true heading, drive them at 1 m/s or more.";
     guide.until_enter(what, listener, &mut |listener| {
-        if let (Some(compass_deg), Some(true_deg)) = (listener.check.compass_deg(), listener.check.true_deg()) {
+        if let (Some(compass_deg), Some(true_deg)) = (listener.check.compass_deg, listener.check.true_deg()) {
             swing.add_reading(compass_deg.to_radians() + declination_rad, true_deg.to_radians());
         }
     });
@@ -111,7 +111,7 @@ fn swing(guide: &Guide, listener: &mut Listener, gateway: &Gateway) -> Check {
 
 /// The declination to add to the compass, rad.
 fn declination_rad(listener: &Listener, gateway: &Gateway) -> Result<f64, String> {
-    match (gateway.compass, gateway.declination_rad, listener.check.fixes().last()) {
+    match (gateway.compass, gateway.declination_rad, listener.check.fixes.last()) {
         (CompassFrame::True, ..) => Ok(0.0),
         (_, Some(declination_rad), _) => Ok(declination_rad),
         (_, None, None) => Err("the declination is unknown without a position; set declination_deg".to_owned()),
@@ -134,7 +134,7 @@ fn propellers(guide: &Guide, listener: &mut Listener) -> Check {
     let (mut tells, mut by_remote, mut seen) = (false, false, [false; 2]);
     let what = "Run both propellers ahead and astern by remote control, 20 per cent for two seconds each.";
     guide.until_enter(what, listener, &mut |listener| {
-        let Some(control) = listener.check.control() else { return };
+        let Some(control) = listener.check.control else { return };
         tells |= control.operator.is_some();
         by_remote |= control.operator == Some(Operator::Rc);
         let thrust_pct = control.shown.thrust.unwrap_or(0.0);

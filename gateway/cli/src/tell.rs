@@ -16,6 +16,7 @@ use command_line::terminal;
 use messages::Control;
 use messages::external::{BoatMode, FleetCommand, GatewayCommand, OperatorCommand, OperatorReply};
 use messages::topic::{self, GameName};
+use scenario::Scenario;
 use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -216,7 +217,7 @@ fn ask(bus: &Bus, game: &GameName, vehicle: &str, command: &OperatorCommand) -> 
 /// game's network.
 pub(super) fn to_boat(
     ports: &[Port],
-    game: Option<(&Bus, &GameName)>,
+    game: Option<&(Bus, GameName)>,
     vehicle: &str,
     command: &OperatorCommand,
 ) -> Result<OperatorReply> {
@@ -231,7 +232,7 @@ pub(super) fn to_boat(
 }
 
 /// Ends an E-stop of all boats in the game and at these ports; returns the failures.
-pub(super) fn release_all(ports: &[Port], game: Option<(&Bus, &GameName)>) -> Vec<String> {
+pub(super) fn release_all(ports: &[Port], game: Option<&(Bus, GameName)>) -> Vec<String> {
     std::thread::scope(|scope| {
         let release = |port: &Port| match port.ask(&GatewayCommand::Fleet(FleetCommand::Release)) {
             Ok(OperatorReply { refused: Some(reason), status }) => {
@@ -294,11 +295,15 @@ fn tell_stop(args: &Args, command: StopCommand) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
+/// The names of the real boats in a game.
+pub(super) fn real_boats(scenario: &Scenario) -> Vec<String> {
+    scenario.externals().map(|boat| scenario.vehicles[boat.index()].name.clone()).collect()
+}
+
 /// Adds the game's topics to the paths if the game has this boat.
 fn join(leaf: &LeafArgs, target: Option<&str>, client: &StopClient) -> Result<()> {
     let observer = Observer::connect(leaf)?;
-    let scenario = &observer.info.scenario;
-    let boats: Vec<String> = scenario.externals().map(|boat| scenario.vehicles[boat.index()].name.clone()).collect();
+    let boats = real_boats(&observer.info.scenario);
     if let Some(target) = target {
         observer.vehicle(target)?;
         if !boats.iter().any(|boat| boat == target) {
@@ -316,6 +321,12 @@ enum Outcome {
     NoGame(Error),
     Reply(Box<OperatorReply>),
     Failed(Error),
+}
+
+impl Outcome {
+    fn of(reply: Result<OperatorReply, impl Into<Error>>) -> Outcome {
+        reply.map_or_else(|e| Outcome::Failed(e.into()), |reply| Outcome::Reply(Box::new(reply)))
+    }
 }
 
 /// Sends a command to all boats at once: over the game's network and straight to every known
@@ -338,9 +349,7 @@ fn tell_all(args: &Args) -> Result<ExitCode> {
             let name = port.vehicle.clone().unwrap_or_default();
             let status = GatewayCommand::Boat { name, command: OperatorCommand::Status };
             let reply = port.ask(&fleet.map_or(status, GatewayCommand::Fleet));
-            drop(
-                sender.send(reply.map_or_else(|e| Outcome::Failed(e.into()), |reply| Outcome::Reply(Box::new(reply)))),
-            );
+            drop(sender.send(Outcome::of(reply)));
         });
     }
     let leaf = args.leaf.clone();
@@ -388,12 +397,8 @@ fn tell_game(leaf: &LeafArgs, control: Option<Control>, known: &[String], outcom
             Err(error) => say(Outcome::Failed(error.into())),
         }
     }
-    let scenario = &observer.info.scenario;
-    for vehicle in scenario.externals().map(|vehicle| &scenario.vehicles[vehicle.index()].name) {
-        if !known.contains(vehicle) {
-            let reply = ask(&observer.bus, &observer.game, vehicle, &OperatorCommand::Status);
-            say(reply.map_or_else(Outcome::Failed, |reply| Outcome::Reply(Box::new(reply))));
-        }
+    for vehicle in real_boats(&observer.info.scenario).iter().filter(|vehicle| !known.contains(vehicle)) {
+        say(Outcome::of(ask(&observer.bus, &observer.game, vehicle, &OperatorCommand::Status)));
     }
     observer.bus.close();
 }

@@ -2,6 +2,7 @@
 
 #![allow(clippy::disallowed_methods, reason = "processes are waited for by the clock, with a limit")]
 
+use bus::Token;
 use gateway::link::{Link, LinkAddress, LinkEvent, LinkSettings};
 use gateway::nmea::{Gga, Sentence, date_and_time};
 use primitives::LatLon;
@@ -150,19 +151,8 @@ fn a_boat_is_checked_by_a_gateway_file_inside_of_the_program() {
 
 #[test]
 fn a_full_disk_is_reported_at_once_and_at_the_end() {
-    let mut state = 1_u64;
-    let noise = move || {
-        // Without compression of the recording: numbers that do not repeat.
-        let mut next = || {
-            state ^= state << 13;
-            state ^= state >> 7;
-            state ^= state << 17;
-            state
-        };
-        (0..1000).map(|_| format!("{:x}", next())).collect::<String>().into_bytes()
-    };
-    let noise = std::sync::Mutex::new(noise);
-    let boat = Boat::sending(move || (noise.lock().expect("one sender"))());
+    // Numbers that do not repeat, because the recording is compressed.
+    let boat = Boat::sending(|| (0..250).map(|_| Token::random().hex()).collect::<String>().into_bytes());
     let (folder, link) = (Folder::new(), boat.link.reach());
     let gateway = folder.command(&["surveyor", "--vehicle", "blue_one", "--game", "nowhere", "--link", &link]);
     // A file of 200 kB is this process's full disk.

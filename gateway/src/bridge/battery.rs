@@ -24,11 +24,6 @@ impl BatteryLog {
         BatteryLog { watch, volts: None, low_since: None, silence: (now, false) }
     }
 
-    /// Clears everything: another boat may be on the link now.
-    pub(super) fn forget(&mut self, now: SimTime) {
-        *self = BatteryLog::new(self.watch, now);
-    }
-
     pub(super) fn observe(&mut self, now: SimTime, volts: Option<f64>) {
         // Any battery sentence ends the silence, even without a voltage: the warning is about a
         // boat that does not report.

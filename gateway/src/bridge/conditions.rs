@@ -33,7 +33,7 @@ impl Bridge {
         Conditions {
             link: self.link_up,
             hung_s: self.hung_s,
-            control: self.control.control(now),
+            control: self.control.fault(now),
             nav: nav_fault,
             thrust: thrust_fault,
             recovery_point,

@@ -4,27 +4,20 @@ use super::command_echo::CommandEcho;
 use crate::config::ControlWatch;
 use crate::nmea::{Mode, Operator};
 use crate::protocol::{ControlReport, Shown};
-use crate::supervisor::Control;
+use crate::supervisor::ControlFault;
 use primitives::SimTime;
-
-/// The last control state that the boat reported.
-#[derive(Clone, Copy, Debug)]
-struct Report {
-    at: SimTime,
-    mode: Mode,
-    operator: Option<Operator>,
-}
 
 /// The boat's last control report, and the one expected of it.
 #[derive(Clone, Debug)]
 pub(super) struct ControlLog {
     watch: ControlWatch,
-    reported: Option<Report>,
+    /// The last control state that the boat reported, and when.
+    reported: Option<(SimTime, ControlReport)>,
     /// The mode last sent to the boat.
     sent: Option<Mode>,
     /// Start of the period in which it has reported a different mode.
     mismatch_since: Option<SimTime>,
-    echo: CommandEcho,
+    pub(super) echo: CommandEcho,
 }
 
 impl ControlLog {
@@ -32,14 +25,9 @@ impl ControlLog {
         ControlLog { watch, reported: None, sent: None, mismatch_since: None, echo: CommandEcho::new(watch) }
     }
 
-    /// Clears everything: another boat may be on the link now.
-    pub(super) fn forget(&mut self) {
-        *self = ControlLog::new(self.watch);
-    }
-
     pub(super) fn observe(&mut self, now: SimTime, report: &ControlReport) {
         let ControlReport { shown, operator } = *report;
-        self.reported = Some(Report { at: now, mode: shown.mode, operator });
+        self.reported = Some((now, *report));
         if operator.is_none_or(|operator| operator == Operator::Secondary) {
             self.echo.observe(now, shown);
         } else {
@@ -64,54 +52,48 @@ impl ControlLog {
         }
     }
 
-    /// Records that another sender was heard commanding the boat.
-    pub(super) fn note_foreign(&mut self, now: SimTime) {
-        self.echo.note_foreign(now);
-    }
-
     /// The mode that the boat reports.
     pub(super) fn mode(&self) -> Option<Mode> {
-        self.reported.map(|report| report.mode)
+        self.reported.map(|(_, report)| report.shown.mode)
     }
 
     /// Age of the boat's last report, s.
     pub(super) fn age_s(&self, now: SimTime) -> Option<f64> {
-        self.reported.map(|report| (now - report.at).as_s())
+        self.reported.map(|(at, _)| (now - at).as_s())
     }
 
     /// The operator that the boat reports.
     pub(super) fn operator(&self) -> Option<Operator> {
-        self.reported.and_then(|report| report.operator)
+        self.reported.and_then(|(_, report)| report.operator)
     }
 
     /// The mode that the boat has reported, instead of the mode sent, for longer than `echo_s`.
     pub(super) fn mode_mismatch(&self, now: SimTime) -> Option<Mode> {
         let since = self.mismatch_since?;
-        let report = self.reported?;
+        let (at, report) = self.reported?;
         // A report from before the command says nothing about it.
-        ((now - since).as_s() > self.watch.echo_s && report.at > since).then_some(report.mode)
+        ((now - since).as_s() > self.watch.echo_s && at > since).then_some(report.shown.mode)
     }
 
-    /// Who commands the boat now, according to its reports.
-    pub(super) fn control(&self, now: SimTime) -> Control {
+    /// Why we do not command the boat now, according to its reports.
+    pub(super) fn fault(&self, now: SimTime) -> Option<ControlFault> {
         // Some boats report no operator. Their owner can declare in the file that the gateway
         // commands them; otherwise silence means that somebody else may.
-        let silent = if self.watch.assumed { Control::Granted } else { Control::Unknown };
-        let Some(report) = self.reported else { return silent };
+        let silent = (!self.watch.assumed).then_some(ControlFault::Unknown);
+        let Some((at, report)) = self.reported else { return silent };
         // The assumption covers a boat that never reports, not one that has stopped reporting.
-        if (now - report.at).as_s() > self.watch.age_max_s {
-            return Control::Unknown;
+        if (now - at).as_s() > self.watch.age_max_s {
+            return Some(ControlFault::Unknown);
         }
         let is_ours = report.operator.map_or(self.watch.assumed, |operator| operator == Operator::Secondary);
         match (report.operator, self.mode_mismatch(now)) {
             // Check foreign orders first: a boat with two masters also disobeys and looks deaf, and
             // the operator must learn that there is another gateway.
-            _ if is_ours && self.echo.is_foreign(now) => Control::Foreign,
-            (_, None) if is_ours && self.echo.is_deaf(now) => Control::Deaf,
-            (Some(Operator::Secondary), None) => Control::Granted,
-            (Some(Operator::Secondary), Some(mode)) => Control::Disobeys(mode.letter()),
-            (Some(other), _) => Control::Other(other.number()),
-            (None, Some(mode)) if self.watch.assumed => Control::Disobeys(mode.letter()),
+            _ if is_ours && self.echo.is_foreign(now) => Some(ControlFault::ForeignOrders),
+            (_, None) if is_ours && self.echo.is_deaf(now) => Some(ControlFault::Deaf),
+            (_, Some(mode)) if is_ours => Some(ControlFault::Disobeyed(mode.letter())),
+            (Some(Operator::Secondary), _) => None,
+            (Some(other), _) => Some(ControlFault::TakenOver(other.number())),
             (None, _) => silent,
         }
     }

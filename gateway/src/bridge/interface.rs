@@ -1,6 +1,6 @@
 //! The interface of a bridge: its inputs and outputs.
 
-use crate::config::{CompassFrame, Gateway};
+use crate::config::Gateway;
 use crate::geofence::Coasting;
 use messages::Order;
 use messages::external::{FleetCommand, OperatorCommand};
@@ -30,6 +30,15 @@ pub struct Plan {
     pub preflight: Preflight,
 }
 
+impl Plan {
+    /// A boat without a site yet, which is armed by an operator and needs no pre-flight check.
+    #[must_use]
+    pub fn new(vehicle: &str, gateway: Gateway) -> Plan {
+        let (vehicle, preflight) = (vehicle.to_owned(), Preflight::NotRequired);
+        Plan { vehicle, gateway, site: None, arms_itself: false, dry_run: false, preflight }
+    }
+}
+
 /// Whether a boat's pre-flight check allows arming.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -47,8 +56,7 @@ pub enum Preflight {
 
 impl Preflight {
     /// What prevents arming, if anything.
-    #[must_use]
-    pub fn missing(&self) -> Option<&String> {
+    pub(crate) fn missing(&self) -> Option<&String> {
         if let Preflight::Missing(why) = self { Some(why) } else { None }
     }
 }
@@ -65,17 +73,6 @@ pub struct Site {
     /// How the boat coasts, if its boat file is known.
     #[serde(default)]
     pub coasting: Option<Coasting>,
-}
-
-impl Site {
-    /// Correction to add to a heading in this compass frame to make it true, rad.
-    #[must_use]
-    pub fn compass_to_true_rad(&self, compass: CompassFrame) -> f64 {
-        match compass {
-            CompassFrame::Magnetic => self.declination_rad,
-            CompassFrame::True => 0.0,
-        }
-    }
 }
 
 /// An input of the bridge.

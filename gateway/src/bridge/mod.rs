@@ -21,7 +21,9 @@ mod stop;
 use crate::nmea::Mode;
 use crate::protocol::{Command, Protocol, Report, UploadStep};
 use crate::set_point::SetPoint;
-use crate::supervisor::{Action, Conditions, Control, OperatorRequest, Refusal, Scope, State, Step, Supervisor, Task};
+use crate::supervisor::{
+    Action, Conditions, ControlFault, OperatorRequest, Refusal, Scope, State, Step, Supervisor, Task,
+};
 pub use interface::{Event, Input, NavOut, Output, Plan, Preflight, Site};
 
 use crate::config::{Gateway, SwitchWord};
@@ -209,11 +211,12 @@ impl Bridge {
         self.link_up = true;
         self.protocol.begin_link();
         self.on_site.iter_mut().for_each(|site| site.estimator.forget());
-        self.control.forget();
+        let Gateway { control, battery, currents, startup_words, .. } = &self.plan.gateway;
+        self.control = ControlLog::new(*control);
         self.clock = ClockWatch::default();
-        self.words = self.plan.gateway.startup_words.clone().into();
-        self.battery.forget(now);
-        self.alarms.forget();
+        self.words = startup_words.clone().into();
+        self.battery = BatteryLog::new(*battery, now);
+        self.alarms = Alarms::new(*currents);
         self.recovery_point = RecoveryPoint::default();
         self.last_sent = None;
         // The boat may still follow its previous master's last command: send zero thrust first,
@@ -235,7 +238,7 @@ impl Bridge {
                 self.recovery_point.observe(&control, self.protocol.is_uploading());
             }
             Report::Station(text) => out.events.push(Event::Warning(text)),
-            Report::ForeignOrder => self.control.note_foreign(now),
+            Report::ForeignOrder => self.control.echo.note_foreign(now),
             Report::Power(power) => {
                 self.battery.observe(now, power.volts);
                 let command = self.last_sent.map(|(_, command)| command);
@@ -291,7 +294,8 @@ impl Bridge {
         };
         match begun {
             Ok(()) => {
-                self.recovery_point.begin(mission);
+                // The upload makes the boat forget its previous point.
+                self.recovery_point = RecoveryPoint::Uploading(mission.erp, false);
                 Some(OperatorRequest::Disarm)
             }
             Err(reason) => {
@@ -302,7 +306,7 @@ impl Bridge {
     }
 
     fn e_stop_in_force(&self) -> String {
-        format!("an E-stop of {} is in force: release it first", self.supervisor.stopped_by())
+        Refusal::EStopped(self.supervisor.stopped_by()).to_string()
     }
 
     /// Advances the supervisor by one step and sends the resulting command.
@@ -312,7 +316,6 @@ impl Bridge {
         let still_stopped =
             matches!(request, Some(OperatorRequest::Release(_))) && self.supervisor.state() == State::EStopped;
         match refusal {
-            Some(Refusal::EStopped) => out.refused = Some(self.e_stop_in_force()),
             Some(refusal) => out.refused = Some(refusal.to_string()),
             None if still_stopped => out.refused = Some(self.e_stop_in_force()),
             None => {}
@@ -324,7 +327,7 @@ impl Bridge {
         if self.supervisor.state() == State::Armed && changed {
             out.events.push(Event::Blocked(conditions.blocked));
         }
-        if matches!(conditions.control, Control::Foreign | Control::Other(_)) {
+        if matches!(conditions.control, Some(ControlFault::ForeignOrders | ControlFault::TakenOver(_))) {
             self.recovery_point = RecoveryPoint::default();
         }
         // Send a change at once, between two repetitions: at 10 Hz a stop would otherwise wait 100
@@ -348,7 +351,7 @@ impl Bridge {
         let state = self.supervisor.state();
         out.events.push(Event::State { from: before.to_string(), to: state.to_string() });
         if let State::Failsafe { cause, .. } = state {
-            self.rearm.note_failsafe(now);
+            self.rearm.failsafe_at = now;
             self.failsafes.push(FailsafeReport { at_s: now.as_s(), cause: cause.to_string() });
             let surplus = self.failsafes.len().saturating_sub(FAILSAFES_MAX);
             self.failsafes.drain(..surplus);
@@ -446,7 +449,8 @@ impl Bridge {
     /// Warns once if a boat that is sent standby reports that it is driven.
     fn watch_standby(&mut self, now: SimTime, action: Action, out: &mut Output) {
         // Under another operator's control this is correct.
-        let ours = matches!(self.control.control(now), Control::Granted | Control::Disobeys(_) | Control::Foreign);
+        let ours =
+            matches!(self.control.fault(now), None | Some(ControlFault::Disobeyed(_) | ControlFault::ForeignOrders));
         let ignored =
             action == Action::Standby && ours && self.control.mode_mismatch(now).is_some_and(Mode::is_set_point);
         if ignored && !self.standby_ignored {

@@ -3,7 +3,7 @@
 
 use super::Site;
 use crate::bow_watch::BowWatch;
-use crate::config::{BoatProtocol, Gateway};
+use crate::config::{BoatProtocol, CompassFrame, Gateway};
 use crate::geodesy::LocalFrame;
 use crate::geofence::GeofenceWatch;
 use crate::nav_estimate::NavEstimator;
@@ -25,10 +25,11 @@ impl OnSite {
     pub(super) fn new(gateway: &Gateway, site: &Site) -> OnSite {
         let Gateway { nav, limits, geofence, halt, compass, protocol, .. } = gateway;
         let frame = LocalFrame::new(site.field.plan.datum);
-        let compass_to_true_rad = match protocol {
-            BoatProtocol::Surveyor => site.compass_to_true_rad(*compass),
+        // Correction to add to a heading of the boat to make it true, rad.
+        let compass_to_true_rad = match (protocol, compass) {
+            (BoatProtocol::Surveyor, CompassFrame::Magnetic) => site.declination_rad,
             // MAVLink boats report and receive true headings.
-            BoatProtocol::Mavlink => 0.0,
+            (BoatProtocol::Surveyor, CompassFrame::True) | (BoatProtocol::Mavlink, _) => 0.0,
         };
         OnSite {
             set_points: SetPointMapper::new(gateway, compass_to_true_rad),
@@ -44,7 +45,7 @@ impl OnSite {
         // The upload rejects invalid positions with a better reason.
         let on_globe = |[lat_deg, lon_deg]: &&[f64; 2]| lat_deg.abs() <= 90.0 && lon_deg.abs() <= 180.0;
         let place = |[lat_deg, lon_deg]: &[f64; 2]| self.estimator.place(*lat_deg, *lon_deg);
-        let area = self.geofence.area();
+        let area = &self.geofence.area;
         let places = std::iter::once(&mission.erp).chain(&mission.waypoints).filter(on_globe);
         if !places.map(place).all(|place| area.contains(place)) {
             return Some("one of its waypoints is outside the geofence".to_owned());
@@ -65,7 +66,7 @@ impl OnSite {
         let from = self.estimator.nav(now).map_or(erp, |(nav, _)| nav.at());
         // From outside the fence the way in is allowed: that is when a recovery point is needed
         // most.
-        self.geofence.area().leads_in(from, erp)
+        self.geofence.area.leads_in(from, erp)
     }
 
     /// A task with its heading converted to the boat's compass frame.
@@ -81,7 +82,7 @@ impl OnSite {
 
     /// The geofence, for display.
     pub(super) fn geofence_report(&self, now: SimTime) -> GeofenceReport {
-        let area = self.geofence.area();
+        let area = &self.geofence.area;
         let nav = self.estimator.nav(now).map(|(nav, _)| nav);
         let (at, yaw_rate_rad_s) = (nav.map(|nav| nav.at()), nav.map_or(0.0, |nav| nav.yaw_rate_rad_s));
         let way = self.geofence.stopping_way(now, (self.estimator.fastest_velocity_m_s(), yaw_rate_rad_s));

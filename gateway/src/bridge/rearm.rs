@@ -10,7 +10,7 @@ const STEADY_S: f64 = 1.0;
 pub(super) struct Rearm {
     /// After a failsafe, the boat may arm itself for this long, s.
     within_s: f64,
-    failsafe_at: SimTime,
+    pub(super) failsafe_at: SimTime,
     /// Since when orders have been fresh without interruption.
     fresh_since: Option<SimTime>,
 }
@@ -18,10 +18,6 @@ pub(super) struct Rearm {
 impl Rearm {
     pub(super) fn new(within_s: f64) -> Rearm {
         Rearm { within_s, failsafe_at: SimTime::LONG_AGO, fresh_since: None }
-    }
-
-    pub(super) fn note_failsafe(&mut self, now: SimTime) {
-        self.failsafe_at = now;
     }
 
     /// Whether the boat may arm itself now.

@@ -3,7 +3,6 @@
 
 use crate::nmea::{Mode, Operator};
 use crate::protocol::ControlReport;
-use messages::external::Mission;
 
 /// A reported home within this distance of our recovery point is the one that we set, degrees: one
 /// metre.
@@ -23,11 +22,6 @@ pub(super) enum RecoveryPoint {
 }
 
 impl RecoveryPoint {
-    /// Starts a mission upload, which makes the boat forget its previous point.
-    pub(super) fn begin(&mut self, mission: &Mission) {
-        *self = RecoveryPoint::Uploading(mission.erp, false);
-    }
-
     /// Checks the boat's report: the point counts as accepted when the boat runs the mission after
     /// it has accepted lines.
     pub(super) fn observe(&mut self, report: &ControlReport, is_uploading: bool) {

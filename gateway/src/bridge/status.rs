@@ -51,8 +51,7 @@ impl Bridge {
     }
 
     /// The supervisor's state as text.
-    #[must_use]
-    pub fn state_in_words(&self) -> String {
+    pub(crate) fn state_in_words(&self) -> String {
         match self.supervisor.state() {
             State::EStopped => format!("e-stopped (by an E-stop of {})", self.supervisor.stopped_by()),
             // Keep the first word of the state: the stop commands and possibly external readers

@@ -2,7 +2,6 @@
 
 use super::Bridge;
 use crate::protocol::Command;
-use crate::supervisor::Control;
 use primitives::SimTime;
 
 impl Bridge {
@@ -32,7 +31,7 @@ impl Bridge {
 
     /// Standby, with the next start-up word if the boat listens to us.
     pub(super) fn standby(&mut self) -> Command {
-        let listens = self.conditions.control == Control::Granted && !self.under_way && !self.plan.dry_run;
+        let listens = self.conditions.control.is_none() && !self.under_way && !self.plan.dry_run;
         // Words such as THR_ON switch outputs of the boat and are sent once. They ride on standby
         // sentences, one at a time, and only while the boat reports us in control, so that a boat
         // that ignores us loses none.

@@ -72,22 +72,19 @@ impl GeofenceArea {
     }
 
     /// Whether a boat may be here.
-    #[must_use]
-    pub fn contains(&self, at: Ned) -> bool {
+    pub(crate) fn contains(&self, at: Ned) -> bool {
         is_within(&self.outline, at) && !self.keep_out.iter().any(|keep_out| is_within(keep_out, at))
     }
 
     /// Whether a boat may be everywhere on the straight line between two points. The ends alone are
     /// not enough: the outline may be concave, and a keep-out may lie between them.
-    #[must_use]
-    pub fn contains_way(&self, from: Ned, to: Ned) -> bool {
+    pub(crate) fn contains_way(&self, from: Ned, to: Ned) -> bool {
         self.contains(from) && self.leads_in(from, to)
     }
 
     /// Whether the straight line ends inside, and never leaves the permitted water once it has
     /// entered: a boat that is outside, or in a keep-out, returns along it.
-    #[must_use]
-    pub fn leads_in(&self, from: Ned, to: Ned) -> bool {
+    pub(crate) fn leads_in(&self, from: Ned, to: Ned) -> bool {
         // From the wrong side exactly one crossing leads in; a second one would lead out again.
         let crosses_once = |polygon: &[Ned], wrong: bool| met(polygon, from, to) == usize::from(wrong);
         self.contains(to)
@@ -96,8 +93,7 @@ impl GeofenceArea {
     }
 
     /// The distance to the nearest edge, m: negative where a boat must not be.
-    #[must_use]
-    pub fn clearance_m(&self, at: Ned) -> f64 {
+    pub(crate) fn clearance_m(&self, at: Ned) -> f64 {
         let outlines = std::iter::once(&self.outline).chain(&self.keep_out);
         let distance_m = outlines.map(|outline| distance_to_outline(outline, at)).fold(f64::INFINITY, f64::min);
         if self.contains(at) { distance_m } else { -distance_m }

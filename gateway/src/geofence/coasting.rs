@@ -91,8 +91,7 @@ impl Coasting {
 
     /// The same boat, but coasting at least the measured distance from each of these speeds: m/s
     /// and m.
-    #[must_use]
-    pub fn as_measured(self, measured: &[(f64, f64)]) -> Coasting {
+    pub(super) fn as_measured(self, measured: &[(f64, f64)]) -> Coasting {
         let longer = |(speed_m_s, distance_m): &(f64, f64)| distance_m / self.distance_m(*speed_m_s).max(1e-3);
         // Time and distance of coasting are proportional to the mass.
         let factor = measured.iter().map(longer).fold(0.0, f64::max);
@@ -105,8 +104,7 @@ impl Coasting {
     }
 
     /// How far it coasts from this speed with an immediate thrust cut, m.
-    #[must_use]
-    pub fn distance_m(&self, speed_m_s: f64) -> f64 {
+    pub(super) fn distance_m(&self, speed_m_s: f64) -> f64 {
         let at_once = Coasting { lag_s: 0.0, slew_per_s: f64::INFINITY, ..*self };
         let toward = Ned { north: 1.0, east: 0.0 };
         at_once
@@ -131,8 +129,7 @@ impl Coasting {
     }
 
     /// The path to rest from the boat on, in straight legs.
-    #[must_use]
-    pub fn path(&self, glide: &Glide) -> Vec<Leg> {
+    pub(super) fn path(&self, glide: &Glide) -> Vec<Leg> {
         let Glide { water_m_s, drift_m_s, yaw_rate_rad_s, reaction_s, .. } = *glide;
         let (mut speed_m_s, mut thrust_m_s) = (water_m_s.length(), glide.thrust_m_s.min(self.speed_max_m_s));
         let course_rad = math::atan2(water_m_s.east, water_m_s.north);
@@ -176,27 +173,27 @@ fn slack_m(drift_m_s: &Ned, t_s: f64, turned_rad: f64, at: Ned) -> f64 {
 
 /// A leg of the path to rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Leg {
+pub(super) struct Leg {
     /// Its end, m from the boat.
-    pub end: Ned,
+    pub(super) end: Ned,
     /// How far the boat may deviate laterally from that, m: leeway grows as the boat slows down,
     /// and a turn may continue.
-    pub slack_m: f64,
+    pub(super) slack_m: f64,
 }
 
 /// A boat's motion when it starts to coast.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Glide {
+pub(super) struct Glide {
     /// Velocity through the water, m/s.
-    pub water_m_s: Ned,
+    pub(super) water_m_s: Ned,
     /// Velocity of the water, plus that caused by the wind, m/s.
-    pub drift_m_s: Ned,
+    pub(super) drift_m_s: Ned,
     /// The steady speed of its present thrust, m/s.
-    pub thrust_m_s: f64,
+    pub(super) thrust_m_s: f64,
     /// Rate of turn, rad/s.
-    pub yaw_rate_rad_s: f64,
+    pub(super) yaw_rate_rad_s: f64,
     /// How long it continues as before, s.
-    pub reaction_s: f64,
+    pub(super) reaction_s: f64,
 }
 
 /// The drift of a boat under orders: its velocity over the ground minus the velocity that its
@@ -204,22 +201,22 @@ pub struct Glide {
 // A boat that coasts farther than its file says appears to drift: the predicted path becomes
 // longer.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct DriftEstimate {
+pub(super) struct DriftEstimate {
     at: Option<SimTime>,
     /// Duration of the estimate, s.
     lasted_s: f64,
     /// Surge through the water by the boat file, and the steady speed of the thrust, m/s.
     surge_m_s: f64,
     /// The steady speed of the present thrust, m/s.
-    pub thrust_m_s: f64,
+    pub(super) thrust_m_s: f64,
     /// The estimate, m/s.
-    pub drift_m_s: Ned,
+    pub(super) drift_m_s: Ned,
 }
 
 impl DriftEstimate {
     /// Updates the estimate with the steady speed ahead of the present set-point, m/s, and the
     /// boat's heading and velocity over the ground.
-    pub fn observe(
+    pub(super) fn observe(
         &mut self,
         coasting: &Coasting,
         now: SimTime,
@@ -250,8 +247,7 @@ impl DriftEstimate {
     }
 
     /// Whether orders have been observed until now.
-    #[must_use]
-    pub fn is_fresh(&self, now: SimTime) -> bool {
+    pub(super) fn is_fresh(&self, now: SimTime) -> bool {
         self.at.is_some_and(|at| (now - at).as_s() <= GAP_MAX_S)
     }
 }

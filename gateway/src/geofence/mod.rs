@@ -6,9 +6,10 @@ mod coasting;
 mod tests;
 
 pub use area::{GeofenceArea, GeofenceError};
-pub use coasting::{Coasting, DriftEstimate, Glide, Leg};
+pub use coasting::Coasting;
 
 use crate::config::Geofence;
+use coasting::{DriftEstimate, Glide, Leg};
 use primitives::SimTime;
 use primitives::frame::Ned;
 use rules::field::Field;
@@ -22,7 +23,8 @@ const BREACH_ENDS_S: f64 = 2.0;
 /// Checks that a boat is inside the geofence and can stop there.
 #[derive(Clone, Debug)]
 pub struct GeofenceWatch {
-    area: GeofenceArea,
+    /// Where the boat may be.
+    pub(crate) area: GeofenceArea,
     rules: Geofence,
     /// `None` if no boat file is known.
     coasting: Option<Coasting>,
@@ -57,27 +59,18 @@ impl GeofenceWatch {
     /// The geofence on this field, for a boat with this coasting model.
     #[must_use]
     pub fn new(field: &Field, rules: &Geofence, coasting: Option<Coasting>) -> GeofenceWatch {
-        let mut watch = GeofenceWatch::of_area(GeofenceArea::new(field, rules), rules);
-        watch.coasting = coasting.map(|coasting| coasting.as_measured(&rules.coast_m));
-        watch
+        GeofenceWatch::of_area(GeofenceArea::new(field, rules), rules, coasting)
     }
 
-    fn of_area(area: GeofenceArea, rules: &Geofence) -> GeofenceWatch {
-        let (straight, drifting) = (Breach::default(), Breach::default());
+    fn of_area(area: GeofenceArea, rules: &Geofence, coasting: Option<Coasting>) -> GeofenceWatch {
         GeofenceWatch {
             area,
             rules: rules.clone(),
-            coasting: None,
+            coasting: coasting.map(|coasting| coasting.as_measured(&rules.coast_m)),
             drift: DriftEstimate::default(),
-            straight,
-            drifting,
+            straight: Breach::default(),
+            drifting: Breach::default(),
         }
-    }
-
-    /// Where the boat may be.
-    #[must_use]
-    pub fn area(&self) -> &GeofenceArea {
-        &self.area
     }
 
     /// Notes that the boat receives a set-point of this steady speed ahead, m/s, at this heading
@@ -152,8 +145,7 @@ impl GeofenceWatch {
     }
 
     /// Where the boat comes to rest, m from here, by the longest of the predicted paths.
-    #[must_use]
-    pub fn stopping_way(&self, now: SimTime, motion: (Ned, f64)) -> Ned {
+    pub(crate) fn stopping_way(&self, now: SimTime, motion: (Ned, f64)) -> Ned {
         let paths = self.straight_paths(motion.0).into_iter().chain(self.drifting_path(now, motion));
         let ends = paths.filter_map(|path| Some(path.last()?.end));
         ends.max_by(|a, b| a.length().total_cmp(&b.length())).unwrap_or_default()

@@ -7,9 +7,9 @@ use primitives::math;
 use proptest::prelude::*;
 use rules::field::sides;
 
-fn field() -> Field {
+fn game() -> scenario::Scenario {
     let game = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games/pav01_vs_pav01.toml");
-    scenario::load(&game).unwrap_or_else(|problems| panic!("{problems}")).field
+    scenario::load(&game).unwrap_or_else(|problems| panic!("{problems}"))
 }
 
 fn rules() -> Geofence {
@@ -33,7 +33,7 @@ fn a_boat_must_be_inside_and_able_to_stop_inside() {
         (190.1, 40.0, -3.0, false),
         (80.0, -30.1, 0.0, false),
     ] {
-        let mut geofence = GeofenceWatch::new(&field(), &rules(), None);
+        let mut geofence = GeofenceWatch::new(&game().field, &rules(), None);
         let velocity = Ned { north: 0.0, east: east_m_s };
         geofence.is_inside(at(0.0), Ned::from_xy(x, y), (velocity, 0.0));
         assert_eq!(geofence.is_inside(at(0.5), Ned::from_xy(x, y), (velocity, 0.0)), inside, "{x}, {y} at {east_m_s}");
@@ -73,7 +73,7 @@ fn a_boat_coasts_as_far_as_its_file_says_or_as_was_measured() {
 fn a_slow_boat_keeps_the_distance_that_it_coasts() {
     // The edge lies at x = 190 m. By v²/2a alone the first would need 1.0 m.
     for (speed_m_s, least_m) in [(0.5, 3.5), (1.0, 6.0), (1.5, 8.0), (3.0, 21.0)] {
-        let mut geofence = GeofenceWatch::new(&field(), &rules(), Some(surveyor()));
+        let mut geofence = GeofenceWatch::new(&game().field, &rules(), Some(surveyor()));
         let velocity = Ned { north: 0.0, east: speed_m_s };
         let mut inside = |clearance_m: f64| {
             geofence.straight = Breach::default();
@@ -87,7 +87,7 @@ fn a_slow_boat_keeps_the_distance_that_it_coasts() {
 
 #[test]
 fn one_fix_outside_is_not_enough() {
-    let mut geofence = GeofenceWatch::new(&field(), &rules(), None);
+    let mut geofence = GeofenceWatch::new(&game().field, &rules(), None);
     let (inside, outside) = (Ned::from_xy(80.0, 40.0), Ned::from_xy(80.0, 400.0));
     for (seconds, place, want) in
         [(0.0, outside, true), (0.4, outside, true), (0.45, inside, true), (0.6, outside, true), (1.2, outside, false)]
@@ -114,10 +114,6 @@ fn star(centre: Ned, radii_m: &[f64]) -> Vec<Ned> {
         .enumerate()
         .map(|(i, radius_m)| centre + Ned::toward_deg(i as f64 * step_deg).scaled(*radius_m))
         .collect()
-}
-
-fn area_of(outline: Vec<Ned>, keep_out: Vec<Vec<Ned>>) -> GeofenceArea {
-    GeofenceArea { outline, keep_out }
 }
 
 /// Whether a point is in a polygon, from the sum of the angles of its sides as seen from there: a
@@ -153,7 +149,7 @@ fn area() -> impl Strategy<Value = GeofenceArea> {
     let keep_out = (place(), prop::collection::vec(3.0..40.0_f64, 3..8));
     (outline, prop::collection::vec(keep_out, 0..4)).prop_map(|(radii_m, keep_out)| {
         let keep_out = keep_out.into_iter().map(|(at, radii_m)| star(at.scaled(0.6), &radii_m)).collect();
-        area_of(star(Ned::default(), &radii_m), keep_out)
+        GeofenceArea { outline: star(Ned::default(), &radii_m), keep_out }
     })
 }
 
@@ -198,7 +194,7 @@ proptest! {
     ) {
         let rules = Geofence { debounce_s: 0.0, ..rules() };
         let Geofence { reaction_s, deceleration_m_s2, .. } = rules;
-        let mut watch = GeofenceWatch::of_area(area.clone(), &rules);
+        let mut watch = GeofenceWatch::of_area(area.clone(), &rules, None);
         let toward = Ned::toward_deg(toward_deg);
         prop_assume!(watch.is_inside(SimTime::ZERO, from, (toward.scaled(speed_m_s), 0.0)));
         let brakes_for_s = speed_m_s / deceleration_m_s2;
@@ -213,7 +209,7 @@ proptest! {
 
 #[test]
 fn a_concave_geofence_and_a_keep_out_count_on_all_of_the_way_to_rest() {
-    let field = field();
+    let field = game().field;
     // A horseshoe, open to the north, with a rock in its eastern arm.
     let xy = |corners: &[(f64, f64)]| -> Vec<Ned> { corners.iter().map(|&(x, y)| Ned::from_xy(x, y)).collect() };
     let horseshoe = [
@@ -253,8 +249,7 @@ fn a_concave_geofence_and_a_keep_out_count_on_all_of_the_way_to_rest() {
 
 #[test]
 fn a_geofence_that_does_not_go_with_the_game_is_refused() {
-    let game = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games/pav01_vs_pav01.toml");
-    let scenario = scenario::load(&game).unwrap_or_else(|problems| panic!("{problems}"));
+    let scenario = game();
     let square = |x: f64, y: f64, half_m: f64| {
         typed(
             &scenario.field,

@@ -5,12 +5,35 @@ use bus::clock;
 use primitives::SimTime;
 use std::time::{Duration, Instant};
 
+/// Minimum time that counts as a suspension: the two clocks are not read simultaneously.
+const SUSPENSION_MIN: Duration = Duration::from_millis(50);
+
+/// A moment, and the total suspended time by then.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Moment {
+    pub(super) at: Instant,
+    suspended: Duration,
+}
+
+impl Moment {
+    pub(super) fn now() -> Moment {
+        Moment { at: clock::now(), suspended: clock::suspended() }
+    }
+
+    /// How long before `now` it was, and how long of that the machine was suspended, if it was.
+    pub(super) fn gap(self, now: Moment) -> (Duration, Option<Duration>) {
+        // Linux' monotonic clock stops while the machine sleeps. The time asleep is added, so that
+        // old data counts as old after waking.
+        let suspended = now.suspended.saturating_sub(self.suspended);
+        let awake = now.at.saturating_duration_since(self.at);
+        (awake + suspended, (suspended >= SUSPENSION_MIN).then_some(suspended))
+    }
+}
+
 /// Time since the gateway started.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Clock {
-    start: Instant,
-    /// Total suspended time at `start`.
-    suspended: Duration,
+    start: Moment,
     /// Its time at `start`.
     base: SimTime,
     factor: f64,
@@ -18,28 +41,26 @@ pub(super) struct Clock {
 
 impl Clock {
     pub(super) fn start() -> Clock {
-        Clock { start: clock::now(), suspended: clock::suspended(), base: SimTime::ZERO, factor: 1.0 }
+        Clock { start: Moment::now(), base: SimTime::ZERO, factor: 1.0 }
     }
 
     /// Runs at this pace of a game from now on.
     pub(super) fn set_pace(&mut self, factor: f64) {
-        let (now, suspended) = (clock::now(), clock::suspended());
-        *self = Clock { base: self.time_at(now, suspended), start: now, suspended, factor };
+        let now = Moment::now();
+        *self = Clock { base: self.time_at(now), start: now, factor };
     }
 
     pub(super) fn now(&self) -> SimTime {
-        self.at(clock::now())
+        self.time_at(Moment::now())
     }
 
     /// The gateway's time at a moment of real time since the machine was last suspended.
-    pub(super) fn at(&self, moment: Instant) -> SimTime {
-        self.time_at(moment, clock::suspended())
+    pub(super) fn at(&self, at: Instant) -> SimTime {
+        self.time_at(Moment { at, ..Moment::now() })
     }
 
-    fn time_at(&self, moment: Instant, suspended: Duration) -> SimTime {
-        // Linux' monotonic clock stops while the machine sleeps. The time asleep is added, so that
-        // old data counts as old after waking.
-        let passed = moment.saturating_duration_since(self.start) + suspended.saturating_sub(self.suspended);
+    fn time_at(&self, moment: Moment) -> SimTime {
+        let (passed, _) = self.start.gap(moment);
         self.base + SimTime::from_s(passed.as_secs_f64() * self.factor)
     }
 
@@ -47,35 +68,6 @@ impl Clock {
     pub(super) fn until(&self, due: SimTime) -> Duration {
         let wait_s = (due - self.now()).as_s() / self.factor;
         Duration::from_secs_f64(wait_s.clamp(0.0, 1.0))
-    }
-}
-
-/// When the gateway's loop last ran, and the total suspended time by then.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct LastRun {
-    at: Instant,
-    suspended: Duration,
-}
-
-/// Minimum time that counts as a suspension: the two clocks are not read simultaneously.
-const SUSPENSION_MIN: Duration = Duration::from_millis(50);
-
-impl LastRun {
-    pub(super) fn now() -> LastRun {
-        LastRun { at: clock::now(), suspended: clock::suspended() }
-    }
-
-    /// How long the loop has not run until `now`, and how long of that the machine was suspended,
-    /// if it was.
-    pub(super) fn gap(self, now: LastRun) -> (Duration, Option<Duration>) {
-        let suspended = now.suspended.saturating_sub(self.suspended);
-        let awake = now.at.saturating_duration_since(self.at);
-        (awake + suspended, (suspended >= SUSPENSION_MIN).then_some(suspended))
-    }
-
-    /// The moment.
-    pub(super) fn moment(self) -> Instant {
-        self.at
     }
 }
 
@@ -87,11 +79,10 @@ mod tests {
     fn what_a_suspended_machine_slept_counts_as_time_and_as_a_gap() {
         let clock = Clock::start();
         let (second, hour) = (Duration::from_secs(1), Duration::from_secs(3600));
-        let later = clock.start + second;
-        assert_eq!(clock.time_at(later, clock.suspended), SimTime::from_s(1.0));
-        assert_eq!(clock.time_at(later, clock.suspended + hour), SimTime::from_s(3601.0));
-        let before = LastRun::now();
-        let after = |suspended| LastRun { at: before.at + second, suspended: before.suspended + suspended };
+        let before = clock.start;
+        let after = |suspended| Moment { at: before.at + second, suspended: before.suspended + suspended };
+        assert_eq!(clock.time_at(after(Duration::ZERO)), SimTime::from_s(1.0));
+        assert_eq!(clock.time_at(after(hour)), SimTime::from_s(3601.0));
         assert_eq!(before.gap(after(Duration::ZERO)), (second, None));
         assert_eq!(before.gap(after(hour)), (second + hour, Some(hour)));
     }

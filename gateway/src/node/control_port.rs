@@ -42,8 +42,6 @@ pub(super) struct ControlPort {
     _port: TcpPort,
     _datagrams: DatagramPort,
     pub(super) address: SocketAddr,
-    /// The token that it requires.
-    pub(super) token: CurrentToken,
 }
 
 /// State shared by all connections.
@@ -63,20 +61,15 @@ impl ControlPort {
         token: CurrentToken,
         input: LoopInput,
     ) -> Result<ControlPort, NodeError> {
-        let open = || ControlPort::open_once(listen, vehicle, token.clone(), input.clone());
+        let is_running = AtomicBool::new(false);
+        let server = Arc::new(Server { vehicle: vehicle.to_owned(), token, input, is_running });
+        let open = || ControlPort::open_once(listen, Arc::clone(&server));
         // Port 0 is chosen for TCP; the same number may be in use for UDP.
         let attempts = if listen.port() == 0 { ATTEMPTS } else { 1 };
         (1..attempts).fold(open(), |opened, _| opened.or_else(|_| open()))
     }
 
-    fn open_once(
-        listen: SocketAddr,
-        vehicle: &str,
-        token: CurrentToken,
-        input: LoopInput,
-    ) -> Result<ControlPort, NodeError> {
-        let is_running = AtomicBool::new(false);
-        let server = Arc::new(Server { vehicle: vehicle.to_owned(), token: token.clone(), input, is_running });
+    fn open_once(listen: SocketAddr, server: Arc<Server>) -> Result<ControlPort, NodeError> {
         let shared = Arc::clone(&server);
         // Errors of a single connection do not matter.
         let serve = move |slot: &Slot, stream: &TcpStream| drop(shared.serve(slot, stream));
@@ -85,7 +78,12 @@ impl ControlPort {
         let (shared, address) = (Arc::clone(&server), port.address);
         let read = |socket| DatagramPort::open(socket, "control datagrams", move |bytes| shared.serve_datagram(bytes));
         let datagrams = UdpSocket::bind(address).and_then(read).map_err(failed)?;
-        Ok(ControlPort { server, address, _port: port, _datagrams: datagrams, token })
+        Ok(ControlPort { server, address, _port: port, _datagrams: datagrams })
+    }
+
+    /// The token that it requires.
+    pub(super) fn token(&self) -> &CurrentToken {
+        &self.server.token
     }
 
     /// The gateway loop answers from now on.

@@ -1,6 +1,7 @@
 //! The emulator's node: joins a game as the agent of a simulated boat, which a back seat drives
 //! with the boat's own protocol.
 
+use super::LOOK;
 use super::error::NodeError;
 use super::game_terms::{declination_rad, pace_factor};
 use super::node_event::NodeEvent;
@@ -53,8 +54,6 @@ pub struct EmulatorSettings {
     pub stop: Arc<AtomicBool>,
 }
 
-/// How often the loop checks whether it must end.
-const POLL: Duration = Duration::from_millis(100);
 /// Maximum bytes of commands that may wait: more than a back seat sends in a minute.
 const UNREAD_MAX: usize = 256 * 1024;
 
@@ -195,7 +194,7 @@ impl EmulatorNode {
         notify: &mut dyn FnMut(NodeEvent<'_>),
     ) -> Result<(), NodeError> {
         while !stop.load(Ordering::Relaxed) {
-            incoming.wait(POLL, Incoming::is_something);
+            incoming.wait(LOOK, Incoming::is_something);
             let Incoming { bytes, remarks, picture, .. } = incoming.visit(std::mem::take);
             remarks.into_iter().for_each(|text| self.remark(text, notify));
             for (port, bytes) in &bytes {

@@ -1,13 +1,14 @@
 //! The gateway loop: passes inputs from the boat, the sim and operators to the core, and its
 //! outputs on.
 
-use super::clock::{Clock, LastRun};
+use super::clock::{Clock, Moment};
+use super::control_port::ControlPort;
 use super::error::NodeError;
-use super::found_game::FoundGame;
+use super::game_finder::FoundGame;
 use super::guard::{Guarded, HEARTBEAT, HUNG};
 use super::join::Join;
 use super::latency::Latency;
-use super::loop_input::{Call, LoopInput, LoopOutput, Stop};
+use super::loop_input::{Call, LoopOutput, Stop};
 use super::node_event::NodeEvent;
 use super::settings::Settings;
 use super::subscriptions::subscribe;
@@ -17,14 +18,13 @@ use crate::link::{BoatLink, LinkEvent};
 use crate::record::StepEncoder;
 use crate::supervisor::Scope;
 use bus::token::{self, Checked, Guard};
-use bus::{Bus, CurrentToken, Declaration, Delivery, Priority, Publisher, Query, clock};
+use bus::{Bus, Declaration, Delivery, Priority, Publisher, Query, clock};
 use messages::external::{FleetCommand, GatewayCommand, OperatorCommand, OperatorReply, Reported};
 use messages::{Frame, Order, topic};
 use primitives::frame::Ned;
 use primitives::{SimTime, VehicleId, codec};
 use recording::Recorder;
 use std::collections::VecDeque;
-use std::net::SocketAddr;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -57,15 +57,12 @@ pub(super) struct GatewayLoop<'a> {
     pub(super) in_game: Option<InGame>,
     pub(super) settings: &'a Settings,
     pub(super) guarded: Option<Guarded>,
-    /// The queue for input from the game.
-    pub(super) back: LoopInput,
     pub(super) recorder: Option<Recorder>,
     pub(super) encoder: StepEncoder,
     pub(super) counters: Counters,
     pub(super) notify: &'a mut dyn FnMut(NodeEvent<'_>),
     pub(super) guard: Guard,
-    /// The control port, if any, and the token that it requires.
-    pub(super) port: Option<(SocketAddr, CurrentToken)>,
+    pub(super) port: Option<&'a ControlPort>,
 }
 
 /// The game that the gateway is in.
@@ -128,7 +125,7 @@ impl Counters {
 impl GatewayLoop<'_> {
     /// Runs until it is stopped.
     pub(super) fn run(&mut self, stop: &AtomicBool) -> Result<(), NodeError> {
-        let mut beat_at = LastRun::now();
+        let mut beat_at = Moment::now();
         while !stop.load(Ordering::Relaxed) {
             beat_at = self.beat(beat_at)?;
             let stop_count = self.input.stop_count();
@@ -173,11 +170,11 @@ impl GatewayLoop<'_> {
     /// Shows the guard that the loop is running, and reports to the core a pause long enough for
     /// the guard to have stopped the boat. Input from before a suspension of the machine is
     /// discarded.
-    fn beat(&mut self, last: LastRun) -> Result<LastRun, NodeError> {
-        let now = LastRun::now();
+    fn beat(&mut self, last: Moment) -> Result<Moment, NodeError> {
+        let now = Moment::now();
         let (gap, suspended) = last.gap(now);
         if let Some(suspended) = suspended {
-            self.counters.awake_since = now.moment();
+            self.counters.awake_since = now.at;
             self.warn(&format!("this machine was suspended for {:.1} s", suspended.as_secs_f64()));
         }
         if let Some(guarded) = &self.guarded {
@@ -199,11 +196,7 @@ impl GatewayLoop<'_> {
     }
 
     pub(super) fn warn(&mut self, text: &str) {
-        let (at, event) = (self.clock.now(), Event::Warning(text.to_owned()));
-        (self.notify)(NodeEvent::Event { at_s: at.as_s(), event: &event });
-        if let Some(recorder) = &self.recorder {
-            recorder.record(StepEncoder::event(at, Event::Remark(text.to_owned())));
-        }
+        self.log(&Event::Warning(text.to_owned()), text);
     }
 
     /// Handles stops before everything else, then at most one request from the control port and one
@@ -253,7 +246,7 @@ impl GatewayLoop<'_> {
     /// Enters the game that was found.
     fn enter(&mut self, found: FoundGame) -> Result<(), NodeError> {
         let FoundGame { bus, game, info, vehicle, factor, site } = found;
-        let (scenario, name) = (&info.scenario, &self.settings.vehicle);
+        let (scenario, name) = (&info.scenario, &self.settings.plan.vehicle);
         let newest = |key| bus.publisher_with(key, Priority::Normal, Delivery::Newest);
         let in_game = InGame {
             nav: newest(topic::nav(&game, scenario, vehicle))?,
@@ -261,8 +254,8 @@ impl GatewayLoop<'_> {
             link_bytes: newest(topic::report(&game, Reported::Link, name))?,
             vehicle,
             others: scenario.externals().filter(|other| *other != vehicle).collect(),
-            _subscriptions: subscribe(&bus, &game, &info, vehicle, &self.back)?,
-            _join: Join::begin(&bus, &self.settings.place, (&game, scenario), name, self.back.calls.clone())?,
+            _subscriptions: subscribe(&bus, &game, &info, vehicle, &self.input.back)?,
+            _join: Join::begin(&bus, &self.settings.place, (&game, scenario), name, self.input.back.calls.clone())?,
             bus,
         };
         // The link has been served before: only what needs a field starts here.
@@ -278,46 +271,41 @@ impl GatewayLoop<'_> {
 
     fn handle_call(&mut self, call: Call) -> Result<(), NodeError> {
         match call {
-            Call::Link(event) => self.take_link(event),
-            Call::Order => self.take_order(),
-            Call::Frame(bytes) => self.take_frame(&bytes),
-            Call::Release => self.step(Input::Fleet(FleetCommand::Release), None),
+            Call::Link(event) => self.take_link(event)?,
+            Call::Order => self.take_order()?,
+            Call::Frame(bytes) => self.take_frame(&bytes)?,
+            Call::Release => self.step(Input::Fleet(FleetCommand::Release), None)?,
             // Its subject was read before.
-            Call::Look => Ok(()),
-            Call::Looking(reason) => {
-                (self.notify)(NodeEvent::Looking { reason: &reason });
-                Ok(())
-            }
+            Call::Look => {}
+            Call::Looking(reason) => (self.notify)(NodeEvent::Looking { reason: &reason }),
             Call::Joined(joined) if self.vehicle().is_some_and(|vehicle| joined.vehicles == [vehicle]) => {
                 self.counters.ticket = Some(joined.ticket);
                 self.counters.game_now = joined.now;
                 self.game_clock.join(self.clock.at(joined.asked), joined.now);
-                if let Some((address, token)) = &self.port {
+                if let Some(port) = self.port {
                     // In a game with keys the port keeps its own.
                     if let Some(known) = self.settings.place.token().get() {
-                        token.set(Some(known));
+                        port.token().set(Some(known));
                     }
-                    (self.notify)(NodeEvent::ControlPort { address: *address, token: token.get() });
+                    (self.notify)(NodeEvent::ControlPort { address: port.address, token: port.token().get() });
                 }
                 self.remark("joined: the sim accepts the boat's reports");
-                self.step(Input::Joined, None)
+                self.step(Input::Joined, None)?;
             }
             // The ticket would be another boat's: its reports would move that one.
             Call::Joined(_) => {
-                Err(NodeError::Refused("the sim admitted a different boat from the one that asked".to_owned()))
+                let reason = "the sim admitted a different boat from the one that asked".to_owned();
+                return Err(NodeError::Refused(reason));
             }
             Call::SimGone => {
                 // Not an error: stale orders stop the boat, and the game's next sim is joined like
                 // this one.
                 self.counters.ticket = None;
                 self.remark("lost the sim; waiting for the next");
-                Ok(())
             }
-            Call::Remark(text) => {
-                self.remark(&text);
-                Ok(())
-            }
+            Call::Remark(text) => self.remark(&text),
         }
+        Ok(())
     }
 
     fn take_link(&mut self, event: LinkEvent) -> Result<(), NodeError> {
@@ -356,7 +344,7 @@ impl GatewayLoop<'_> {
 
     fn take_order(&mut self) -> Result<(), NodeError> {
         // Only the newest order: executing an older one first would delay it.
-        let taken = self.input.latest_order.lock().take();
+        let taken = self.input.back.latest_order.lock().take();
         let Some((message, came)) = taken else { return Ok(()) };
         if self.is_too_old(came) {
             return self.step(Input::OldOrder, None);
@@ -467,10 +455,16 @@ impl GatewayLoop<'_> {
             return;
         }
         self.counters.remarked = (now, text.to_owned());
-        let (at, event) = (self.clock.now(), Event::Remark(text.to_owned()));
-        (self.notify)(NodeEvent::Event { at_s: at.as_s(), event: &event });
+        self.log(&Event::Remark(text.to_owned()), text);
+    }
+
+    /// Reports an event of the shell; the recording has its text, since only events of the core
+    /// are compared in a replay.
+    fn log(&mut self, event: &Event, text: &str) {
+        let at = self.clock.now();
+        (self.notify)(NodeEvent::Event { at_s: at.as_s(), event });
         if let Some(recorder) = &self.recorder {
-            recorder.record(StepEncoder::event(at, event));
+            recorder.record(StepEncoder::event(at, Event::Remark(text.to_owned())));
         }
     }
 }

@@ -1,8 +1,9 @@
 //! Keeps the gateway in the game: joins whenever a sim is available, for as long as the gateway
 //! runs.
 
+use super::LOOK;
 use super::loop_input::Call;
-use bus::game_search::{self, GameSearch, NotFound};
+use bus::game_search::{self, GameSearch, Joined, Missing, NotFound};
 use bus::{Bus, BusError, InboxSender, NodeThread, Patience, Place, SimWatch};
 use messages::Role;
 use messages::topic::GameName;
@@ -10,9 +11,6 @@ use scenario::Scenario;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
-
-/// How often a thread that sees no change checks whether it must end.
-const LOOK: Duration = Duration::from_millis(100);
 
 /// The thread that joins the game.
 pub(super) struct Join {
@@ -34,14 +32,14 @@ impl Join {
         let sim = SimWatch::open(bus, game, Patience::of_player(Duration::MAX))?;
         let stop = Arc::new(AtomicBool::new(false));
         let (bus, place, game, scenario) = (bus.clone(), place.clone(), game.clone(), scenario.clone());
-        let joining = Joining { bus, place, game, scenario, vehicle: [vehicle.to_owned()] };
-        let ended = Arc::clone(&stop);
+        let (vehicles, ended) = ([vehicle.to_owned()], Arc::clone(&stop));
+        let join = move || game_search::join(&bus, &place, (&game, &scenario), Role::Gateway, &vehicles);
         let failed = |e: std::io::Error| BusError::Use {
             doing: "start the thread that joins as",
             key: vehicle.to_owned(),
             reason: e.to_string(),
         };
-        let thread = NodeThread::start(move || joining.keep_joined(&sim, &ended, &calls)).map_err(failed)?;
+        let thread = NodeThread::start(move || keep_joined(&join, &sim, &ended, &calls)).map_err(failed)?;
         Ok(Join { stop, _thread: thread })
     }
 }
@@ -53,35 +51,26 @@ impl Drop for Join {
     }
 }
 
-/// What the thread joins, with which token, and over which connection.
-struct Joining {
-    bus: Bus,
-    place: Place,
-    game: GameName,
-    scenario: Scenario,
-    vehicle: [String; 1],
-}
-
-impl Joining {
-    /// Joins, waits until the sim is lost, and starts again with the next one.
-    fn keep_joined(&self, sim: &SimWatch, stop: &AtomicBool, calls: &InboxSender<Call>) {
-        let Joining { bus, place, game, scenario, vehicle } = self;
-        while !stop.load(Ordering::Relaxed) {
-            if !sim.find(LOOK) {
-                continue;
-            }
-            let mut say = |reason: &str| calls.put(Call::Remark(format!("joining: {reason}")));
-            let joined = GameSearch::new(Duration::MAX, stop)
-                .until(&mut say, || game_search::join(bus, place, (game, scenario), Role::Gateway, vehicle));
-            match joined {
-                Ok(joined) => calls.put(Call::Joined(joined)),
-                // Keep trying: the gateway that has the boat may be about to leave, or the next sim
-                // may have the boat.
-                Err(NotFound::Refused(refusal)) => calls.put(Call::Remark(format!("the sim refuses: {refusal}"))),
-                Err(NotFound::InTime(..)) => return,
-            }
-            while !stop.load(Ordering::Relaxed) && !sim.is_lost(LOOK) {}
-            calls.put(Call::SimGone);
+/// Joins, waits until the sim is lost, and starts again with the next one.
+fn keep_joined(
+    join: &impl Fn() -> Result<Joined, Missing>,
+    sim: &SimWatch,
+    stop: &AtomicBool,
+    calls: &InboxSender<Call>,
+) {
+    while !stop.load(Ordering::Relaxed) {
+        if !sim.find(LOOK) {
+            continue;
         }
+        let mut say = |reason: &str| calls.put(Call::Remark(format!("joining: {reason}")));
+        match GameSearch::new(Duration::MAX, stop).until(&mut say, join) {
+            Ok(joined) => calls.put(Call::Joined(joined)),
+            // Keep trying: the gateway that has the boat may be about to leave, or the next sim
+            // may have the boat.
+            Err(NotFound::Refused(refusal)) => calls.put(Call::Remark(format!("the sim refuses: {refusal}"))),
+            Err(NotFound::InTime(..)) => return,
+        }
+        while !stop.load(Ordering::Relaxed) && !sim.is_lost(LOOK) {}
+        calls.put(Call::SimGone);
     }
 }

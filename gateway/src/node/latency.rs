@@ -7,30 +7,23 @@ use std::time::{Duration, Instant};
 const LONGEST_US: u64 = 60_000_000;
 
 /// The latencies of one path, µs.
-pub(super) struct Latency {
-    histogram: Histogram<u64>,
-}
+pub(super) struct Latency(Histogram<u64>);
 
 impl Latency {
     pub(super) fn new() -> Latency {
         // Three significant digits need bounded memory, however long it runs.
-        let histogram = Histogram::new_with_bounds(1, LONGEST_US, 3).expect("sound bounds");
-        Latency { histogram }
+        Latency(Histogram::new_with_bounds(1, LONGEST_US, 3).expect("sound bounds"))
     }
 
     pub(super) fn note(&mut self, from: Instant, to: Instant) {
         let took: Duration = to.saturating_duration_since(from);
         let micros = u64::try_from(took.as_micros()).unwrap_or(LONGEST_US);
-        self.histogram.saturating_record(micros.max(1));
-    }
-
-    pub(super) fn count(&self) -> u64 {
-        self.histogram.len()
+        self.0.saturating_record(micros.max(1));
     }
 
     /// Median and 99th percentile, µs.
     pub(super) fn summary_us(&self) -> Option<[f64; 2]> {
-        let at = |quantile: f64| self.histogram.value_at_quantile(quantile) as f64;
-        (self.count() > 0).then(|| [at(0.5), at(0.99)])
+        let at = |quantile: f64| self.0.value_at_quantile(quantile) as f64;
+        (!self.0.is_empty()).then(|| [at(0.5), at(0.99)])
     }
 }

@@ -1,7 +1,7 @@
 //! Inputs from other threads that wake the gateway loop.
 
 use super::error::NodeError;
-use super::found_game::FoundGame;
+use super::game_finder::FoundGame;
 use crate::link::LinkEvent;
 use crate::supervisor::Scope;
 use bus::game_search::Joined;
@@ -53,11 +53,10 @@ pub(super) struct LoopInput {
 /// The end from which the loop reads.
 pub(super) struct LoopOutput {
     pub(super) calls: Inbox<Call>,
-    pub(super) latest_order: Arc<Mutex<Option<(ExternalOrder, Instant)>>>,
     pub(super) queries: Inbox<Query>,
     pub(super) port_requests: Inbox<PortRequest>,
-    stops: Arc<Stops>,
-    found: Arc<Mutex<Option<Result<FoundGame, NodeError>>>>,
+    /// The other end.
+    pub(super) back: LoopInput,
 }
 
 /// The kinds of stop.
@@ -109,15 +108,8 @@ pub(super) fn loop_input() -> (LoopInput, LoopOutput) {
     let (port_requests, port_requests_out) = inbox(REQUESTS_MAX);
     let (latest_order, stops, found) = Default::default();
     let input = LoopInput { calls, latest_order, stops, found, queries, port_requests };
-    let output = LoopOutput {
-        calls: calls_out,
-        latest_order: Arc::clone(&input.latest_order),
-        queries: queries_out,
-        port_requests: port_requests_out,
-        stops: Arc::clone(&input.stops),
-        found: Arc::clone(&input.found),
-    };
-    (input, output)
+    let back = input.clone();
+    (input, LoopOutput { calls: calls_out, queries: queries_out, port_requests: port_requests_out, back })
 }
 
 impl LoopInput {
@@ -175,22 +167,22 @@ impl LoopInput {
 impl LoopOutput {
     /// Takes the game that was found, once.
     pub(super) fn take_found(&self) -> Option<Result<FoundGame, NodeError>> {
-        self.found.lock().take()
+        self.back.found.lock().take()
     }
 
     /// Takes the stop to execute, if any.
     pub(super) fn take_stop(&self, stop: Stop) -> bool {
-        self.stops.of(stop).swap(false, Ordering::SeqCst)
+        self.back.stops.of(stop).swap(false, Ordering::SeqCst)
     }
 
     /// The number of stops received.
     pub(super) fn stop_count(&self) -> u64 {
-        self.stops.count.load(Ordering::SeqCst)
+        self.back.stops.count.load(Ordering::SeqCst)
     }
 
     /// Publishes the boat's state, and the number of stops executed before.
     pub(super) fn show_state(&self, stop_count: u64, state: String) {
-        self.stops.state.visit(|shown| *shown = (stop_count, state));
+        self.back.stops.state.visit(|shown| *shown = (stop_count, state));
     }
 }
 

@@ -8,7 +8,6 @@ mod control_port;
 #[cfg(feature = "emulator")]
 mod emulator;
 mod error;
-mod found_game;
 mod game_finder;
 mod game_terms;
 mod gateway_loop;
@@ -34,7 +33,7 @@ pub use node_event::NodeEvent;
 pub use settings::Settings;
 pub use terminal_key::on_enter;
 
-use crate::bridge::{Bridge, Event, Plan};
+use crate::bridge::{Bridge, Event};
 use crate::game_clock::GameClock;
 use crate::link::{BoatLink, Link, LinkAddress, LinkError, LinkEvent, LinkSettings, OnPort};
 use crate::payload::PayloadPort;
@@ -52,10 +51,12 @@ use payload::Payloads;
 use primitives::SimTime;
 use recording::{Facts, NewFile, Recorder, utc};
 use std::net::SocketAddr;
-use std::path::PathBuf;
 use std::process::Command;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
+
+/// How often a thread that waits for something else checks whether it must end.
+const LOOK: Duration = Duration::from_millis(100);
 
 /// A gateway's connections other than the game's network: the boat, a port for operators, and the
 /// boat's payloads.
@@ -68,17 +69,9 @@ pub struct Outside {
     pub control: SocketAddr,
     /// Starts the process that calls [`guard()`] and stops the boat when this process cannot;
     /// `None` means no guard.
-    pub guard: Option<GuardCommand>,
+    pub guard: Option<Command>,
     /// The boat's payloads to pass through.
     pub payloads: Vec<PayloadPort>,
-}
-
-/// A command whose process calls [`guard()`].
-pub struct GuardCommand {
-    /// The program's file.
-    pub program: PathBuf,
-    /// Its arguments.
-    pub args: Vec<String>,
 }
 
 /// The callback for a link's events.
@@ -95,7 +88,7 @@ pub type OnLinkEvent = Box<dyn Fn(LinkEvent) + Send + Sync>;
 pub fn serve(
     settings: &Settings,
     file: Option<NewFile>,
-    outside: &Outside,
+    outside: Outside,
     notify: &mut dyn FnMut(NodeEvent<'_>),
 ) -> Result<(), NodeError> {
     file.iter().for_each(|file| notify(NodeEvent::Recording(file.path())));
@@ -104,8 +97,7 @@ pub fn serve(
         Err(held @ LinkLockError::Held { .. }) => return Err(held.into()),
         // Failure to write a file is no reason to abandon the boat.
         Err(LinkLockError::File { link, source }) => {
-            let text = format!("the link {link} is not locked against a second gateway: {source}");
-            notify(NodeEvent::Event { at_s: 0.0, event: &Event::Warning(text) });
+            warn(notify, format!("the link {link} is not locked against a second gateway: {source}"));
             None
         }
     };
@@ -117,9 +109,10 @@ pub fn serve(
     // that.
     let token = settings.place.token().get().unwrap_or_else(Token::random);
     // Before the link: a port in use is an error before the boat receives anything from us.
-    let port = ControlPort::open(outside.control, &settings.vehicle, Some(token).into(), input.0.clone())?;
+    let port = ControlPort::open(outside.control, &settings.plan.vehicle, Some(token).into(), input.0.clone())?;
     // A boat that receives only standby needs no guard.
-    let guarded = if settings.dry_run { None } else { start_guard(settings, outside, notify) };
+    let guard = outside.guard.filter(|_| !settings.plan.dry_run);
+    let guarded = guard.and_then(|guard| start_guard(settings, guard, notify));
     let on_port = guarded.clone().map(|guarded| -> OnPort { Box::new(move |descriptor| guarded.link(descriptor)) });
     let open = |on_event: OnLinkEvent| -> Result<Box<dyn BoatLink>, LinkError> {
         let link_settings = LinkSettings { silence: Some(outside.silence), ..LinkSettings::default() };
@@ -128,18 +121,18 @@ pub fn serve(
     connect(settings, input, file, (Some(port), guarded, &outside.payloads), open, notify)
 }
 
-/// Starts the guard if there is to be one. Failure to start it does not abandon the boat.
-fn start_guard(settings: &Settings, outside: &Outside, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Option<Guarded> {
-    let GuardCommand { program, args } = outside.guard.as_ref()?;
-    let mut command = Command::new(program);
+/// Warns before the gateway's time begins.
+fn warn(notify: &mut dyn FnMut(NodeEvent<'_>), text: String) {
+    notify(NodeEvent::Event { at_s: 0.0, event: &Event::Warning(text) });
+}
+
+/// Starts the guard. Failure to start it does not abandon the boat.
+fn start_guard(settings: &Settings, mut command: Command, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Option<Guarded> {
     // Without the environment it has no token and no address, and needs neither.
-    command.args(args).env_clear();
-    let started = Guarded::start(command, &Protocol::new(&settings.gateway).guard_message());
-    if let Err(e) = &started {
-        let text = format!("there is no guard: if the gateway is killed, nothing stops the boat: {e}");
-        notify(NodeEvent::Event { at_s: 0.0, event: &Event::Warning(text) });
-    }
-    started.ok()
+    command.env_clear();
+    let started = Guarded::start(command, &Protocol::new(&settings.plan.gateway).guard_message());
+    let text = "there is no guard: if the gateway is killed, nothing stops the boat";
+    started.inspect_err(|e| warn(notify, format!("{text}: {e}"))).ok()
 }
 
 /// Like [`serve`], without a control port, and over a link from `open`: for simulated networks.
@@ -164,18 +157,11 @@ fn connect(
     notify: &mut dyn FnMut(NodeEvent<'_>),
 ) -> Result<(), NodeError> {
     if let Some(port) = &port {
-        notify(NodeEvent::ControlPort { address: port.address, token: port.token.get() });
+        notify(NodeEvent::ControlPort { address: port.address, token: port.token().get() });
     }
-    let plan = Plan {
-        vehicle: settings.vehicle.clone(),
-        gateway: settings.gateway.clone(),
-        site: None,
-        arms_itself: settings.arms_itself,
-        dry_run: settings.dry_run,
-        preflight: settings.preflight.clone(),
-    };
+    let plan = &settings.plan;
     let path = file.as_ref().map(|file| file.path().to_owned());
-    let recorder = file.and_then(|file| recorder(file, settings, &plan, notify));
+    let recorder = file.and_then(|file| recorder(file, settings, notify));
     let calls = input.calls.clone();
     let link = open(Box::new(move |event| calls.put(Call::Link(event))))?;
     // From here on time is the core's: a recording begins at zero, and replays with the same
@@ -187,20 +173,19 @@ fn connect(
     let payloads = Payloads::open(payloads, &shell, notify);
     let mut gateway_loop = GatewayLoop {
         game_clock: GameClock::new(SimTime::from_s(plan.gateway.order_ttl_s)),
-        bridge: Bridge::new(plan),
+        bridge: Bridge::new(plan.clone()),
         link,
         clock,
         input: output,
         in_game: None,
         settings,
         guarded,
-        back: input.clone(),
         recorder,
-        encoder: StepEncoder::new(&settings.vehicle),
+        encoder: StepEncoder::new(&plan.vehicle),
         counters: Counters::new(),
         notify: &mut *notify,
         guard: Guard::new(settings.place.token().clone()),
-        port: port.as_ref().map(|port| (port.address, port.token.clone())),
+        port: port.as_ref(),
     };
     // On its own thread: a gateway that searched for its game first abandoned a moving boat
     // meanwhile.
@@ -231,15 +216,7 @@ fn connect(
 }
 
 /// Starts the recording. Failure to start it does not abandon the boat.
-fn recorder(
-    file: NewFile,
-    settings: &Settings,
-    plan: &Plan,
-    notify: &mut dyn FnMut(NodeEvent<'_>),
-) -> Option<Recorder> {
-    let begun = Recorder::begin(file, &record::opening(plan, utc::now_ns(), settings.commit));
-    if let Err(e) = &begun {
-        notify(NodeEvent::Event { at_s: 0.0, event: &Event::Warning(format!("nothing is recorded: {e}")) });
-    }
-    begun.ok()
+fn recorder(file: NewFile, settings: &Settings, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Option<Recorder> {
+    let begun = Recorder::begin(file, &record::opening(&settings.plan, utc::now_ns(), settings.commit));
+    begun.inspect_err(|e| warn(notify, format!("nothing is recorded: {e}"))).ok()
 }

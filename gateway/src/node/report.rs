@@ -24,7 +24,7 @@ impl GatewayLoop<'_> {
     /// The status of core and shell.
     pub(super) fn full_status(&self) -> GatewayStatus {
         let mut status = self.bridge.status(self.clock.now());
-        status.control = self.port.as_ref().map(|(address, _)| address.to_string());
+        status.control = self.port.map(|port| port.address.to_string());
         // The core knows whether the link is up; the shell knows why it is down.
         if status.link != "up" {
             status.link.clone_from(&self.counters.link);
@@ -33,14 +33,15 @@ impl GatewayLoop<'_> {
             [self.counters.sentence_to_topic.summary_us(), self.counters.order_to_sentence.summary_us()];
         let lost =
             self.recorder.as_ref().map_or([0; 2], |recorder| [recorder.state().dropped, recorder.bulk_dropped()]);
-        let more = [("nav reports", self.counters.reports), ("displaced writes", self.link.displaced())];
-        let rest = [
+        let more = [
+            ("nav reports", self.counters.reports),
+            ("displaced writes", self.link.displaced()),
             ("calls dropped", self.input.calls.dropped()),
             ("messages not recorded", lost[0]),
             ("payload messages not recorded", lost[1]),
         ];
         status.alarms.extend(self.counters.recording_fault.clone());
-        status.counts.extend(more.into_iter().chain(rest).map(|(name, count)| (name.to_owned(), count)));
+        status.counts.extend(more.map(|(name, count)| (name.to_owned(), count)));
         status
     }
 

@@ -1,7 +1,6 @@
 //! The settings of a gateway to a real boat.
 
-use crate::bridge::Preflight;
-use crate::config::Gateway;
+use crate::bridge::Plan;
 use bus::Place;
 use messages::topic::GameName;
 use std::sync::Arc;
@@ -9,21 +8,14 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 /// The settings of a gateway to a real boat.
+#[derive(Clone)]
 pub struct Settings {
+    /// The boat, and how it is driven and stopped; its site comes from the game.
+    pub plan: Plan,
     /// The game; without a name, the only one there is.
     pub game: Option<GameName>,
     /// Where the sim is.
     pub place: Place,
-    /// The boat's name in the game.
-    pub vehicle: String,
-    /// How it is driven and stopped.
-    pub gateway: Gateway,
-    /// Whether it arms itself, once.
-    pub arms_itself: bool,
-    /// Whether the boat receives only standby.
-    pub dry_run: bool,
-    /// Whether its pre-flight check allows arming.
-    pub preflight: Preflight,
     /// Whether its clock runs at the game's pace: for emulated boats.
     pub at_game_pace: bool,
     /// The commit that the program was built from.

@@ -1,6 +1,7 @@
 //! A TCP port that is served until dropped, with one thread for each of a limited number of
 //! connections.
 
+use super::LOOK;
 use bus::{Connections, Slot, clock};
 use socket2::SockRef;
 use std::io;
@@ -8,10 +9,6 @@ use std::net::{IpAddr, Shutdown, SocketAddr, TcpListener, TcpStream};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
-use std::time::Duration;
-
-/// How often the accepting thread checks whether it must end.
-const LOOK: Duration = Duration::from_millis(100);
 
 /// A port. Dropping it closes it and its connections.
 pub(super) struct TcpPort {

@@ -43,7 +43,7 @@ pub fn boat_checks(seen: &SensorCheck, host: HostTime, gateway: &Gateway, water:
 }
 
 fn fix(seen: &SensorCheck, gateway: &Gateway) -> Check {
-    let Some(fix) = seen.fix() else { return Check::not_done("fix", "no fix with a quality was received") };
+    let Some(fix) = seen.fix else { return Check::not_done("fix", "no fix with a quality was received") };
     let nav = &gateway.nav;
     let satellites = fix.satellites.map_or("unknown".to_owned(), |count| count.to_string());
     let hdop = fix.hdop.map_or("unknown".to_owned(), |hdop| hdop.to_string());
@@ -59,7 +59,7 @@ fn fix(seen: &SensorCheck, gateway: &Gateway) -> Check {
 }
 
 fn scatter(seen: &SensorCheck) -> Check {
-    let fixes = seen.fixes();
+    let fixes = &seen.fixes;
     let lasted_s = fixes.first().zip(fixes.last()).map_or(0.0, |(first, last)| (last.0 - first.0).as_s());
     let places: Vec<LatLon> = fixes.iter().map(|(_, at)| *at).collect();
     // Drift of a fix shows over tens of seconds; a few good fixes do not reveal it.
@@ -78,7 +78,7 @@ fn geofence(seen: &SensorCheck, water: Option<&Water>) -> Check {
     let Some(water) = water else {
         return Check::not_done("geofence", "the field is unknown without a game: use --vehicle NAME with --game");
     };
-    let Some((_, at)) = seen.fixes().last() else { return Check::not_done("geofence", "received no position") };
+    let Some((_, at)) = seen.fixes.last() else { return Check::not_done("geofence", "received no position") };
     let place = LocalFrame::new(water.field.plan.datum).ned(*at);
     let clearance_m = water.area.clearance_m(place);
     let on_field = if water.field.contains(place) { "on the field" } else { "off the field" };
@@ -103,7 +103,7 @@ fn compass(seen: &SensorCheck) -> Check {
 }
 
 fn control(seen: &SensorCheck, gateway: &Gateway) -> Check {
-    let Some(control) = seen.control() else {
+    let Some(control) = seen.control else {
         let found = "the boat does not report who commands it";
         // For boats without such a sentence the file may state it: then a person takes
         // responsibility for who has control.
@@ -122,14 +122,14 @@ fn control(seen: &SensorCheck, gateway: &Gateway) -> Check {
 
 fn battery(seen: &SensorCheck, gateway: &Gateway) -> Check {
     let least = gateway.battery.volts_min;
-    match seen.power().volts {
+    match seen.power.volts {
         Some(volts) => Check::of("battery", volts >= least, format!("{volts:.1} V, expected {least} or more")),
         None => Check::not_done("battery", "the boat does not report it"),
     }
 }
 
 fn bilge(seen: &SensorCheck, gateway: &Gateway) -> Check {
-    let (most_a, currents) = (gateway.currents.bilge_a, seen.power().bilge_a);
+    let (most_a, currents) = (gateway.currents.bilge_a, seen.power.bilge_a);
     let amps = currents.iter().flatten().copied().reduce(f64::max);
     match amps {
         Some(amps) if most_a > 0.0 => {
@@ -152,7 +152,7 @@ fn clock(seen: &SensorCheck, host: HostTime) -> Check {
 }
 
 fn error(seen: &SensorCheck) -> Check {
-    match seen.error() {
+    match &seen.error {
         None => Check::of("error", true, "the boat reports none".to_owned()),
         Some(error) => Check::of("error", false, format!("the boat reports error {error:?}")),
     }
@@ -209,40 +209,22 @@ mod tests {
             sentences[at] = body;
             sentences
         };
-        let fix = "4,11,0.98";
+        let (home, fix) = ([80.0, 40.0], "4,11,0.98");
         for (place, fix, more, failed, found) in [
-            ([80.0, 40.0], fix, SOUND, "", ""),
-            ([80.0, 40.0], "0,11,0.98", SOUND, "fix", "no fix, 11 satellites"),
-            ([80.0, 40.0], "6,11,0.98", SOUND, "fix", "dead reckoning, 11 satellites"),
-            ([80.0, 40.0], "7,11,0.98", SOUND, "fix", "manual input"),
-            ([80.0, 40.0], "8,11,0.98", SOUND, "fix", "simulator"),
-            ([80.0, 40.0], "9,11,0.98", SOUND, "fix", "an unknown quality"),
-            ([80.0, 40.0], "5,4,7.50", SOUND, "fix", "RTK float, 4 satellites, dilution 7.5"),
+            (home, fix, SOUND, "", ""),
+            (home, "0,11,0.98", SOUND, "fix", "no fix, 11 satellites"),
+            (home, "6,11,0.98", SOUND, "fix", "dead reckoning, 11 satellites"),
+            (home, "7,11,0.98", SOUND, "fix", "manual input"),
+            (home, "8,11,0.98", SOUND, "fix", "simulator"),
+            (home, "9,11,0.98", SOUND, "fix", "an unknown quality"),
+            (home, "5,4,7.50", SOUND, "fix", "RTK float, 4 satellites, dilution 7.5"),
             ([80.0, 400.0], fix, SOUND, "geofence", "off the field, 290.0 m OUTSIDE"),
-            (
-                [80.0, 40.0],
-                fix,
-                sound(0, "PSEAA,-2.2,0.7,400000,,47.8,-0.04,-0.01,-1.00,-0.01"),
-                "compass",
-                "heading 400000",
-            ),
-            ([80.0, 40.0], fix, sound(1, "PSEAD,T,0.0,20,0,,T,2,2"), "control", "mode T"),
-            ([80.0, 40.0], fix, sound(1, "PSEAD,L,0.0,0,0,,T,2,5"), "control", "commanded by Rc"),
-            (
-                [80.0, 40.0],
-                fix,
-                sound(2, "PSEAB,21.0,15433,1.3,22.3,42308,,,24.8,,1.3,0.0,0.0,,,26"),
-                "battery",
-                "21.0 V",
-            ),
-            (
-                [80.0, 40.0],
-                fix,
-                sound(2, "PSEAB,24.8,15433,1.3,22.3,42308,,,24.8,,1.3,0.0,0.0,,0.9,26"),
-                "bilge",
-                "0.9 A",
-            ),
-            ([80.0, 40.0], fix, sound(3, "PSEAG,E"), "error", "error \"E\""),
+            (home, fix, sound(0, "PSEAA,-2.2,0.7,400000,,47.8,-0.04,-0.01,-1.00,-0.01"), "compass", "heading 400000"),
+            (home, fix, sound(1, "PSEAD,T,0.0,20,0,,T,2,2"), "control", "mode T"),
+            (home, fix, sound(1, "PSEAD,L,0.0,0,0,,T,2,5"), "control", "commanded by Rc"),
+            (home, fix, sound(2, "PSEAB,21.0,15433,1.3,22.3,42308,,,24.8,,1.3,0.0,0.0,,,26"), "battery", "21.0 V"),
+            (home, fix, sound(2, "PSEAB,24.8,15433,1.3,22.3,42308,,,24.8,,1.3,0.0,0.0,,0.9,26"), "bilge", "0.9 A"),
+            (home, fix, sound(3, "PSEAG,E"), "error", "error \"E\""),
         ] {
             let seen = seen(&water, place, fix, &more);
             let host = HostTime { now: SimTime::from_s(59.5), utc_ns: 54_360_000_000_000 };

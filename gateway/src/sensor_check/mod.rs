@@ -96,7 +96,8 @@ enum Framer {
 #[derive(Clone, Debug)]
 pub struct SensorCheck {
     framer: Framer,
-    received: BTreeMap<String, Received>,
+    /// The received data by name.
+    pub received: BTreeMap<String, Received>,
     /// Number of bytes received.
     bytes: usize,
     /// The data that the gateway could use.
@@ -104,22 +105,27 @@ pub struct SensorCheck {
     /// The MAVLink vehicles whose heartbeats were received, as text.
     heard: BTreeSet<String>,
     protocol: Protocol,
-    fix: Option<Fix>,
+    /// The last fix with a reported quality.
+    pub(crate) fix: Option<Fix>,
     /// The receiver's time of the last position.
     time_of_position: Option<TimeOfDay>,
-    /// Its positions, with their arrival times.
-    fixes: Vec<(SimTime, LatLon)>,
+    /// The positions so far, with their arrival times.
+    pub fixes: Vec<(SimTime, LatLon)>,
     /// Course and speed over the ground, degrees and m/s.
     track: Option<(f64, f64)>,
     /// The boat's time of day, and when it arrived.
     clock: Option<(SimTime, TimeOfDay)>,
     /// The boat's date, and when it arrived.
     date: Option<(SimTime, Date)>,
-    compass_deg: Option<f64>,
+    /// Compass heading, degrees.
+    pub compass_deg: Option<f64>,
     true_deg: Option<f64>,
-    control: Option<ControlReport>,
-    power: Power,
-    error: Option<String>,
+    /// Mode, operator and thrust.
+    pub control: Option<ControlReport>,
+    /// The battery and its consumers.
+    pub(crate) power: Power,
+    /// The fault that the boat reports, if any.
+    pub(crate) error: Option<String>,
 }
 
 impl SensorCheck {
@@ -168,35 +174,11 @@ impl SensorCheck {
         self.protocol.keep_up(now, out);
     }
 
-    /// The received data by name.
-    #[must_use]
-    pub fn received(&self) -> &BTreeMap<String, Received> {
-        &self.received
-    }
-
     /// The counters of the link by name.
     #[must_use]
     pub fn counts(&self) -> Vec<(String, u64)> {
         let [known, _] = self.protocol.counts();
         known
-    }
-
-    /// The last fix with a reported quality.
-    #[must_use]
-    pub fn fix(&self) -> Option<&Fix> {
-        self.fix.as_ref()
-    }
-
-    /// The positions so far, with their arrival times.
-    #[must_use]
-    pub fn fixes(&self) -> &[(SimTime, LatLon)] {
-        &self.fixes
-    }
-
-    /// Compass heading, degrees.
-    #[must_use]
-    pub fn compass_deg(&self) -> Option<f64> {
-        self.compass_deg
     }
 
     /// A true heading for comparison, degrees: as reported, or the course of a boat that makes way.
@@ -208,32 +190,12 @@ impl SensorCheck {
     }
 
     /// The heading that the gateway would use, degrees.
-    #[must_use]
-    pub fn heading_deg(&self) -> Option<f64> {
+    pub(crate) fn heading_deg(&self) -> Option<f64> {
         self.compass_deg.or(self.true_deg)
     }
 
-    /// Mode, operator and thrust.
-    #[must_use]
-    pub fn control(&self) -> Option<&ControlReport> {
-        self.control.as_ref()
-    }
-
-    /// The battery and its consumers.
-    #[must_use]
-    pub fn power(&self) -> Power {
-        self.power
-    }
-
-    /// The fault that the boat reports, if any.
-    #[must_use]
-    pub fn error(&self) -> Option<&str> {
-        self.error.as_deref()
-    }
-
     /// How far the boat's time of day is behind the host's, s.
-    #[must_use]
-    pub fn clock_behind_s(&self, host: HostTime) -> Option<f64> {
+    pub(crate) fn clock_behind_s(&self, host: HostTime) -> Option<f64> {
         self.clock.map(|(came, time)| date_and_time(host.utc_ns_at(came)).1.since_s(time))
     }
 

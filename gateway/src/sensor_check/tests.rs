@@ -27,10 +27,10 @@ fn host(day: u64) -> HostTime {
 #[test]
 fn sentences_are_counted_and_missing_ones_are_named() {
     let check = checked(TELEMETRY, 10.0);
-    let gga = &check.received()["GPGGA"];
+    let gga = &check.received["GPGGA"];
     assert_eq!((gga.count, gga.unreadable), (10, 0));
     assert!((gga.rate_hz().unwrap_or(0.0) - 10.0).abs() < 1e-9);
-    assert_eq!(check.received()["PTQM0"].unreadable, 10);
+    assert_eq!(check.received["PTQM0"].unreadable, 10);
     let missing = check.missing().join("\n");
     for want in ["VTG or RMC", "PSEAB", "the operator ashore must enable it"] {
         assert!(missing.contains(want), "{missing}");
@@ -93,7 +93,7 @@ fn a_link_without_sentences_says_what_came() {
         ("", "received nothing"),
     ] {
         let check = checked(stream, 10.0);
-        assert!(check.received().is_empty() && check.unread() == want, "{}", check.unread());
+        assert!(check.received.is_empty() && check.unread() == want, "{}", check.unread());
     }
 }
 

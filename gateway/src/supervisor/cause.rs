@@ -24,21 +24,9 @@ pub enum Cause {
     /// The battery voltage was low.
     #[error("the battery is low")]
     BatteryLow,
-    /// Another operator took over: PSEAD's operator number.
-    #[error("{} has taken over", operator(*.0))]
-    TakenOver(u8),
-    /// The boat no longer reported who commands it.
-    #[error("the boat no longer reports who commands it")]
-    ControlUnknown,
-    /// The boat did not enter the mode that it was sent; it reported this one.
-    #[error("the boat does not follow its commands: it is in mode {0}")]
-    Disobeyed(char),
-    /// The boat still echoes an outdated command: it transmits but does not listen.
-    #[error("the boat does not follow its commands: it still shows an older command")]
-    Deaf,
-    /// The boat echoes a command that we have not sent.
-    #[error("the boat receives orders that are not ours: another gateway may be at work")]
-    ForeignOrders,
+    /// The boat was not, or not alone, commanded by this gateway.
+    #[error("{0}")]
+    Control(ControlFault),
     /// The boat has no known recovery point.
     #[error("no recovery point inside the geofence that this gateway uploaded and the boat confirmed")]
     NoRecoveryPoint,
@@ -48,6 +36,26 @@ pub enum Cause {
     /// The link broke.
     #[error("the link is lost")]
     LinkLost,
+}
+
+/// Why this gateway does not command the boat, according to the boat's own reports.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum ControlFault {
+    /// Another operator took over: PSEAD's operator number.
+    #[error("{} has taken over", operator(*.0))]
+    TakenOver(u8),
+    /// The boat no longer reported who commands it.
+    #[error("the boat no longer reports who commands it")]
+    Unknown,
+    /// The boat did not enter the mode that it was sent; it reported this one.
+    #[error("the boat does not follow its commands: it is in mode {0}")]
+    Disobeyed(char),
+    /// The boat still echoes an outdated command: it transmits but does not listen.
+    #[error("the boat does not follow its commands: it still shows an older command")]
+    Deaf,
+    /// The boat echoes a command that we have not sent.
+    #[error("the boat receives orders that are not ours: another gateway may be at work")]
+    ForeignOrders,
 }
 
 /// A navigation fault.
@@ -97,8 +105,7 @@ pub enum NavFault {
 impl Cause {
     /// Whether the boat still receives commands, knows its position and heading, and responds to
     /// thrust.
-    #[must_use]
-    pub fn leaves_control(self) -> bool {
+    pub(crate) fn leaves_control(self) -> bool {
         // Only for these may a file name a task after a failsafe. A table of every cause with every
         // action would let somebody keep station on a lost fix.
         matches!(self, Cause::OrderStale | Cause::BatteryLow | Cause::Geofence | Cause::Hung(_))
@@ -114,18 +121,19 @@ impl Cause {
     }
 
     /// The condition that is missing for arming, as text.
-    #[must_use]
-    pub fn missing(self) -> String {
+    pub(crate) fn missing(self) -> String {
         match self {
             Cause::Hung(_) => "a gateway that does not hang".to_owned(),
             Cause::LinkLost => "the link to the boat".to_owned(),
-            Cause::TakenOver(by) => format!("secondary control: {} commands the boat", operator(by)),
-            Cause::ForeignOrders => "a boat that receives orders only from us".to_owned(),
+            Cause::Control(ControlFault::TakenOver(by)) => {
+                format!("secondary control: {} commands the boat", operator(by))
+            }
+            Cause::Control(ControlFault::ForeignOrders) => "a boat that receives orders only from us".to_owned(),
             Cause::NoRecoveryPoint => {
                 "a recovery point inside the geofence that this gateway uploaded and the boat accepted (mission)"
                     .to_owned()
             }
-            Cause::ControlUnknown | Cause::Disobeyed(_) | Cause::Deaf => {
+            Cause::Control(ControlFault::Unknown | ControlFault::Disobeyed(_) | ControlFault::Deaf) => {
                 "secondary control: the boat does not report that we command it".to_owned()
             }
             Cause::Nav(fault) => format!("navigation: {fault}"),

@@ -23,12 +23,12 @@
 //! the boat, and only while it is ready in this very step and no other boat is in the way. After a
 //! failsafe the boat stops. Its own controller takes over instead if the gateway's file says so for
 //! that cause and nothing that the task needs has failed. The state machine has no clock:
-//! [`Conditions`] state what is fresh, sound or granted now, so that a test can try every state
+//! `Conditions` state what is fresh, sound or granted now, so that a test can try every state
 //! with every input.
 
 mod cause;
 
-pub use cause::{Cause, NavFault};
+pub use cause::{Cause, ControlFault, NavFault};
 
 use crate::config::{FailsafeAction, FailsafeActions};
 use crate::thrust_check::ThrustFault;
@@ -37,38 +37,38 @@ use thiserror::Error;
 
 /// The present conditions.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Conditions {
+pub(crate) struct Conditions {
     /// Whether bytes can reach the boat.
-    pub link: bool,
+    pub(crate) link: bool,
     /// How long the gateway itself has just not run, s, if its guard may have stopped the boat
     /// meanwhile.
-    pub hung_s: Option<f64>,
-    /// Who commands the boat, according to its own reports.
-    pub control: Control,
+    pub(crate) hung_s: Option<f64>,
+    /// Why the boat is not commanded by this gateway alone, if so.
+    pub(crate) control: Option<ControlFault>,
     /// The navigation fault, if any.
-    pub nav: Option<NavFault>,
+    pub(crate) nav: Option<NavFault>,
     /// How the boat fails to respond to its orders, if it does.
-    pub thrust: Option<ThrustFault>,
+    pub(crate) thrust: Option<ThrustFault>,
     /// Whether the boat has a recovery point that we uploaded and that is inside the geofence.
-    pub recovery_point: bool,
+    pub(crate) recovery_point: bool,
     /// Whether the boat is inside the geofence and can stop there.
-    pub inside: bool,
+    pub(crate) inside: bool,
     /// Whether the battery is low.
-    pub battery_low: bool,
+    pub(crate) battery_low: bool,
     /// Whether another real boat is in the box around the bow.
-    pub blocked: bool,
+    pub(crate) blocked: bool,
     /// Whether there is a valid order within its time to live.
-    pub order_fresh: bool,
+    pub(crate) order_fresh: bool,
     /// Whether a boat that stopped for lack of a fresh order may arm itself again.
-    pub may_rearm: bool,
+    pub(crate) may_rearm: bool,
 }
 
 impl Conditions {
     /// The conditions before anything was received.
-    pub const UNKNOWN: Conditions = Conditions {
+    pub(crate) const UNKNOWN: Conditions = Conditions {
         link: false,
         hung_s: None,
-        control: Control::Unknown,
+        control: Some(ControlFault::Unknown),
         nav: Some(NavFault::NoFix),
         thrust: None,
         recovery_point: false,
@@ -80,26 +80,9 @@ impl Conditions {
     };
 }
 
-/// Who commands the boat, according to its own reports.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Control {
-    /// This gateway.
-    Granted,
-    /// Unknown: no recent report.
-    Unknown,
-    /// Another operator: PSEAD's operator number.
-    Other(u8),
-    /// This gateway, but the boat reports this mode instead of the one it was sent.
-    Disobeys(char),
-    /// This gateway, but the boat echoes the thrust of an outdated command.
-    Deaf,
-    /// This gateway, but the boat echoes a command that we have not sent.
-    Foreign,
-}
-
 /// A request by an operator.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum OperatorRequest {
+pub(crate) enum OperatorRequest {
     /// Follow orders.
     Arm,
     /// Stop following orders.
@@ -114,7 +97,7 @@ pub enum OperatorRequest {
 
 /// The scope of an E-stop. Each scope is released separately.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Scope {
+pub(crate) enum Scope {
     /// This boat alone.
     Boat,
     /// The whole fleet.
@@ -156,7 +139,7 @@ pub enum State {
 
 /// What to send the boat now.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Action {
+pub(crate) enum Action {
     /// Standby; after thrust, zero thrust comes first.
     Standby,
     /// Thrust zero.
@@ -169,29 +152,29 @@ pub enum Action {
 
 /// The reason for refusing a request.
 #[derive(Clone, Debug, PartialEq, Error)]
-pub enum Refusal {
+pub(crate) enum Refusal {
     /// These conditions are missing.
     #[error("missing: {}", .0.iter().map(|cause| cause.missing()).collect::<Vec<_>>().join("; "))]
     NotReady(Vec<Cause>),
-    /// An E-stop is in force.
-    #[error("an E-stop is in force")]
-    EStopped,
+    /// An E-stop of these boats is in force.
+    #[error("an E-stop of {0} is in force: release it first")]
+    EStopped(&'static str),
 }
 
 /// The result of one step.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Step {
+pub(crate) struct Step {
     /// What to send the boat.
-    pub action: Action,
+    pub(crate) action: Action,
     /// Why the request was refused, if it was.
-    pub refusal: Option<Refusal>,
+    pub(crate) refusal: Option<Refusal>,
     /// The previous state, if it changed.
-    pub before: Option<State>,
+    pub(crate) before: Option<State>,
 }
 
 /// The state machine.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Supervisor {
+pub(crate) struct Supervisor {
     state: State,
     /// E-stops in force: boat, fleet.
     stops: [bool; 2],
@@ -204,20 +187,17 @@ impl Supervisor {
     /// A safed supervisor. With `arms_itself` it arms when it is ready for the first time, unless
     /// an operator makes a request before. After any later stop it must be armed by request, unless
     /// [`Conditions::may_rearm`] says otherwise.
-    #[must_use]
-    pub fn new(arms_itself: bool, actions: FailsafeActions) -> Supervisor {
+    pub(crate) fn new(arms_itself: bool, actions: FailsafeActions) -> Supervisor {
         Supervisor { state: State::Safed, stops: [false; 2], arms_itself, actions }
     }
 
     /// The current state.
-    #[must_use]
-    pub fn state(&self) -> State {
+    pub(crate) fn state(&self) -> State {
         self.state
     }
 
     /// The E-stops in force, as text.
-    #[must_use]
-    pub fn stopped_by(&self) -> &'static str {
+    pub(crate) fn stopped_by(&self) -> &'static str {
         match self.stops {
             [true, true] => "this boat and of the fleet",
             [true, false] => "this boat",
@@ -227,7 +207,7 @@ impl Supervisor {
     }
 
     /// Advances the state machine by one step.
-    pub fn step(&mut self, now: &Conditions, request: Option<OperatorRequest>) -> Step {
+    pub(crate) fn step(&mut self, now: &Conditions, request: Option<OperatorRequest>) -> Step {
         let before = self.state;
         let refusal = request.and_then(|request| self.take_request(now, request));
         let arms_itself = match self.state {
@@ -251,7 +231,9 @@ impl Supervisor {
         match request {
             OperatorRequest::EStop(scope) => self.stops[scope as usize] = true,
             OperatorRequest::Release(scope) => self.stops[scope as usize] = false,
-            OperatorRequest::Arm | OperatorRequest::Delegate(_) if self.is_stopped() => return Some(Refusal::EStopped),
+            OperatorRequest::Arm | OperatorRequest::Delegate(_) if self.is_stopped() => {
+                return Some(Refusal::EStopped(self.stopped_by()));
+            }
             OperatorRequest::Arm => return self.enter(State::Armed, now.missing()),
             OperatorRequest::Delegate(task) => return self.enter(State::Delegated(task), now.unfit(task)),
             OperatorRequest::Disarm => self.state = State::Safed,
@@ -277,7 +259,7 @@ impl Supervisor {
             _ if self.is_stopped() => State::EStopped,
             // After release the boat is safed, whatever its state before: somebody has to arm it.
             State::EStopped => State::Safed,
-            State::Armed => now.failsafe().map_or(State::Armed, |cause| self.failsafe(now, cause)),
+            State::Armed => now.causes().next().map_or(State::Armed, |cause| self.failsafe(now, cause)),
             State::Delegated(task) => now.unfit_failsafe(task).map_or(self.state, |cause| self.failsafe(now, cause)),
             State::Failsafe { cause, task: Some(task) } => self.watch_task(now, cause, task),
             State::Safed | State::Failsafe { task: None, .. } => self.state,
@@ -337,29 +319,16 @@ impl Supervisor {
 impl Conditions {
     /// Reasons against driving the boat, gravest first.
     fn causes(&self) -> impl Iterator<Item = Cause> {
-        let control = match self.control {
-            Control::Granted => None,
-            Control::Unknown => Some(Cause::ControlUnknown),
-            Control::Other(operator) => Some(Cause::TakenOver(operator)),
-            Control::Disobeys(mode) => Some(Cause::Disobeyed(mode)),
-            Control::Deaf => Some(Cause::Deaf),
-            Control::Foreign => Some(Cause::ForeignOrders),
-        };
         let link = (!self.link).then_some(Cause::LinkLost);
         // Unknown without navigation.
         let geofence = (!self.inside && self.nav.is_none()).then_some(Cause::Geofence);
         let battery = self.battery_low.then_some(Cause::BatteryLow);
         let order = (!self.order_fresh).then_some(Cause::OrderStale);
         let hung = self.hung_s.map(Cause::Hung);
+        let control = self.control.map(Cause::Control);
         let (nav, thrust) = (self.nav.map(Cause::Nav), self.thrust.map(Cause::Thrust));
         // The order in which operators see them: a cause that makes others meaningless comes first.
         [link, hung, control, nav, thrust, geofence, battery, order].into_iter().flatten()
-    }
-
-    /// The failsafe cause of an armed boat.
-    #[must_use]
-    pub fn failsafe(&self) -> Option<Cause> {
-        self.causes().next()
     }
 
     /// The failsafe cause of a delegated boat: no order is needed, but some tasks need more.
@@ -378,15 +347,15 @@ impl Conditions {
     }
 
     /// All conditions that are missing for arming.
-    #[must_use]
-    pub fn missing(&self) -> Vec<Cause> {
+    pub(crate) fn missing(&self) -> Vec<Cause> {
         // The reported mode means nothing while we do not command the boat.
-        self.causes().filter(|cause| !matches!(cause, Cause::Disobeyed(_) | Cause::Deaf)).collect()
+        let is_reported =
+            |cause: &Cause| matches!(cause, Cause::Control(ControlFault::Disobeyed(_) | ControlFault::Deaf));
+        self.causes().filter(|cause| !is_reported(cause)).collect()
     }
 
     /// All conditions that are missing for delegating this task to the boat's own controller.
-    #[must_use]
-    pub fn unfit(&self, task: Task) -> Vec<Cause> {
+    pub(crate) fn unfit(&self, task: Task) -> Vec<Cause> {
         let general = self.missing().into_iter().filter(|cause| *cause != Cause::OrderStale);
         general.chain(self.missing_for(task)).collect()
     }

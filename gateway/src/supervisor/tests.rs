@@ -5,7 +5,7 @@ use super::*;
 const GOOD: Conditions = Conditions {
     link: true,
     hung_s: None,
-    control: Control::Granted,
+    control: None,
     nav: None,
     thrust: None,
     recovery_point: true,
@@ -39,14 +39,8 @@ fn all_actions() -> Vec<FailsafeActions> {
 }
 
 fn all_conditions() -> Vec<Conditions> {
-    let controls = [
-        Control::Granted,
-        Control::Unknown,
-        Control::Other(5),
-        Control::Disobeys('L'),
-        Control::Deaf,
-        Control::Foreign,
-    ];
+    use ControlFault::{Deaf, Disobeyed, ForeignOrders, TakenOver, Unknown};
+    let controls = [None, Some(Unknown), Some(TakenOver(5)), Some(Disobeyed('L')), Some(Deaf), Some(ForeignOrders)];
     let mut all = Vec::new();
     for bits in 0..1024_u16 {
         let is = |bit: u16| bits & (1 << bit) != 0;
@@ -109,9 +103,8 @@ fn explore(mut check: impl FnMut(&Supervisor, &Conditions, Option<OperatorReques
 /// Whether the boat's own controller can do a task, apart from other faults: link, control,
 /// position, thrusters.
 fn can_do(now: &Conditions, task: Task) -> bool {
-    let granted = matches!(now.control, Control::Granted);
     let has_place = task != Task::GoToErp || now.recovery_point;
-    now.link && granted && now.nav.is_none() && now.thrust.is_none() && has_place
+    now.link && now.control.is_none() && now.nav.is_none() && now.thrust.is_none() && has_place
 }
 
 #[test]
@@ -156,8 +149,8 @@ fn a_boat_is_delegated_only_by_request_and_while_it_is_fit() {
         let State::Delegated(task) = after.state else { return };
         let case = format!("{before:?}, {now:?}, {request:?} -> {step:?}");
         assert_eq!(step.action, Action::Task(task), "{case}");
-        let is_fit =
-            can_do(now, task) || (matches!(now.control, Control::Disobeys(_) | Control::Deaf) && step.before.is_some());
+        let disobeys = matches!(now.control, Some(ControlFault::Disobeyed(_) | ControlFault::Deaf));
+        let is_fit = can_do(now, task) || (disobeys && step.before.is_some());
         assert!(is_fit && now.hung_s.is_none() && now.inside && !now.battery_low, "{case}");
         assert!(request == Some(OperatorRequest::Delegate(task)) || before.state == State::Delegated(task), "{case}");
     });
@@ -244,11 +237,7 @@ fn every_failsafe_is_reported_with_its_true_cause_and_brings_standby_or_a_task()
                 Cause::Thrust(_) => now.thrust.is_some(),
                 Cause::Geofence => !now.inside,
                 Cause::BatteryLow => now.battery_low,
-                Cause::TakenOver(by) => now.control == Control::Other(by),
-                Cause::ControlUnknown => now.control == Control::Unknown,
-                Cause::Disobeyed(mode) => now.control == Control::Disobeys(mode),
-                Cause::Deaf => now.control == Control::Deaf,
-                Cause::ForeignOrders => now.control == Control::Foreign,
+                Cause::Control(fault) => now.control == Some(fault),
                 Cause::NoRecoveryPoint => !now.recovery_point,
                 Cause::LinkLost => !now.link,
                 Cause::Hung(_) => now.hung_s.is_some(),
@@ -268,7 +257,7 @@ fn a_refused_request_names_what_is_missing_and_changes_nothing_else() {
         let Some(refusal) = &step.refusal else { return };
         let case = format!("{before:?}, {now:?}, {request:?} -> {step:?}");
         match refusal {
-            Refusal::EStopped => assert!(before.is_stopped() && after.is_stopped(), "{case}"),
+            Refusal::EStopped(_) => assert!(before.is_stopped() && after.is_stopped(), "{case}"),
             Refusal::NotReady(missing) => assert!(!missing.is_empty() && *now != GOOD, "{case}"),
         }
         let (mut quiet, mut asked) = (before.clone(), before.clone());
@@ -295,8 +284,8 @@ fn from_every_state_the_boat_can_be_armed_again() {
 fn the_gravest_cause_is_the_one_that_is_reported() {
     let mut supervisor = Supervisor::new(false, all_actions()[0]);
     supervisor.step(&GOOD, Some(OperatorRequest::Arm));
-    let bad = Conditions { link: false, control: Control::Other(1), order_fresh: false, ..GOOD };
+    let bad = Conditions { link: false, control: Some(ControlFault::TakenOver(1)), order_fresh: false, ..GOOD };
     supervisor.step(&bad, None);
     assert_eq!(supervisor.state(), State::Failsafe { cause: Cause::LinkLost, task: None });
-    assert_eq!(Cause::TakenOver(5).to_string(), "the remote control has taken over");
+    assert_eq!(Cause::Control(ControlFault::TakenOver(5)).to_string(), "the remote control has taken over");
 }

@@ -2,8 +2,8 @@
 //! rest.
 
 use crate::boat::emulated;
-use crate::rig::{Rig, plan};
-use crate::script::{play, played};
+use crate::rig::plan;
+use crate::script::played;
 use crate::tamper::with_checksum;
 use gateway::emulator::{self, Emulator, Extra, Port};
 use gateway::nmea::Sentence;
@@ -11,7 +11,7 @@ use messages::Order;
 use primitives::SimTime;
 
 fn boat(change: impl FnOnce(&mut emulator::Plan)) -> Emulator {
-    let mut plan = emulated(plan("surveyor.toml", false).site.expect("the rig has one").field.plan.datum, 0.0);
+    let mut plan = emulated(plan("surveyor.toml").site.expect("the rig has one").field.plan.datum, 0.0);
     change(&mut plan);
     Emulator::new(plan)
 }
@@ -43,16 +43,6 @@ fn invalid_commands_change_nothing() {
 }
 
 #[test]
-fn without_a_watchdog_it_goes_on_for_ever_and_with_one_it_does_not() {
-    for (watchdog_s, order) in [(None, thrust(0.2, 0.2)), (Some(2.0), Order::Hold)] {
-        let mut boat = boat(|plan| plan.watchdog_s = watchdog_s);
-        send(&mut boat, "PSEAC,T,0,20,0,");
-        assert_eq!(boat.order(SimTime::from_s(1.9)), thrust(0.2, 0.2));
-        assert_eq!(boat.order(SimTime::from_s(3600.0)), order);
-    }
-}
-
-#[test]
 fn telemetry_is_what_the_strictest_known_reader_takes_even_in_standby() {
     let rig = played("boat\nrun 1\nexpect mode = L");
     let mut burst = vec![];
@@ -74,19 +64,6 @@ fn telemetry_is_what_the_strictest_known_reader_takes_even_in_standby() {
     assert_eq!(fields("$PSEAD")[7], "2");
     assert_eq!(fields("$PSEAG"), ["N"]);
     assert_eq!(text.lines().count(), 6);
-}
-
-#[test]
-fn a_receiver_without_a_new_fix_reports_quality_0() {
-    let mut rig = played("boat\nrun 1\nfixes frozen\nrun 0.5");
-    let quality = |rig: &Rig| {
-        let mut burst = vec![];
-        rig.emulator.telemetry(rig.now, &mut burst);
-        String::from_utf8(burst).expect("text").lines().next().expect("GGA").split(',').nth(6).map(str::to_owned)
-    };
-    assert_eq!(quality(&rig).as_deref(), Some("2"));
-    play(&mut rig, "run 1");
-    assert_eq!(quality(&rig).as_deref(), Some("0"));
 }
 
 #[test]

@@ -4,19 +4,23 @@
 use gateway::nmea::{FixQuality, Operator, Sentence};
 use primitives::SimTime;
 
+/// Maximum age of an order, of navigation and of a control report, s: those of the default file.
+const TTL_S: f64 = 1.0;
+const NAV_AGE_MAX_S: f64 = 1.5;
+const CONTROL_AGE_MAX_S: f64 = 2.0;
+
 /// The state as seen from outside the gateway.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct Oracle {
-    pub(crate) ttl_s: f64,
-    pub(crate) nav_age_max_s: f64,
-    pub(crate) control_age_max_s: f64,
+    /// How much longer data may have waited, s.
+    pub(crate) waited_s: f64,
     /// When the last valid and newer order arrived.
-    pub(crate) ordered: SimTime,
+    pub(crate) ordered: Option<SimTime>,
     /// When the last valid fix, the last heading, and the boat's last report that we command it
     /// arrived.
-    pub(crate) fixed: SimTime,
-    pub(crate) headed: SimTime,
-    pub(crate) granted: SimTime,
+    pub(crate) fixed: Option<SimTime>,
+    pub(crate) headed: Option<SimTime>,
+    pub(crate) granted: Option<SimTime>,
     pub(crate) other_operator: bool,
     /// E-stops in force: boat, fleet.
     pub(crate) stops: [bool; 2],
@@ -24,7 +28,7 @@ pub(crate) struct Oracle {
     /// How long after a stop for lack of orders the gateway may arm the boat itself, s, and when
     /// the boat was stopped so last.
     pub(crate) rearm_within_s: f64,
-    pub(crate) starved: SimTime,
+    pub(crate) starved: Option<SimTime>,
     pub(crate) link_up: bool,
     /// Number of driving sentences, and of all sentences.
     pub(crate) driving: u64,
@@ -34,34 +38,16 @@ pub(crate) struct Oracle {
     pub(crate) partial: String,
 }
 
-impl Oracle {
-    pub(crate) fn new() -> Oracle {
-        let never = SimTime::LONG_AGO;
-        Oracle {
-            ttl_s: 1.0,
-            nav_age_max_s: 1.5,
-            control_age_max_s: 2.0,
-            ordered: never,
-            fixed: never,
-            headed: never,
-            granted: never,
-            other_operator: false,
-            stops: [false; 2],
-            armed: false,
-            rearm_within_s: 0.0,
-            starved: never,
-            link_up: false,
-            driving: 0,
-            all: 0,
-            last: String::new(),
-            partial: String::new(),
-        }
-    }
+/// The time since a moment, s; infinite if it has not come.
+pub(crate) fn age_s(now: SimTime, since: Option<SimTime>) -> f64 {
+    since.map_or(f64::INFINITY, |since| (now - since).as_s())
+}
 
+impl Oracle {
     /// Resets what is known about the boat, for a new link.
     pub(crate) fn forget(&mut self) {
         self.partial.clear();
-        (self.fixed, self.headed, self.granted) = (SimTime::LONG_AGO, SimTime::LONG_AGO, SimTime::LONG_AGO);
+        (self.fixed, self.headed, self.granted) = (None, None, None);
     }
 
     /// Records bytes from the boat: only complete sentences with valid checksums count.
@@ -80,13 +66,13 @@ impl Oracle {
     fn note_sentence(&mut self, now: SimTime, body: &str) {
         match Sentence::parse(body) {
             Ok(Sentence::Gga(gga)) if FixQuality::from_gga(gga.quality).is_fix() && gga.at.is_some() => {
-                self.fixed = now
+                self.fixed = Some(now)
             }
-            Ok(Sentence::Attitude(attitude)) if attitude.heading_deg.is_some() => self.headed = now,
+            Ok(Sentence::Attitude(attitude)) if attitude.heading_deg.is_some() => self.headed = Some(now),
             Ok(Sentence::ControlState(state)) => {
                 self.other_operator = state.operator != Some(Operator::Secondary);
                 if !self.other_operator {
-                    self.granted = now;
+                    self.granted = Some(now);
                 }
             }
             _ => {}
@@ -128,20 +114,20 @@ impl Oracle {
         }
         self.driving += 1;
         self.is_fit(now, line);
-        let age_s = (now - self.ordered).as_s();
-        assert!(age_s <= self.ttl_s + 1e-6, "at {now}: {line:?} by an order {age_s} s old");
+        let age_s = age_s(now, self.ordered);
+        assert!(age_s <= TTL_S + self.waited_s + 1e-6, "at {now}: {line:?} by an order {age_s} s old");
         assert!(self.armed, "at {now}: {line:?} from a gateway that nobody armed");
         assert!(number(4).abs() + number(5).abs() <= 100.0, "{line:?}");
     }
 
     fn is_fit(&self, now: SimTime, line: &str) {
         for (what, since, most_s) in [
-            ("fix", self.fixed, self.nav_age_max_s),
-            ("heading", self.headed, self.nav_age_max_s),
-            ("control state", self.granted, self.control_age_max_s),
+            ("fix", self.fixed, NAV_AGE_MAX_S),
+            ("heading", self.headed, NAV_AGE_MAX_S),
+            ("control state", self.granted, CONTROL_AGE_MAX_S),
         ] {
-            let age_s = (now - since).as_s();
-            assert!(age_s <= most_s + 1e-6, "at {now}: {line:?} with a {what} {age_s} s old");
+            let age_s = age_s(now, since);
+            assert!(age_s <= most_s + self.waited_s + 1e-6, "at {now}: {line:?} with a {what} {age_s} s old");
         }
         assert!(!self.other_operator, "at {now}: {line:?} while somebody else has the boat");
         assert!(self.stops == [false; 2], "at {now}: {line:?} under an E-stop");

@@ -15,7 +15,7 @@ order steer 200 0.7\nrun 1\nlink down\nrun 1\nlink up\nrun 2\noperator arm\nrun 
 /// A recording of the drive.
 fn recording(end_well: bool) -> (Vec<u8>, usize, usize) {
     let rig = played(DRIVE);
-    let opening = opening(&crate::rig::plan("surveyor.toml", false), 1_700_000_000_000_000_000, "c0ffee");
+    let opening = opening(&crate::rig::plan("surveyor.toml"), 1_700_000_000_000_000_000, "c0ffee");
     let mut writer = Writer::begin(Cursor::new(Vec::new()), &opening).expect("memory");
     let mut encoder = StepEncoder::new("blue_one");
     let mut entries = Vec::new();
@@ -73,7 +73,7 @@ fn a_recording_that_says_something_else_is_found_out() {
 #[test]
 fn what_is_no_recording_is_refused() {
     assert!(matches!(replayed(b"$GPGGA,,"), Err(RecordingError::Foreign(_))));
-    let opening = opening(&crate::rig::plan("surveyor.toml", false), 0, "c0ffee");
+    let opening = opening(&crate::rig::plan("surveyor.toml"), 0, "c0ffee");
     let refused = |change: fn(&mut Opening)| {
         let mut opening = opening.clone();
         change(&mut opening);

@@ -2,9 +2,9 @@
 //! link.
 
 use crate::boat::{Boat, STEP_S, emulated};
-use crate::oracle::Oracle;
+use crate::oracle::{Oracle, age_s};
 use crate::tamper::{Tamper, with_checksum};
-use gateway::bridge::{Bridge, Event, Input, NavOut, Output, Plan, Preflight, Site};
+use gateway::bridge::{Bridge, Event, Input, NavOut, Output, Plan, Site};
 use gateway::emulator::{self, Emulator, Port};
 use messages::Order;
 use messages::external::{FleetCommand, OperatorCommand};
@@ -53,23 +53,13 @@ pub(crate) struct Rig {
 }
 
 /// The plan of a gateway with the settings of this file, on the field of the first game.
-pub(crate) fn plan(file: &str, arms_itself: bool) -> Plan {
+pub(crate) fn plan(file: &str) -> Plan {
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios");
     let game = scenario::load(&scenarios.join("games/pav01_vs_pav01.toml")).unwrap_or_else(|e| panic!("{e}"));
-    let gateway = scenarios.join("gateways").join(file);
-    Plan {
-        vehicle: "blue_one".to_owned(),
-        gateway: scenario::load_file::<gateway::config::Gateway>(&gateway).unwrap_or_else(|e| panic!("{e}")),
-        site: Some(Site {
-            length_m: 1.83,
-            field: game.field,
-            declination_rad: (-12.5_f64).to_radians(),
-            coasting: None,
-        }),
-        arms_itself,
-        dry_run: false,
-        preflight: Preflight::NotRequired,
-    }
+    let gateway = scenario::load_file(&scenarios.join("gateways").join(file)).unwrap_or_else(|e| panic!("{e}"));
+    let declination_rad = (-12.5_f64).to_radians();
+    let site = Some(Site { length_m: 1.83, field: game.field, declination_rad, coasting: None });
+    Plan { site, ..Plan::new("blue_one", gateway) }
 }
 
 impl Rig {
@@ -85,7 +75,7 @@ impl Rig {
             boat: Boat { at: Ned::from_xy(60.0, 40.0), ..Boat::default() },
             emulator: Emulator::new(emulator),
             boat_order: Order::Hold,
-            oracle: Oracle { armed: plan.arms_itself, rearm_within_s, ..Oracle::new() },
+            oracle: Oracle { armed: plan.arms_itself, rearm_within_s, ..Oracle::default() },
             bridge: Bridge::new(plan),
             open: (true, true),
             tamper: None,
@@ -113,7 +103,7 @@ impl Rig {
         let mut out = Output::default();
         match input {
             Input::Order(order, given) if order.check().is_ok() && *given > self.given => {
-                (self.oracle.ordered, self.given) = (self.now, *given);
+                (self.oracle.ordered, self.given) = (Some(self.now), *given);
             }
             Input::Fleet(command) => self.oracle.stops[1] = *command == FleetCommand::EStop,
             Input::Operator(OperatorCommand::EStop) => self.oracle.stops[0] = true,
@@ -133,11 +123,11 @@ impl Rig {
         for event in out.events {
             // Any state change from armed requires arming again.
             if let Event::State { from, to } = &event {
-                let may_rearm = (self.now - self.oracle.starved).as_s() <= self.oracle.rearm_within_s;
+                let may_rearm = age_s(self.now, self.oracle.starved) <= self.oracle.rearm_within_s;
                 self.oracle.armed &= from != "armed";
                 self.oracle.armed |= to == "armed" && from == "failsafe: no fresh order" && may_rearm;
                 let is_starved = from == "armed" && to == "failsafe: no fresh order";
-                self.oracle.starved = if is_starved { self.now } else { SimTime::LONG_AGO };
+                self.oracle.starved = is_starved.then_some(self.now);
             }
             self.events.push((self.now, event));
         }

@@ -62,7 +62,7 @@ fn failure(script: &str) -> Option<&str> {
 
 /// Runs a script and returns the rig.
 pub(crate) fn played(script: &str) -> Rig {
-    let mut rig = Rig::of(plan("surveyor.toml", false), |_| {});
+    let mut rig = Rig::of(plan("surveyor.toml"), |_| {});
     play_all(&mut rig, script);
     rig
 }
@@ -146,7 +146,7 @@ fn boat(options: &[&str]) -> Rig {
         [file, rest @ ..] if file.ends_with(".toml") => (*file, rest),
         rest => ("surveyor.toml", rest),
     };
-    let (mut plan, mut watchdog_s, mut integers, mut charge) = (plan(file, false), None, false, Some(1.0));
+    let (mut plan, mut watchdog_s, mut integers, mut charge) = (plan(file), None, false, Some(1.0));
     for option in options.chunks(2) {
         match option {
             ["watchdog", seconds] => watchdog_s = Some(number(seconds)),
@@ -162,6 +162,10 @@ fn boat(options: &[&str]) -> Rig {
             ["dry-run", "yes"] => plan.dry_run = true,
             ["preflight", "missing"] => plan.preflight = Preflight::Missing("a passed pre-flight check".to_owned()),
             ["arms-itself", "once"] => plan.arms_itself = true,
+            ["currents", "off"] => {
+                let currents = &mut plan.gateway.currents;
+                (currents.thruster_max_a, currents.thruster_min_a, currents.bilge_a) = (0.0, 0.0, 0.0);
+            }
             other => panic!("no boat has {other:?}"),
         }
     }
@@ -187,7 +191,7 @@ fn order_of(words: &[&str]) -> Option<Order> {
 
 /// A mission with places `x,y` on the field or `@latitude,longitude`.
 fn mission_of(words: &[&str]) -> Mission {
-    let frame = LocalFrame::new(plan("surveyor.toml", false).site.expect("the rig has one").field.plan.datum);
+    let frame = LocalFrame::new(plan("surveyor.toml").site.expect("the rig has one").field.plan.datum);
     let place = |text: &str| {
         let (a, b) = text.trim_start_matches('@').split_once(',').expect("two numbers");
         if text.starts_with('@') {

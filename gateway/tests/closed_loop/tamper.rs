@@ -28,16 +28,16 @@ pub(crate) fn tamper(words: &[&str]) -> Option<Tamper> {
         }
         ["position", lat, north, lon, east] => {
             let place = [lat, north, lon, east].map(|field| (*field).to_owned());
-            refixed(move |fields| fields[2..6].clone_from_slice(&place))
+            changed("GPGGA", move |fields| fields[2..6].clone_from_slice(&place))
         }
-        ["battery", fields @ ..] => battery_fields(fields),
+        ["fields", name, pairs @ ..] => replaced_fields(name, pairs),
         ["frozen-compass"] => frozen_compass(),
         ["turned-compass", degrees] => turned_compass(degrees.parse().expect("degrees")),
-        ["stuck-speed"] => rewritten(|body| {
-            let is_speed = body.starts_with("GPVTG");
-            if is_speed { "GPVTG,,T,,M,0.00,N,0.00,K".to_owned() } else { body.to_owned() }
-        }),
-        ["whole-seconds"] => refixed(|fields| fields[1].replace_range(6.., ".00")),
+        ["stuck-speed"] => {
+            let stuck = ["GPVTG", "", "T", "", "M", "0.00", "N", "0.00", "K"].map(str::to_owned);
+            changed("GPVTG", move |fields| *fields = stuck.to_vec())
+        }
+        ["whole-seconds"] => changed("GPGGA", |fields| fields[1].replace_range(6.., ".00")),
         other => panic!("no tampering is {other:?}"),
     })
 }
@@ -57,28 +57,23 @@ fn rewritten(mut change: impl FnMut(&str) -> String + 'static) -> Tamper {
     Box::new(move |bytes| vec![String::from_utf8_lossy(&bytes).lines().map(&mut line).collect::<String>().into_bytes()])
 }
 
-/// Changes the fields of fixes only.
-fn refixed(change: impl Fn(&mut Vec<String>) + 'static) -> Tamper {
+/// Changes the fields of the sentences with this name.
+fn changed(name: &str, mut change: impl FnMut(&mut Vec<String>) + 'static) -> Tamper {
+    let name = name.to_owned();
     rewritten(move |body| {
         let mut fields: Vec<String> = body.split(',').map(str::to_owned).collect();
-        if fields[0] == "GPGGA" {
+        if fields[0] == name {
             change(&mut fields);
         }
         fields.join(",")
     })
 }
 
-/// Replaces fields of `PSEAB`, given by number.
-fn battery_fields(pairs: &[&str]) -> Tamper {
+/// Replaces fields of the sentences with this name, given by number.
+fn replaced_fields(name: &str, pairs: &[&str]) -> Tamper {
     let said = |two: &[&str]| (two[0].parse::<usize>().expect("a field's number"), two[1].to_owned());
     let pairs: Vec<_> = pairs.chunks(2).map(said).collect();
-    rewritten(move |body| {
-        let mut fields: Vec<&str> = body.split(',').collect();
-        if fields[0] == "PSEAB" {
-            pairs.iter().for_each(|(field, text)| fields[*field] = text);
-        }
-        fields.join(",")
-    })
+    changed(name, move |fields| pairs.iter().for_each(|(field, text)| fields[*field].clone_from(text)))
 }
 
 /// A receiver that repeats its first fix with its time, and still reports it as good.
@@ -95,25 +90,17 @@ fn first_fix_again() -> Tamper {
 /// A compass that always shows its first reading.
 fn frozen_compass() -> Tamper {
     let mut first = None;
-    rewritten(move |body| {
-        let mut fields: Vec<String> = body.split(',').map(str::to_owned).collect();
-        if fields[0] == "PSEAA" {
-            let now = fields[3].clone();
-            fields[3].clone_from(first.get_or_insert(now));
-        }
-        fields.join(",")
+    changed("PSEAA", move |fields| {
+        let now = fields[3].clone();
+        fields[3].clone_from(first.get_or_insert(now));
     })
 }
 
 /// A compass that reads this much too high, degrees.
 fn turned_compass(by_deg: f64) -> Tamper {
-    rewritten(move |body| {
-        let mut fields: Vec<String> = body.split(',').map(str::to_owned).collect();
-        if fields[0] == "PSEAA" {
-            let shown_deg: f64 = fields[3].parse().expect("a heading");
-            fields[3] = format!("{:.1}", (shown_deg + by_deg).rem_euclid(360.0));
-        }
-        fields.join(",")
+    changed("PSEAA", move |fields| {
+        let shown_deg: f64 = fields[3].parse().expect("a heading");
+        fields[3] = format!("{:.1}", (shown_deg + by_deg).rem_euclid(360.0));
     })
 }
 

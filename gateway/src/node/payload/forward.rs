@@ -1,9 +1,9 @@
 //! A client of a payload behind a TCP port, with its own connection to the payload, over which
 //! bytes pass both ways.
 
-use super::limit::{ANSWER_PAUSE, CONNECT_MAX, LOOK, WRITE_MAX};
-use super::passed_payload::Payload;
-use super::tap::Tap;
+use super::super::LOOK;
+use super::passed_payload::{Payload, Talk};
+use super::{ANSWER_PAUSE, CONNECT_MAX, WRITE_MAX};
 use crate::link::HostPort;
 use bus::{Slot, clock};
 use socket2::{SockRef, TcpKeepalive};
@@ -26,7 +26,7 @@ struct Forward<'a> {
     client: &'a TcpStream,
     upstream: TcpStream,
     number: u32,
-    tap: Tap,
+    talk: Talk,
     /// Whether the payload and the client have closed their sides.
     ended: [AtomicBool; 2],
 }
@@ -34,16 +34,12 @@ struct Forward<'a> {
 /// Serves a client until it or the payload is lost.
 pub(super) fn serve(payload: &Payload, at: &HostPort, slot: &Slot, client: &TcpStream) {
     let Some(_turn) = payload.turn.client() else { return };
-    let connected = connect(at).and_then(|upstream| {
-        prepare(client)?;
-        Ok(upstream)
-    });
-    let upstream = match connected {
+    let upstream = match prepare(client).and_then(|()| connect(at)) {
         Ok(upstream) => upstream,
         Err(e) => return payload.remark(&format!("cannot connect a client to {}: {e}", payload.port.address)),
     };
-    let (number, tap) = payload.taps.open();
-    let forward = Forward { payload, slot, client, upstream, number, tap, ended: Default::default() };
+    let (number, talk) = payload.open();
+    let forward = Forward { payload, slot, client, upstream, number, talk, ended: Default::default() };
     std::thread::scope(|scope| {
         let thread = std::thread::Builder::new().name(format!("payload {}", payload.port.name));
         match thread.spawn_scoped(scope, || forward.pass(false)) {
@@ -94,7 +90,7 @@ impl Forward<'_> {
         loop {
             match (&mut &*from).read(&mut piece) {
                 Ok(0) => {
-                    self.tap.end(self.number, outward);
+                    self.payload.record_end(&self.talk, self.number, outward);
                     self.ended[usize::from(outward)].store(true, Ordering::Relaxed);
                     // The other side may be gone already.
                     drop(to.shutdown(Shutdown::Write));
@@ -103,7 +99,7 @@ impl Forward<'_> {
                 Ok(count) => {
                     received = clock::now();
                     self.slot.touch();
-                    self.tap.record_bytes(self.number, outward, &piece[..count]);
+                    self.payload.record_bytes(&self.talk, self.number, outward, &piece[..count]);
                     // Bytes that one side does not accept are not read from the other: TCP's own
                     // back pressure slows down a fast camera.
                     if let Err(e) = (&mut &*to).write_all(&piece[..count]) {

@@ -4,31 +4,46 @@
 //! for it now and then. A slow or stopped client or payload delays only its own connection.
 
 mod forward;
-mod limit;
 mod passed_payload;
 mod poll;
-mod remarks;
 mod shared_line;
-mod shell;
-mod tap;
 mod turn;
-mod way;
 
-pub(super) use shell::Shell;
-
+use super::clock::Clock;
+use super::loop_input::Call;
 use super::node_event::NodeEvent;
 use super::tcp_port::TcpPort;
 use crate::bridge::Event;
+use crate::link::{HostPort, LinkAddress, LinkError};
 use crate::payload::PayloadPort;
-use bus::Slot;
-use limit::CLIENTS_MAX;
+use bus::{InboxSender, Slot};
 use passed_payload::Payload;
-use remarks::Remarks;
+use recording::BulkRecorder;
+use shared_line::SharedLine;
 use std::net::TcpStream;
+use std::path::PathBuf;
 use std::sync::Arc;
-use tap::Taps;
-use turn::Turn;
-use way::Way;
+use std::time::Duration;
+
+/// Maximum number of simultaneous clients of a payload.
+const CLIENTS_MAX: usize = 16;
+
+/// Maximum time to connect to a payload.
+const CONNECT_MAX: Duration = Duration::from_secs(2);
+/// A side that accepts no bytes for this long is disconnected.
+const WRITE_MAX: Duration = Duration::from_secs(10);
+/// Maximum pause in the answer to a client that sends nothing more.
+const ANSWER_PAUSE: Duration = Duration::from_secs(5);
+
+/// The gateway services that payloads need.
+pub(super) struct Shell {
+    /// The recorder, and its file.
+    pub(super) record: Option<(BulkRecorder, PathBuf)>,
+    /// Minimum free disk space for recording payload bytes, MiB.
+    pub(super) space_min_mib: u64,
+    pub(super) clock: Clock,
+    pub(super) calls: InboxSender<Call>,
+}
 
 /// The payloads of a boat, open until dropped.
 pub(super) struct Payloads(Vec<Passage>);
@@ -37,6 +52,14 @@ pub(super) struct Payloads(Vec<Passage>);
 struct Passage {
     payload: Arc<Payload>,
     port: TcpPort,
+}
+
+/// How a payload is reached.
+enum Way {
+    /// One connection for each client.
+    Tcp(HostPort),
+    /// One connection shared by all clients.
+    Shared(SharedLine),
 }
 
 impl Payloads {
@@ -68,9 +91,7 @@ impl Drop for Payloads {
 
 impl Passage {
     fn open(port: &PayloadPort, shell: &Shell) -> Result<Passage, Box<dyn std::error::Error>> {
-        let remarks = Arc::new(Remarks::new(&port.name, shell.calls.clone()));
-        let taps = Taps::new(port, shell, &remarks);
-        let payload = Arc::new(Payload { port: port.clone(), taps, turn: Turn::default(), remarks });
+        let payload = Arc::new(Payload::new(port, shell));
         let way = Arc::new(Way::open(&payload)?);
         let (clients, to) = (Arc::clone(&payload), Arc::clone(&way));
         let serve = move |slot: &Slot, client: &TcpStream| to.serve(&clients, slot, client);
@@ -85,5 +106,22 @@ impl Passage {
             drop(thread.spawn(move || poll::run(&payload, &way, exo2))?);
         }
         Ok(passage)
+    }
+}
+
+impl Way {
+    fn open(payload: &Arc<Payload>) -> Result<Way, LinkError> {
+        Ok(match &payload.port.address {
+            LinkAddress::Tcp(_, at) => Way::Tcp(at.clone()),
+            address => Way::Shared(SharedLine::open(payload, address)?),
+        })
+    }
+
+    /// Serves a client until it or the payload is lost.
+    fn serve(&self, payload: &Payload, slot: &Slot, client: &TcpStream) {
+        match self {
+            Way::Tcp(at) => forward::serve(payload, at, slot, client),
+            Way::Shared(line) => line.serve(slot, client),
+        }
     }
 }

@@ -2,9 +2,8 @@
 //! sends, and it receives what each of them sends.
 
 use super::forward::{is_pause, prepare};
-use super::limit::{ANSWER_PAUSE, CONNECT_MAX};
-use super::passed_payload::Payload;
-use super::tap::Tap;
+use super::passed_payload::{Payload, Talk};
+use super::{ANSWER_PAUSE, CONNECT_MAX};
 use crate::link::{Link, LinkAddress, LinkError, LinkEvent, LinkSettings};
 use bus::{Slot, Watched, clock};
 use parking_lot::Mutex;
@@ -35,7 +34,7 @@ pub(super) struct SharedLine {
 /// Both ends of it.
 struct Ends {
     payload: Arc<Payload>,
-    tap: Tap,
+    talk: Talk,
     is_up: Watched<bool>,
     clients: Mutex<Vec<Client>>,
 }
@@ -49,8 +48,8 @@ struct Client {
 
 impl SharedLine {
     pub(super) fn open(payload: &Arc<Payload>, address: &LinkAddress) -> Result<SharedLine, LinkError> {
-        let (_, tap) = payload.taps.open();
-        let ends = Ends { payload: Arc::clone(payload), tap, is_up: Watched::new(false), clients: Mutex::default() };
+        let (_, talk) = payload.open();
+        let ends = Ends { payload: Arc::clone(payload), talk, is_up: Watched::new(false), clients: Mutex::default() };
         let ends = Arc::new(ends);
         let settings = LinkSettings { silence: None, ..LinkSettings::default() };
         let theirs = Arc::clone(&ends);
@@ -68,7 +67,7 @@ impl SharedLine {
     pub(super) fn send(&self, connection: u32, bytes: &[u8]) -> bool {
         // A command of one client is written completely before the next one's begins.
         let _writing = self.writing.lock();
-        self.ends.tap.record_bytes(connection, true, bytes);
+        self.ends.payload.record_bytes(&self.ends.talk, connection, true, bytes);
         self.link.send_and_wait(bytes, WRITE_LIMIT)
     }
 
@@ -79,7 +78,7 @@ impl SharedLine {
         if !self.is_up() {
             return payload.remark(&format!("cannot connect a client to {}", payload.port.address));
         }
-        let (number, _) = payload.taps.open();
+        let (number, _) = payload.open();
         let (sender, pieces) = sync_channel(WAITING_MAX);
         match prepare(stream).and_then(|()| stream.try_clone()) {
             Ok(stream) => self.ends.clients.lock().push(Client { number, pieces: sender, stream }),
@@ -103,7 +102,7 @@ impl SharedLine {
         loop {
             match stream.read(&mut piece) {
                 Ok(0) => {
-                    self.ends.tap.end(number, true);
+                    self.ends.payload.record_end(&self.ends.talk, number, true);
                     // The answer may be on its way.
                     return clock::rest(ANSWER_PAUSE);
                 }
@@ -125,7 +124,7 @@ impl Ends {
         match event {
             LinkEvent::Up { .. } => self.is_up.visit(|is_up| *is_up = true),
             LinkEvent::Bytes { bytes, .. } => {
-                self.tap.record_bytes(TO_ALL, false, &bytes);
+                self.payload.record_bytes(&self.talk, TO_ALL, false, &bytes);
                 self.give(&bytes.into());
             }
             LinkEvent::Down { reason, .. } | LinkEvent::Failed { reason, .. } => {

@@ -8,7 +8,7 @@ use std::time::Duration;
 const LET_GO_MAX: Duration = Duration::from_secs(3);
 
 /// Maximum number of clients, including those that are being disconnected.
-const CLIENTS_MAX: usize = 2 * super::limit::CLIENTS_MAX;
+const CLIENTS_MAX: usize = 2 * super::CLIENTS_MAX;
 
 /// The state of the turns.
 #[derive(Default)]
