@@ -2,7 +2,7 @@
 //! reported before any game.
 
 use experiment::sweep::Sweep;
-use experiment::sweep::{self, Condition, FindError, Journal, Plan, Study, StudyError, UntilError};
+use experiment::sweep::{self, Condition, Journal, Plan, SearchError, Study, StudyError};
 use scenario::{Overrides, load_file, load_with};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -157,7 +157,7 @@ fn a_game_of_the_report_is_the_one_that_its_command_plays() {
     let scenario = load_with(&shipped("games/surveyor_2v2.toml"), &overrides).unwrap().of_seed(6).unwrap();
     let outcome = arena::play(&scenario, agent::minds_of(&scenario), 6).unwrap();
     assert_eq!(outcome.digest, played.digest);
-    let score = played.result.unwrap().own.score;
+    let score = played.result.unwrap().of("score");
     assert_eq!(score, f64::from(outcome.score.teams["blue"]));
 }
 
@@ -175,7 +175,7 @@ fn all_points_play_the_same_seeds_and_designs_cover_the_space() {
         std::fs::write(&path, format!("design = {design:?}\npoints = 30\n{}", text(&two))).unwrap();
         Plan::new(&load_file::<Sweep>(&path).unwrap()).unwrap()
     };
-    let winds = |plan: &Plan| plan.points().iter().map(|point| point.values[1].number().unwrap()).collect::<Vec<f64>>();
+    let winds = |plan: &Plan| plan.points().iter().map(|point| point[1].number().unwrap()).collect::<Vec<f64>>();
     let one = with("one_at_a_time");
     // The nominal point (wind 5, noise 1), two more winds and two more noises.
     assert_eq!(one.points().len(), 5);
@@ -292,7 +292,7 @@ fn a_search_that_was_stopped_anywhere_goes_on_without_playing_its_games_again() 
 
     let cut = dir.path().join("cut");
     let mut journal = Journal::begin(&cut, &plan).unwrap();
-    assert!(matches!(find(&mut journal, &AtomicBool::new(false), 1), Err(FindError::Stopped)));
+    assert!(matches!(find(&mut journal, &AtomicBool::new(false), 1), Err(SearchError::Stopped)));
     assert_eq!(journal.games(), 100);
     drop(journal);
     assert!(matches!(Journal::begin(&cut, &plan), Err(StudyError::Exists { games: 100, .. })));
@@ -337,5 +337,5 @@ fn a_search_that_was_stopped_anywhere_goes_on_without_playing_its_games_again() 
     let condition = Condition::parse("easy.score < 2", other.sweep()).unwrap();
     let mut new = Journal::begin(&dir.path().join("new"), &other).unwrap();
     let none = sweep::breaking_point(&other, &condition, Some("sea.wind.speed_m_s"), &mut new, stopped, |_| {});
-    assert!(matches!(none, Err(UntilError::Stopped)), "{none:?}");
+    assert!(matches!(none, Err(SearchError::Stopped)), "{none:?}");
 }

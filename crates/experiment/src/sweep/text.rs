@@ -5,7 +5,7 @@ use super::find::Found;
 use super::metric::Metric;
 use super::report::{PointReport, Report};
 use crate::estimate::Estimate;
-use std::fmt::Write;
+use std::fmt::Write as _;
 
 /// The columns shown for each level: the metric, its heading, and its factor.
 const COLUMNS: [(&str, &str, f64); 5] = [
@@ -83,15 +83,9 @@ fn differences(report: &Report, line: &mut impl FnMut(String)) {
         let better = sure(|one| one.low.is_some_and(|low| low > 0.0));
         let worse = sure(|one| one.high.is_some_and(|high| high < 0.0));
         let mean = all.iter().map(|one| one.mean).sum::<f64>() / all.len().max(1) as f64;
-        let mut about = String::new();
-        let _ = write!(
-            about,
-            "\n{entry} minus {}, on the same seeds: {:+.0} % of games won on average",
-            report.entries[0],
-            100.0 * mean
-        );
-        let _ = write!(about, ";\nsignificantly more at {better} and fewer at {worse} of {} points", all.len());
-        line(about);
+        let (first, pct, count) = (&report.entries[0], 100.0 * mean, all.len());
+        line(format!("\n{entry} minus {first}, on the same seeds: {pct:+.0} % of games won on average;"));
+        line(format!("significantly more at {better} and fewer at {worse} of {count} points"));
     }
 }
 
