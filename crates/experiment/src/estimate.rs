@@ -48,6 +48,12 @@ impl Estimate {
         Some(Estimate { mean: ratio, low: low.map(|low| ratio + low), high: high.map(|high| ratio + high) })
     }
 
+    /// The mean and half the width of the interval, multiplied, with this number of decimal places.
+    pub(crate) fn shown(&self, times: f64, digits: usize) -> String {
+        let half = self.half_width().map_or("?".to_owned(), |half| format!("{:.digits$}", half * times));
+        format!("{:.digits$} ± {half}", self.mean * times)
+    }
+
     /// Half the width of the interval.
     #[must_use]
     pub fn half_width(&self) -> Option<f64> {

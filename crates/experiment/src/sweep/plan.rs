@@ -1,11 +1,11 @@
 //! The games of a sweep.
 
 use super::{Axis, AxisValue, Design, Sweep};
-use crate::jobs::too_many_games;
+use crate::jobs::{load_game, teams_of, too_many_games};
 use crate::tournament::Entrant;
 use crate::{Packed, UnpackError};
 use primitives::stream::Stream;
-use scenario::{Files, Overrides, Problem, Problems, Scenario, Setting, digest_of, load_with_files};
+use scenario::{Files, Overrides, Problem, Problems, Scenario, Setting, digest_of};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -69,8 +69,7 @@ impl Plan {
 
     /// A plan with unchecked points, read from these files.
     fn unchecked(sweep: &Sweep, files: Arc<Files>) -> Result<Plan, Problems> {
-        let game = load_with_files(&sweep.game, &Overrides::default(), &files)?;
-        let teams = game.teams.into_iter().map(|team| team.name).collect();
+        let teams = teams_of(&sweep.game, &files)?;
         let (points, files_needed) = (points(sweep)?, files.list().len());
         Ok(Plan { sweep: sweep.clone(), teams, seeds: u64::from(sweep.games).div_ceil(2), points, files, files_needed })
     }
@@ -140,18 +139,11 @@ impl Plan {
     /// # Errors
     /// All problems in any file.
     pub fn scenario(&self, point: usize, entry: usize, side: usize) -> Result<Scenario, Problems> {
-        let overrides = self.overrides(point, entry, side);
-        let scenario = load_with_files(&self.sweep.game, &overrides, &self.files)?;
-        scenario.has_no_real_boats().map_err(|real_boats| self.problem(real_boats.to_string()))?;
-        Ok(scenario)
+        load_game(&self.sweep.game, &self.overrides(point, entry, side), &self.files, &self.sweep.path)
     }
 
     fn overrides(&self, point: usize, entry: usize, side: usize) -> Overrides {
         self.sweep.overrides(&self.teams, entry, side, &self.points[point])
-    }
-
-    fn problem(&self, message: String) -> Problems {
-        Problems(vec![Problem::of_file(self.sweep.path.clone(), message)])
     }
 
     /// The command that replays a game.
