@@ -34,7 +34,7 @@ impl Arguments {
     pub(crate) fn setup(self) -> PyResult<RawSetup> {
         let observation = match self.observation.as_str() {
             "pyquaticus" => RawObservation::Pyquaticus,
-            "squall" => RawObservation::Squall { mates: None, enemies: None, frames: self.frames },
+            "squall" => RawObservation::Squall { frames: self.frames },
             other => return Err(refused(format!("observation is {other:?}, expected \"squall\" or \"pyquaticus\""))),
         };
         let action = match self.action.as_str() {

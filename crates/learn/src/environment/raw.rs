@@ -1,6 +1,6 @@
 //! A setup as users write it: file paths, seconds and names.
 
-use super::setup::{Control, Player, Setup, SetupError};
+use super::setup::{Control, Player, Setup, SetupError, wrong};
 use crate::rewards::Rewards;
 use crate::training::CriticInput;
 use agent::{ActionSpace, ObservationSpace, Spaces};
@@ -14,12 +14,8 @@ use std::path::{Path, PathBuf};
 pub enum RawObservation {
     /// [`ObservationSpace::Pyquaticus`].
     Pyquaticus,
-    /// [`ObservationSpace::Squall`]; by default with one slot for each boat of the game.
+    /// [`ObservationSpace::Squall`] with one slot for each boat of the game.
     Squall {
-        /// Number of slots for mates.
-        mates: Option<u8>,
-        /// Number of slots for enemies.
-        enemies: Option<u8>,
         /// Number of consecutive decisions in one observation.
         frames: u8,
     },
@@ -103,17 +99,13 @@ impl RawSetup {
 
 impl RawObservation {
     fn check(self, scenario: &Scenario) -> Result<ObservationSpace, SetupError> {
-        let RawObservation::Squall { mates, enemies, frames } = self else { return Ok(ObservationSpace::Pyquaticus) };
+        let RawObservation::Squall { frames } = self else { return Ok(ObservationSpace::Pyquaticus) };
         if frames == 0 {
             return Err(wrong("frames", 0, "1 to 255"));
         }
         let boats = |team: usize| scenario.vehicles.iter().filter(|vehicle| vehicle.team.index() == team).count();
         let room = |boats: usize| u8::try_from(boats).unwrap_or(u8::MAX);
-        Ok(ObservationSpace::Squall {
-            mates: mates.unwrap_or_else(|| room(boats(0).saturating_sub(1))),
-            enemies: enemies.unwrap_or_else(|| room(boats(1))),
-            frames,
-        })
+        Ok(ObservationSpace::Squall { mates: room(boats(0).saturating_sub(1)), enemies: room(boats(1)), frames })
     }
 }
 
@@ -125,10 +117,6 @@ fn team(scenario: &Scenario, name: &str) -> Result<TeamId, SetupError> {
     let found = scenario.teams.iter().position(|team| team.name == name);
     let names = || scenario.teams.iter().map(|team| format!("{:?}", team.name)).collect::<Vec<_>>().join(" or ");
     found.map(|team| TeamId(team as u8)).ok_or_else(|| wrong("team", format!("{name:?}"), &names()))
-}
-
-fn wrong(field: &'static str, found: impl ToString, allowed: &str) -> SetupError {
-    SetupError::Field { field, found: found.to_string(), allowed: allowed.to_owned() }
 }
 
 /// The number of game decisions per policy decision.

@@ -1,7 +1,7 @@
 //! Converts a training stage to a setup.
 
 use super::raw::{decisions_per_step, steps_max};
-use super::setup::{Control, Player, Setup, SetupError, Teacher};
+use super::setup::{Control, Player, Setup, SetupError, Teacher, wrong};
 use crate::training::{self, Stage, Training};
 use agent::Spaces;
 use scenario::Overrides;
@@ -58,17 +58,12 @@ impl Setup {
         let listed = |names: &mut dyn Iterator<Item = &String>| names.cloned().collect::<Vec<_>>().join(", ");
         if let Some(unknown) = said.options.keys().find(|mode| !modes.contains(*mode)) {
             let allowed = format!("a mode of {}: {}", strategy.name, listed(&mut modes.iter()));
-            return Err(SetupError::Field {
-                field: "a mode in the teacher's options",
-                found: unknown.clone(),
-                allowed,
-            });
+            return Err(wrong("a mode in the teacher's options", unknown, &allowed));
         }
         let mut options = BTreeMap::new();
         let Some(names) = self.options() else {
             if let Some(option) = said.options.values().next() {
-                let allowed = "none, because action is not \"options\"".to_owned();
-                return Err(SetupError::Field { field: "the teacher's options", found: option.clone(), allowed });
+                return Err(wrong("the teacher's options", option, "none, because action is not \"options\""));
             }
             return Ok(Teacher { strategy, options });
         };
@@ -77,8 +72,7 @@ impl Setup {
             match names.iter().position(|option| option == name) {
                 Some(option) => drop(options.insert(mode, option)),
                 None if said.options.contains_key(&mode) => {
-                    let (found, allowed) = (format!("{name:?}"), listed(&mut names.iter()));
-                    return Err(SetupError::Field { field: "an option of the teacher", found, allowed });
+                    return Err(wrong("an option of the teacher", format!("{name:?}"), &listed(&mut names.iter())));
                 }
                 None => {}
             }
@@ -86,7 +80,7 @@ impl Setup {
         if options.is_empty() {
             let found = format!("{}, whose modes match no option", strategy.name);
             let allowed = format!("options for its modes from {}", listed(&mut names.iter()));
-            return Err(SetupError::Field { field: "the teacher", found, allowed });
+            return Err(wrong("the teacher", found, &allowed));
         }
         Ok(Teacher { strategy, options })
     }

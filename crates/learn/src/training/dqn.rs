@@ -53,22 +53,3 @@ impl Dqn {
         self.epsilon + (self.epsilon_end - self.epsilon) * done
     }
 }
-
-impl Default for Dqn {
-    fn default() -> Dqn {
-        Dqn {
-            steps: 16,
-            minibatches: 64,
-            minibatch: 512,
-            buffer: 250_000,
-            warm_up: 20_000,
-            learning_rate: 3e-4,
-            discount: 0.995,
-            reward_scale: 1.0,
-            target_every: 500,
-            epsilon: 1.0,
-            epsilon_end: 0.05,
-            epsilon_samples: 300_000,
-        }
-    }
-}

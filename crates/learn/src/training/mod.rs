@@ -130,23 +130,6 @@ pub struct Ppo {
     pub lambda: f32,
 }
 
-impl Default for Ppo {
-    fn default() -> Ppo {
-        Ppo {
-            steps: 64,
-            learning_rate: 3e-4,
-            learning_rate_end: 0.1,
-            clip: 0.2,
-            epochs: 4,
-            minibatch: 2048,
-            entropy: 0.01,
-            divergence_max: 0.03,
-            discount: 0.995,
-            lambda: 0.95,
-        }
-    }
-}
-
 /// Past policies as opponents.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct League {

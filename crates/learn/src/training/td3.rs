@@ -50,23 +50,3 @@ pub struct Td3 {
     #[schemars(range(min = 1, max = 1000), extend("default" = 2))]
     pub delay: u32,
 }
-
-impl Default for Td3 {
-    fn default() -> Td3 {
-        Td3 {
-            steps: 16,
-            minibatches: 64,
-            minibatch: 512,
-            buffer: 250_000,
-            warm_up: 20_000,
-            learning_rate: 3e-4,
-            discount: 0.995,
-            reward_scale: 1.0,
-            target_rate: 0.005,
-            exploration: 0.1,
-            smoothing: 0.2,
-            smoothing_max: 0.5,
-            delay: 2,
-        }
-    }
-}

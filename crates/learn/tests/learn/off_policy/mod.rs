@@ -4,6 +4,7 @@
 mod step;
 mod toy;
 
+use super::fixture;
 use learn::nn::Perceptron;
 use learn::off_policy::Minibatch;
 use learn::off_policy::dqn::DqnLearner;
@@ -82,6 +83,6 @@ fn the_gradient_of_double_dqn_is_the_slope_of_its_loss() {
     learner.network = Perceptron::new(&[3, 6, 5, 4], 1.0, stream);
     learner.target = Perceptron::new(&[3, 6, 5, 4], 1.0, stream);
     let minibatch = random(11, stream, |stream| stream.below(4) as u16);
-    let settings = learn::training::Dqn::default();
+    let settings = fixture::dqn();
     assert_slopes(&learner, |learner| &mut learner.network, |learner| learner.gradient(&minibatch, &settings));
 }

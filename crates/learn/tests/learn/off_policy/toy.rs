@@ -1,5 +1,6 @@
 //! Small problems with known solutions, learnt from random transitions.
 
+use crate::fixture;
 use learn::nn::Trace;
 use learn::off_policy::dqn::DqnLearner;
 use learn::off_policy::td3::{self, Td3Learner};
@@ -45,7 +46,7 @@ fn trained_td3(steps: usize, threads: usize) -> Td3Learner {
         discount: 0.8,
         target_rate: 0.02,
         smoothing: 0.05,
-        ..Td3::default()
+        ..fixture::td3()
     };
     let (replay, stream) = (steps_on_a_line(4000), &mut Stream::new(3, "test/learning"));
     let mut learner = Td3Learner::new(1, &[16, 16], 5);
@@ -112,7 +113,7 @@ fn steps_in_a_row(count: usize) -> Replay<u16> {
 }
 
 fn trained_dqn(steps: usize, threads: usize) -> DqnLearner {
-    let settings = Dqn { minibatch: 300, learning_rate: 3e-3, discount: 0.8, target_every: 20, ..Dqn::default() };
+    let settings = Dqn { minibatch: 300, learning_rate: 3e-3, discount: 0.8, target_every: 20, ..fixture::dqn() };
     let (replay, stream) = (steps_in_a_row(2000), &mut Stream::new(3, "test/learning"));
     let mut learner = DqnLearner::new(LAST, &[32], 2, 5);
     on_threads(threads, || (0..steps).for_each(|_| _ = learner.update(&replay, &settings, stream)));
