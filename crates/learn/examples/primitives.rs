@@ -76,7 +76,8 @@ fn played(mut setup: Setup, actor: &mut Actor, episodes: usize) -> Played {
     setup.opponents.iter_mut().for_each(|(weight, _)| *weight = 1.0);
     let step_s = setup.scenario.decision().as_s() * f64::from(setup.decisions_per_step);
     let size = setup.observation_size();
-    let mut environment = VectorEnvironment::new(setup, episodes, 1, SEED).unwrap_or_else(|error| panic!("{error}"));
+    let mut environment =
+        VectorEnvironment::new(setup, episodes, 1, SEED, None).unwrap_or_else(|error| panic!("{error}"));
     let (rows, per_game) = environment.rows();
     let sides: Vec<_> = (0..episodes).map(|game| environment.standing(game).side).collect();
     let boats_of = |game: usize| environment.setup().pilots_of(sides[game].learner, SEED + game as u64);

@@ -40,20 +40,11 @@ impl Shown {
 }
 
 impl VectorEnvironment {
-    /// Starts `games` games on `threads` threads. Seeds count up from `seed`, across the games and
-    /// then the episodes.
+    /// Starts games as [`Games::new`] does.
     ///
     /// # Errors
     /// [`SetupError`] if the setup cannot be played.
-    pub fn new(setup: Setup, games: usize, threads: usize, seed: u64) -> Result<VectorEnvironment, SetupError> {
-        VectorEnvironment::watched(setup, games, threads, seed, None)
-    }
-
-    /// Like [`VectorEnvironment::new`], with watches.
-    ///
-    /// # Errors
-    /// [`SetupError`] if the setup cannot be played.
-    pub fn watched(
+    pub fn new(
         setup: Setup,
         games: usize,
         threads: usize,

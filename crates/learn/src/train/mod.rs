@@ -349,7 +349,7 @@ fn environment(
     let seed = (training.seed << (2 * SEEDS_BITS)).wrapping_add(state.epoch << SEEDS_BITS) % EVALUATION_SEED;
     let first = first_number(training, state.epoch);
     let watches = watches.cloned().map(|watches| -> Watches { Arc::new(move |number| watches(first + number)) });
-    VectorEnvironment::watched(setup, training.games as usize, threads, seed, watches)
+    VectorEnvironment::new(setup, training.games as usize, threads, seed, watches)
 }
 
 fn first_number(training: &Training, epoch: u64) -> u64 {

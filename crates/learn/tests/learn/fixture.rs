@@ -43,6 +43,7 @@ pub(crate) fn dqn() -> Dqn {
 pub(crate) fn raw() -> RawSetup {
     RawSetup {
         game: file("games/pyquaticus_2v2.toml"),
+        sea: None,
         observation: RawObservation::Squall { frames: 2 },
         action: ActionSpace::Pyquaticus,
         helm: None,
@@ -63,7 +64,7 @@ pub(crate) fn checked(raw: &RawSetup) -> Setup {
 }
 
 pub(crate) fn begun(setup: Setup, games: usize, threads: usize, seed: u64) -> VectorEnvironment {
-    VectorEnvironment::new(setup, games, threads, seed).unwrap_or_else(|error| panic!("{error}"))
+    VectorEnvironment::new(setup, games, threads, seed, None).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Lets `work` write the rows of games. Returns the observations; those not written are 9.

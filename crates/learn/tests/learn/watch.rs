@@ -2,7 +2,7 @@
 
 use super::fixture::{checked, file, raw, written};
 use agent::Action;
-use learn::environment::{Games, Moment, RawObservation, RawSetup, Watch};
+use learn::environment::{Games, Moment, ObservationSpace, RawObservation, RawSetup, Watch};
 use messages::Frame;
 use messages::input::Input;
 use rules::event::EventCursor;
@@ -52,7 +52,7 @@ impl Seen {
 fn seen(starts: Option<u32>, steps: usize, every: u64, play: impl Fn(&mut Games, usize)) -> Vec<Arc<Mutex<Seen>>> {
     let raw = RawSetup {
         game: file("games/surveyor_2v2.toml"),
-        observation: RawObservation::Pyquaticus,
+        observation: RawObservation::Space(ObservationSpace::Pyquaticus),
         episode_max_s: Some(2.0),
         starts,
         rewards: None,
