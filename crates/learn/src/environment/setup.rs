@@ -193,17 +193,12 @@ impl Setup {
         self.options().map(<[String]>::len).or(self.spaces.action.count())
     }
 
-    /// Whether any opponent is a policy.
-    #[must_use]
-    pub fn is_self_play(&self) -> bool {
-        self.opponents.iter().any(|(_, player)| matches!(player, Player::Policy))
-    }
-
     /// The number of rows per game: the boats that may receive actions.
     #[must_use]
     pub fn rows_per_game(&self) -> usize {
         let of_team = if self.mates.is_some() { 1 } else { self.team_size() };
-        of_team * if self.is_self_play() { 2 } else { 1 }
+        let is_self_play = self.opponents.iter().any(|(_, player)| matches!(player, Player::Policy));
+        of_team * if is_self_play { 2 } else { 1 }
     }
 
     /// The boats of a team that a policy controls in the game with this seed.

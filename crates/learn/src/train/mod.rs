@@ -23,6 +23,7 @@ use rollout::Rollout;
 use scenario::policy::{PolicySpec, options_metadata};
 use state::State;
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Metadata keys for a model's origin.
@@ -101,27 +102,22 @@ impl Trainer {
     }
 
     fn with(training: Training, threads: usize, state: Option<State>) -> Result<Trainer, SetupError> {
-        let setups: Result<Vec<Setup>, SetupError> =
-            training.stage.iter().map(|stage| Setup::of_stage(&training, stage)).collect();
-        let setups = setups?;
-        let judges = judges(&training, setups.last())?;
-        let size = setups.first().map_or(0, Setup::observation_size);
+        let setups: Vec<Setup> =
+            training.stage.iter().map(|stage| Setup::of_stage(&training, stage)).collect::<Result<_, _>>()?;
+        let (first, last) = (&setups[0], &setups[setups.len() - 1]);
+        let judges = judges(&training, last)?;
+        let size = first.observation_size();
         if let Some(other) = setups.iter().map(Setup::observation_size).find(|other| *other != size) {
             return Err(wrong("the observation size of a stage", other, &format!("{size}, as in the first stage")));
         }
-        let (actions, algorithm) = (setups.last().and_then(Setup::actions), training.algorithm());
-        if actions.is_some() != algorithm.is_discrete() {
-            let kinds = if algorithm.is_discrete() { ["continuous", "discrete"] } else { ["discrete", "continuous"] };
-            return Err(wrong("action", kinds[0], &format!("{} with {}", kinds[1], algorithm.name())));
-        }
-        if let Some(other) = setups.iter().find(|other| other.options() != setups[0].options()) {
+        if let Some(other) = setups.iter().find(|other| other.options() != first.options()) {
             let list = |setup: &Setup| setup.options().unwrap_or_default().join(", ");
-            let allowed = format!("those of the first stage: {}", list(&setups[0]));
+            let allowed = format!("those of the first stage: {}", list(first));
             return Err(wrong("the options of a stage", list(other), &allowed));
         }
         let state = state.unwrap_or_else(|| {
-            let mut state = State::new(Learner::new(&training, &setups[0], actions.unwrap_or_default()));
-            state.league.begin(setups.first().map_or(0, |setup| setup.opponents.len()));
+            let mut state = State::new(Learner::new(&training, first, last.actions().unwrap_or_default()));
+            state.league.begin(first.opponents.len());
             state
         });
         let updates_per_epoch = setups.iter().map(|setup| updates_per_epoch(&training, setup)).collect();
@@ -358,26 +354,14 @@ fn first_number(training: &Training, epoch: u64) -> u64 {
 
 /// The evaluation games: those of the last stage, against each opponent of the evaluation. They
 /// need neither a teacher nor the truth for a critic.
-fn judges(training: &Training, last: Option<&Setup>) -> Result<Vec<(String, Setup)>, SetupError> {
-    let mut judges = vec![];
-    for path in &training.evaluation.opponents {
+fn judges(training: &Training, last: &Setup) -> Result<Vec<(String, Setup)>, SetupError> {
+    let base = Setup { teacher: None, critic: CriticInput::Observation, starts: None, steps_max: None, ..last.clone() };
+    let judge = |path: &PathBuf| {
         let strategy = scenario::load_strategy(path)?;
-        let Some(last) = last else { break };
-        let name = strategy.name.clone();
-        let opponents = vec![(1.0, Player::Strategy(Box::new(strategy)))];
-        judges.push((
-            name,
-            Setup {
-                opponents,
-                teacher: None,
-                critic: CriticInput::Observation,
-                starts: None,
-                steps_max: None,
-                ..last.clone()
-            },
-        ));
-    }
-    Ok(judges)
+        let (name, player) = (strategy.name.clone(), Player::Strategy(Box::new(strategy)));
+        Ok((name, Setup { opponents: vec![(1.0, player)], ..base.clone() }))
+    };
+    training.evaluation.opponents.iter().map(judge).collect()
 }
 
 fn updates_per_epoch(training: &Training, setup: &Setup) -> u64 {

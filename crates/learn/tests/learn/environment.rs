@@ -30,15 +30,20 @@ fn chosen(observation: &[f32]) -> Action {
     Action::Discrete(sum as usize % 17)
 }
 
+/// Plays a step with these actions.
+fn act(environment: &mut VectorEnvironment) {
+    let size = environment.setup().observation_size();
+    let actions: Vec<Action> = environment.observations().chunks_exact(size).map(chosen).collect();
+    environment.step(&actions).unwrap();
+}
+
 fn played(threads: usize) -> (Vec<u32>, Vec<learn::environment::Finished>) {
     let opponents = vec![(1.0, Player::Policy), (1.0, Player::Strategy(strategy("pav01")))];
     let setup = Setup { steps_max: Some(120), ..setup("surveyor_2v2", opponents) };
     let mut environment = begun(setup, 6, threads, 11);
-    let size = environment.setup().observation_size();
     let (mut numbers, mut finished) = (vec![], vec![]);
     for _ in 0..300 {
-        let actions: Vec<Action> = environment.observations().chunks_exact(size).map(chosen).collect();
-        environment.step(&actions).unwrap();
+        act(&mut environment);
         let shown =
             environment.observations().iter().chain(environment.rewards()).chain(environment.final_observations());
         numbers.extend(shown.map(|number| number.to_bits()));
@@ -122,11 +127,7 @@ fn a_game_is_the_one_that_the_arena_plays() {
         let setup = Setup { control, ..setup("surveyor_2v2", vec![(1.0, Player::Strategy(strategy("strategy_2")))]) };
         let seed = 4;
         let mut environment = begun(setup.clone(), 1, 1, seed);
-        let size = environment.setup().observation_size();
-        for _ in 0..200 {
-            let actions: Vec<Action> = environment.observations().chunks_exact(size).map(chosen).collect();
-            environment.step(&actions).unwrap();
-        }
+        (0..200).for_each(|_| act(&mut environment));
         let learner = environment.standing(0).side.learner;
         let scenario = setup.scenario.of_seed(seed).unwrap();
         let mind = |vehicle: VehicleId| -> Box<dyn Mind> {
@@ -229,10 +230,7 @@ fn starts_come_round_again_and_are_those_of_their_seeds() {
                 );
             }
         }
-        for environment in [&mut new, &mut again] {
-            let actions: Vec<Action> = environment.observations().chunks_exact(size).map(chosen).collect();
-            environment.step(&actions).unwrap();
-        }
+        [&mut new, &mut again].into_iter().for_each(act);
         seeds.extend(again.finished().iter().map(|one| one.standing.seed));
     }
     assert_eq!(seeds, [30, 31, 32, 30, 31, 32, 30, 31, 32, 30]);

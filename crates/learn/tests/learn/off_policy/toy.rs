@@ -93,10 +93,13 @@ fn td3_learns_to_go_to_the_middle_of_a_line_and_stay_there() {
 /// The last place in a row; reaching it wins.
 const LAST: usize = 7;
 
+fn shown(place: usize) -> [f32; LAST] {
+    std::array::from_fn(|i| if i == place { 1.0 } else { 0.0 })
+}
+
 /// Random steps to the left and right in a row of places.
 fn steps_in_a_row(count: usize) -> Replay<u16> {
     let (mut replay, stream) = (Replay::new(LAST, count), &mut Stream::new(2, "test/row"));
-    let shown = |place: usize| -> [f32; LAST] { std::array::from_fn(|i| if i == place { 1.0 } else { 0.0 }) };
     for _ in 0..count {
         let (place, action) = (stream.below(LAST as u64) as usize, stream.below(2) as u16);
         let next = if action == 1 { place + 1 } else { place.saturating_sub(1) };
@@ -125,8 +128,7 @@ fn double_dqn_learns_what_every_place_in_a_row_is_worth() {
     let learner = trained_dqn(600, 2);
     let mut trace = Trace::default();
     for place in 0..LAST {
-        let shown: [f32; LAST] = std::array::from_fn(|i| if i == place { 1.0 } else { 0.0 });
-        learner.network.forward(&shown, &mut trace);
+        learner.network.forward(&shown(place), &mut trace);
         let right = 0.8_f32.powi((LAST - 1 - place) as i32);
         let left = 0.8_f32.powi((LAST - place.saturating_sub(1)) as i32);
         for (value, want) in trace.output().iter().zip([left, right]) {
