@@ -6,7 +6,7 @@ use crate::{output_file, screen, stop};
 use anyhow::{Context, Result};
 use command_line::number::whole;
 use experiment::sweep::Sweep;
-use experiment::sweep::{self, Condition, FindError, Journal, Plan, Study, UntilError};
+use experiment::sweep::{self, Condition, Journal, Plan, SearchError, Study};
 use scenario::load_file;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -97,7 +97,7 @@ fn until(args: &Args, plan: &Plan, text: &str, folder: &Path) -> Result<ExitCode
         screen::remark(&format!("at {value:.4}: {mean:.3} ± {half} in {games} games, {condition} {verdict}"));
     });
     let point = match result {
-        Err(UntilError::Stopped) => return Ok(stopped(&journal)),
+        Err(SearchError::Stopped) => return Ok(stopped(&journal)),
         other => other?,
     };
     let path = folder.join("until.json");
@@ -146,7 +146,7 @@ fn find(args: &Args, plan: &Plan, text: &str, folder: &Path) -> Result<ExitCode>
         screen::remark(&format!("{failures} of {games} games with {condition}"));
     });
     let found = match found {
-        Err(FindError::Stopped) => return Ok(stopped(&journal)),
+        Err(SearchError::Stopped) => return Ok(stopped(&journal)),
         other => other?,
     };
     let path = folder.join("find.json");

@@ -4,13 +4,14 @@ use messages::helm::HelmReport;
 use messages::{Order, Picture, Word};
 use primitives::SimTime;
 use scenario::strategy::Proposer;
+use std::any::Any;
 
 /// The decision-maker of one boat.
 ///
 /// Identical pictures, words and proposals from the start must give identical orders on every
 /// machine. A mind reads no clock and takes randomness only from its own
 /// [`primitives::stream::Stream`].
-pub trait Mind: Send {
+pub trait Mind: Any + Send {
     /// Decides on the newest picture.
     fn decide(&mut self, picture: &Picture) -> Order;
 

@@ -1,7 +1,7 @@
 //! Arguments from Python.
 
 use experiment::Packed;
-use learn::environment::{ActionSpace, CriticInput, RawObservation, RawSetup};
+use learn::environment::{ActionSpace, CriticInput, ObservationSpace, RawObservation, RawSetup};
 use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
 use std::fmt::Display;
@@ -33,8 +33,8 @@ impl Arguments {
     /// Checks the arguments.
     pub(crate) fn setup(self) -> PyResult<RawSetup> {
         let observation = match self.observation.as_str() {
-            "pyquaticus" => RawObservation::Pyquaticus,
-            "squall" => RawObservation::Squall { mates: None, enemies: None, frames: self.frames },
+            "pyquaticus" => RawObservation::Space(ObservationSpace::Pyquaticus),
+            "squall" => RawObservation::Squall { frames: self.frames },
             other => return Err(refused(format!("observation is {other:?}, expected \"squall\" or \"pyquaticus\""))),
         };
         let action = match self.action.as_str() {
@@ -48,6 +48,7 @@ impl Arguments {
         };
         Ok(RawSetup {
             game: self.game,
+            sea: None,
             observation,
             action,
             helm: self.helm,

@@ -1,9 +1,10 @@
 //! Parallel games for Python: steps without the interpreter's lock, into numpy arrays that stay the same.
 
 use crate::arguments::{Arguments, refused};
-use crate::recorder;
 use crate::{scene, standing};
-use learn::environment::{Action, Games, RecordingLog, Rows, Setup};
+use learn::environment::{
+    Action, Games, RecordingLog, RecordingNames, Recordings, Rows, Setup, check_recording_folder,
+};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyIndexError, PyRuntimeWarning};
 use pyo3::prelude::*;
@@ -125,10 +126,15 @@ impl VectorEnvironment {
         let setup = setup.setup()?;
         let recordings = Arc::<RecordingLog>::default();
         if let Some((folder, _)) = &record {
-            recorder::check_folder(folder).map_err(refused)?;
+            let wrong =
+                |error: std::io::Error| format!("record is {folder:?}, expected a folder for recordings: {error}");
+            check_recording_folder(folder).map_err(wrong).map_err(refused)?;
         }
-        let watches = record.map(|(folder, every)| recorder::watches(folder, every, Arc::clone(&recordings)));
-        let begin = || setup.check().and_then(|setup| Games::watched(setup, games, threads, seed, watches));
+        let watches = record.map(|(folder, every)| {
+            let recorded = Recordings { folder, names: RecordingNames::ByTime, every, commit: "unknown".to_owned() };
+            recorded.watches(Arc::clone(&recordings))
+        });
+        let begin = || setup.check().and_then(|setup| Games::new(setup, games, threads, seed, watches));
         let games = py.detach(begin).map_err(refused)?;
         let arrays = Arrays::new(py, games.rows().0, games.setup());
         let mut environment = VectorEnvironment { games: Mutex::new(games), actions: Vec::new(), arrays, recordings };

@@ -2,7 +2,6 @@
 
 mod arguments;
 mod environment;
-mod recorder;
 mod scene;
 mod signals;
 mod standing;

@@ -23,8 +23,7 @@ impl Estimate {
     pub fn of(observations: &[f64]) -> Estimate {
         let count = observations.len();
         assert!(count > 0, "a mean of nothing");
-        let mean = observations.iter().sum::<f64>() / count as f64;
-        let squares: f64 = observations.iter().map(|observation| (observation - mean) * (observation - mean)).sum();
+        let (mean, squares) = mean_and_squares(observations);
         let degrees = count as f64 - 1.0;
         // Over seeds: all games of a seed have the same sea, which favours an entry from both sides
         // and against all opponents alike. The interval covers other seeds, not other opponents,
@@ -49,11 +48,23 @@ impl Estimate {
         Some(Estimate { mean: ratio, low: low.map(|low| ratio + low), high: high.map(|high| ratio + high) })
     }
 
+    /// The mean and half the width of the interval, multiplied, with this number of decimal places.
+    pub(crate) fn shown(&self, times: f64, digits: usize) -> String {
+        let half = self.half_width().map_or("?".to_owned(), |half| format!("{:.digits$}", half * times));
+        format!("{:.digits$} ± {half}", self.mean * times)
+    }
+
     /// Half the width of the interval.
     #[must_use]
     pub fn half_width(&self) -> Option<f64> {
         self.high.map(|high| high - self.mean)
     }
+}
+
+/// The mean of numbers, and the sum of their squared differences from it.
+pub(crate) fn mean_and_squares(numbers: &[f64]) -> (f64, f64) {
+    let mean = numbers.iter().sum::<f64>() / numbers.len() as f64;
+    (mean, numbers.iter().map(|number| (number - mean) * (number - mean)).sum())
 }
 
 /// Half width of a 95 % interval in standard errors, by Student's t; `None` without degrees of

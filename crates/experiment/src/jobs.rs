@@ -1,14 +1,34 @@
-//! The number of games of an experiment, and of the threads that play them.
+//! The games of an experiment: their files, their number, and the threads that play them.
 
-use scenario::Problem;
+use scenario::{Files, Overrides, Problem, Problems, Scenario, load_with_files};
 use std::num::NonZeroUsize;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Upper bound of threads per core: more only take turns.
 const PER_CORE_MAX: usize = 4;
 
 /// Upper bound of the games of an experiment, whose results are kept in memory.
 const GAMES_MAX: usize = 4_000_000;
+
+/// The names of a game's teams, the first one first.
+pub(crate) fn teams_of(game: &Path, files: &Arc<Files>) -> Result<Vec<String>, Problems> {
+    Ok(load_with_files(game, &Overrides::default(), files)?.teams.into_iter().map(|team| team.name).collect())
+}
+
+/// A game without real boats, which cannot be played here: a problem of `file`.
+pub(crate) fn load_game(
+    game: &Path,
+    overrides: &Overrides,
+    files: &Arc<Files>,
+    file: &Path,
+) -> Result<Scenario, Problems> {
+    let scenario = load_with_files(game, overrides, files)?;
+    match scenario.has_no_real_boats() {
+        Ok(()) => Ok(scenario),
+        Err(real_boats) => Err(Problems(vec![Problem::of_file(file.to_owned(), real_boats.to_string())])),
+    }
+}
 
 /// The problem with an experiment whose file requests too many games.
 pub(crate) fn too_many_games(games: usize, file: &Path) -> Option<Problem> {

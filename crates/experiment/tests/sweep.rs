@@ -2,7 +2,7 @@
 //! reported before any game.
 
 use experiment::sweep::Sweep;
-use experiment::sweep::{self, Condition, FindError, Journal, Plan, Study, StudyError, UntilError};
+use experiment::sweep::{self, Condition, Journal, Plan, SearchError, Study, StudyError};
 use scenario::{Overrides, load_file, load_with};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -29,9 +29,9 @@ fn text(more: &str) -> String {
 
 const WIND: &str = "[[axis]]\nkey = \"sea.wind.speed_m_s\"\nrange = [1, 9]\ncount = 3\n";
 
-fn plan_of(folder: &Path, more: &str) -> Plan {
+fn plan_of(folder: &Path, text: &str) -> Plan {
     let path = folder.join("tried.toml");
-    std::fs::write(&path, text(more)).expect("it can be");
+    std::fs::write(&path, text).expect("it can be");
     Plan::new(&load_file::<Sweep>(&path).unwrap_or_else(|problems| panic!("{problems}"))).expect("it can be")
 }
 
@@ -57,7 +57,7 @@ fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
 #[test]
 fn a_study_that_was_cut_anywhere_and_taken_up_again_is_the_same_bytes_on_any_number_of_threads() {
     let dir = tempfile::tempdir().unwrap();
-    let plan = plan_of(dir.path(), WIND);
+    let plan = plan_of(dir.path(), &text(WIND));
     assert_eq!((plan.points().len(), plan.games()), (3, 24));
     let whole = dir.path().join("whole");
     let mut study = Study::begin(&whole, &plan).unwrap();
@@ -107,18 +107,12 @@ fn a_study_that_was_cut_anywhere_and_taken_up_again_is_the_same_bytes_on_any_num
                 _ => std::fs::write(&path, text.split_once('\n').unwrap().1).unwrap(),
             }
             let mut study = Study::resume(&cut, &plan).unwrap();
-            let is_kept = name == "plan.json";
-            assert_eq!(
-                study.done(),
-                if is_kept {
-                    24
-                } else if damage == "a digit" {
-                    23
-                } else {
-                    0
-                },
-                "{name}: {damage}"
-            );
+            let done = match (name, damage) {
+                ("plan.json", _) => 24,
+                (_, "a digit") => 23,
+                _ => 0,
+            };
+            assert_eq!(study.done(), done, "{name}: {damage}");
             go_on(&mut study, &plan, 24, 3);
             study.report(&plan).unwrap();
             assert!(files(&cut) == want, "{name}: {damage}");
@@ -130,7 +124,7 @@ fn a_study_that_was_cut_anywhere_and_taken_up_again_is_the_same_bytes_on_any_num
 #[test]
 fn a_game_of_the_report_is_the_one_that_its_command_plays() {
     let dir = tempfile::tempdir().unwrap();
-    let plan = plan_of(dir.path(), WIND);
+    let plan = plan_of(dir.path(), &text(WIND));
     let job = plan.job(22);
     let mut played = None;
     sweep::play(&plan, (22, 23), NonZeroUsize::MIN, &AtomicBool::new(false), |one| {
@@ -157,7 +151,7 @@ fn a_game_of_the_report_is_the_one_that_its_command_plays() {
     let scenario = load_with(&shipped("games/surveyor_2v2.toml"), &overrides).unwrap().of_seed(6).unwrap();
     let outcome = arena::play(&scenario, agent::minds_of(&scenario), 6).unwrap();
     assert_eq!(outcome.digest, played.digest);
-    let score = played.result.unwrap().own.score;
+    let score = played.result.unwrap().of("score");
     assert_eq!(score, f64::from(outcome.score.teams["blue"]));
 }
 
@@ -165,17 +159,13 @@ fn a_game_of_the_report_is_the_one_that_its_command_plays() {
 fn all_points_play_the_same_seeds_and_designs_cover_the_space() {
     let dir = tempfile::tempdir().unwrap();
     let two = format!("{WIND}[[axis]]\nkey = \"boat.gps.noise_m\"\nvalues = [0.1, 1, 4]\n");
-    let grid = plan_of(dir.path(), &two);
+    let grid = plan_of(dir.path(), &text(&two));
     assert_eq!(grid.points().len(), 9);
     let seeds = |point: usize| (0..8).map(|i| grid.job(8 * point + i).seed).collect::<Vec<u64>>();
     assert_eq!(seeds(0), [5, 5, 5, 5, 6, 6, 6, 6]);
     assert_eq!(seeds(8), seeds(0));
-    let with = |design: &str| {
-        let path = dir.path().join("designed.toml");
-        std::fs::write(&path, format!("design = {design:?}\npoints = 30\n{}", text(&two))).unwrap();
-        Plan::new(&load_file::<Sweep>(&path).unwrap()).unwrap()
-    };
-    let winds = |plan: &Plan| plan.points().iter().map(|point| point.values[1].number().unwrap()).collect::<Vec<f64>>();
+    let with = |design: &str| plan_of(dir.path(), &format!("design = {design:?}\npoints = 30\n{}", text(&two)));
+    let winds = |plan: &Plan| plan.points().iter().map(|point| point[1].number().unwrap()).collect::<Vec<f64>>();
     let one = with("one_at_a_time");
     // The nominal point (wind 5, noise 1), two more winds and two more noises.
     assert_eq!(one.points().len(), 5);
@@ -196,7 +186,7 @@ fn all_points_play_the_same_seeds_and_designs_cover_the_space() {
 #[cfg(unix)]
 fn a_named_pipe_in_place_of_a_table_is_refused_and_not_waited_for() {
     let dir = tempfile::tempdir().unwrap();
-    let plan = plan_of(dir.path(), WIND);
+    let plan = plan_of(dir.path(), &text(WIND));
     let folder = dir.path().join("study");
     for name in ["games.csv", "boats.csv", "sums.txt", "plan.txt"] {
         drop(Study::begin(&folder, &plan).unwrap());
@@ -240,13 +230,13 @@ fn what_is_wrong_is_said_before_a_game_with_its_place() {
 #[test]
 fn a_folder_keeps_one_sweep_and_says_so() {
     let dir = tempfile::tempdir().unwrap();
-    let plan = plan_of(dir.path(), WIND);
+    let plan = plan_of(dir.path(), &text(WIND));
     let folder = dir.path().join("out");
     assert!(matches!(Study::resume(&folder, &plan), Err(StudyError::Missing { .. })));
     let mut study = Study::begin(&folder, &plan).unwrap();
     go_on(&mut study, &plan, 2, 1);
     assert!(matches!(Study::begin(&folder, &plan), Err(StudyError::Exists { games: 2, .. })));
-    let other = plan_of(dir.path(), &WIND.replace("[1, 9]", "[1, 8]"));
+    let other = plan_of(dir.path(), &text(WIND).replace("[1, 9]", "[1, 8]"));
     assert!(matches!(Study::resume(&folder, &other), Err(StudyError::Other { .. })));
 }
 
@@ -256,10 +246,8 @@ fn the_breaking_point_is_found_where_it_is() {
     // duration alone.
     let dir = tempfile::tempdir().unwrap();
     let more = "[[axis]]\nkey = \"sea.wind.speed_m_s\"\nvalues = [3]\n";
-    let path = dir.path().join("until.toml");
     let ranged = text(more).replace("values = [30]", "range = [10, 90]");
-    std::fs::write(&path, ranged.replace("games = 4", "games = 32")).unwrap();
-    let plan = Plan::new(&load_file::<Sweep>(&path).unwrap()).unwrap();
+    let plan = plan_of(dir.path(), &ranged.replace("games = 4", "games = 32"));
     let condition = Condition::parse("easy.duration_s > 37", plan.sweep()).unwrap();
     let jobs = (NonZeroUsize::MIN, &AtomicBool::new(false));
     let mut journal = Journal::begin(dir.path(), &plan).unwrap();
@@ -274,9 +262,7 @@ fn the_breaking_point_is_found_where_it_is() {
 #[test]
 fn a_search_that_was_stopped_anywhere_goes_on_without_playing_its_games_again() {
     let dir = tempfile::tempdir().unwrap();
-    let path = dir.path().join("find.toml");
-    std::fs::write(&path, text("[[axis]]\nkey = \"sea.wind.speed_m_s\"\nrange = [1, 12]\n")).unwrap();
-    let plan = Plan::new(&load_file::<Sweep>(&path).unwrap()).unwrap();
+    let plan = plan_of(dir.path(), &text("[[axis]]\nkey = \"sea.wind.speed_m_s\"\nrange = [1, 12]\n"));
     let condition = Condition::parse("easy.closest_m < 9", plan.sweep()).unwrap();
     let find = |journal: &mut Journal, stop: &AtomicBool, after: usize| {
         let mut rounds = 0;
@@ -292,7 +278,7 @@ fn a_search_that_was_stopped_anywhere_goes_on_without_playing_its_games_again() 
 
     let cut = dir.path().join("cut");
     let mut journal = Journal::begin(&cut, &plan).unwrap();
-    assert!(matches!(find(&mut journal, &AtomicBool::new(false), 1), Err(FindError::Stopped)));
+    assert!(matches!(find(&mut journal, &AtomicBool::new(false), 1), Err(SearchError::Stopped)));
     assert_eq!(journal.games(), 100);
     drop(journal);
     assert!(matches!(Journal::begin(&cut, &plan), Err(StudyError::Exists { games: 100, .. })));
@@ -316,26 +302,20 @@ fn a_search_that_was_stopped_anywhere_goes_on_without_playing_its_games_again() 
 
     // A breaking point requires other games; no known game is lost.
     let condition = Condition::parse("easy.score < 1", plan.sweep()).unwrap();
-    let stop = AtomicBool::new(false);
-    sweep::breaking_point(
-        &plan,
-        &condition,
-        Some("sea.wind.speed_m_s"),
-        &mut journal,
-        (NonZeroUsize::MIN, &stop),
-        |_| {},
-    )
-    .unwrap();
+    let search = |plan: &Plan, condition: &Condition, journal: &mut Journal, is_stopped: bool| {
+        let threads = (NonZeroUsize::MIN, &AtomicBool::new(is_stopped));
+        sweep::breaking_point(plan, condition, Some("sea.wind.speed_m_s"), journal, threads, |_| {})
+    };
+    search(&plan, &condition, &mut journal, false).unwrap();
     assert!(journal.games() > 120);
     drop(journal);
     let mut again = Journal::resume(&cut, &plan).unwrap();
     // With no thread to play, all games must be in the journal.
-    let stopped = (NonZeroUsize::MIN, &AtomicBool::new(true));
-    sweep::breaking_point(&plan, &condition, Some("sea.wind.speed_m_s"), &mut again, stopped, |_| {}).unwrap();
-    let other = plan_of(dir.path(), WIND);
+    search(&plan, &condition, &mut again, true).unwrap();
+    let other = plan_of(dir.path(), &text(WIND));
     assert!(matches!(Journal::resume(&cut, &other), Err(StudyError::Other { .. })));
     let condition = Condition::parse("easy.score < 2", other.sweep()).unwrap();
     let mut new = Journal::begin(&dir.path().join("new"), &other).unwrap();
-    let none = sweep::breaking_point(&other, &condition, Some("sea.wind.speed_m_s"), &mut new, stopped, |_| {});
-    assert!(matches!(none, Err(UntilError::Stopped)), "{none:?}");
+    let none = search(&other, &condition, &mut new, true);
+    assert!(matches!(none, Err(SearchError::Stopped)), "{none:?}");
 }

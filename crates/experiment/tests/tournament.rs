@@ -3,8 +3,8 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 use experiment::Game;
+use experiment::tournament::{Cell, Match, Plan, Record, Report, play};
 use experiment::tournament::{Entrant, Tournament};
-use experiment::tournament::{Match, Plan, Record, Report, play};
 use rules::count::Counts;
 use scenario::{Overrides, load_file, load_with};
 use std::num::NonZeroUsize;
@@ -91,12 +91,17 @@ fn every_seed_is_played_from_both_sides_and_is_the_game_of_these_strategies() {
     let report = Report::new(&plan, &records);
     let names: Vec<&str> = report.entries.iter().map(|row| row.name.as_str()).collect();
     assert_eq!((names[0], report.entries[0].losses), ("easy_attackers_1", 0), "{names:?}");
-    let cell = |row: &str, column: &str| report.matrix.iter().find(|c| c.row == row && c.column == column).unwrap();
-    let (there, back) = (cell("easy_attackers_1", "idle_2"), cell("idle_2", "easy_attackers_1"));
+    let (there, back) = (cell(&report, "easy_attackers_1", "idle_2"), cell(&report, "idle_2", "easy_attackers_1"));
     assert_eq!((there.games, there.wins, there.draws, there.losses), (6, 3, 3, 0));
     assert_eq!((back.wins, back.draws, back.losses), (0, 3, 3));
     assert_eq!(back.score_difference, -there.score_difference);
     assert!(there.score_difference > 0.0);
+}
+
+/// The results of one entry against another.
+fn cell<'a>(report: &'a Report, row: &str, column: &str) -> &'a Cell {
+    let cell = report.matrix.iter().find(|cell| cell.row == row && cell.column == column);
+    cell.unwrap_or_else(|| panic!("{report:?}"))
 }
 
 /// A record of a game with these scores; the first team also grabbed once.
@@ -181,14 +186,10 @@ fn a_challenger_plays_everybody_and_nobody_else_plays() {
     let records: Vec<Record> = matches.map(|of| record(of.seed, of.sides, score(of.seed, of.sides))).collect();
     let report = Report::new(&plan, &records);
     assert_eq!(report.challenger.as_deref(), Some("easy_attackers_1"));
-    let cell = |column: &str| {
-        let cell = report.matrix.iter().find(|cell| cell.row == "easy_attackers_1" && cell.column == column);
-        cell.unwrap_or_else(|| panic!("{report:?}"))
-    };
-    let idle = cell("idle_0");
+    let idle = cell(&report, "easy_attackers_1", "idle_0");
     assert_eq!((idle.games, idle.wins, idle.draws, idle.losses), (6, 2, 4, 0));
     assert_eq!(idle.won_of_decided.map(|share| share.mean), Some(1.0));
-    let pav01 = cell("pav01_2");
+    let pav01 = cell(&report, "easy_attackers_1", "pav01_2");
     assert_eq!((pav01.wins, pav01.draws, pav01.losses), (2, 0, 4));
     let share = pav01.won_of_decided.expect("decided games");
     assert!((share.mean - 1.0 / 3.0).abs() < 1e-12 && share.low.is_some_and(|low| low < 0.0), "{share:?}");

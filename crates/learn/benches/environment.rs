@@ -45,7 +45,7 @@ fn steps(c: &mut Criterion) {
     ];
     for (name, game, opponent) in games {
         let mut environment =
-            VectorEnvironment::new(setup(game, opponent), GAMES, 1, 1).unwrap_or_else(|e| panic!("{e}"));
+            VectorEnvironment::new(setup(game, opponent), GAMES, 1, 1, None).unwrap_or_else(|e| panic!("{e}"));
         let (mut stream, rows) = (Stream::new(1, "actions"), environment.rows().0);
         group.throughput(Throughput::Elements(GAMES as u64)).sample_size(20);
         group.bench_function(name, |b| {
@@ -62,7 +62,7 @@ fn steps(c: &mut Criterion) {
         ("new game, sea and sensors, one of 100 starts", "surveyor_2v2", Some(100)),
     ] {
         let setup = Setup { steps_max: Some(1), starts, ..setup(game, Player::Policy) };
-        let mut environment = VectorEnvironment::new(setup, 1, 1, 1).unwrap_or_else(|e| panic!("{e}"));
+        let mut environment = VectorEnvironment::new(setup, 1, 1, 1, None).unwrap_or_else(|e| panic!("{e}"));
         let actions = vec![Action::Discrete(0); environment.rows().0];
         group.throughput(Throughput::Elements(1));
         group.bench_function(name, |b| b.iter(|| environment.step(&actions).unwrap_or_else(|e| panic!("{e}"))));

@@ -7,14 +7,12 @@
 //! `scenarios/policies/primitive_NAME.onnx`. The same arguments give the same games.
 
 use agent::{Action, ActionSpace};
-use learn::rewards::{BoatProgress, Placed, progress};
-use rules::count::Counts;
-
 use learn::environment::{Setup, VectorEnvironment};
+use learn::rewards::{BoatProgress, progress};
 use onnx::Network;
+use primitives::VehicleId;
 use primitives::stream::Stream;
-use primitives::{Ned, VehicleId};
-use sim::Contest;
+use rules::count::Counts;
 use std::path::{Path, PathBuf};
 
 /// First seed of the games, beyond any training seed.
@@ -74,32 +72,20 @@ impl Played {
     }
 }
 
-fn looked_at(contest: &Contest) -> Vec<BoatProgress> {
-    let scenario = contest.scenario();
-    let placed = |team| Placed { at: Ned::default(), team, tagged: false, carrying: false };
-    let mut boats: Vec<Placed> = scenario.vehicles.iter().map(|vehicle| placed(vehicle.team)).collect();
-    for boat in contest.last_pictures().iter().flat_map(|picture| &picture.own) {
-        let (at, tagged, carrying) = (boat.nav.at(), boat.tagged, boat.carried_flag().is_some());
-        boats[boat.vehicle.index()] = Placed { at, tagged, carrying, team: scenario.team_of(boat.vehicle) };
-    }
-    let mut out = vec![BoatProgress::default(); boats.len()];
-    progress(&scenario.field, &boats, true, &mut out);
-    out
-}
-
 fn played(mut setup: Setup, actor: &mut Actor, episodes: usize) -> Played {
     setup.opponents.iter_mut().for_each(|(weight, _)| *weight = 1.0);
     let step_s = setup.scenario.decision().as_s() * f64::from(setup.decisions_per_step);
     let size = setup.observation_size();
-    let mut environment = VectorEnvironment::new(setup, episodes, 1, SEED).unwrap_or_else(|error| panic!("{error}"));
+    let mut environment =
+        VectorEnvironment::new(setup, episodes, 1, SEED, None).unwrap_or_else(|error| panic!("{error}"));
     let (rows, per_game) = environment.rows();
-    let sides: Vec<_> = (0..episodes).map(|game| environment.side(game)).collect();
+    let sides: Vec<_> = (0..episodes).map(|game| environment.standing(game).side).collect();
     let boats_of = |game: usize| environment.setup().pilots_of(sides[game].learner, SEED + game as u64);
     let boats: Vec<Vec<VehicleId>> = (0..episodes).map(|game| boats_of(game).collect()).collect();
     let (mut ended, mut played) = (vec![false; episodes], Played::default());
     while ended.iter().any(|ended| !ended) {
         for game in (0..episodes).filter(|game| !ended[*game]) {
-            let all = looked_at(environment.contest(game));
+            let all = progress(environment.contest(game), true);
             boats[game].iter().for_each(|boat| played.look(&all[boat.index()]));
         }
         let actions: Vec<Action> = environment.observations().chunks_exact(size).map(|row| actor.act(row)).collect();

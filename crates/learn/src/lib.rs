@@ -6,9 +6,12 @@
 //! any number of threads.
 
 pub mod environment;
+mod learnt;
 pub mod nn;
 pub mod off_policy;
 pub mod ppo;
 pub mod rewards;
 pub mod train;
 pub mod training;
+
+pub use learnt::Learnt;

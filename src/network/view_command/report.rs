@@ -194,7 +194,7 @@ impl SweepReport {
         let plan = self.plan.as_ref().map_err(|why| anyhow!("cannot rerun games: {why}"))?;
         let job = plan.job(place_of(name, plan.games())?);
         let scenario = plan.scenario(job.point, job.entry, job.side)?;
-        let (sweep, values) = (plan.sweep(), &plan.points()[job.point].values);
+        let (sweep, values) = (plan.sweep(), &plan.points()[job.point]);
         let axes: Vec<String> =
             sweep.axes.iter().zip(values).map(|(axis, value)| format!("{} {value}", axis.key)).collect();
         let (entry, team) = (&sweep.entries[job.entry].name, &plan.teams()[job.side]);

@@ -10,8 +10,8 @@ use thiserror::Error;
 pub struct Condition {
     /// The index of the entry.
     pub entry: usize,
-    /// The metric.
-    pub metric: &'static Metric,
+    /// The index of the metric in [`METRICS`].
+    pub metric: usize,
     /// Whether it holds below the threshold (`true`) or above.
     pub is_below: bool,
     /// The threshold, in the unit of the metric.
@@ -28,7 +28,7 @@ pub enum ConditionError {
     #[error("there is no entry {0:?}, expected one of {1}")]
     Entry(String, String),
     /// The metric is unknown.
-    #[error("there is no metric {0:?}, expected one of {list}", list = METRICS.each_ref().map(|metric| metric.name).join(", "))]
+    #[error("there is no metric {0:?}, expected one of {list}", list = METRICS.map(|metric| metric.name).join(", "))]
     Metric(String),
 }
 
@@ -51,7 +51,7 @@ impl Condition {
             None if names.len() == 1 => (0, left),
             None => return Err(wrong()),
         };
-        let metric = Metric::named(metric).ok_or_else(|| ConditionError::Metric(metric.to_owned()))?;
+        let metric = Metric::place(metric).ok_or_else(|| ConditionError::Metric(metric.to_owned()))?;
         Ok(Condition { entry, metric, is_below: text[at..].starts_with('<'), threshold })
     }
 
@@ -64,6 +64,6 @@ impl Condition {
 impl fmt::Display for Condition {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let sign = if self.is_below { '<' } else { '>' };
-        write!(f, "{} {sign} {}", self.metric.name, self.threshold)
+        write!(f, "{} {sign} {}", METRICS[self.metric].name, self.threshold)
     }
 }

@@ -5,8 +5,8 @@
 
 use super::metric::{HEADLINES, METRICS, Metric, Metrics};
 use super::plan::{Plan, Point};
-use super::{Axis, AxisValue, Design};
-use crate::estimate::Estimate;
+use super::{AxisValue, Design};
+use crate::estimate::{Estimate, mean_and_squares};
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
@@ -83,10 +83,10 @@ const SEEDS_MIN: usize = 5;
 impl Observations {
     /// By seed, the mean of an entry's metric over points; `None` for seeds that are incomplete at
     /// any of them.
-    fn mean(&self, points: &[usize], entry: usize, metric: &Metric) -> Vec<Option<f64>> {
+    fn mean(&self, points: &[usize], entry: usize, metric: usize) -> Vec<Option<f64>> {
         let seeds = self.by_point.first().and_then(|entries| entries.first()).map_or(0, Vec::len);
         let of_seed = |seed: usize| {
-            let of_point = |point: &usize| Some(metric.of(self.by_point[*point][entry][seed].as_ref()?));
+            let of_point = |point: &usize| Some(self.by_point[*point][entry][seed].as_ref()?.0[metric]);
             let all = points.iter().map(of_point).collect::<Option<Vec<f64>>>()?;
             let mean = all.iter().sum::<f64>() / all.len() as f64;
             mean.is_finite().then_some(mean)
@@ -95,12 +95,12 @@ impl Observations {
     }
 
     /// The estimate of an entry's metric over points.
-    pub(crate) fn estimate(&self, points: &[usize], entry: usize, metric: &Metric) -> Option<Estimate> {
+    pub(crate) fn estimate(&self, points: &[usize], entry: usize, metric: usize) -> Option<Estimate> {
         estimate(self.mean(points, entry, metric).into_iter().flatten().collect())
     }
 
     /// The estimate of the difference of a metric between two entries at a point.
-    pub(crate) fn difference(&self, point: usize, [one, other]: [usize; 2], metric: &Metric) -> Option<Estimate> {
+    pub(crate) fn difference(&self, point: usize, [one, other]: [usize; 2], metric: usize) -> Option<Estimate> {
         difference(&self.mean(&[point], one, metric), &self.mean(&[point], other, metric))
     }
 }
@@ -127,9 +127,9 @@ pub(crate) fn effects(plan: &Plan, observed: &Observations) -> Vec<Effect> {
                 label: group.label.clone(),
                 value: group.value,
                 points: group.points.len(),
-                metrics: METRICS.iter().map(|metric| observed.estimate(&group.points, entry, metric)).collect(),
+                metrics: (0..METRICS.len()).map(|metric| observed.estimate(&group.points, entry, metric)).collect(),
             };
-            let contrast = |metric: &Metric| {
+            let contrast = |metric: usize| {
                 let [first, last] = [groups.first()?, groups.last()?];
                 let of = |group: &Group| observed.mean(&group.points, entry, metric);
                 (groups.len() > 1).then(|| difference(&of(last), &of(first)))?
@@ -138,7 +138,7 @@ pub(crate) fn effects(plan: &Plan, observed: &Observations) -> Vec<Effect> {
                 axis: axis.key.clone(),
                 entry: entrant.name.clone(),
                 levels: groups.iter().map(level).collect(),
-                contrasts: METRICS.iter().map(contrast).collect(),
+                contrasts: (0..METRICS.len()).map(contrast).collect(),
             });
         }
     }
@@ -151,18 +151,18 @@ fn groups(plan: &Plan, axis: usize) -> Vec<Group> {
     let (sweep, points) = (plan.sweep(), plan.points());
     let about = &sweep.axes[axis];
     let others_are_nominal = |point: &Point| {
-        let mut others = sweep.axes.iter().zip(&point.values).enumerate().filter(|(k, _)| *k != axis);
+        let mut others = sweep.axes.iter().zip(point).enumerate().filter(|(k, _)| *k != axis);
         others.all(|(_, (other, value))| *value == other.nominal())
     };
     let is_looked_at = |point: &Point| sweep.design != Design::OneAtATime || others_are_nominal(point);
     let is_sampled = matches!(sweep.design, Design::LatinHypercube | Design::Sobol);
     if is_sampled && about.values.is_empty() {
-        return pieces(about, axis, points);
+        return pieces(axis, points);
     }
     let group = |level: AxisValue| Group {
         label: level.to_string(),
         value: level.number(),
-        points: (0..points.len()).filter(|i| is_looked_at(&points[*i]) && points[*i].values[axis] == level).collect(),
+        points: (0..points.len()).filter(|i| is_looked_at(&points[*i]) && points[*i][axis] == level).collect(),
     };
     let mut levels = about.levels();
     // In a one-at-a-time design the nominal value may not be one of the levels.
@@ -175,8 +175,8 @@ fn groups(plan: &Plan, axis: usize) -> Vec<Group> {
 }
 
 /// Groups of an axis with equally many points.
-fn pieces(about: &Axis, axis: usize, points: &[Point]) -> Vec<Group> {
-    let number = |i: &usize| points[*i].values[axis].number().unwrap_or(f64::NAN);
+fn pieces(axis: usize, points: &[Point]) -> Vec<Group> {
+    let number = |i: &usize| points[*i][axis].number().unwrap_or(f64::NAN);
     let mut order: Vec<usize> = (0..points.len()).collect();
     order.sort_by(|a, b| number(a).total_cmp(&number(b)));
     let count = (points.len() / GROUP_POINTS_MIN).clamp(1, GROUPS_MAX);
@@ -184,7 +184,6 @@ fn pieces(about: &Axis, axis: usize, points: &[Point]) -> Vec<Group> {
         let points = order[i * order.len() / count..(i + 1) * order.len() / count].to_vec();
         let mean = points.iter().map(number).sum::<f64>() / points.len() as f64;
         let digits = if mean.abs() < 1.0 { 3 } else { 2 };
-        let _ = about;
         Group { label: format!("{mean:.digits$}"), value: Some(mean), points }
     };
     (0..count).map(piece).collect()
@@ -209,18 +208,9 @@ pub(crate) fn interactions(plan: &Plan, observed: &Observations) -> Vec<Interact
                 continue;
             }
             let axes = [a, b].map(|axis| sweep.axes[axis].key.clone());
-            for (entry, entrant) in sweep.entries.iter().enumerate() {
-                let of = |metric: &&'static str| interaction(observed, &cells, entry, metric);
-                let of_metrics = HEADLINES.iter().filter_map(of);
-                found.extend(of_metrics.map(|(metric, cells, contrast, p)| Interaction {
-                    axes: axes.clone(),
-                    entry: entrant.name.clone(),
-                    metric,
-                    cells,
-                    contrast,
-                    p,
-                    matters: false,
-                }));
+            for entry in 0..sweep.entries.len() {
+                let of = |metric: &&'static str| interaction(plan, observed, (&axes, &cells), entry, metric);
+                found.extend(HEADLINES.iter().filter_map(of));
             }
         }
     }
@@ -236,14 +226,16 @@ fn halves(groups: &[Group]) -> [Vec<usize>; 2] {
     [of(&groups[..middle]), of(&groups[groups.len() - middle..])]
 }
 
+/// The interaction of two axes, whose points are in four cells as in [`Interaction::cells`].
 fn interaction(
+    plan: &Plan,
     observed: &Observations,
-    cells: &[Vec<usize>; 4],
+    (axes, cells): (&[String; 2], &[Vec<usize>; 4]),
     entry: usize,
     metric: &'static str,
-) -> Option<(&'static str, [f64; 4], Estimate, f64)> {
-    let about = Metric::named(metric)?;
-    let means = [0, 1, 2, 3].map(|cell| observed.mean(&cells[cell], entry, about));
+) -> Option<Interaction> {
+    let place = Metric::place(metric)?;
+    let means = [0, 1, 2, 3].map(|cell| observed.mean(&cells[cell], entry, place));
     let contrast = |seed: usize| {
         let [low, second, first, both] = [0, 1, 2, 3].map(|cell| means[cell][seed]);
         Some(both? - first? - second? + low?)
@@ -254,7 +246,15 @@ fn interaction(
         let known: Vec<f64> = means[cell].iter().copied().flatten().collect();
         known.iter().sum::<f64>() / known.len() as f64
     };
-    Some((metric, [0, 1, 2, 3].map(mean), Estimate::of(&contrasts), p))
+    Some(Interaction {
+        axes: axes.clone(),
+        entry: plan.sweep().entries[entry].name.clone(),
+        metric,
+        cells: [0, 1, 2, 3].map(mean),
+        contrast: Estimate::of(&contrasts),
+        p,
+        matters: false,
+    })
 }
 
 /// The p-value of the mean of these numbers against 0, by Student's t; `None` for fewer than
@@ -264,9 +264,8 @@ fn probability(numbers: &[f64]) -> Option<f64> {
     if numbers.len() < SEEDS_MIN {
         return None;
     }
-    let mean = numbers.iter().sum::<f64>() / count;
-    let error =
-        (numbers.iter().map(|number| (number - mean) * (number - mean)).sum::<f64>() / (count - 1.0) / count).sqrt();
+    let (mean, squares) = mean_and_squares(numbers);
+    let error = (squares / (count - 1.0) / count).sqrt();
     if error == 0.0 {
         return Some(if mean == 0.0 { 1.0 } else { 0.0 });
     }

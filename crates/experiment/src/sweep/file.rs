@@ -1,7 +1,7 @@
 //! Sweep files: strategies play the same games repeatedly while scenario values change.
 
 use super::axis::{Axis, AxisValue, Target};
-use crate::tournament::Entrant;
+use crate::tournament::{Entrant, check_entries};
 use scenario::keys::FilePath;
 use scenario::{
     Diagnostics, Document, GameVariants, Overrides, Problems, Scenario, ScenarioFile, StrategyFiles, tidied_path,
@@ -144,15 +144,7 @@ fn checked(diagnostics: &mut Diagnostics, document: &Document<Sweep>) -> Option<
     sweep.game = diagnostics.resolve(document.at("game"), &sweep.game);
     let mut strategies = StrategyFiles::default();
     sweep.opponent = strategies.read(diagnostics, document, "opponent", &sweep.opponent);
-    let mut names = BTreeSet::new();
-    for (i, entry) in sweep.entries.iter_mut().enumerate() {
-        let name_path = format!("entry.{i}.name");
-        entry.strategy = strategies.read(diagnostics, document, &format!("entry.{i}.strategy"), &entry.strategy);
-        if document.is_sound(&name_path) && !names.insert(&entry.name) {
-            let message = format!("the name {:?} is used twice, expected a unique name for each entry", entry.name);
-            diagnostics.note(document.at(&name_path), message);
-        }
-    }
+    check_entries(diagnostics, document, &mut strategies, &mut sweep.entries);
     let mut keys = BTreeSet::new();
     for (i, axis) in sweep.axes.iter_mut().enumerate() {
         let at = format!("axis.{i}");

@@ -5,11 +5,10 @@
 //! populations that split at near failures were tried: with the same number of games their
 //! intervals were no narrower.
 
+use super::Axis;
 use super::condition::Condition;
-use super::journal::Journal;
+use super::journal::{Journal, SearchError};
 use super::plan::{Job, Plan, Point};
-use super::study::StudyError;
-use super::{Axis, AxisValue};
 use crate::estimate::Estimate;
 use primitives::stream::Stream;
 use serde::Serialize;
@@ -50,20 +49,6 @@ pub struct Named {
     pub command: String,
 }
 
-/// Why a search failed.
-#[derive(Debug, thiserror::Error)]
-pub enum FindError {
-    /// A game cannot start.
-    #[error("{0}")]
-    Game(String),
-    /// The journal cannot be written.
-    #[error(transparent)]
-    Journal(#[from] StudyError),
-    /// The search was stopped.
-    #[error("stopped before enough games were played")]
-    Stopped,
-}
-
 /// A game in which the condition holds.
 struct Failed {
     value: f64,
@@ -76,23 +61,22 @@ struct Failed {
 /// journal are not played again. `tell` receives the games and failures after each round.
 ///
 /// # Errors
-/// [`FindError`] if a game cannot start or `stop` was set.
+/// [`SearchError`] if a game cannot start or `stop` was set.
 pub fn find(
     plan: &Plan,
     condition: &Condition,
     games: usize,
     journal: &mut Journal,
-    (jobs, stop): (NonZeroUsize, &AtomicBool),
+    threads: (NonZeroUsize, &AtomicBool),
     mut tell: impl FnMut(usize, usize),
-) -> Result<Found, FindError> {
+) -> Result<Found, SearchError> {
     let plan = &plan.of_entry(condition.entry);
     let mut stream = Stream::new(plan.sweep().seed, "sweep/find");
     let mut failed: Vec<Failed> = vec![];
     for first in (0..games).step_by(ROUND) {
         let count = ROUND.min(games - first);
         let mut value = |axis: &Axis| axis.at(stream.unit());
-        let mut point = |_| Point::from(plan.sweep().axes.iter().map(&mut value).collect::<Vec<AxisValue>>());
-        let points: Vec<Point> = (0..count).map(&mut point).collect();
+        let points: Vec<Point> = (0..count).map(|_| plan.sweep().axes.iter().map(&mut value).collect()).collect();
         // A point has two games, one from each side. One of them is played, with its own seed.
         let round = plan.at(points, (plan.sweep().seed, 1));
         let job = |i: usize| Job {
@@ -103,13 +87,10 @@ pub fn find(
             side: i % 2,
         };
         let order: Vec<Job> = (0..count).map(job).collect();
-        let played = journal.play(&round, &order, jobs, stop)?;
-        if played.len() < count {
-            return Err(FindError::Stopped);
-        }
+        let played = journal.play(&round, &order, threads)?;
         let before = failed.len();
-        for (job, result) in order.into_iter().zip(played) {
-            let value = condition.metric.of(&result.map_err(FindError::Game)?);
+        for (job, metrics) in order.into_iter().zip(played) {
+            let value = metrics.0[condition.metric];
             let margin = condition.margin(value);
             if margin < 0.0 {
                 failed.push(Failed { value, margin, point: round.points()[job.point].clone(), job });
@@ -121,7 +102,7 @@ pub fn find(
     failed.sort_by(|a, b| a.margin.total_cmp(&b.margin).then(a.job.seed.cmp(&b.job.seed)));
     let named = failed.iter().take(NAMED).map(|one| Named {
         value: one.value,
-        values: one.point.values.iter().map(ToString::to_string).collect(),
+        values: one.point.iter().map(ToString::to_string).collect(),
         command: plan.at(vec![one.point.clone()], (one.job.seed, 1)).command(&Job { point: 0, ..one.job }),
     });
     Ok(Found {

@@ -1,11 +1,11 @@
 //! A journal of the games of a search, written as they are played. A resumed search, or another one
 //! over the same sweep, does not repeat them.
 
-use super::metric::{METRICS, Metric, Metrics};
+use super::metric::{METRICS, Metrics};
 use super::plan::{Job, Plan};
 use super::play::play_jobs;
 use super::study::{StudyError, io, text_if_any};
-use super::table::{cell_of, number_of, record};
+use super::table::{metrics_cells, metrics_in, record};
 use crate::checksum::checksum;
 use primitives::output_file;
 use std::collections::BTreeMap;
@@ -18,8 +18,25 @@ use std::sync::atomic::AtomicBool;
 /// The file name.
 const NAME: &str = "search.csv";
 
+/// Why a search failed.
+#[derive(Debug, thiserror::Error)]
+pub enum SearchError {
+    /// The axis is ambiguous.
+    #[error("{0} axes are numeric; choose one with --along: {1}")]
+    Axes(usize, String),
+    /// A game cannot start.
+    #[error("{0}")]
+    Game(String),
+    /// The journal cannot be written.
+    #[error(transparent)]
+    Journal(#[from] StudyError),
+    /// The search was stopped.
+    #[error("stopped before enough games were played")]
+    Stopped,
+}
+
 /// The measurements of a game, or why it could not start.
-pub(crate) type Outcome = Result<Metrics, String>;
+type Outcome = Result<Metrics, String>;
 
 /// The games of searches over one sweep, stored in a folder.
 pub struct Journal {
@@ -80,34 +97,35 @@ impl Journal {
         self.known.len()
     }
 
-    /// The outcomes of these games of a plan, in order; plays the missing ones until `stop` is set.
+    /// The measurements of these games of a plan, in order; plays the missing ones.
     ///
     /// # Errors
-    /// [`StudyError`] if the file cannot be written.
+    /// [`SearchError`] if a game cannot start, `stop` was set, or the file cannot be written.
     pub(crate) fn play(
         &mut self,
         plan: &Plan,
         order: &[Job],
-        jobs: NonZeroUsize,
-        stop: &AtomicBool,
-    ) -> Result<Vec<Outcome>, StudyError> {
+        (threads, stop): (NonZeroUsize, &AtomicBool),
+    ) -> Result<Vec<Metrics>, SearchError> {
         let keys: Vec<Vec<String>> = order.iter().map(|job| key(plan, job)).collect();
         let is_new = |(_, key): &(&Job, &Vec<String>)| !self.known.contains_key(*key);
         let new: Vec<Job> = order.iter().zip(&keys).filter(is_new).map(|(job, _)| *job).collect();
-        play_jobs(plan, &new, jobs, stop, |played| {
+        play_jobs(plan, &new, threads, stop, |played| {
             let key = key(plan, &played.row.job);
             self.file.write_all(line_of(&key, &played.row.result).as_bytes()).map_err(io("write", &self.path))?;
             self.known.insert(key, played.row.result);
             Ok::<(), StudyError>(())
         })?;
-        Ok(keys.iter().map_while(|key| self.known.get(key).cloned()).collect())
+        let outcome = |key: &Vec<String>| self.known.get(key).cloned().ok_or(SearchError::Stopped);
+        let outcomes = keys.iter().map(outcome).collect::<Result<Vec<Outcome>, SearchError>>()?;
+        outcomes.into_iter().map(|outcome| outcome.map_err(SearchError::Game)).collect()
     }
 }
 
 /// The identity of a game: its entry, its seed, the entry's side and the values of the axes.
 fn key(plan: &Plan, job: &Job) -> Vec<String> {
     let point = &plan.points()[job.point];
-    let values = point.values.iter().map(super::AxisValue::toml);
+    let values = point.iter().map(super::AxisValue::toml);
     let first = [plan.sweep().entries[job.entry].name.clone(), job.seed.to_string(), job.side.to_string()];
     first.into_iter().chain(values).collect()
 }
@@ -115,9 +133,8 @@ fn key(plan: &Plan, job: &Job) -> Vec<String> {
 /// A line: its checksum, the measurements, the error if it could not start, and the game's
 /// identity.
 fn line_of(key: &[String], result: &Outcome) -> String {
-    let number = |metric: &Metric| cell_of(result.as_ref().map_or(f64::NAN, |all| metric.of(all)));
     let why = result.as_ref().err().cloned().unwrap_or_default();
-    let cells: Vec<String> = METRICS.iter().map(number).chain([why]).chain(key.iter().cloned()).collect();
+    let cells: Vec<String> = metrics_cells(result).chain([why]).chain(key.iter().cloned()).collect();
     let sum = sum_of(cells.iter().map(String::as_str));
     record(std::iter::once(sum).chain(cells))
 }
@@ -137,9 +154,7 @@ fn game_of(line: &csv::StringRecord) -> Option<(Vec<String>, Outcome)> {
     if sum != sum_of(line.iter()) {
         return None;
     }
-    let mut numbers = line.iter();
-    let metrics = Metrics::from_each(|_| numbers.next().and_then(number_of).ok_or(()));
     let why = line.get(METRICS.len())?;
-    let result = if why.is_empty() { Ok(metrics.ok()?) } else { Err(why.to_owned()) };
+    let result = if why.is_empty() { Ok(metrics_in(line.iter())?) } else { Err(why.to_owned()) };
     Some((line.iter().skip(METRICS.len() + 1).map(str::to_owned).collect(), result))
 }

@@ -1,12 +1,12 @@
 //! The games of a sweep.
 
 use super::{Axis, AxisValue, Design, Sweep};
-use crate::jobs::too_many_games;
+use crate::jobs::{load_game, teams_of, too_many_games};
 use crate::tournament::Entrant;
 use crate::{Packed, UnpackError};
 use primitives::stream::Stream;
-use scenario::{Files, Overrides, Problem, Problems, Scenario, Setting, digest_of, load_with_files};
-use std::collections::BTreeMap;
+use scenario::{Files, Overrides, Problem, Problems, Scenario, Setting, digest_of};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -28,17 +28,7 @@ pub struct Plan {
 }
 
 /// A point of the space: a value for each axis.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Point {
-    /// The values by axis.
-    pub values: Vec<AxisValue>,
-}
-
-impl From<Vec<AxisValue>> for Point {
-    fn from(values: Vec<AxisValue>) -> Point {
-        Point { values }
-    }
-}
+pub type Point = Vec<AxisValue>;
 
 /// One game of a sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -79,8 +69,7 @@ impl Plan {
 
     /// A plan with unchecked points, read from these files.
     fn unchecked(sweep: &Sweep, files: Arc<Files>) -> Result<Plan, Problems> {
-        let game = load_with_files(&sweep.game, &Overrides::default(), &files)?;
-        let teams = game.teams.into_iter().map(|team| team.name).collect();
+        let teams = teams_of(&sweep.game, &files)?;
         let (points, files_needed) = (points(sweep)?, files.list().len());
         Ok(Plan { sweep: sweep.clone(), teams, seeds: u64::from(sweep.games).div_ceil(2), points, files, files_needed })
     }
@@ -150,18 +139,11 @@ impl Plan {
     /// # Errors
     /// All problems in any file.
     pub fn scenario(&self, point: usize, entry: usize, side: usize) -> Result<Scenario, Problems> {
-        let overrides = self.overrides(point, entry, side);
-        let scenario = load_with_files(&self.sweep.game, &overrides, &self.files)?;
-        scenario.has_no_real_boats().map_err(|real_boats| self.problem(real_boats.to_string()))?;
-        Ok(scenario)
+        load_game(&self.sweep.game, &self.overrides(point, entry, side), &self.files, &self.sweep.path)
     }
 
     fn overrides(&self, point: usize, entry: usize, side: usize) -> Overrides {
-        self.sweep.overrides(&self.teams, entry, side, &self.points[point].values)
-    }
-
-    fn problem(&self, message: String) -> Problems {
-        Problems(vec![Problem::of_file(self.sweep.path.clone(), message)])
+        self.sweep.overrides(&self.teams, entry, side, &self.points[point])
     }
 
     /// The command that replays a game.
@@ -244,9 +226,8 @@ fn points(sweep: &Sweep) -> Result<Vec<Point>, Problems> {
     let axes = &sweep.axes;
     let count = sweep.points as usize;
     let sampled = |share: &dyn Fn(usize, usize) -> f64| {
-        let point =
-            |i: usize| axes.iter().enumerate().map(|(k, axis)| axis.at(share(i, k))).collect::<Vec<AxisValue>>();
-        (0..count).map(|i| Point::from(point(i))).collect()
+        let point = |i: usize| axes.iter().enumerate().map(|(k, axis)| axis.at(share(i, k))).collect();
+        (0..count).map(point).collect()
     };
     Ok(match sweep.design {
         Design::Grid => grid(sweep)?,
@@ -279,26 +260,24 @@ fn grid(sweep: &Sweep) -> Result<Vec<Point>, Problems> {
         let message = format!("the grid has more than {POINTS_MAX} points; use fewer levels or another design");
         return Err(Problems(vec![Problem::of_file(sweep.path.clone(), message)]));
     }
-    let mut points = vec![Point::from(vec![])];
+    let mut points: Vec<Point> = vec![vec![]];
     for levels in &levels {
-        let with = |point: &Point, level: &AxisValue| {
-            Point::from(point.values.iter().chain(std::iter::once(level)).cloned().collect::<Vec<AxisValue>>())
-        };
+        let with = |point: &Point, level: &AxisValue| [&point[..], std::slice::from_ref(level)].concat();
         points = points.iter().flat_map(|point| levels.iter().map(move |level| with(point, level))).collect();
     }
     Ok(points)
 }
 
 fn one_at_a_time(axes: &[Axis]) -> Vec<Point> {
-    let nominal: Vec<AxisValue> = axes.iter().map(Axis::nominal).collect();
-    let mut points = vec![Point::from(nominal.clone())];
-    let mut known = BTreeMap::from([(format!("{nominal:?}"), ())]);
+    let nominal: Point = axes.iter().map(Axis::nominal).collect();
+    let mut points = vec![nominal.clone()];
+    let mut known = BTreeSet::from([format!("{nominal:?}")]);
     for (i, axis) in axes.iter().enumerate() {
         for level in axis.levels() {
             let mut values = nominal.clone();
             values[i] = level;
-            if known.insert(format!("{values:?}"), ()).is_none() {
-                points.push(Point::from(values));
+            if known.insert(format!("{values:?}")) {
+                points.push(values);
             }
         }
     }

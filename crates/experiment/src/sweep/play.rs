@@ -1,6 +1,6 @@
 //! Plays the games of a sweep and measures them.
 
-use super::metric::{Metrics, TeamMetrics};
+use super::metric::Metrics;
 use super::plan::{Job, Plan};
 use super::table::Row;
 use crate::pipeline::{Game, Stop, play_game, play_in_order};
@@ -163,37 +163,37 @@ impl<'a> Watch<'a> {
             energy_kj,
         };
         let boats: Vec<BoatRow> = statistics.end().into_iter().zip(energies_kj).map(boat).collect();
-        let team = |team: usize| {
+        // In the order of `METRICS`, from the score to the distance from the edge.
+        let team = |team: usize| -> [f64; 12] {
             let counts = &game.counts[team];
             let is_own = team == side;
             let sum =
                 |of: &dyn Fn(&BoatRow) -> f64| boats.iter().filter(|boat| boat.is_own == is_own).map(of).sum::<f64>();
-            TeamMetrics {
-                score: f64::from(game.score[team]),
-                grabs: f64::from(counts.grabs),
-                captures: f64::from(counts.captures),
-                tags: f64::from(counts.tags),
-                tagged: f64::from(counts.tagged),
-                out_of_bounds: f64::from(counts.out_of_bounds),
-                collisions: f64::from(counts.collisions),
-                tagged_s: sum(&|boat| boat.statistics.tagged_s),
-                outside_s: sum(&|boat| boat.statistics.outside_s),
-                distance_m: sum(&|boat| boat.statistics.distance_m),
-                energy_kj: sum(&|boat| boat.energy_kj),
-                edge_m: edges_m[team],
-            }
+            [
+                f64::from(game.score[team]),
+                f64::from(counts.grabs),
+                f64::from(counts.captures),
+                f64::from(counts.tags),
+                f64::from(counts.tagged),
+                f64::from(counts.out_of_bounds),
+                f64::from(counts.collisions),
+                sum(&|boat| boat.statistics.tagged_s),
+                sum(&|boat| boat.statistics.outside_s),
+                sum(&|boat| boat.statistics.distance_m),
+                sum(&|boat| boat.energy_kj),
+                edges_m[team],
+            ]
         };
         let (own, opponent) = (team(side), team(1 - side));
-        let metrics = Metrics {
-            win_share: game.winner.map_or(0.5, |winner| f64::from(u8::from(winner == side))),
-            own,
-            opponent,
-            score_difference: own.score - opponent.score,
-            contacts: nearness.contacts as f64,
-            near_misses: nearness.near_misses as f64,
-            closest_m: if closest_m.is_finite() { closest_m } else { f64::NAN },
-            duration_s: game.duration_s,
-        };
-        (metrics, boats)
+        let win_share = game.winner.map_or(0.5, |winner| f64::from(u8::from(winner == side)));
+        let of_game = [
+            own[0] - opponent[0],
+            nearness.contacts as f64,
+            nearness.near_misses as f64,
+            if closest_m.is_finite() { closest_m } else { f64::NAN },
+            game.duration_s,
+        ];
+        let all = [&[win_share], &own[..], &opponent, &of_game].concat();
+        (Metrics(all.try_into().expect("a number for each metric")), boats)
     }
 }

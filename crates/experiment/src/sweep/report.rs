@@ -163,7 +163,7 @@ fn observations(plan: &Plan, rows: &[Row]) -> Observations {
         let first = point * plan.games_per_point() + seed * 2 * entries;
         let games = rows.get(first..first + 2 * entries)?;
         let games = games.iter().map(|row| row.result.as_ref().ok().copied()).collect::<Option<Vec<Metrics>>>()?;
-        Some(games.chunks(2).map(Metrics::mean).collect())
+        Some(games.chunks(2).map(mean).collect())
     };
     let of_point = |point: usize| {
         let seeds: Vec<Option<Vec<Metrics>>> = (0..seeds).map(|seed| of_seed(point, seed)).collect();
@@ -173,8 +173,13 @@ fn observations(plan: &Plan, rows: &[Row]) -> Observations {
     Observations { by_point: (0..plan.points().len()).map(of_point).collect() }
 }
 
+/// The mean over games.
+fn mean(games: &[Metrics]) -> Metrics {
+    Metrics(std::array::from_fn(|i| games.iter().map(|game| game.0[i]).sum::<f64>() / games.len() as f64))
+}
+
 fn point_report(plan: &Plan, observed: &Observations, names: &[String], point: usize) -> PointReport {
-    let all = |of: &dyn Fn(&Metric) -> Option<Estimate>| METRICS.iter().map(of).collect();
+    let all = |of: &dyn Fn(usize) -> Option<Estimate>| (0..METRICS.len()).map(of).collect();
     let entries = names.iter().enumerate().map(|(entry, name)| EntryAtPoint {
         entry: name.clone(),
         metrics: all(&|metric| observed.estimate(&[point], entry, metric)),
@@ -185,7 +190,7 @@ fn point_report(plan: &Plan, observed: &Observations, names: &[String], point: u
         metrics: all(&|metric| observed.difference(point, [entry, 0], metric)),
     });
     PointReport {
-        values: plan.points()[point].values.iter().map(ToString::to_string).collect(),
+        values: plan.points()[point].iter().map(ToString::to_string).collect(),
         seeds: observed.by_point[point][0].iter().flatten().count(),
         entries: entries.collect(),
         differences: differences.collect(),
@@ -198,18 +203,17 @@ fn worst(plan: &Plan, rows: &[Row]) -> Vec<Worst> {
     let mut worst = vec![];
     for (entry, entrant) in plan.sweep().entries.iter().enumerate() {
         let of_entry = rows.iter().filter(|row| row.job.entry == entry);
-        let mut games: Vec<(&Row, &Metrics)> =
-            of_entry.filter_map(|row| Some((row, row.result.as_ref().ok()?))).collect();
-        games.sort_by(|(a, one), (b, other)| {
-            one.score_difference.total_cmp(&other.score_difference).then(a.job.index.cmp(&b.job.index))
-        });
-        worst.extend(games.into_iter().take(WORST).map(|(Row { job, digest, .. }, metrics)| Worst {
+        let measured = of_entry.filter_map(|row| Some((row, row.result.as_ref().ok()?)));
+        let mut games: Vec<(f64, &Row, &Metrics)> =
+            measured.map(|(row, metrics)| (metrics.of("score_difference"), row, metrics)).collect();
+        games.sort_by(|(one, a, _), (other, b, _)| one.total_cmp(other).then(a.job.index.cmp(&b.job.index)));
+        worst.extend(games.into_iter().take(WORST).map(|(_, Row { job, digest, .. }, metrics)| Worst {
             entry: entrant.name.clone(),
             game: job.index,
-            values: plan.points()[job.point].values.iter().map(ToString::to_string).collect(),
+            values: plan.points()[job.point].iter().map(ToString::to_string).collect(),
             score: metrics.score(),
-            contacts: metrics.contacts,
-            out_of_bounds: metrics.own.out_of_bounds,
+            contacts: metrics.of("contacts"),
+            out_of_bounds: metrics.of("out_of_bounds"),
             digest: digest.clone(),
             command: plan.command(job),
         }));

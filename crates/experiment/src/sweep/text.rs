@@ -5,15 +5,15 @@ use super::find::Found;
 use super::metric::Metric;
 use super::report::{PointReport, Report};
 use crate::estimate::Estimate;
-use std::fmt::Write;
+use std::fmt::Write as _;
 
-/// The columns shown for each level: the metric, its heading, and its factor.
-const COLUMNS: [(&str, &str, f64); 5] = [
-    ("win_share", "won %", 100.0),
-    ("score", "points", 1.0),
-    ("opponent_score", "against", 1.0),
-    ("out_of_bounds", "leaves field", 1.0),
-    ("contacts", "contacts", 1.0),
+/// The columns shown for each level: the metric, its heading, its factor, and decimal places.
+const COLUMNS: [(&str, &str, f64, usize); 5] = [
+    ("win_share", "won %", 100.0, 0),
+    ("score", "points", 1.0, 1),
+    ("opponent_score", "against", 1.0, 1),
+    ("out_of_bounds", "leaves field", 1.0, 1),
+    ("contacts", "contacts", 1.0, 1),
 ];
 /// The maximum number of interactions and of worst games shown.
 const SHOWN: usize = 6;
@@ -55,22 +55,16 @@ pub fn text(report: &Report) -> String {
 
 fn table(effect: &Effect, line: &mut impl FnMut(String)) {
     line(format!("{} with {}", effect.entry, effect.axis));
-    let heads: String = COLUMNS.iter().map(|(_, head, _)| format!("{head:>13}")).collect();
+    let heads: String = COLUMNS.iter().map(|(_, head, ..)| format!("{head:>13}")).collect();
     line(format!("{:<14}{heads}", ""));
     for level in &effect.levels {
-        let cell = |(metric, _, times): &(&str, &str, f64)| {
+        let cell = |(metric, _, times, digits): &(&str, &str, f64, usize)| {
             let estimate = Metric::place(metric).and_then(|i| level.metrics[i]);
-            format!("{:>13}", estimate.map_or("-".to_owned(), |estimate| shown(&estimate, *times)))
+            format!("{:>13}", estimate.map_or("-".to_owned(), |estimate| estimate.shown(*times, *digits)))
         };
         let label: String = level.label.chars().take(13).collect();
         line(format!("{label:<14}{}", COLUMNS.iter().map(cell).collect::<String>()));
     }
-}
-
-fn shown(estimate: &Estimate, times: f64) -> String {
-    let digits = usize::from(times == 1.0);
-    let half = estimate.half_width().map_or("?".to_owned(), |half| format!("{:.digits$}", half * times));
-    format!("{:.digits$} ± {half}", estimate.mean * times)
 }
 
 /// Differences in win share to the first entry, at the points where they are significant.
@@ -83,15 +77,9 @@ fn differences(report: &Report, line: &mut impl FnMut(String)) {
         let better = sure(|one| one.low.is_some_and(|low| low > 0.0));
         let worse = sure(|one| one.high.is_some_and(|high| high < 0.0));
         let mean = all.iter().map(|one| one.mean).sum::<f64>() / all.len().max(1) as f64;
-        let mut about = String::new();
-        let _ = write!(
-            about,
-            "\n{entry} minus {}, on the same seeds: {:+.0} % of games won on average",
-            report.entries[0],
-            100.0 * mean
-        );
-        let _ = write!(about, ";\nsignificantly more at {better} and fewer at {worse} of {} points", all.len());
-        line(about);
+        let (first, pct, count) = (&report.entries[0], 100.0 * mean, all.len());
+        line(format!("\n{entry} minus {first}, on the same seeds: {pct:+.0} % of games won on average;"));
+        line(format!("significantly more at {better} and fewer at {worse} of {count} points"));
     }
 }
 

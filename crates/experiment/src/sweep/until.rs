@@ -6,12 +6,11 @@
 //! wrong verdict is shared among all looks (Bonferroni), so that the resulting interval has a
 //! confidence of at least 95 %.
 
-use super::AxisValue;
 use super::condition::Condition;
-use super::journal::Journal;
+use super::journal::{Journal, SearchError};
+use super::metric::Metrics;
 use super::plan::{Job, Plan, Point};
-use super::study::StudyError;
-use crate::estimate::Estimate;
+use crate::estimate::{Estimate, mean_and_squares};
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::num::NonZeroUsize;
@@ -62,37 +61,20 @@ pub struct Tried {
     share: f64,
 }
 
-/// Why a search failed.
-#[derive(Debug, thiserror::Error)]
-pub enum UntilError {
-    /// The axis is ambiguous.
-    #[error("{0} axes are numeric; choose one with --along: {1}")]
-    Axes(usize, String),
-    /// A game cannot start.
-    #[error("{0}")]
-    Game(String),
-    /// The journal cannot be written.
-    #[error(transparent)]
-    Journal(#[from] StudyError),
-    /// The search was stopped.
-    #[error("stopped before the breaking point was found")]
-    Stopped,
-}
-
 /// Searches along the axis with this key, or the only one with numbers, with all others at their
 /// nominal values. Games in the journal are not played again. `tell` receives each tested value.
 ///
 /// # Errors
-/// [`UntilError`] if there is no axis or there are several, if a game cannot start, or if `stop`
+/// [`SearchError`] if there is no axis or there are several, if a game cannot start, or if `stop`
 /// was set.
 pub fn breaking_point(
     plan: &Plan,
     condition: &Condition,
     along: Option<&str>,
     journal: &mut Journal,
-    (jobs, stop): (NonZeroUsize, &AtomicBool),
+    threads: (NonZeroUsize, &AtomicBool),
     mut tell: impl FnMut(&Tried),
-) -> Result<BreakingPoint, UntilError> {
+) -> Result<BreakingPoint, SearchError> {
     let axes = &plan.sweep().axes;
     let numeric: Vec<usize> = (0..axes.len()).filter(|k| axes[*k].at(0.0).number().is_some()).collect();
     let axis = match along {
@@ -100,15 +82,15 @@ pub fn breaking_point(
         None => (numeric.len() == 1).then(|| numeric[0]),
     };
     let keys = || numeric.iter().map(|k| axes[*k].key.as_str()).collect::<Vec<_>>().join(", ");
-    let axis = axis.ok_or_else(|| UntilError::Axes(numeric.len(), keys()))?;
+    let axis = axis.ok_or_else(|| SearchError::Axes(numeric.len(), keys()))?;
     let plan = plan.of_entry(condition.entry);
     let mut tried: Vec<Tried> = vec![];
     let mut test = |share: f64, tried: &mut Vec<Tried>| {
-        let one = try_value(&plan, condition, (axis, share), journal, (jobs, stop))?;
+        let one = try_value(&plan, condition, (axis, share), journal, threads)?;
         tell(&one);
         let holds = one.holds;
         tried.push(one);
-        Ok::<Option<bool>, UntilError>(holds)
+        Ok::<Option<bool>, SearchError>(holds)
     };
     // The ends first: if both have the same verdict, there is nothing to find.
     let ends = [test(0.0, &mut tried)?, test(1.0, &mut tried)?];
@@ -148,26 +130,22 @@ fn try_value(
     condition: &Condition,
     (axis, share): (usize, f64),
     journal: &mut Journal,
-    (jobs, stop): (NonZeroUsize, &AtomicBool),
-) -> Result<Tried, UntilError> {
-    let mut values: Vec<AxisValue> = plan.sweep().axes.iter().map(super::Axis::nominal).collect();
+    threads: (NonZeroUsize, &AtomicBool),
+) -> Result<Tried, SearchError> {
+    let mut values: Point = plan.sweep().axes.iter().map(super::Axis::nominal).collect();
     values[axis] = plan.sweep().axes[axis].at(share);
     let value = values[axis].number().unwrap_or(f64::NAN);
     let most = plan.seeds();
-    let plan = plan.at(vec![Point::from(values)], (plan.sweep().seed, most));
+    let plan = plan.at(vec![values], (plan.sweep().seed, most));
     let looks = (most as f64 / FIRST_SEEDS as f64).log2().ceil().max(0.0) + 1.0;
     let alpha = ALPHA / looks / f64::from(STEPS + 2);
     let mut observations: Vec<f64> = vec![];
     let mut until = FIRST_SEEDS.min(most);
     loop {
         let order: Vec<Job> = (2 * observations.len()..2 * until as usize).map(|index| plan.job(index)).collect();
-        let played = journal.play(&plan, &order, jobs, stop)?;
-        if played.len() < order.len() {
-            return Err(UntilError::Stopped);
-        }
-        let numbers: Result<Vec<f64>, String> =
-            played.into_iter().map(|result| result.map(|metrics| condition.metric.of(&metrics))).collect();
-        observations.extend(numbers.map_err(UntilError::Game)?.chunks(2).map(|sides| 0.5 * (sides[0] + sides[1])));
+        let played = journal.play(&plan, &order, threads)?;
+        let number = |metrics: &Metrics| metrics.0[condition.metric];
+        observations.extend(played.chunks(2).map(|sides| 0.5 * (number(&sides[0]) + number(&sides[1]))));
         let holds = verdict(condition, &observations, alpha);
         if holds.is_some() || until >= most {
             return Ok(Tried {
@@ -187,8 +165,7 @@ fn try_value(
 /// level `alpha`.
 fn verdict(condition: &Condition, observations: &[f64], alpha: f64) -> Option<bool> {
     let count = observations.len() as f64;
-    let mean = observations.iter().sum::<f64>() / count;
-    let squares: f64 = observations.iter().map(|one| (one - mean) * (one - mean)).sum();
+    let (mean, squares) = mean_and_squares(observations);
     // Equal observations are less informative than their spread suggests: adds one that is half a
     // unit off.
     let error = ((squares + 0.25) / (count - 1.0).max(1.0) / count).sqrt();
@@ -225,14 +202,13 @@ fn found(plan: &Plan, condition: &Condition, axis: usize, mut tried: Vec<Tried>)
 
 #[cfg(test)]
 mod tests {
-    use super::super::metric::METRICS;
     use super::*;
 
     #[test]
     fn a_verdict_is_as_seldom_wrong_as_it_says() {
         // Coins with 50 % heads: whether fewer than half are heads cannot be decided, and is rarely
         // decided wrongly.
-        let condition = Condition { entry: 0, metric: &METRICS[0], is_below: true, threshold: 0.5 };
+        let condition = Condition { entry: 0, metric: 0, is_below: true, threshold: 0.5 };
         let mut wrong = 0;
         for trial in 0..2000 {
             let mut stream = primitives::stream::Stream::new(trial, "coins");

@@ -2,14 +2,11 @@
 
 use scenario::keys::{FilePath, Name};
 use scenario::sea::Sea;
-use scenario::{
-    Diagnostics, Document, Files, Overrides, Problems, Scenario, ScenarioFile, StrategyFiles, load_with_files,
-};
+use scenario::{Diagnostics, Document, Scenario, ScenarioFile, StrategyFiles};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::path::PathBuf;
-use std::sync::Arc;
 
 /// Every entry against every other in one game, over many seeds and from both sides.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -52,39 +49,6 @@ pub struct Entrant {
     pub strategy: PathBuf,
 }
 
-impl Tournament {
-    /// The names of the game's teams, the first one first.
-    ///
-    /// # Errors
-    /// All problems in the game's files.
-    pub fn teams(&self, files: &Arc<Files>) -> Result<Vec<String>, Problems> {
-        Ok(load_with_files(&self.game, &Overrides::default(), files)?.teams.into_iter().map(|team| team.name).collect())
-    }
-
-    /// The overrides of the game's files when one entry plays as the first of these teams and
-    /// another as the second.
-    ///
-    /// # Panics
-    /// If an entry does not exist.
-    #[must_use]
-    pub fn overrides(&self, teams: &[String], sides: [usize; 2]) -> Overrides {
-        let of_side = |side: usize| self.entries[side].strategy.clone();
-        let strategies: BTreeMap<String, PathBuf> = teams.iter().cloned().zip(sides.map(of_side)).collect();
-        Overrides { sea: self.sea.clone(), strategies, ..Overrides::default() }
-    }
-
-    /// The game in which one entry plays as the first team and another as the second.
-    ///
-    /// # Errors
-    /// All problems in any file.
-    ///
-    /// # Panics
-    /// If an entry does not exist.
-    pub fn game_of(&self, teams: &[String], sides: [usize; 2], files: &Arc<Files>) -> Result<Scenario, Problems> {
-        load_with_files(&self.game, &self.overrides(teams, sides), files)
-    }
-}
-
 impl ScenarioFile for Tournament {
     type Keys = Tournament;
     const NAME: &'static str = "tournament";
@@ -98,16 +62,7 @@ impl ScenarioFile for Tournament {
             diagnostics.referenced::<Sea, _>(document, "sea", &*sea);
             *sea = diagnostics.resolve(document.at("sea"), &*sea);
         }
-        let mut strategies = StrategyFiles::default();
-        let mut names = BTreeSet::new();
-        for (i, entry) in tournament.entries.iter_mut().enumerate() {
-            let [name_path, path] = ["name", "strategy"].map(|key| format!("entry.{i}.{key}"));
-            entry.strategy = strategies.read(diagnostics, document, &path, &entry.strategy);
-            if document.is_sound(&name_path) && !names.insert(&entry.name) {
-                let message = format!("the name {:?} is used twice, expected a unique name for each entry", entry.name);
-                diagnostics.note(document.at(&name_path), message);
-            }
-        }
+        let names = check_entries(diagnostics, document, &mut StrategyFiles::default(), &mut tournament.entries);
         if let Some(challenger) = tournament.challenger.as_ref().filter(|name| !names.contains(name)) {
             let listed: Vec<&str> = names.iter().map(|name| name.as_str()).collect();
             let message = format!("challenger is {challenger:?}, expected an entry: {}", listed.join(", "));
@@ -115,4 +70,23 @@ impl ScenarioFile for Tournament {
         }
         document.is_faultless(diagnostics).then_some(tournament)
     }
+}
+
+/// Checks and resolves the strategies of entries. Returns their names, which must differ.
+pub(crate) fn check_entries<'a, K>(
+    diagnostics: &mut Diagnostics,
+    document: &Document<K>,
+    strategies: &mut StrategyFiles,
+    entries: &'a mut [Entrant],
+) -> BTreeSet<&'a String> {
+    let mut names = BTreeSet::new();
+    for (i, entry) in entries.iter_mut().enumerate() {
+        let [name_path, path] = ["name", "strategy"].map(|key| format!("entry.{i}.{key}"));
+        entry.strategy = strategies.read(diagnostics, document, &path, &entry.strategy);
+        if document.is_sound(&name_path) && !names.insert(&entry.name) {
+            let message = format!("the name {:?} is used twice, expected a unique name for each entry", entry.name);
+            diagnostics.note(document.at(&name_path), message);
+        }
+    }
+    names
 }

@@ -108,10 +108,4 @@ impl League {
         }
         (known, new)
     }
-
-    /// The number of games.
-    #[must_use]
-    pub fn games(&self) -> usize {
-        self.known.len()
-    }
 }

@@ -11,6 +11,7 @@ mod rating;
 mod report;
 mod table;
 
+pub(crate) use file::check_entries;
 pub use file::{Entrant, Tournament};
 pub use league::{League, LeagueError};
 pub use plan::{Match, Plan};

@@ -1,9 +1,9 @@
 //! The games of a tournament.
 
 use super::{Entrant, Tournament};
-use crate::jobs::too_many_games;
+use crate::jobs::{load_game, teams_of, too_many_games};
 use crate::{Packed, UnpackError};
-use scenario::{Files, Problem, Problems, Scenario, digest_of};
+use scenario::{Files, Overrides, Problems, Scenario, digest_of};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -42,7 +42,7 @@ impl Plan {
     }
 
     fn of_files(tournament: &Tournament, files: Arc<Files>) -> Result<Plan, Problems> {
-        let teams = tournament.teams(&files)?;
+        let teams = teams_of(&tournament.game, &files)?;
         let count = tournament.entries.len();
         let is_played = |sides: [usize; 2]| {
             let is_there = |name: &String| sides.iter().any(|side| tournament.entries[*side].name == *name);
@@ -58,7 +58,10 @@ impl Plan {
                     (false, _) => &both[..],
                 };
                 for sides in sides {
-                    rounds.push((*sides, game_of(tournament, &teams, *sides, &files)?));
+                    let strategy = |entry: usize| tournament.entries[entry].strategy.clone();
+                    let strategies = teams.iter().cloned().zip(sides.map(strategy)).collect();
+                    let overrides = Overrides { sea: tournament.sea.clone(), strategies, ..Overrides::default() };
+                    rounds.push((*sides, load_game(&tournament.game, &overrides, &files, &tournament.game)?));
                 }
             }
         }
@@ -154,18 +157,4 @@ impl Plan {
     pub fn unpack(packed: Packed) -> Result<Plan, UnpackError> {
         packed.unpack(Plan::of_files, Plan::digest)
     }
-}
-
-/// The game in which one entry plays as the first team and another as the second, if it has no real
-/// boats.
-fn game_of(
-    tournament: &Tournament,
-    teams: &[String],
-    sides: [usize; 2],
-    files: &Arc<Files>,
-) -> Result<Scenario, Problems> {
-    let scenario = tournament.game_of(teams, sides, files)?;
-    let at_top = |message| Problems(vec![Problem::of_file(tournament.game.clone(), message)]);
-    scenario.has_no_real_boats().map_err(|real_boats| at_top(real_boats.to_string()))?;
-    Ok(scenario)
 }

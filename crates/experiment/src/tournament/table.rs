@@ -62,7 +62,7 @@ type Cells = (String, Vec<String>);
 fn entries(text: &mut String, report: &Report, columns: usize) {
     let count = |words, of: fn(&Row) -> u64| cells(report, words, |row| of(row).to_string());
     let counts = [count("won", |row| row.wins), count("drawn", |row| row.draws), count("lost", |row| row.losses)];
-    let means = COLUMNS.iter().map(|(_, words, of)| cells(report, words, |row| estimate(&of(row))));
+    let means = COLUMNS.iter().map(|(_, words, of)| cells(report, words, |row| of(row).shown(1.0, 2)));
     table(text, &names(report), &counts.into_iter().chain(means).collect::<Vec<_>>(), columns);
 }
 
@@ -97,11 +97,6 @@ fn table(text: &mut String, names: &[&str], cells: &[Cells], columns: usize) {
             text.push('\n');
         }
     }
-}
-
-fn estimate(estimate: &Estimate) -> String {
-    let half = estimate.half_width().map_or("?".to_owned(), |half| format!("{half:.2}"));
-    format!("{:.2} ± {half}", estimate.mean)
 }
 
 /// The wins of each entry against each other.

@@ -1,18 +1,18 @@
 //! One game of an environment: policy steps, rewards, and a new game when one ends.
 
-use super::game_mind::GameMind;
 use super::games::Standing;
 use super::setup::{Control, Player, Setup};
 use super::watch::{Moment, Watch};
-use crate::rewards::{BoatProgress, Placed, progress};
-use agent::{Action, MindRunner, Pilot};
+use crate::rewards::{BoatProgress, progress};
+use agent::{Action, Mind, MindRunner, Pilot};
 use messages::Picture;
 use primitives::stream::Stream;
-use primitives::{Ned, TeamId, VehicleId};
+use primitives::{TeamId, VehicleId};
 use rules::count::Tally;
 use rules::event::EventCursor;
 use scenario::Scenario;
 use sim::Contest;
+use std::any::Any;
 
 /// The two sides of a game.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,7 +28,7 @@ pub(super) struct Game {
     side: Side,
     steps: u32,
     contest: Contest,
-    runner: MindRunner<GameMind>,
+    runner: MindRunner,
     /// The boats that receive actions; the learning policy's come first.
     pilots: Vec<VehicleId>,
     read: EventCursor,
@@ -56,22 +56,21 @@ impl Game {
         let is_self_play = matches!(setup.opponents[side.opponent].1, Player::Policy);
         let enemies = setup.pilots_of(enemy, seed).filter(|_| is_self_play);
         let pilots: Vec<VehicleId> = setup.pilots_of(side.learner, seed).chain(enemies).collect();
-        let by_strategy = |vehicle, strategy| GameMind::Strategy(agent::mind_by(scenario, vehicle, strategy));
-        let mind = |vehicle: VehicleId| -> GameMind {
+        let mind = |vehicle: VehicleId| -> Box<dyn Mind> {
             let is_learner = scenario.team_of(vehicle) == side.learner;
             match (is_learner, &setup.opponents[side.opponent].1, &setup.mates) {
-                (false, Player::Strategy(strategy), _) => by_strategy(vehicle, strategy),
-                (_, _, Some(strategy)) if !pilots.contains(&vehicle) => by_strategy(vehicle, strategy),
+                (false, Player::Strategy(strategy), _) => agent::mind_by(scenario, vehicle, strategy),
+                (_, _, Some(strategy)) if !pilots.contains(&vehicle) => agent::mind_by(scenario, vehicle, strategy),
                 (false, Player::Model(model), _) => {
-                    GameMind::Pilot(Box::new(policy_pilot(setup, scenario, vehicle).by_model(model.clone())))
+                    Box::new(policy_pilot(setup, scenario, vehicle).by_model(model.clone()))
                 }
                 // Same as in the arena, but with pilots as minds: a test plays the same game in the
                 // arena and compares digests.
-                _ => GameMind::Pilot(Box::new(pilot(setup, scenario, vehicle))),
+                _ => Box::new(pilot(setup, scenario, vehicle)),
             }
         };
         let count = scenario.vehicles.len();
-        let runner = arena::runner_of((0..count).map(|i| Box::new(mind(VehicleId::at(i)))).collect());
+        let runner = arena::runner_of((0..count).map(|i| mind(VehicleId::at(i))).collect());
         let mut game = Game {
             seed,
             side,
@@ -81,14 +80,14 @@ impl Game {
             contest,
             read: EventCursor::default(),
             tally: Tally::new(count),
-            boats: vec![BoatProgress::default(); count],
+            boats: vec![],
             rewards: vec![0.0; count],
             watch,
         };
         // Before the first pictures, so that the watch sees all inputs of the game.
         game.show(Moment::Decision);
         game.contest.pictures();
-        game.look(setup);
+        game.boats = progress(&game.contest, setup.rewards.mind_others());
         game
     }
 
@@ -103,8 +102,8 @@ impl Game {
     /// The pilot at an index of `pilots`, and its team's picture.
     fn pilot(&mut self, place: usize) -> Option<(&mut Pilot, &Picture)> {
         let vehicle = self.pilots[place];
-        let pilot = self.runner.mind_mut(vehicle).and_then(GameMind::pilot_mut)?;
-        Some((pilot, self.contest.picture_of(vehicle)))
+        let mind: &mut dyn Any = self.runner.mind_mut(vehicle)?;
+        Some((mind.downcast_mut()?, self.contest.picture_of(vehicle)))
     }
 
     pub(super) fn act(&mut self, place: usize, action: Action) {
@@ -182,7 +181,7 @@ impl Game {
         let carrying: Vec<bool> = self.boats.iter().map(|boat| boat.carrying).collect();
         let before: Vec<f64> =
             self.boats.iter().map(|boat| rewards.potential.of(boat) + rewards.place.of(boat)).collect();
-        self.look(setup);
+        self.boats = progress(&self.contest, rewards.mind_others());
         let scenario = self.contest.scenario();
         let step_s = scenario.tick.as_s() * f64::from(scenario.ticks_per_decision * setup.decisions_per_step);
         for (i, reward) in self.rewards.iter_mut().enumerate() {
@@ -202,22 +201,6 @@ impl Game {
                 *reward += rewards.of_end(self.contest.score(), scenario.team_of(VehicleId::at(i)));
             }
         }
-    }
-
-    /// Updates the boats' progress for rewards.
-    fn look(&mut self, setup: &Setup) {
-        let scenario = self.contest.scenario();
-        let mut placed: Vec<Placed> = scenario
-            .vehicles
-            .iter()
-            .map(|vehicle| Placed { at: Ned::default(), team: vehicle.team, tagged: false, carrying: false })
-            .collect();
-        for boat in self.contest.last_pictures().iter().flat_map(|picture| &picture.own) {
-            let (vehicle, carrying) = (boat.vehicle, boat.carried_flag().is_some());
-            let team = scenario.team_of(vehicle);
-            placed[vehicle.index()] = Placed { at: boat.nav.at(), team, tagged: boat.tagged, carrying };
-        }
-        progress(&scenario.field, &placed, setup.rewards.mind_others(), &mut self.boats);
     }
 }
 

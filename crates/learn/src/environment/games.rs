@@ -84,20 +84,12 @@ struct Slot {
 }
 
 impl Games {
-    /// Starts `games` games on `threads` threads. Seeds count up from `seed`, across the games and
-    /// then the episodes.
+    /// Starts `games` games on `threads` threads, watched on request. Seeds count up from `seed`,
+    /// across the games and then the episodes.
     ///
     /// # Errors
     /// [`SetupError`] if the setup cannot be played.
-    pub fn new(setup: Setup, games: usize, threads: usize, seed: u64) -> Result<Games, SetupError> {
-        Games::watched(setup, games, threads, seed, None)
-    }
-
-    /// Like [`Games::new`], with watches.
-    ///
-    /// # Errors
-    /// [`SetupError`] if the setup cannot be played.
-    pub fn watched(
+    pub fn new(
         setup: Setup,
         games: usize,
         threads: usize,
@@ -131,12 +123,12 @@ impl Games {
     }
 
     /// Adds an opponent with a draw weight of 0.
-    pub fn add_opponent(&mut self, player: Player) {
+    pub(crate) fn add_opponent(&mut self, player: Player) {
         self.setup.opponents.push((0.0, player));
     }
 
     /// Sets the opponents' draw weights from each slot's next game on. Missing weights are 0.
-    pub fn set_weights(&mut self, weights: impl IntoIterator<Item = f64>) {
+    pub(crate) fn set_weights(&mut self, weights: impl IntoIterator<Item = f64>) {
         let mut weights = weights.into_iter();
         self.setup.opponents.iter_mut().for_each(|(weight, _)| *weight = weights.next().unwrap_or(0.0));
     }

@@ -2,7 +2,6 @@
 //! actions for some boats.
 
 mod game;
-mod game_mind;
 mod games;
 mod raw;
 #[cfg(feature = "record")]
@@ -22,6 +21,7 @@ pub use games::{Finished, Games, Rows, Standing};
 pub use raw::{RawObservation, RawSetup};
 #[cfg(feature = "record")]
 pub use recorder::{RecordingLog, RecordingNames, Recordings, check_recording_folder, recording_name};
+pub(crate) use setup::wrong;
 pub use setup::{Control, Player, Setup, SetupError, Teacher};
 pub use vector::VectorEnvironment;
 pub use watch::{Moment, Watch, Watches};

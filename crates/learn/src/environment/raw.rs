@@ -1,25 +1,21 @@
 //! A setup as users write it: file paths, seconds and names.
 
-use super::setup::{Control, Player, Setup, SetupError};
+use super::setup::{Control, Player, Setup, SetupError, wrong};
 use crate::rewards::Rewards;
 use crate::training::CriticInput;
 use agent::{ActionSpace, ObservationSpace, Spaces};
 use primitives::TeamId;
-use scenario::Scenario;
 use scenario::strategy::Strategy;
+use scenario::{Overrides, Scenario};
 use std::path::{Path, PathBuf};
 
 /// The observation space before the team sizes are known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RawObservation {
-    /// [`ObservationSpace::Pyquaticus`].
-    Pyquaticus,
-    /// [`ObservationSpace::Squall`]; by default with one slot for each boat of the game.
+    /// An observation space that does not depend on them.
+    Space(ObservationSpace),
+    /// [`ObservationSpace::Squall`] with one slot for each boat of the game.
     Squall {
-        /// Number of slots for mates.
-        mates: Option<u8>,
-        /// Number of slots for enemies.
-        enemies: Option<u8>,
         /// Number of consecutive decisions in one observation.
         frames: u8,
     },
@@ -30,6 +26,8 @@ pub enum RawObservation {
 pub struct RawSetup {
     /// The game file.
     pub game: PathBuf,
+    /// The sea file. None: the game's.
+    pub sea: Option<PathBuf>,
     /// The policies' observations.
     pub observation: RawObservation,
     /// The policies' actions.
@@ -62,7 +60,8 @@ impl RawSetup {
     /// # Errors
     /// [`SetupError`]: the first invalid field, or all faults of a file.
     pub fn check(&self) -> Result<Setup, SetupError> {
-        let scenario = scenario::load(&self.game)?;
+        let overrides = Overrides { sea: self.sea.clone(), ..Overrides::default() };
+        let scenario = scenario::load_with(&self.game, &overrides)?;
         let helm = self.helm.as_deref().map(strategy).transpose()?;
         let opponent = |(weight, file): &(f64, Option<PathBuf>)| {
             if !(weight.is_finite() && *weight >= 0.0) {
@@ -103,17 +102,16 @@ impl RawSetup {
 
 impl RawObservation {
     fn check(self, scenario: &Scenario) -> Result<ObservationSpace, SetupError> {
-        let RawObservation::Squall { mates, enemies, frames } = self else { return Ok(ObservationSpace::Pyquaticus) };
+        let frames = match self {
+            RawObservation::Space(space) => return Ok(space),
+            RawObservation::Squall { frames } => frames,
+        };
         if frames == 0 {
             return Err(wrong("frames", 0, "1 to 255"));
         }
         let boats = |team: usize| scenario.vehicles.iter().filter(|vehicle| vehicle.team.index() == team).count();
         let room = |boats: usize| u8::try_from(boats).unwrap_or(u8::MAX);
-        Ok(ObservationSpace::Squall {
-            mates: mates.unwrap_or_else(|| room(boats(0).saturating_sub(1))),
-            enemies: enemies.unwrap_or_else(|| room(boats(1))),
-            frames,
-        })
+        Ok(ObservationSpace::Squall { mates: room(boats(0).saturating_sub(1)), enemies: room(boats(1)), frames })
     }
 }
 
@@ -127,12 +125,8 @@ fn team(scenario: &Scenario, name: &str) -> Result<TeamId, SetupError> {
     found.map(|team| TeamId(team as u8)).ok_or_else(|| wrong("team", format!("{name:?}"), &names()))
 }
 
-fn wrong(field: &'static str, found: impl ToString, allowed: &str) -> SetupError {
-    SetupError::Field { field, found: found.to_string(), allowed: allowed.to_owned() }
-}
-
 /// The number of game decisions per policy decision.
-pub(super) fn decisions_per_step(decision_s: f64, scenario: &Scenario) -> Result<u32, SetupError> {
+fn decisions_per_step(decision_s: f64, scenario: &Scenario) -> Result<u32, SetupError> {
     let least_s = scenario.decision().as_s();
     let times = (decision_s / least_s).round();
     if (1.0..=1e6).contains(&times) && (times * least_s - decision_s).abs() < 1e-6 {
@@ -142,7 +136,7 @@ pub(super) fn decisions_per_step(decision_s: f64, scenario: &Scenario) -> Result
     Err(wrong("decision_s", decision_s, &allowed))
 }
 
-pub(super) fn steps_max(episode_max_s: f64, scenario: &Scenario, decisions_per_step: u32) -> Result<u32, SetupError> {
+fn steps_max(episode_max_s: f64, scenario: &Scenario, decisions_per_step: u32) -> Result<u32, SetupError> {
     let step_s = scenario.decision().as_s() * f64::from(decisions_per_step);
     let steps = (episode_max_s / step_s - 1e-6).ceil();
     if (1.0..=1e9).contains(&steps) {

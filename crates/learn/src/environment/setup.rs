@@ -55,7 +55,7 @@ pub struct Setup {
     pub teacher: Option<Teacher>,
     /// A critic's input.
     pub critic: CriticInput,
-    /// Game decisions per policy step.
+    /// Game decisions per policy step, at least one.
     pub decisions_per_step: u32,
     /// Maximum number of steps of an episode. None: until the game is over.
     pub steps_max: Option<u32>,
@@ -95,12 +95,6 @@ pub enum SetupError {
         /// The kind of policy behaviour needed.
         expected: &'static str,
     },
-    /// Steps without decisions.
-    #[error("decisions_per_step is 0, expected 1 or more")]
-    NoDecisions,
-    /// No starts.
-    #[error("starts is 0, expected 1 or more, or none for a new start in every game")]
-    NoStarts,
     /// A seed outside the repeating starts.
     #[error("seed is {seed}, expected {first} to {last}: `starts` limits the seeds")]
     SeedOfStarts {
@@ -132,6 +126,11 @@ pub enum SetupError {
     NoStart(#[from] sim::NoStart),
 }
 
+/// The error of a field with an invalid value.
+pub(crate) fn wrong(field: &'static str, found: impl ToString, allowed: &str) -> SetupError {
+    SetupError::Field { field, found: found.to_string(), allowed: allowed.to_owned() }
+}
+
 impl Setup {
     /// Checks that this setup can be played.
     ///
@@ -145,24 +144,14 @@ impl Setup {
         if one != other {
             return Err(SetupError::Uneven(one, other));
         }
-        if let Some(team) = self.learner.filter(|team| team.index() > 1) {
-            let (found, allowed) = (team.index().to_string(), "0 or 1".to_owned());
-            return Err(SetupError::Field { field: "learner", found, allowed });
-        }
-        if self.decisions_per_step == 0 {
-            return Err(SetupError::NoDecisions);
-        }
-        if self.starts == Some(0) {
-            return Err(SetupError::NoStarts);
-        }
         if !self.opponents.iter().any(|(weight, _)| *weight > 0.0) {
             return Err(SetupError::NoOpponent);
         }
         if let Control::Helm(strategy) = &self.control {
             self.check_helm(strategy)?;
         } else if self.spaces.action == ActionSpace::Options {
-            let allowed = "another action space, or a helm whose strategy declares options".to_owned();
-            return Err(SetupError::Field { field: "action", found: "options".to_owned(), allowed });
+            let allowed = "another action space, or a helm whose strategy declares options";
+            return Err(wrong("action", "options", allowed));
         }
         Ok(())
     }
@@ -181,7 +170,7 @@ impl Setup {
         {
             let found = texts(other).unwrap_or_default().join(", ");
             let allowed = format!("those of the first role: {}", self.options().unwrap_or_default().join(", "));
-            return Err(SetupError::Field { field: "sets of the second role", found, allowed });
+            return Err(wrong("sets of the second role", found, &allowed));
         }
         Ok(())
     }
@@ -204,17 +193,12 @@ impl Setup {
         self.options().map(<[String]>::len).or(self.spaces.action.count())
     }
 
-    /// Whether any opponent is a policy.
-    #[must_use]
-    pub fn is_self_play(&self) -> bool {
-        self.opponents.iter().any(|(_, player)| matches!(player, Player::Policy))
-    }
-
     /// The number of rows per game: the boats that may receive actions.
     #[must_use]
     pub fn rows_per_game(&self) -> usize {
         let of_team = if self.mates.is_some() { 1 } else { self.team_size() };
-        of_team * if self.is_self_play() { 2 } else { 1 }
+        let is_self_play = self.opponents.iter().any(|(_, player)| matches!(player, Player::Policy));
+        of_team * if is_self_play { 2 } else { 1 }
     }
 
     /// The boats of a team that a policy controls in the game with this seed.

@@ -1,11 +1,10 @@
 //! Converts a training stage to a setup.
 
-use super::raw::{decisions_per_step, steps_max};
-use super::setup::{Control, Player, Setup, SetupError, Teacher};
+use super::raw::{RawObservation, RawSetup};
+use super::setup::{Setup, SetupError, Teacher, wrong};
 use crate::training::{self, Stage, Training};
-use agent::Spaces;
-use scenario::Overrides;
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::PathBuf;
 
 impl Setup {
     /// The setup of a stage. Its opponents are the policy itself, if the stage has self-play, and
@@ -14,38 +13,26 @@ impl Setup {
     /// # Errors
     /// [`SetupError`]: the faults of a file, or why the setup cannot be played.
     pub fn of_stage(training: &Training, stage: &Stage) -> Result<Setup, SetupError> {
-        let overrides = Overrides { sea: stage.sea.clone(), ..Overrides::default() };
-        let scenario = scenario::load_with(&stage.game, &overrides)?;
-        let strategy = |file| scenario::load_strategy(file).map(Box::new);
-        let plays_itself = stage.self_play > 0.0 || stage.past_selves > 0.0;
-        let mut opponents = vec![];
-        opponents.extend(plays_itself.then_some((0.0, Player::Policy)));
-        for opponent in &stage.opponent {
-            opponents.push((0.0, Player::Strategy(strategy(&opponent.strategy)?)));
-        }
-        if let Some((weight, _)) = opponents.first_mut() {
-            *weight = 1.0;
-        }
-        let decisions_per_step = decisions_per_step(training.period_s, &scenario)?;
-        let mut setup = Setup {
-            spaces: Spaces { observation: training.observation, action: training.action },
-            control: match &stage.helm {
-                Some(helm) => Control::Helm(strategy(helm)?),
-                None => Control::Direct,
-            },
-            teacher: None,
-            critic: training.network.critic,
-            decisions_per_step,
-            steps_max: stage.episode_max_s.map(|s| steps_max(s, &scenario, decisions_per_step)).transpose()?,
+        let itself = (stage.self_play > 0.0 || stage.past_selves > 0.0).then_some(None);
+        let strategies = stage.opponent.iter().map(|opponent| Some(opponent.strategy.clone()));
+        let weighted = |(i, file): (usize, Option<PathBuf>)| (if i == 0 { 1.0 } else { 0.0 }, file);
+        let raw = RawSetup {
+            game: stage.game.clone(),
+            sea: stage.sea.clone(),
+            observation: RawObservation::Space(training.observation),
+            action: training.action,
+            helm: stage.helm.clone(),
+            decision_s: Some(training.period_s),
+            episode_max_s: stage.episode_max_s,
             starts: stage.starts,
-            learner: None,
-            mates: stage.mates.as_deref().map(strategy).transpose()?,
-            opponents,
-            rewards: scenario::load_file::<crate::rewards::Rewards>(&stage.rewards)?,
+            team: None,
+            mates: stage.mates.clone(),
+            opponents: itself.into_iter().chain(strategies).enumerate().map(weighted).collect(),
+            rewards: Some(stage.rewards.clone()),
             discount: f64::from(training.algorithm().discount()),
-            scenario,
+            critic: training.network.critic,
         };
-        setup.check()?;
+        let mut setup = raw.check()?;
         setup.teacher = stage.teacher.as_ref().map(|teacher| setup.teacher_of(teacher)).transpose()?;
         Ok(setup)
     }
@@ -58,17 +45,12 @@ impl Setup {
         let listed = |names: &mut dyn Iterator<Item = &String>| names.cloned().collect::<Vec<_>>().join(", ");
         if let Some(unknown) = said.options.keys().find(|mode| !modes.contains(*mode)) {
             let allowed = format!("a mode of {}: {}", strategy.name, listed(&mut modes.iter()));
-            return Err(SetupError::Field {
-                field: "a mode in the teacher's options",
-                found: unknown.clone(),
-                allowed,
-            });
+            return Err(wrong("a mode in the teacher's options", unknown, &allowed));
         }
         let mut options = BTreeMap::new();
         let Some(names) = self.options() else {
             if let Some(option) = said.options.values().next() {
-                let allowed = "none, because action is not \"options\"".to_owned();
-                return Err(SetupError::Field { field: "the teacher's options", found: option.clone(), allowed });
+                return Err(wrong("the teacher's options", option, "none, because action is not \"options\""));
             }
             return Ok(Teacher { strategy, options });
         };
@@ -77,8 +59,7 @@ impl Setup {
             match names.iter().position(|option| option == name) {
                 Some(option) => drop(options.insert(mode, option)),
                 None if said.options.contains_key(&mode) => {
-                    let (found, allowed) = (format!("{name:?}"), listed(&mut names.iter()));
-                    return Err(SetupError::Field { field: "an option of the teacher", found, allowed });
+                    return Err(wrong("an option of the teacher", format!("{name:?}"), &listed(&mut names.iter())));
                 }
                 None => {}
             }
@@ -86,7 +67,7 @@ impl Setup {
         if options.is_empty() {
             let found = format!("{}, whose modes match no option", strategy.name);
             let allowed = format!("options for its modes from {}", listed(&mut names.iter()));
-            return Err(SetupError::Field { field: "the teacher", found, allowed });
+            return Err(wrong("the teacher", found, &allowed));
         }
         Ok(Teacher { strategy, options })
     }

@@ -1,16 +1,23 @@
 //! Games with their own result buffers.
 
-use super::game::Side;
-use super::games::{Finished, Games, Rows};
-use super::setup::{Player, Setup, SetupError};
+use super::games::{Games, Rows};
+use super::setup::{Setup, SetupError};
 use super::watch::Watches;
 use agent::Action;
-use sim::Contest;
+use std::ops::Deref;
 
 /// [`Games`] that store their latest results.
 pub struct VectorEnvironment {
-    games: Games,
+    pub(crate) games: Games,
     shown: Shown,
+}
+
+impl Deref for VectorEnvironment {
+    type Target = Games;
+
+    fn deref(&self) -> &Games {
+        &self.games
+    }
 }
 
 /// The buffers of [`Rows`].
@@ -33,27 +40,18 @@ impl Shown {
 }
 
 impl VectorEnvironment {
-    /// Starts `games` games on `threads` threads. Seeds count up from `seed`, across the games and
-    /// then the episodes.
+    /// Starts games as [`Games::new`] does.
     ///
     /// # Errors
     /// [`SetupError`] if the setup cannot be played.
-    pub fn new(setup: Setup, games: usize, threads: usize, seed: u64) -> Result<VectorEnvironment, SetupError> {
-        VectorEnvironment::watched(setup, games, threads, seed, None)
-    }
-
-    /// Like [`VectorEnvironment::new`], with watches.
-    ///
-    /// # Errors
-    /// [`SetupError`] if the setup cannot be played.
-    pub fn watched(
+    pub fn new(
         setup: Setup,
         games: usize,
         threads: usize,
         seed: u64,
         watches: Option<Watches>,
     ) -> Result<VectorEnvironment, SetupError> {
-        let mut games = Games::watched(setup, games, threads, seed, watches)?;
+        let mut games = Games::new(setup, games, threads, seed, watches)?;
         let (rows, numbers) = (games.rows().0, games.rows().0 * games.setup().observation_size());
         let mut shown = Shown {
             observations: vec![0.0; numbers],
@@ -67,28 +65,6 @@ impl VectorEnvironment {
         let mut environment = VectorEnvironment { games, shown };
         environment.note_states();
         Ok(environment)
-    }
-
-    /// The setup.
-    #[must_use]
-    pub fn setup(&self) -> &Setup {
-        self.games.setup()
-    }
-
-    /// Adds an opponent with a draw weight of 0.
-    pub fn add_opponent(&mut self, player: Player) {
-        self.games.add_opponent(player);
-    }
-
-    /// Sets the opponents' draw weights from each slot's next game on. Missing weights are 0.
-    pub fn set_weights(&mut self, weights: impl IntoIterator<Item = f64>) {
-        self.games.set_weights(weights);
-    }
-
-    /// The total number of rows, and the number per game.
-    #[must_use]
-    pub fn rows(&self) -> (usize, usize) {
-        self.games.rows()
     }
 
     /// The observations, rows × values.
@@ -116,12 +92,6 @@ impl VectorEnvironment {
         if self.setup().truth_size() == 0 { &self.shown.final_observations } else { &self.shown.final_states }
     }
 
-    /// The teacher's actions in a game's last step, by row; see [`Games::taught`].
-    #[must_use]
-    pub fn taught(&self, game: usize) -> &[Option<Action>] {
-        self.games.taught(game)
-    }
-
     /// The rewards of the last step, by row.
     #[must_use]
     pub fn rewards(&self) -> &[f32] {
@@ -132,30 +102,6 @@ impl VectorEnvironment {
     #[must_use]
     pub fn counts(&self) -> &[bool] {
         &self.shown.counts
-    }
-
-    /// The episodes that ended in the last step, in the order of their games.
-    #[must_use]
-    pub fn finished(&self) -> &[Finished] {
-        self.games.finished()
-    }
-
-    /// The number of boats of a game that receive actions. They are its first rows.
-    #[must_use]
-    pub fn boats(&self, game: usize) -> usize {
-        self.games.boats(game).len()
-    }
-
-    /// The game that a slot is playing.
-    #[must_use]
-    pub fn contest(&self, game: usize) -> &Contest {
-        self.games.contest(game)
-    }
-
-    /// The sides of a game.
-    #[must_use]
-    pub fn side(&self, game: usize) -> Side {
-        self.games.standing(game).side
     }
 
     /// Plays one step of every game with one action per row.

@@ -5,23 +5,12 @@ use onnx::{Activation, Head, Layer, NetworkError};
 use std::collections::BTreeMap;
 
 impl Perceptron {
-    /// This network as an ONNX file, from `observation` to `output`.
+    /// This network as an ONNX file, from `observation` to `output`, with an activation applied to
+    /// every output on request.
     ///
     /// # Errors
     /// [`NetworkError`] if a weight is not finite.
-    pub fn onnx(&self, output: &str, metadata: BTreeMap<String, String>) -> Result<Vec<u8>, NetworkError> {
-        self.file(output, None, metadata)
-    }
-
-    /// Like [`Perceptron::onnx`], with the hyperbolic tangent applied to every output.
-    ///
-    /// # Errors
-    /// [`NetworkError`] if a weight is not finite.
-    pub fn onnx_bounded(&self, output: &str, metadata: BTreeMap<String, String>) -> Result<Vec<u8>, NetworkError> {
-        self.file(output, Some(Activation::Tanh), metadata)
-    }
-
-    fn file(
+    pub fn onnx(
         &self,
         output: &str,
         end: Option<Activation>,

@@ -77,7 +77,7 @@ impl DqnLearner {
         settings: &Dqn,
     ) -> Slope {
         let sizes = self.network.sizes();
-        let (actions, per_row) = (sizes[sizes.len() - 1], 1.0 / minibatch.len() as f32);
+        let (actions, per_row) = (sizes[sizes.len() - 1], 1.0 / minibatch.count() as f32);
         let (mut trace, mut then) = (Trace::default(), Trace::default());
         self.network.forward(next_rows, &mut trace);
         self.target.forward(next_rows, &mut then);

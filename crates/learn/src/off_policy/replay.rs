@@ -29,32 +29,35 @@ pub struct Replay<A> {
     capacity: usize,
     /// Index of the oldest transition in a full buffer, which is replaced next.
     oldest: usize,
-    observations: Vec<f32>,
-    next_observations: Vec<f32>,
-    actions: Vec<A>,
-    rewards: Vec<f32>,
-    over: Vec<bool>,
-    counts: Vec<bool>,
+    kept: Minibatch<A>,
 }
 
 /// Transitions drawn from a buffer. Each list has one entry per transition.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Minibatch<A> {
     /// The observations before the step, transitions × values.
     pub observations: Vec<f32>,
+    /// The observations after the step, transitions × values.
+    pub next_observations: Vec<f32>,
     /// The chosen actions.
     pub actions: Vec<A>,
     /// The rewards.
     pub rewards: Vec<f32>,
-    /// The observations after the step, transitions × values.
-    pub next_observations: Vec<f32>,
     /// Whether each step ended the game.
     pub over: Vec<bool>,
     /// Whether the boat followed the action.
     pub counts: Vec<bool>,
 }
 
-impl<A: Copy> Replay<A> {
+impl<A> Minibatch<A> {
+    /// The number of transitions.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.rewards.len()
+    }
+}
+
+impl<A: Copy + Default> Replay<A> {
     /// An empty buffer for `capacity` transitions with observations of size `size`.
     ///
     /// # Panics
@@ -64,29 +67,13 @@ impl<A: Copy> Replay<A> {
         // The buffer is part of a training run's saved state, about 100 MB by default. Refilling it by
         // playing would need the games' earlier state.
         assert!(size > 0 && capacity > 0, "{size}, {capacity}");
-        Replay {
-            size,
-            capacity,
-            oldest: 0,
-            observations: vec![],
-            next_observations: vec![],
-            actions: vec![],
-            rewards: vec![],
-            over: vec![],
-            counts: vec![],
-        }
+        Replay { size, capacity, oldest: 0, kept: Minibatch::default() }
     }
 
     /// The number of transitions.
     #[must_use]
-    pub fn len(&self) -> usize {
-        self.rewards.len()
-    }
-
-    /// Whether the buffer is empty.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.rewards.is_empty()
+    pub fn count(&self) -> usize {
+        self.kept.count()
     }
 
     /// Removes all transitions.
@@ -101,22 +88,23 @@ impl<A: Copy> Replay<A> {
     pub fn push(&mut self, transition: Transition<'_, A>) {
         let Transition { observation, action, reward, next_observation, over, counts } = transition;
         assert!(observation.len() == self.size && next_observation.len() == self.size);
-        if self.len() < self.capacity {
-            self.observations.extend_from_slice(observation);
-            self.next_observations.extend_from_slice(next_observation);
-            self.actions.push(action);
-            self.rewards.push(reward);
-            self.over.push(over);
-            self.counts.push(counts);
+        let kept = &mut self.kept;
+        if kept.count() < self.capacity {
+            kept.observations.extend_from_slice(observation);
+            kept.next_observations.extend_from_slice(next_observation);
+            kept.actions.push(action);
+            kept.rewards.push(reward);
+            kept.over.push(over);
+            kept.counts.push(counts);
             return;
         }
         let i = self.oldest;
         self.oldest = (i + 1) % self.capacity;
         let numbers = i * self.size..(i + 1) * self.size;
-        self.observations[numbers.clone()].copy_from_slice(observation);
-        self.next_observations[numbers].copy_from_slice(next_observation);
-        (self.actions[i], self.rewards[i]) = (action, reward);
-        (self.over[i], self.counts[i]) = (over, counts);
+        kept.observations[numbers.clone()].copy_from_slice(observation);
+        kept.next_observations[numbers].copy_from_slice(next_observation);
+        (kept.actions[i], kept.rewards[i]) = (action, reward);
+        (kept.over[i], kept.counts[i]) = (over, counts);
     }
 
     /// Draws transitions uniformly with replacement.
@@ -124,34 +112,21 @@ impl<A: Copy> Replay<A> {
     /// # Panics
     /// If the buffer is empty.
     pub fn draw(&self, count: usize, stream: &mut Stream) -> Minibatch<A> {
-        let drawn: Vec<usize> = (0..count).map(|_| stream.below(self.len() as u64) as usize).collect();
+        let kept = &self.kept;
+        let drawn: Vec<usize> = (0..count).map(|_| stream.below(kept.count() as u64) as usize).collect();
         let rows = |from: &[f32]| -> Vec<f32> {
             let mut rows = Vec::with_capacity(count * self.size);
             drawn.iter().for_each(|i| rows.extend_from_slice(&from[i * self.size..(i + 1) * self.size]));
             rows
         };
         Minibatch {
-            observations: rows(&self.observations),
-            actions: drawn.iter().map(|i| self.actions[*i]).collect(),
-            rewards: drawn.iter().map(|i| self.rewards[*i]).collect(),
-            next_observations: rows(&self.next_observations),
-            over: drawn.iter().map(|i| self.over[*i]).collect(),
-            counts: drawn.iter().map(|i| self.counts[*i]).collect(),
+            observations: rows(&kept.observations),
+            next_observations: rows(&kept.next_observations),
+            actions: drawn.iter().map(|i| kept.actions[*i]).collect(),
+            rewards: drawn.iter().map(|i| kept.rewards[*i]).collect(),
+            over: drawn.iter().map(|i| kept.over[*i]).collect(),
+            counts: drawn.iter().map(|i| kept.counts[*i]).collect(),
         }
-    }
-}
-
-impl<A> Minibatch<A> {
-    /// The number of transitions.
-    #[must_use]
-    pub fn len(&self) -> usize {
-        self.rewards.len()
-    }
-
-    /// Whether there are no transitions.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.rewards.is_empty()
     }
 }
 
@@ -180,7 +155,7 @@ mod tests {
     fn the_newest_transitions_are_drawn_all_alike_and_whole() {
         const DRAWN: usize = 40_000;
         let replay = filled(8, 21);
-        assert_eq!(replay.len(), 8);
+        assert_eq!(replay.count(), 8);
         let minibatch = replay.draw(DRAWN, &mut Stream::new(1, "test/replay"));
         let mut times = [0_u32; 21];
         for i in 0..DRAWN {
@@ -201,6 +176,6 @@ mod tests {
     fn a_buffer_that_was_emptied_is_as_new() {
         let mut replay = filled(8, 21);
         replay.clear();
-        assert!(replay.is_empty() && replay == Replay::new(2, 8));
+        assert!(replay.count() == 0 && replay == Replay::new(2, 8));
     }
 }

@@ -72,7 +72,7 @@ impl Td3Learner {
     pub fn update(&mut self, replay: &Replay<Numbers>, settings: &Td3, stream: &mut Stream) -> Td3Losses {
         let minibatch = replay.draw(settings.minibatch, stream);
         let noise: Vec<Numbers> =
-            (0..minibatch.len()).map(|_| [0; NUMBERS].map(|_| smoothing(settings, stream.normal()))).collect();
+            (0..minibatch.count()).map(|_| [0; NUMBERS].map(|_| smoothing(settings, stream.normal()))).collect();
         self.step(&minibatch, &noise, settings)
     }
 
@@ -82,7 +82,7 @@ impl Td3Learner {
     /// # Panics
     /// If the numbers of noise values and transitions differ.
     pub fn step(&mut self, minibatch: &Minibatch<Numbers>, noise: &[Numbers], settings: &Td3) -> Td3Losses {
-        assert_eq!(minibatch.len(), noise.len());
+        assert_eq!(minibatch.count(), noise.len());
         let targets = self.targets(minibatch, noise, settings);
         let mut critic = 0.0;
         for i in 0..2 {
@@ -140,7 +140,7 @@ impl Td3Learner {
     /// parameters.
     fn critic_slope(&self, which: usize, minibatch: &Minibatch<Numbers>, targets: &[f32]) -> Slope {
         let (critic, size) = (&self.critics[which], self.actor.sizes()[0]);
-        let per_row = 1.0 / minibatch.len() as f32;
+        let per_row = 1.0 / minibatch.count() as f32;
         let of_shard = |((rows, actions), targets): ((&[f32], &[Numbers]), &[f32])| {
             let mut trace = Trace::default();
             critic.forward(&with_actions(rows, actions, size), &mut trace);
@@ -172,8 +172,7 @@ impl Td3Learner {
         let of_shard = |rows: &[f32]| {
             let (mut chosen, mut valued) = (Trace::default(), Trace::default());
             self.actor.forward(rows, &mut chosen);
-            let actions: Vec<Numbers> =
-                chosen.output().chunks_exact(NUMBERS).map(|output| std::array::from_fn(|i| tanh(output[i]))).collect();
+            let actions: Vec<Numbers> = chosen.output().chunks_exact(NUMBERS).map(action).collect();
             critic.forward(&with_actions(rows, &actions, size), &mut valued);
             let loss = valued.output().iter().map(|value| -value * per_row).sum();
             let mut by_values = vec![-per_row; actions.len()];

@@ -1,43 +1,45 @@
 //! Generalised advantage estimation (Schulman and others, ICLR 2016): how much better than expected
 //! each step turned out.
 
-/// Rows of steps; each slice is steps × rows.
-#[derive(Clone, Copy, Debug)]
-pub struct Steps<'a> {
+/// Rows of steps; each list is steps × rows.
+#[derive(Clone, Debug, Default)]
+pub struct Steps {
     /// The number of rows.
     pub rows: usize,
     /// The reward of each step.
-    pub rewards: &'a [f32],
+    pub rewards: Vec<f32>,
     /// The expected value before each step.
-    pub values: &'a [f32],
+    pub values: Vec<f32>,
     /// The expected value after each step, still in the same episode.
-    pub next_values: &'a [f32],
+    pub next_values: Vec<f32>,
     /// Whether the step ended the game, so that the expected value is 0.
-    pub over: &'a [bool],
+    pub over: Vec<bool>,
     /// Whether the step ended the episode, so that the next step belongs to another one.
-    pub ended: &'a [bool],
+    pub ended: Vec<bool>,
 }
 
-/// The advantage of every step, steps × rows. Added to `values`, they give the returns to learn.
-#[must_use]
-pub fn advantages(steps: Steps<'_>, discount: f32, lambda: f32) -> Vec<f32> {
-    let Steps { rows, rewards, values, next_values, over, ended } = steps;
-    let mut advantages = vec![0.0; rewards.len()];
-    for row in 0..rows {
-        let mut later = 0.0;
-        for i in (row..rewards.len()).step_by(rows).rev() {
-            let next = if over[i] { 0.0 } else { next_values[i] };
-            let surprise = rewards[i] + discount * next - values[i];
-            later = surprise + if ended[i] { 0.0 } else { discount * lambda * later };
-            advantages[i] = later;
+impl Steps {
+    /// The advantage of every step, steps × rows. Added to `values`, they give the returns to learn.
+    #[must_use]
+    pub fn advantages(&self, discount: f32, lambda: f32) -> Vec<f32> {
+        let Steps { rows, rewards, values, next_values, over, ended } = self;
+        let mut advantages = vec![0.0; rewards.len()];
+        for row in 0..*rows {
+            let mut later = 0.0;
+            for i in (row..rewards.len()).step_by(*rows).rev() {
+                let next = if over[i] { 0.0 } else { next_values[i] };
+                let surprise = rewards[i] + discount * next - values[i];
+                later = surprise + if ended[i] { 0.0 } else { discount * lambda * later };
+                advantages[i] = later;
+            }
         }
+        advantages
     }
-    advantages
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Steps, advantages};
+    use super::Steps;
 
     #[test]
     fn they_are_the_weighted_sums_of_all_later_surprises() {
@@ -45,22 +47,23 @@ mod tests {
         // off after the fourth.
         let (rows, count) = (2, 6);
         let number = |i: usize| (0.37 * i as f32).fract() - 0.4;
-        let rewards: Vec<f32> = (0..rows * count).map(number).collect();
-        let values: Vec<f32> = (0..rows * count).map(|i| number(i + 50)).collect();
-        let next_values: Vec<f32> = (0..rows * count).map(|i| number(i + 90)).collect();
-        let over: Vec<bool> = (0..rows * count).map(|i| i == 4).collect();
-        let ended: Vec<bool> = (0..rows * count).map(|i| i == 4 || i == 7).collect();
+        let steps = Steps {
+            rows,
+            rewards: (0..rows * count).map(number).collect(),
+            values: (0..rows * count).map(|i| number(i + 50)).collect(),
+            next_values: (0..rows * count).map(|i| number(i + 90)).collect(),
+            over: (0..rows * count).map(|i| i == 4).collect(),
+            ended: (0..rows * count).map(|i| i == 4 || i == 7).collect(),
+        };
         let (discount, lambda) = (0.9_f32, 0.8_f32);
-        let steps =
-            Steps { rows, rewards: &rewards, values: &values, next_values: &next_values, over: &over, ended: &ended };
-        let got = advantages(steps, discount, lambda);
+        let got = steps.advantages(discount, lambda);
         for (first, got) in got.into_iter().enumerate() {
             let (mut want, mut weight) = (0.0_f64, 1.0_f64);
             for i in (first..rows * count).step_by(rows) {
-                let next = if over[i] { 0.0 } else { next_values[i] };
-                want += weight * f64::from(rewards[i] + discount * next - values[i]);
+                let next = if steps.over[i] { 0.0 } else { steps.next_values[i] };
+                want += weight * f64::from(steps.rewards[i] + discount * next - steps.values[i]);
                 weight *= f64::from(discount * lambda);
-                if ended[i] {
+                if steps.ended[i] {
                     break;
                 }
             }

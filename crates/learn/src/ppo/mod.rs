@@ -3,8 +3,9 @@
 mod advantage;
 pub mod choice;
 
-pub use advantage::{Steps, advantages};
+pub use advantage::Steps;
 
+use crate::Learnt;
 use crate::nn::{Adam, AdamSettings, Perceptron, SHARD, Trace};
 use crate::training::Ppo;
 use choice::log_probabilities;
@@ -55,26 +56,26 @@ impl Scale {
     }
 }
 
-/// Samples; each slice has one entry per sample.
-#[derive(Clone, Copy, Debug)]
-pub struct Batch<'a> {
+/// Samples; each list has one entry per sample.
+#[derive(Clone, Debug)]
+pub struct Batch {
     /// The policy's observations, samples × values.
-    pub observations: &'a [f32],
+    pub observations: Vec<f32>,
     /// The critic's inputs, samples × values.
-    pub states: &'a [f32],
+    pub states: Vec<f32>,
     /// The chosen actions.
-    pub actions: &'a [u16],
+    pub actions: Vec<u16>,
     /// The log probabilities of the actions when they were chosen.
-    pub log_probabilities: &'a [f32],
+    pub log_probabilities: Vec<f32>,
     /// The advantages.
-    pub advantages: &'a [f32],
+    pub advantages: Vec<f32>,
     /// The returns to learn.
-    pub returns: &'a [f32],
+    pub returns: Vec<f32>,
     /// The learning objective.
     pub lesson: Lesson,
     /// Whether the boat followed the action. From other samples only the critic learns: it must
     /// know the value of being tagged.
-    pub counts: &'a [bool],
+    pub counts: Vec<bool>,
 }
 
 /// A policy's learning objective.
@@ -85,23 +86,6 @@ pub enum Lesson {
     /// Repeat the sampled actions regardless of their results: behaviour cloning with a
     /// cross-entropy loss.
     Imitation,
-}
-
-/// Statistics of an update, averaged over its samples.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Statistics {
-    /// The loss of the policy.
-    pub policy_loss: f32,
-    /// Half the mean squared error of the critic, in units of the scale.
-    pub value_loss: f32,
-    /// Entropy of the policy, nats.
-    pub entropy: f32,
-    /// KL divergence of the new policy from the old one, nats.
-    pub divergence: f32,
-    /// Share of clipped samples.
-    pub clipped: f32,
-    /// Number of epochs.
-    pub epochs: f32,
 }
 
 impl ActorCritic {
@@ -123,14 +107,14 @@ impl ActorCritic {
     /// Learns from samples, in the calling thread pool; `stream` shuffles them.
     ///
     /// # Panics
-    /// If the length of a slice does not match.
-    pub fn update(&mut self, batch: &Batch<'_>, settings: &Ppo, rate: f32, stream: &mut Stream) -> Statistics {
+    /// If the length of a list does not match.
+    pub fn update(&mut self, batch: &Batch, settings: &Ppo, rate: f32, stream: &mut Stream) -> Learnt {
         let count = batch.actions.len();
         let (observation, state) = (self.actor.sizes()[0], self.critic.sizes()[0]);
         assert!(batch.observations.len() == count * observation && batch.states.len() == count * state);
-        assert!([batch.log_probabilities, batch.advantages, batch.returns].iter().all(|slice| slice.len() == count));
+        assert!([&batch.log_probabilities, &batch.advantages, &batch.returns].iter().all(|list| list.len() == count));
         assert_eq!(batch.counts.len(), count);
-        self.scale.see(batch.returns);
+        self.scale.see(&batch.returns);
         let mut order: Vec<u32> = (0..count as u32).collect();
         let (mut sums, mut seen, mut values) = (Sums::default(), 0.0, 0.0);
         'epochs: for _ in 0..settings.epochs {
@@ -147,19 +131,19 @@ impl ActorCritic {
                 }
             }
         }
-        let mean = |sum: f32| sum / f32::max(seen, 1.0);
-        Statistics {
+        let mean = |sum: f32| Some(sum / f32::max(seen, 1.0));
+        Learnt {
             policy_loss: mean(sums.policy),
-            value_loss: sums.value / f32::max(values, 1.0),
+            value_loss: Some(sums.value / f32::max(values, 1.0)),
             entropy: mean(sums.entropy),
             divergence: mean(sums.divergence),
             clipped: mean(sums.clipped),
-            epochs: values / (count.max(1) as f32),
+            epochs: Some(values / (count.max(1) as f32)),
         }
     }
 
     /// One step of both optimisers.
-    fn step(&mut self, batch: &Batch<'_>, minibatch: &[u32], settings: &Ppo, learning_rate: f32) -> Sums {
+    fn step(&mut self, batch: &Batch, minibatch: &[u32], settings: &Ppo, learning_rate: f32) -> Sums {
         let counted = || minibatch.iter().map(|i| *i as usize).filter(|i| batch.counts[*i]);
         let samples = (counted().count(), minibatch.len());
         let advantages = Normal::of(counted().map(|i| batch.advantages[i]));
@@ -181,7 +165,7 @@ impl ActorCritic {
     /// A shard's contribution to the gradients of the mean loss.
     fn shard(
         &self,
-        batch: &Batch<'_>,
+        batch: &Batch,
         shard: &[u32],
         (counted, samples): (usize, usize),
         advantages: Normal,
@@ -193,7 +177,7 @@ impl ActorCritic {
         let (per_counted, per_sample) = (1.0 / counted.max(1) as f32, 1.0 / samples as f32);
         let mut sums = Sums::default();
         let mut trace = Trace::default();
-        self.actor.forward(&rows(batch.observations, self.actor.sizes()[0]), &mut trace);
+        self.actor.forward(&rows(&batch.observations, self.actor.sizes()[0]), &mut trace);
         let actions = trace.output().len() / shard.len();
         let mut by_logits = vec![0.0; trace.output().len()];
         let mut logs = vec![0.0; actions];
@@ -220,7 +204,7 @@ impl ActorCritic {
         }
         let mut actor = vec![0.0; self.actor.parameters().len()];
         self.actor.backward(&trace, &mut by_logits, &mut actor, None);
-        self.critic.forward(&rows(batch.states, self.critic.sizes()[0]), &mut trace);
+        self.critic.forward(&rows(&batch.states, self.critic.sizes()[0]), &mut trace);
         let deviation = self.scale.deviation();
         // In standard deviations of returns, so that Adam learns rewards of any scale at its pace.
         let off = |(i, value): (&u32, &f32)| value - batch.returns[*i as usize] / deviation;
@@ -322,6 +306,7 @@ fn imitation_gradient(logs: &[f32], action: usize, by: &mut [f32], sums: &mut Su
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::path::Path;
 
     /// The loss of a sample, in double precision.
     fn loss(logits: &[f64], action: usize, was: f64, advantage: f64, settings: &Ppo) -> f64 {
@@ -333,11 +318,26 @@ mod tests {
         -gain - f64::from(settings.entropy) * entropy
     }
 
-    #[test]
-    fn the_policy_gradient_is_the_slope_of_the_clipped_loss() {
+    /// Compares a gradient with finite differences of its loss.
+    fn assert_slopes<const N: usize>(by: [f32; N], logits: [f64; N], loss: impl Fn(&[f64; N]) -> f64) {
         const STEP: f64 = 1e-5;
         const TOLERANCE: f64 = 1e-5;
-        let settings = Ppo { entropy: 0.05, ..Ppo::default() };
+        for i in 0..N {
+            let at = |step: f64| {
+                let mut logits = logits;
+                logits[i] += step;
+                loss(&logits)
+            };
+            let want = (at(STEP) - at(-STEP)) / (2.0 * STEP);
+            assert!((f64::from(by[i]) - want).abs() < TOLERANCE, "{i}: got {}, want {want}", by[i]);
+        }
+    }
+
+    #[test]
+    fn the_policy_gradient_is_the_slope_of_the_clipped_loss() {
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/training/first.toml");
+        let training = scenario::load_file::<crate::training::Training>(&file).expect("a training file");
+        let settings = Ppo { entropy: 0.05, ..training.ppo };
         let logits = [0.3_f64, -1.1, 0.8, 0.1, -0.4];
         let mut logs = [0.0; 5];
         log_probabilities(&logits.map(|logit| logit as f32), &mut logs);
@@ -348,42 +348,20 @@ mod tests {
             let was = logs[action] - change;
             let (mut by, mut sums) = ([0.0; 5], Sums::default());
             policy_gradient(&logs, action, (was, advantage), &settings, &mut by, &mut sums);
-            for i in 0..logits.len() {
-                let at = |step: f64| {
-                    let mut logits = logits;
-                    logits[i] += step;
-                    loss(&logits, action, f64::from(was), f64::from(advantage), &settings)
-                };
-                let want = (at(STEP) - at(-STEP)) / (2.0 * STEP);
-                assert!(
-                    (f64::from(by[i]) - want).abs() < TOLERANCE,
-                    "{change} {advantage} {i}: got {}, want {want}",
-                    by[i]
-                );
-            }
+            assert_slopes(by, logits, |logits| loss(logits, action, f64::from(was), f64::from(advantage), &settings));
         }
     }
 
     #[test]
     fn the_imitation_gradient_is_the_slope_of_the_cross_entropy() {
-        const STEP: f64 = 1e-5;
-        const TOLERANCE: f64 = 1e-5;
         let logits = [0.3_f64, -1.1, 0.8, 0.1];
         let mut logs = [0.0; 4];
         log_probabilities(&logits.map(|logit| logit as f32), &mut logs);
         let (mut by, mut sums) = ([0.0; 4], Sums::default());
         imitation_gradient(&logs, 1, &mut by, &mut sums);
-        let entropy = |logits: [f64; 4]| libm::log(logits.iter().map(|logit| libm::exp(*logit)).sum()) - logits[1];
-        assert!((f64::from(sums.policy) - entropy(logits)).abs() < TOLERANCE, "{}", sums.policy);
-        for i in 0..4 {
-            let at = |step: f64| {
-                let mut logits = logits;
-                logits[i] += step;
-                entropy(logits)
-            };
-            let want = (at(STEP) - at(-STEP)) / (2.0 * STEP);
-            assert!((f64::from(by[i]) - want).abs() < TOLERANCE, "{i}: got {}, want {want}", by[i]);
-        }
+        let entropy = |logits: &[f64; 4]| libm::log(logits.iter().map(|logit| libm::exp(*logit)).sum()) - logits[1];
+        assert!((f64::from(sums.policy) - entropy(&logits)).abs() < 1e-5, "{}", sums.policy);
+        assert_slopes(by, logits, entropy);
     }
 
     #[test]

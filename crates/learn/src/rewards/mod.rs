@@ -4,7 +4,7 @@
 
 mod progress;
 
-pub use progress::{Among, BoatProgress, Placed, progress};
+pub use progress::{Among, BoatProgress, progress};
 
 use primitives::id::{TeamId, VehicleId};
 use rules::event::{Event, Logged, TagCause};

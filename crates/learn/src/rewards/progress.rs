@@ -3,23 +3,20 @@
 use primitives::frame::Ned;
 use primitives::id::TeamId;
 use rules::field::Field;
+use sim::Contest;
 
 /// Distance up to which a guarding place has value, as a share of the field's width.
 const REACH: f64 = 0.25;
 /// A guard's distance from the flag or mate, towards the enemy, as a share of the field's width.
 const STAND_OFF: f64 = 0.125;
 
-/// A boat on the field.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Placed {
-    /// Its position.
-    pub at: Ned,
-    /// Its team, one of two.
-    pub team: TeamId,
-    /// Whether it is tagged.
-    pub tagged: bool,
-    /// Whether it carries a flag.
-    pub carrying: bool,
+/// A boat on the field, of one of two teams.
+#[derive(Clone, Copy)]
+struct Placed {
+    at: Ned,
+    team: TeamId,
+    tagged: bool,
+    carrying: bool,
 }
 
 /// A boat's progress and its position among the others.
@@ -52,23 +49,29 @@ pub struct Among {
     pub clear: f64,
 }
 
-/// Computes each boat's progress, with `among_others` including its position among the others.
-///
-/// # Panics
-/// If a boat's team is not one of the field's two.
-pub fn progress(field: &Field, boats: &[Placed], among_others: bool, out: &mut [BoatProgress]) {
-    let width_m = field.plan.width_m;
-    for (boat, out) in boats.iter().zip(out.iter_mut()) {
-        let away = |team: TeamId| boat.at.distance(flag_near(field, team, boat.at)) / width_m;
+/// Each boat's progress by its own sensors, with `among_others` including its position among the
+/// others.
+#[must_use]
+pub fn progress(contest: &Contest, among_others: bool) -> Vec<BoatProgress> {
+    let scenario = contest.scenario();
+    let placed = |team: TeamId| Placed { at: Ned::default(), team, tagged: false, carrying: false };
+    let mut boats: Vec<Placed> = scenario.vehicles.iter().map(|vehicle| placed(vehicle.team)).collect();
+    for boat in contest.last_pictures().iter().flat_map(|picture| &picture.own) {
+        let (at, tagged, carrying) = (boat.nav.at(), boat.tagged, boat.carried_flag().is_some());
+        boats[boat.vehicle.index()] = Placed { at, tagged, carrying, team: scenario.team_of(boat.vehicle) };
+    }
+    of_boats(&scenario.field, &boats, among_others)
+}
+
+fn of_boats(field: &Field, boats: &[Placed], among_others: bool) -> Vec<BoatProgress> {
+    let posts = among_others.then(|| Posts::of(field, boats));
+    let progress = |(i, boat): (usize, &Placed)| {
+        let away = |team: TeamId| boat.at.distance(flag_near(field, team, boat.at)) / field.plan.width_m;
         let Placed { tagged, carrying, team, .. } = *boat;
-        let (from_flag, from_home) = (away(TeamId(1 - team.0)), away(team));
-        *out = BoatProgress { tagged, carrying, from_flag, from_home, among: Among::default() };
-    }
-    if !among_others {
-        return;
-    }
-    let posts = Posts::of(field, boats);
-    out.iter_mut().enumerate().for_each(|(i, out)| out.among = posts.among(field, boats, i));
+        let among = posts.as_ref().map_or_else(Among::default, |posts| posts.among(field, boats, i));
+        BoatProgress { tagged, carrying, from_flag: away(TeamId(1 - team.0)), from_home: away(team), among }
+    };
+    boats.iter().enumerate().map(progress).collect()
 }
 
 /// The places from which flags and mates are protected.
@@ -133,7 +136,7 @@ fn between(from: Ned, to: Ned, off_m: f64) -> Ned {
 
 #[cfg(test)]
 mod tests {
-    use super::{Among, BoatProgress, Placed, progress};
+    use super::{Among, BoatProgress, Placed, of_boats};
     use primitives::frame::LatLon;
     use primitives::id::TeamId;
     use rules::field::{Field, Flag, Plan, Walls};
@@ -155,7 +158,7 @@ mod tests {
     }
 
     /// Boats at (m along, m across), each tagged or not; the first two belong to the first team.
-    fn seen(boats: [(f64, f64, bool); 4]) -> [BoatProgress; 4] {
+    fn seen(boats: [(f64, f64, bool); 4]) -> Vec<BoatProgress> {
         let field = field();
         let boats: Vec<Placed> = boats
             .iter()
@@ -165,9 +168,7 @@ mod tests {
                 Placed { at: field.at(*along_m, *across_m), team, tagged: *tagged, carrying: false }
             })
             .collect();
-        let mut out = [BoatProgress::default(); 4];
-        progress(&field, &boats, true, &mut out);
-        out
+        of_boats(&field, &boats, true)
     }
 
     fn close(got: f64, want: f64) {
@@ -214,16 +215,15 @@ mod tests {
 
     #[test]
     fn a_mate_abroad_is_shielded_from_the_enemy_nearest_to_it() {
-        let shield = |mate: (f64, f64, bool)| {
-            seen([(110.0, 40.0, false), mate, (150.0, 40.0, false), (20.0, 40.0, false)]).map(|boat| boat.among)
-        };
+        let shield =
+            |mate: (f64, f64, bool)| seen([(110.0, 40.0, false), mate, (150.0, 40.0, false), (20.0, 40.0, false)]);
         // From (100, 40) 20 m towards (150, 40) is (120, 40), 10 m from the boat at (110, 40).
-        close(shield((100.0, 40.0, false))[0].at_shield, 0.75);
+        close(shield((100.0, 40.0, false))[0].among.at_shield, 0.75);
         // A boat does not shield itself. The other mate's only target is the boat at (110, 40), so
         // its place is (130, 40).
-        close(shield((100.0, 40.0, false))[1].at_shield, 0.25);
+        close(shield((100.0, 40.0, false))[1].among.at_shield, 0.25);
         for at_home_or_tagged in [(70.0, 40.0, false), (100.0, 40.0, true)] {
-            close(shield(at_home_or_tagged)[0].at_shield, 0.0);
+            close(shield(at_home_or_tagged)[0].among.at_shield, 0.0);
         }
     }
 
@@ -254,8 +254,7 @@ mod tests {
         // The enemy at (70, 10) is 50 m from the flag at (20, 10), which is guarded from (40, 10),
         // and 58 m from the flag at (20, 40).
         let boats = [boat(60.0, 10.0, 0), boat(40.0, 10.0, 0), boat(70.0, 10.0, 1)];
-        let mut out = [BoatProgress::default(); 3];
-        progress(&field, &boats, true, &mut out);
+        let out = of_boats(&field, &boats, true);
         close(out[0].from_home, 0.25);
         close(out[0].from_flag, 0.5);
         close(out[1].among.on_guard, 1.0);
@@ -265,9 +264,7 @@ mod tests {
     fn what_is_not_asked_for_is_0() {
         let field = field();
         let boat = Placed { at: field.at(20.0, 40.0), team: TeamId(0), tagged: false, carrying: true };
-        let mut out = [BoatProgress::default()];
-        progress(&field, &[boat], false, &mut out);
-        assert_eq!(out[0].among, Among::default());
-        assert!(out[0].carrying && out[0].from_home < 1e-12);
+        let seen = of_boats(&field, &[boat], false)[0];
+        assert!(seen.among == Among::default() && seen.carrying && seen.from_home < 1e-12, "{seen:?}");
     }
 }

@@ -53,7 +53,7 @@ pub fn evaluate(
     seed: u64,
 ) -> Result<Played, SetupError> {
     let (pool, is_discrete) = (pool(threads), setup.spaces.action.is_discrete());
-    let mut environment = VectorEnvironment::new(setup, games, threads, seed)?;
+    let mut environment = VectorEnvironment::new(setup, games, threads, seed, None)?;
     let (rows, _) = environment.rows();
     let mut ended: Vec<Option<Finished>> = vec![None; games];
     while ended.iter().any(Option::is_none) {

@@ -4,6 +4,7 @@ use crate::environment::Finished;
 use crate::training::{self, Stage};
 use scenario::policy::{PartialSpec, PolicyModel};
 use serde::{Deserialize, Serialize};
+use std::cmp::Ordering;
 
 /// Draw weight of an opponent that never wins, as a fraction of an equal share.
 const LEAST: f64 = 0.1;
@@ -76,12 +77,10 @@ impl League {
         for one in finished {
             let Some(record) = self.records.get_mut(one.standing.side.opponent) else { continue };
             let [own, theirs] = one.standing.score;
-            let lost = if own > theirs {
-                0.0
-            } else if own == theirs {
-                0.5
-            } else {
-                1.0
+            let lost = match own.cmp(&theirs) {
+                Ordering::Greater => 0.0,
+                Ordering::Equal => 0.5,
+                Ordering::Less => 1.0,
             };
             record.games = record.games * MEMORY + 1.0;
             record.lost = record.lost * MEMORY + lost;

@@ -9,7 +9,7 @@ use crate::off_policy::td3::{Numbers, Td3Learner, action};
 use crate::ppo::ActorCritic;
 use crate::training::{Algorithm, Dqn, Td3, Training};
 use agent::Action;
-use onnx::NetworkError;
+use onnx::{Activation, NetworkError};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -34,19 +34,13 @@ impl Learner {
             }
             Algorithm::Td3(settings) => {
                 let learner = Td3Learner::new(observation, hidden, seed);
-                Learner::Td3(Box::new(OffPolicy {
-                    learner,
-                    replay: Replay::new(observation, settings.buffer),
-                    settings,
-                }))
+                let replay = Replay::new(observation, settings.buffer);
+                Learner::Td3(Box::new(OffPolicy { learner, settings, replay }))
             }
             Algorithm::Dqn(settings) => {
                 let learner = DqnLearner::new(observation, hidden, actions, seed);
-                Learner::Dqn(Box::new(OffPolicy {
-                    learner,
-                    replay: Replay::new(observation, settings.buffer),
-                    settings,
-                }))
+                let replay = Replay::new(observation, settings.buffer);
+                Learner::Dqn(Box::new(OffPolicy { learner, settings, replay }))
             }
         }
     }
@@ -63,9 +57,9 @@ impl Learner {
 
     pub(super) fn onnx(&self, metadata: BTreeMap<String, String>) -> Result<Vec<u8>, NetworkError> {
         match self {
-            Learner::Ppo(learner) => learner.actor.onnx("logits", metadata),
-            Learner::Td3(of) => of.learner.actor.onnx_bounded("action", metadata),
-            Learner::Dqn(of) => of.learner.network.onnx("values", metadata),
+            Learner::Ppo(learner) => learner.actor.onnx("logits", None, metadata),
+            Learner::Td3(of) => of.learner.actor.onnx("action", Some(Activation::Tanh), metadata),
+            Learner::Dqn(of) => of.learner.network.onnx("values", None, metadata),
         }
     }
 

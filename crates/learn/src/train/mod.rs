@@ -3,28 +3,27 @@
 mod evaluation;
 mod league;
 mod learner;
-mod learnt;
 mod off_policy;
 mod rollout;
 mod state;
 
 pub use evaluation::{Played, evaluate};
 pub use learner::Learner;
-pub use learnt::Learnt;
 pub use off_policy::OffPolicy;
 pub use state::{Best, Evaluated, StateError};
 
-use crate::environment::{Finished, Player, Setup, SetupError, VectorEnvironment, Watches};
+use crate::Learnt;
+use crate::environment::{Finished, Player, Setup, SetupError, VectorEnvironment, Watches, wrong};
 use crate::nn::{Perceptron, SHARD, Trace};
-use crate::ppo::{ActorCritic, Batch, Lesson};
-use scenario::policy::{PolicySpec, options_metadata};
-
+use crate::ppo::{ActorCritic, Lesson};
 use crate::training::{CriticInput, Ppo, Stage, Training};
 use primitives::stream::Stream;
 use rayon::prelude::*;
 use rollout::Rollout;
+use scenario::policy::{PolicySpec, options_metadata};
 use state::State;
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Metadata keys for a model's origin.
@@ -103,29 +102,22 @@ impl Trainer {
     }
 
     fn with(training: Training, threads: usize, state: Option<State>) -> Result<Trainer, SetupError> {
-        let setups: Result<Vec<Setup>, SetupError> =
-            training.stage.iter().map(|stage| Setup::of_stage(&training, stage)).collect();
-        let setups = setups?;
-        let judges = judges(&training, setups.last())?;
-        let size = setups.first().map_or(0, Setup::observation_size);
+        let setups: Vec<Setup> =
+            training.stage.iter().map(|stage| Setup::of_stage(&training, stage)).collect::<Result<_, _>>()?;
+        let (first, last) = (&setups[0], &setups[setups.len() - 1]);
+        let judges = judges(&training, last)?;
+        let size = first.observation_size();
         if let Some(other) = setups.iter().map(Setup::observation_size).find(|other| *other != size) {
-            let (found, allowed) = (other.to_string(), format!("{size}, as in the first stage"));
-            return Err(SetupError::Field { field: "the observation size of a stage", found, allowed });
+            return Err(wrong("the observation size of a stage", other, &format!("{size}, as in the first stage")));
         }
-        let (actions, algorithm) = (setups.last().and_then(Setup::actions), training.algorithm());
-        if actions.is_some() != algorithm.is_discrete() {
-            let kinds = if algorithm.is_discrete() { ["continuous", "discrete"] } else { ["discrete", "continuous"] };
-            let (found, allowed) = (kinds[0].to_owned(), format!("{} with {}", kinds[1], algorithm.name()));
-            return Err(SetupError::Field { field: "action", found, allowed });
-        }
-        if let Some(other) = setups.iter().find(|other| other.options() != setups[0].options()) {
+        if let Some(other) = setups.iter().find(|other| other.options() != first.options()) {
             let list = |setup: &Setup| setup.options().unwrap_or_default().join(", ");
-            let (found, allowed) = (list(other), format!("those of the first stage: {}", list(&setups[0])));
-            return Err(SetupError::Field { field: "the options of a stage", found, allowed });
+            let allowed = format!("those of the first stage: {}", list(first));
+            return Err(wrong("the options of a stage", list(other), &allowed));
         }
         let state = state.unwrap_or_else(|| {
-            let mut state = State::new(Learner::new(&training, &setups[0], actions.unwrap_or_default()));
-            state.league.begin(setups.first().map_or(0, |setup| setup.opponents.len()));
+            let mut state = State::new(Learner::new(&training, first, last.actions().unwrap_or_default()));
+            state.league.begin(first.opponents.len());
             state
         });
         let updates_per_epoch = setups.iter().map(|setup| updates_per_epoch(&training, setup)).collect();
@@ -167,12 +159,6 @@ impl Trainer {
     #[must_use]
     pub fn samples(&self) -> (u64, u64) {
         (self.state.samples, self.training.stage.iter().map(|stage| stage.samples).sum())
-    }
-
-    /// All evaluations so far.
-    #[must_use]
-    pub fn evaluations(&self) -> &[Evaluated] {
-        &self.state.evaluations
     }
 
     /// The best policy so far.
@@ -229,7 +215,7 @@ impl Trainer {
         let stage = self.state.stage;
         let mut stream = Stream::new(self.training.seed.wrapping_add(self.state.updates), "update");
         let of_stage = &self.training.stage[stage];
-        self.environment.set_weights(self.state.league.weights(of_stage, &self.training.league));
+        self.environment.games.set_weights(self.state.league.weights(of_stage, &self.training.league));
         let (done, all) = self.samples();
         let done = (done, done as f32 / all.max(1) as f32);
         let Trainer { environment, pool, state, training, .. } = self;
@@ -271,7 +257,7 @@ impl Trainer {
         if plays_past && self.state.samples >= self.state.league.newest() + league.every_samples {
             let model = self.model().map_err(diverged)?;
             let kept = self.state.league.keep(self.state.samples, model, league.most);
-            kept.into_iter().for_each(|model| self.environment.add_opponent(Player::Model(model)));
+            kept.into_iter().for_each(|model| self.environment.games.add_opponent(Player::Model(model)));
         }
         let last = self.state.evaluations.last().map_or(0, |last| last.samples);
         let is_last = self.state.samples_of_stage >= self.training.stage[self.state.stage].samples;
@@ -332,23 +318,13 @@ fn update_by_ppo(
     stream: &mut Stream,
 ) -> Result<Update, SetupError> {
     let rollout = Rollout::play(environment, pool, learner, ppo.steps, stream)?;
-    let samples = rollout.samples(ppo);
     let is_taught = environment.setup().teacher.is_some();
-    let batch = Batch {
-        observations: &samples.observations,
-        states: &samples.states,
-        actions: &samples.actions,
-        log_probabilities: &samples.log_probabilities,
-        advantages: &samples.advantages,
-        returns: &samples.returns,
-        lesson: if is_taught { Lesson::Imitation } else { Lesson::Reinforcement },
-        counts: &samples.counts,
-    };
+    let batch = rollout.batch(ppo, if is_taught { Lesson::Imitation } else { Lesson::Reinforcement });
     let rate = 1.0 - (1.0 - ppo.learning_rate_end) * done.min(1.0);
-    let learnt = pool.install(|| learner.update(&batch, ppo, rate, stream)).into();
-    let counted = samples.counts.iter().filter(|counts| **counts).count() as u64;
-    let reward = samples.rewards.iter().sum::<f32>() / samples.actions.len().max(1) as f32;
-    let transitions = samples.actions.len() as u64;
+    let learnt = pool.install(|| learner.update(&batch, ppo, rate, stream));
+    let counted = batch.counts.iter().filter(|counts| **counts).count() as u64;
+    let transitions = batch.actions.len() as u64;
+    let reward = rollout.rewards().sum::<f32>() / transitions.max(1) as f32;
     Ok(Update { counted, transitions, reward, finished: rollout.finished, learnt })
 }
 
@@ -369,7 +345,7 @@ fn environment(
     let seed = (training.seed << (2 * SEEDS_BITS)).wrapping_add(state.epoch << SEEDS_BITS) % EVALUATION_SEED;
     let first = first_number(training, state.epoch);
     let watches = watches.cloned().map(|watches| -> Watches { Arc::new(move |number| watches(first + number)) });
-    VectorEnvironment::watched(setup, training.games as usize, threads, seed, watches)
+    VectorEnvironment::new(setup, training.games as usize, threads, seed, watches)
 }
 
 fn first_number(training: &Training, epoch: u64) -> u64 {
@@ -378,26 +354,14 @@ fn first_number(training: &Training, epoch: u64) -> u64 {
 
 /// The evaluation games: those of the last stage, against each opponent of the evaluation. They
 /// need neither a teacher nor the truth for a critic.
-fn judges(training: &Training, last: Option<&Setup>) -> Result<Vec<(String, Setup)>, SetupError> {
-    let mut judges = vec![];
-    for path in &training.evaluation.opponents {
+fn judges(training: &Training, last: &Setup) -> Result<Vec<(String, Setup)>, SetupError> {
+    let base = Setup { teacher: None, critic: CriticInput::Observation, starts: None, steps_max: None, ..last.clone() };
+    let judge = |path: &PathBuf| {
         let strategy = scenario::load_strategy(path)?;
-        let Some(last) = last else { break };
-        let name = strategy.name.clone();
-        let opponents = vec![(1.0, Player::Strategy(Box::new(strategy)))];
-        judges.push((
-            name,
-            Setup {
-                opponents,
-                teacher: None,
-                critic: CriticInput::Observation,
-                starts: None,
-                steps_max: None,
-                ..last.clone()
-            },
-        ));
-    }
-    Ok(judges)
+        let (name, player) = (strategy.name.clone(), Player::Strategy(Box::new(strategy)));
+        Ok((name, Setup { opponents: vec![(1.0, player)], ..base.clone() }))
+    };
+    training.evaluation.opponents.iter().map(judge).collect()
 }
 
 fn updates_per_epoch(training: &Training, setup: &Setup) -> u64 {

@@ -1,8 +1,8 @@
 //! An update of an off-policy algorithm: exploring games fill the replay buffer, then the
 //! optimisers take steps on samples drawn from it.
 
-use super::learnt::Learnt;
 use super::{Update, outputs};
+use crate::Learnt;
 use crate::environment::{SetupError, VectorEnvironment};
 use crate::off_policy::dqn::{self, DqnLearner};
 use crate::off_policy::td3::{self, NUMBERS, Numbers, Td3Learner};
@@ -54,7 +54,7 @@ impl OffPolicy<Td3Learner, Td3, Numbers> {
             outputs.chunks_exact(NUMBERS).zip(counts).map(explored).collect()
         };
         let mut update = play(environment, settings.steps, replay, choose, Action::Continuous)?;
-        if replay.len() < settings.warm_up {
+        if replay.count() < settings.warm_up {
             return Ok(update);
         }
         let (mut critic, mut actor, mut actor_steps) = (0.0, 0.0, 0.0);
@@ -97,7 +97,7 @@ impl OffPolicy<DqnLearner, Dqn, u16> {
         };
         let discrete = |action: u16| Action::Discrete(usize::from(action));
         let mut update = play(environment, settings.steps, replay, choose, discrete)?;
-        if replay.len() < settings.warm_up {
+        if replay.count() < settings.warm_up {
             return Ok(update);
         }
         let mut loss = 0.0;
@@ -116,7 +116,7 @@ impl OffPolicy<DqnLearner, Dqn, u16> {
 
 /// Plays this many steps of all games and stores those of boats that a policy controls. `choose`
 /// receives the observations, which of them count, and the number of transitions.
-fn play<A: Copy>(
+fn play<A: Copy + Default>(
     environment: &mut VectorEnvironment,
     steps: usize,
     replay: &mut Replay<A>,
@@ -127,8 +127,8 @@ fn play<A: Copy>(
     let mut update = Update { counted: 0, transitions: 0, reward: 0.0, finished: vec![], learnt: Learnt::default() };
     for _ in 0..steps {
         let (before, counts) = (environment.observations().to_vec(), environment.counts().to_vec());
-        let boats: Vec<usize> = (0..rows / per_game).map(|game| environment.boats(game)).collect();
-        let chosen = choose(&before, &counts, replay.len());
+        let boats: Vec<usize> = (0..rows / per_game).map(|game| environment.boats(game).len()).collect();
+        let chosen = choose(&before, &counts, replay.count());
         environment.step(&chosen.iter().copied().map(&action).collect::<Vec<Action>>())?;
         let mut ended: Vec<Option<bool>> = vec![None; boats.len()];
         environment.finished().iter().for_each(|one| ended[one.game] = Some(!one.cut_off));

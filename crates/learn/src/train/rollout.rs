@@ -2,39 +2,23 @@
 
 use super::outputs;
 use crate::environment::{Finished, SetupError, VectorEnvironment};
-use crate::ppo::{ActorCritic, Steps, advantages, choice};
+use crate::ppo::{ActorCritic, Batch, Lesson, Steps, choice};
 use crate::training::Ppo;
 use agent::Action;
 use primitives::stream::Stream;
 
 /// Played steps; each list is steps × rows.
+#[derive(Default)]
 pub(super) struct Rollout {
-    rows: usize,
+    steps: Steps,
     observations: Vec<f32>,
     states: Vec<f32>,
     actions: Vec<u16>,
     log_probabilities: Vec<f32>,
-    values: Vec<f32>,
-    next_values: Vec<f32>,
-    rewards: Vec<f32>,
     counts: Vec<bool>,
     /// Whether a policy controls the row's boat.
     sailed: Vec<bool>,
-    over: Vec<bool>,
-    ended: Vec<bool>,
     pub(super) finished: Vec<Finished>,
-}
-
-/// The steps of boats that a policy controls.
-pub(super) struct Samples {
-    pub(super) observations: Vec<f32>,
-    pub(super) states: Vec<f32>,
-    pub(super) actions: Vec<u16>,
-    pub(super) log_probabilities: Vec<f32>,
-    pub(super) advantages: Vec<f32>,
-    pub(super) returns: Vec<f32>,
-    pub(super) rewards: Vec<f32>,
-    pub(super) counts: Vec<bool>,
 }
 
 impl Rollout {
@@ -47,21 +31,7 @@ impl Rollout {
         stream: &mut Stream,
     ) -> Result<Rollout, SetupError> {
         let (rows, per_game) = environment.rows();
-        let mut rollout = Rollout {
-            rows,
-            observations: vec![],
-            states: vec![],
-            actions: vec![],
-            log_probabilities: vec![],
-            values: vec![],
-            next_values: vec![],
-            rewards: vec![],
-            counts: vec![],
-            sailed: vec![],
-            over: vec![],
-            ended: vec![],
-            finished: vec![],
-        };
+        let mut rollout = Rollout { steps: Steps { rows, ..Steps::default() }, ..Rollout::default() };
         let expected = |states: &[f32]| {
             let deviation = learner.scale.deviation();
             let values = pool.install(|| outputs(&learner.critic, states));
@@ -72,9 +42,9 @@ impl Rollout {
             rollout.observations.extend_from_slice(environment.observations());
             rollout.states.extend_from_slice(environment.states());
             rollout.counts.extend_from_slice(environment.counts());
-            let boats = (0..rows / per_game).map(|game| environment.boats(game));
+            let boats = (0..rows / per_game).map(|game| environment.boats(game).len());
             rollout.sailed.extend(boats.flat_map(|boats| (0..per_game).map(move |row| row < boats)));
-            rollout.values.extend_from_slice(&values);
+            rollout.steps.values.extend_from_slice(&values);
             let actions = if environment.setup().teacher.is_some() {
                 vec![Action::Discrete(0); rows]
             } else {
@@ -84,7 +54,7 @@ impl Rollout {
             if environment.setup().teacher.is_some() {
                 rollout.take_taught(environment);
             }
-            rollout.rewards.extend_from_slice(environment.rewards());
+            rollout.steps.rewards.extend_from_slice(environment.rewards());
             values = expected(environment.states());
             let mut next = values.clone();
             let (mut over, mut ended) = (vec![false; rows], vec![false; rows]);
@@ -96,9 +66,9 @@ impl Rollout {
                 over[of_game.clone()].fill(!one.cut_off);
                 ended[of_game].fill(true);
             }
-            rollout.next_values.extend(next);
-            rollout.over.extend(over);
-            rollout.ended.extend(ended);
+            rollout.steps.next_values.extend(next);
+            rollout.steps.over.extend(over);
+            rollout.steps.ended.extend(ended);
             rollout.finished.extend_from_slice(environment.finished());
         }
         Ok(rollout)
@@ -129,7 +99,7 @@ impl Rollout {
         stream: &mut Stream,
     ) -> Vec<Action> {
         let logits = pool.install(|| outputs(&learner.actor, observations));
-        let count = logits.len() / self.rows;
+        let count = logits.len() / self.steps.rows;
         let mut logs = vec![0.0; count];
         let draw = |logits: &[f32]| {
             choice::log_probabilities(logits, &mut logs);
@@ -141,32 +111,33 @@ impl Rollout {
         logits.chunks_exact(count).map(draw).collect()
     }
 
+    /// The indices of the steps of boats that a policy controls.
+    fn sailed(&self) -> impl Iterator<Item = usize> {
+        (0..self.actions.len()).filter(|i| self.sailed[*i])
+    }
+
+    /// The rewards of boats that a policy controls.
+    pub(super) fn rewards(&self) -> impl Iterator<Item = f32> {
+        self.sailed().map(|i| self.steps.rewards[i])
+    }
+
     /// The steps of boats that a policy controls.
-    pub(super) fn samples(&self, settings: &Ppo) -> Samples {
-        let steps = Steps {
-            rows: self.rows,
-            rewards: &self.rewards,
-            values: &self.values,
-            next_values: &self.next_values,
-            over: &self.over,
-            ended: &self.ended,
-        };
-        let advantages = advantages(steps, settings.discount, settings.lambda);
-        let sailed: Vec<usize> = (0..self.actions.len()).filter(|i| self.sailed[*i]).collect();
-        let of = |numbers: &[f32]| sailed.iter().map(|i| numbers[*i]).collect();
+    pub(super) fn batch(&self, settings: &Ppo, lesson: Lesson) -> Batch {
+        let advantages = self.steps.advantages(settings.discount, settings.lambda);
+        let of = |numbers: &[f32]| self.sailed().map(|i| numbers[i]).collect();
         let rows_of = |numbers: &[f32]| -> Vec<f32> {
             let size = numbers.len() / self.actions.len();
-            sailed.iter().flat_map(|i| &numbers[i * size..(i + 1) * size]).copied().collect()
+            self.sailed().flat_map(|i| &numbers[i * size..(i + 1) * size]).copied().collect()
         };
-        Samples {
+        Batch {
             observations: rows_of(&self.observations),
             states: rows_of(&self.states),
-            actions: sailed.iter().map(|i| self.actions[*i]).collect(),
+            actions: self.sailed().map(|i| self.actions[i]).collect(),
             log_probabilities: of(&self.log_probabilities),
-            returns: sailed.iter().map(|i| advantages[*i] + self.values[*i]).collect(),
+            returns: self.sailed().map(|i| advantages[i] + self.steps.values[i]).collect(),
             advantages: of(&advantages),
-            rewards: of(&self.rewards),
-            counts: sailed.iter().map(|i| self.counts[*i]).collect(),
+            lesson,
+            counts: self.sailed().map(|i| self.counts[i]).collect(),
         }
     }
 }

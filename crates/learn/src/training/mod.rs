@@ -5,12 +5,8 @@
 mod algorithm;
 mod check;
 mod check_algorithm;
-mod dqn;
-mod td3;
 
-pub use algorithm::Algorithm;
-pub use dqn::Dqn;
-pub use td3::Td3;
+pub use algorithm::{Algorithm, Dqn, Ppo, Td3};
 
 use scenario::action::ActionSpace;
 use scenario::keys::{FilePath, Name};
@@ -93,58 +89,6 @@ pub struct Layers {
     /// The critic's inputs.
     #[schemars(extend("default" = "observation"))]
     pub critic: CriticInput,
-}
-
-/// Proximal policy optimisation (Schulman and others, arXiv 1707.06347).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct Ppo {
-    /// Steps of every game per update.
-    #[schemars(range(min = 1, max = 65536), extend("default" = 64))]
-    pub steps: usize,
-    /// Initial step size of the optimiser.
-    #[schemars(range(min = 0, max = 1), extend("default" = 0.0003))]
-    pub learning_rate: f32,
-    /// Share of it left at the end of the last stage; it falls linearly.
-    #[schemars(range(min = 0, max = 1), extend("default" = 0.1))]
-    pub learning_rate_end: f32,
-    /// Limit of the relative change of an action's probability.
-    #[schemars(range(min = 0.001, max = 1), extend("default" = 0.2))]
-    pub clip: f32,
-    /// Passes over the samples.
-    #[schemars(range(min = 1, max = 100), extend("default" = 4))]
-    pub epochs: u32,
-    /// Samples per optimiser step.
-    #[schemars(range(min = 1, max = 1_000_000), extend("default" = 2048))]
-    pub minibatch: usize,
-    /// Weight of the policy's entropy, per nat.
-    #[schemars(range(min = 0, max = 10), extend("default" = 0.01))]
-    pub entropy: f32,
-    /// Divergence of the policy at which an update ends early, nats.
-    #[schemars(range(min = 0, max = 100), extend("default" = 0.03))]
-    pub divergence_max: f32,
-    /// Discount factor per step.
-    #[schemars(range(min = 0, max = 1), extend("default" = 0.995))]
-    pub discount: f32,
-    /// λ of generalised advantage estimation.
-    #[schemars(range(min = 0, max = 1), extend("default" = 0.95))]
-    pub lambda: f32,
-}
-
-impl Default for Ppo {
-    fn default() -> Ppo {
-        Ppo {
-            steps: 64,
-            learning_rate: 3e-4,
-            learning_rate_end: 0.1,
-            clip: 0.2,
-            epochs: 4,
-            minibatch: 2048,
-            entropy: 0.01,
-            divergence_max: 0.03,
-            discount: 0.995,
-            lambda: 0.95,
-        }
-    }
 }
 
 /// Past policies as opponents.

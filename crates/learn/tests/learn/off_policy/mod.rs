@@ -4,10 +4,11 @@
 mod step;
 mod toy;
 
+use super::fixture;
 use learn::nn::Perceptron;
 use learn::off_policy::Minibatch;
 use learn::off_policy::dqn::DqnLearner;
-use learn::off_policy::td3::{NUMBERS, Numbers, Td3Learner};
+use learn::off_policy::td3::{NUMBERS, Td3Learner, drawn};
 use primitives::stream::Stream;
 
 /// Random transitions with observations of three numbers; every third does not count.
@@ -21,10 +22,6 @@ fn random<A>(count: usize, stream: &mut Stream, action: impl Fn(&mut Stream) -> 
         over: (0..count).map(|i| i % 4 == 0).collect(),
         counts: (0..count).map(|i| i % 3 != 0).collect(),
     }
-}
-
-fn numbers(stream: &mut Stream) -> Numbers {
-    [0; NUMBERS].map(|_| stream.between(-1.0, 1.0) as f32)
 }
 
 /// Compares a gradient with finite differences of the loss, parameter by parameter.
@@ -54,7 +51,7 @@ fn the_gradient_of_the_policy_of_td3_goes_through_its_first_critic() {
     let stream = &mut Stream::new(4, "test/gradient");
     let mut learner = Td3Learner::new(3, &[6, 5], 9);
     learner.actor = Perceptron::new(&[3, 6, 5, NUMBERS], 1.0, stream);
-    let minibatch = random(7, stream, numbers);
+    let minibatch = random(7, stream, drawn);
     assert_slopes(&learner, |learner| &mut learner.actor, |learner| learner.actor_gradient(&minibatch));
 }
 
@@ -62,7 +59,7 @@ fn the_gradient_of_the_policy_of_td3_goes_through_its_first_critic() {
 fn only_what_boats_did_as_they_were_told_trains_the_policy() {
     let stream = &mut Stream::new(5, "test/counts");
     let learner = Td3Learner::new(3, &[6], 9);
-    let minibatch = random(9, stream, numbers);
+    let minibatch = random(9, stream, drawn);
     let mut other = minibatch.clone();
     for i in (0..9).filter(|i| !minibatch.counts[*i]) {
         other.observations[3 * i] += 1.0;
@@ -82,6 +79,6 @@ fn the_gradient_of_double_dqn_is_the_slope_of_its_loss() {
     learner.network = Perceptron::new(&[3, 6, 5, 4], 1.0, stream);
     learner.target = Perceptron::new(&[3, 6, 5, 4], 1.0, stream);
     let minibatch = random(11, stream, |stream| stream.below(4) as u16);
-    let settings = learn::training::Dqn::default();
+    let settings = fixture::dqn();
     assert_slopes(&learner, |learner| &mut learner.network, |learner| learner.gradient(&minibatch, &settings));
 }

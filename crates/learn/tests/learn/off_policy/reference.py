@@ -1,6 +1,6 @@
 """Two optimiser steps of TD3 and of double DQN in numpy, in double precision, as the reference for `step.rs`.
 
-    python crates/learn/tests/off_policy/reference.py > crates/learn/tests/off_policy/reference.txt
+    python crates/learn/tests/learn/off_policy/reference.py > crates/learn/tests/learn/off_policy/reference.txt
 
 Written from the papers (Fujimoto, van Hoof and Meger 2018; van Hasselt, Guez and Silver 2016; Kingma and Ba 2015). Only the order of
 parameters is the program's: layer by layer, for each input its weights to all outputs, then the biases. Weights, transitions and noise

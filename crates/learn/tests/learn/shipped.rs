@@ -1,21 +1,12 @@
 //! The shipped policy plays, and wins against strategy 4.
 
+use super::fixture::{file, game, strategy};
 use primitives::{TeamId, VehicleId};
-use scenario::strategy::{Strategy, Task};
-use std::path::{Path, PathBuf};
-
-fn file(path: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(path)
-}
-
-fn strategy(name: &str) -> Strategy {
-    let strategy = scenario::load_strategy(&file(&format!("strategies/{name}.toml")));
-    strategy.unwrap_or_else(|problems| panic!("{problems}"))
-}
+use scenario::strategy::Task;
 
 #[test]
 fn the_shipped_policy_scores_more_than_strategy_4() {
-    let scenario = scenario::load(&file("games/surveyor_2v2.toml")).unwrap_or_else(|problems| panic!("{problems}"));
+    let scenario = game("surveyor_2v2");
     let [learned, other] = ["learned", "strategy_4"].map(strategy);
     let mut points = [0, 0];
     for seed in 40_001..40_005 {

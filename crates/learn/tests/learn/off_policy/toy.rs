@@ -1,5 +1,6 @@
 //! Small problems with known solutions, learnt from random transitions.
 
+use crate::fixture;
 use learn::nn::Trace;
 use learn::off_policy::dqn::DqnLearner;
 use learn::off_policy::td3::{self, Td3Learner};
@@ -45,7 +46,7 @@ fn trained_td3(steps: usize, threads: usize) -> Td3Learner {
         discount: 0.8,
         target_rate: 0.02,
         smoothing: 0.05,
-        ..Td3::default()
+        ..fixture::td3()
     };
     let (replay, stream) = (steps_on_a_line(4000), &mut Stream::new(3, "test/learning"));
     let mut learner = Td3Learner::new(1, &[16, 16], 5);
@@ -92,10 +93,13 @@ fn td3_learns_to_go_to_the_middle_of_a_line_and_stay_there() {
 /// The last place in a row; reaching it wins.
 const LAST: usize = 7;
 
+fn shown(place: usize) -> [f32; LAST] {
+    std::array::from_fn(|i| if i == place { 1.0 } else { 0.0 })
+}
+
 /// Random steps to the left and right in a row of places.
 fn steps_in_a_row(count: usize) -> Replay<u16> {
     let (mut replay, stream) = (Replay::new(LAST, count), &mut Stream::new(2, "test/row"));
-    let shown = |place: usize| -> [f32; LAST] { std::array::from_fn(|i| if i == place { 1.0 } else { 0.0 }) };
     for _ in 0..count {
         let (place, action) = (stream.below(LAST as u64) as usize, stream.below(2) as u16);
         let next = if action == 1 { place + 1 } else { place.saturating_sub(1) };
@@ -112,7 +116,7 @@ fn steps_in_a_row(count: usize) -> Replay<u16> {
 }
 
 fn trained_dqn(steps: usize, threads: usize) -> DqnLearner {
-    let settings = Dqn { minibatch: 300, learning_rate: 3e-3, discount: 0.8, target_every: 20, ..Dqn::default() };
+    let settings = Dqn { minibatch: 300, learning_rate: 3e-3, discount: 0.8, target_every: 20, ..fixture::dqn() };
     let (replay, stream) = (steps_in_a_row(2000), &mut Stream::new(3, "test/learning"));
     let mut learner = DqnLearner::new(LAST, &[32], 2, 5);
     on_threads(threads, || (0..steps).for_each(|_| _ = learner.update(&replay, &settings, stream)));
@@ -124,8 +128,7 @@ fn double_dqn_learns_what_every_place_in_a_row_is_worth() {
     let learner = trained_dqn(600, 2);
     let mut trace = Trace::default();
     for place in 0..LAST {
-        let shown: [f32; LAST] = std::array::from_fn(|i| if i == place { 1.0 } else { 0.0 });
-        learner.network.forward(&shown, &mut trace);
+        learner.network.forward(&shown(place), &mut trace);
         let right = 0.8_f32.powi((LAST - 1 - place) as i32);
         let left = 0.8_f32.powi((LAST - place.saturating_sub(1)) as i32);
         for (value, want) in trace.output().iter().zip([left, right]) {

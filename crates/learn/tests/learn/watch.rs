@@ -1,13 +1,13 @@
 //! Watched games: their inputs suffice to replay them to the bit.
 
-use agent::{Action, ActionSpace};
-use learn::environment::{CriticInput, Games, Moment, RawObservation, RawSetup, Rows, Watch};
+use super::fixture::{checked, file, raw, written};
+use agent::Action;
+use learn::environment::{Games, Moment, ObservationSpace, RawObservation, RawSetup, Watch};
 use messages::Frame;
 use messages::input::Input;
 use rules::event::EventCursor;
 use scenario::{Outcome, Scenario};
 use sim::Contest;
-use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
 /// A watched game: every frame, with the inputs before it.
@@ -50,21 +50,13 @@ impl Seen {
 
 /// Plays this many steps of 2 s games in wind and waves. Returns the watched ones.
 fn seen(starts: Option<u32>, steps: usize, every: u64, play: impl Fn(&mut Games, usize)) -> Vec<Arc<Mutex<Seen>>> {
-    let scenario = |file: &str| -> PathBuf { Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(file) };
     let raw = RawSetup {
-        game: scenario("games/surveyor_2v2.toml"),
-        observation: RawObservation::Pyquaticus,
-        action: ActionSpace::Pyquaticus,
-        helm: None,
-        decision_s: Some(0.5),
+        game: file("games/surveyor_2v2.toml"),
+        observation: RawObservation::Space(ObservationSpace::Pyquaticus),
         episode_max_s: Some(2.0),
         starts,
-        team: None,
-        mates: None,
-        opponents: vec![(1.0, Some(scenario("strategies/pav01.toml")))],
         rewards: None,
-        discount: 0.99,
-        critic: CriticInput::Observation,
+        ..raw()
     };
     let all: Arc<Mutex<Vec<Arc<Mutex<Seen>>>>> = Arc::default();
     let kept = Arc::clone(&all);
@@ -75,25 +67,18 @@ fn seen(starts: Option<u32>, steps: usize, every: u64, play: impl Fn(&mut Games,
             Box::new(move |contest, moment| seen.lock().expect("no thread has panicked").see(contest, moment))
         })
     };
-    let setup = raw.check().unwrap_or_else(|error| panic!("{error}"));
-    let mut games = Games::watched(setup, 2, 2, 5, Some(Arc::new(watches))).unwrap_or_else(|error| panic!("{error}"));
+    let games = Games::new(checked(&raw), 2, 2, 5, Some(Arc::new(watches)));
+    let mut games = games.unwrap();
     (0..steps).for_each(|step| play(&mut games, step));
     drop(games);
     std::mem::take(&mut *all.lock().expect("no thread has panicked"))
 }
 
 fn step(games: &mut Games, step: usize) {
-    let (rows, numbers) = (games.rows().0, games.rows().0 * games.setup().observation_size());
-    let (mut observations, mut final_observations) = (vec![0.0; numbers], vec![0.0; numbers]);
-    let (mut rewards, mut counts) = (vec![0.0; rows], vec![false; rows]);
-    let shown = Rows {
-        observations: &mut observations,
-        final_observations: &mut final_observations,
-        rewards: &mut rewards,
-        counts: &mut counts,
-    };
-    let actions: Vec<Action> = (0..rows).map(|row| Action::Discrete((3 * step + row) % 17)).collect();
-    games.step(&actions, shown).expect("new games begin");
+    written(games, |games, rows| {
+        let actions: Vec<Action> = (0..games.rows().0).map(|row| Action::Discrete((3 * step + row) % 17)).collect();
+        games.step(&actions, rows).expect("new games begin");
+    });
 }
 
 #[test]

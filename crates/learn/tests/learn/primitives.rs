@@ -1,60 +1,37 @@
 //! Primitive policies, each with a single task: the values of places, and the actions of shipped
 //! policies.
 
+use super::fixture::{begun, file, strategy, training};
 use agent::{Action, ActionSpace};
 use learn::environment::{Player, Setup, VectorEnvironment};
-use learn::rewards::{BoatProgress, Place, Placed, Rewards, progress};
-use learn::training::Training;
-use primitives::{Ned, VehicleId};
+use learn::rewards::{Place, Rewards, progress};
+use primitives::VehicleId;
 use scenario::strategy::Task;
-use sim::Contest;
-use std::path::{Path, PathBuf};
-
-fn file(path: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(path)
-}
-
-fn training(name: &str) -> Training {
-    let training = scenario::load_file::<learn::training::Training>(&file(&format!("training/primitive_{name}.toml")));
-    training.unwrap_or_else(|problems| panic!("{problems}"))
-}
 
 fn setup(name: &str) -> Setup {
-    let training = training(name);
-    Setup::of_stage(&training, &training.stage[0]).unwrap_or_else(|error| panic!("{error}"))
-}
-
-fn looked_at(contest: &Contest) -> Vec<BoatProgress> {
-    let scenario = contest.scenario();
-    let placed = |team| Placed { at: Ned::default(), team, tagged: false, carrying: false };
-    let mut boats: Vec<Placed> = scenario.vehicles.iter().map(|vehicle| placed(vehicle.team)).collect();
-    for boat in contest.last_pictures().iter().flat_map(|picture| &picture.own) {
-        let (at, tagged, carrying) = (boat.nav.at(), boat.tagged, boat.carried_flag().is_some());
-        boats[boat.vehicle.index()] = Placed { at, tagged, carrying, team: scenario.team_of(boat.vehicle) };
-    }
-    let mut out = vec![BoatProgress::default(); boats.len()];
-    progress(&scenario.field, &boats, true, &mut out);
-    out
+    let training = training(&format!("primitive_{name}"));
+    Setup::of_stage(&training, &training.stage[0]).unwrap()
 }
 
 #[test]
 fn the_gains_of_a_place_add_up_to_what_it_is_worth_where_a_boat_has_come_to() {
     let place = Place { flag: 1.0, home: 2.0, intruder: 3.0, guard: 4.0, shield: 5.0, clear: 6.0 };
     let setup = Setup { rewards: Rewards { place, ..Rewards::default() }, ..setup("pick_up") };
-    let mut environment = VectorEnvironment::new(setup, 4, 2, 9).unwrap_or_else(|error| panic!("{error}"));
+    let mut environment = begun(setup, 4, 2, 9);
     let (rows, per_game) = environment.rows();
     let worth = |environment: &VectorEnvironment, row: usize| {
         let (game, place_of) = (row / per_game, row % per_game);
         let contest = environment.contest(game);
         let seed = contest.scenario().seed;
-        let boats: Vec<VehicleId> = environment.setup().pilots_of(environment.side(game).learner, seed).collect();
-        place.of(&looked_at(contest)[boats[place_of].index()])
+        let boats: Vec<VehicleId> =
+            environment.setup().pilots_of(environment.standing(game).side.learner, seed).collect();
+        place.of(&progress(contest, true)[boats[place_of].index()])
     };
     let first: Vec<f64> = (0..rows).map(|row| worth(&environment, row)).collect();
     let mut sums = vec![0.0; rows];
     for step in 0..60 {
         let actions: Vec<Action> = (0..rows).map(|row| Action::Discrete((step / 5 + 3 * row) % 17)).collect();
-        environment.step(&actions).unwrap_or_else(|error| panic!("{error}"));
+        environment.step(&actions).unwrap();
         sums.iter_mut().zip(environment.rewards()).for_each(|(sum, reward)| *sum += f64::from(*reward));
     }
     for (row, (sum, first)) in sums.iter().zip(first).enumerate() {
@@ -73,8 +50,7 @@ fn the_shielder_has_a_teammate_driven_by_a_strategy() {
 
 #[test]
 fn the_options_of_the_chooser_are_the_shipped_policies() {
-    let strategy = scenario::load_strategy(&file("strategies/primitives.toml"));
-    let strategy = strategy.unwrap_or_else(|problems| panic!("{problems}"));
+    let strategy = strategy("primitives");
     let role = &strategy.roles[0];
     let policies = role.behaviours.iter().filter_map(|behaviour| match &behaviour.task {
         Task::Policy(policy) => policy.model.as_ref(),
@@ -99,14 +75,14 @@ fn at_home(mut act: impl FnMut(&[f32]) -> Action) -> f64 {
     setup.opponents.retain(|(_, player)| matches!(player, Player::Strategy(strategy) if strategy.name == "pav01"));
     setup.opponents.iter_mut().for_each(|(weight, _)| *weight = 1.0);
     let size = setup.observation_size();
-    let mut environment = VectorEnvironment::new(setup, 16, 2, 77).unwrap_or_else(|error| panic!("{error}"));
+    let mut environment = begun(setup, 16, 2, 77);
     let (mut looks, mut home) = (0.0, 0.0);
     for _ in 0..119 {
         let actions: Vec<Action> = environment.observations().chunks_exact(size).map(&mut act).collect();
-        environment.step(&actions).unwrap_or_else(|error| panic!("{error}"));
+        environment.step(&actions).unwrap();
         for game in 0..16 {
-            let (contest, team) = (environment.contest(game), environment.side(game).learner);
-            for (i, boat) in looked_at(contest).iter().enumerate() {
+            let (contest, team) = (environment.contest(game), environment.standing(game).side.learner);
+            for (i, boat) in progress(contest, true).iter().enumerate() {
                 if contest.scenario().team_of(VehicleId::at(i)) == team {
                     looks += 1.0;
                     home += f64::from(u8::from(!boat.tagged && boat.from_home < 0.125));
@@ -120,7 +96,7 @@ fn at_home(mut act: impl FnMut(&[f32]) -> Action) -> f64 {
 #[test]
 fn who_retreats_comes_home() {
     let bytes = std::fs::read(file("policies/primitive_retreat.onnx")).expect("a model");
-    let mut network = onnx::Network::read(&bytes).unwrap_or_else(|error| panic!("{error}"));
+    let mut network = onnx::Network::read(&bytes).unwrap();
     let by_policy = at_home(|observation| {
         network.evaluate(observation);
         Action::likeliest(network.output(0))

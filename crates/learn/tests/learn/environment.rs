@@ -1,23 +1,14 @@
 //! Environments play the same games as the arena, on any number of threads.
 
+use super::fixture::{begun, checked, file, raw, strategy};
 use agent::{Action, ActionSpace, Mind, ObservationSpace, Pilot, Spaces};
-use learn::environment::{Control, Player, Setup, Teacher, VectorEnvironment};
+use learn::environment::{Control, Player, RawSetup, Setup, Teacher, VectorEnvironment};
 use learn::rewards::{Potential, Rewards, Worth};
 use learn::training::CriticInput;
 use messages::{Order, Picture};
 use primitives::stream::Stream;
 use primitives::{TeamId, VehicleId};
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
-
-fn scenarios() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios")
-}
-
-fn strategy(name: &str) -> Box<scenario::strategy::Strategy> {
-    let path = scenarios().join(format!("strategies/{name}.toml"));
-    Box::new(scenario::load_strategy(&path).unwrap_or_else(|problems| panic!("{problems}")))
-}
 
 const SPACES: Spaces = Spaces {
     observation: ObservationSpace::Squall { mates: 1, enemies: 2, frames: 2 },
@@ -25,23 +16,12 @@ const SPACES: Spaces = Spaces {
 };
 
 fn setup(game: &str, opponents: Vec<(f64, Player)>) -> Setup {
-    let scenario = scenario::load(&scenarios().join(format!("games/{game}.toml")));
     let worth = Worth { grab: 1.0, capture: 2.0, tag: 0.5, left_field: -1.0, ..Worth::default() };
-    Setup {
-        scenario: scenario.unwrap_or_else(|problems| panic!("{problems}")),
-        spaces: SPACES,
-        control: Control::Direct,
-        teacher: None,
-        critic: CriticInput::Observation,
-        decisions_per_step: 5,
-        steps_max: None,
-        starts: None,
-        learner: None,
-        mates: None,
-        opponents,
-        rewards: Rewards { boat: worth, potential: Potential { attack: 1.0, untag: 0.5 }, ..Rewards::default() },
-        discount: 0.99,
-    }
+    let rewards = Rewards { boat: worth, potential: Potential { attack: 1.0, untag: 0.5 }, ..Rewards::default() };
+    let game = file(&format!("games/{game}.toml"));
+    let setup = checked(&RawSetup { game, episode_max_s: None, ..raw() });
+    assert_eq!(setup.spaces, SPACES);
+    Setup { opponents, rewards, ..setup }
 }
 
 /// An action that depends on the observation.
@@ -50,15 +30,20 @@ fn chosen(observation: &[f32]) -> Action {
     Action::Discrete(sum as usize % 17)
 }
 
+/// Plays a step with these actions.
+fn act(environment: &mut VectorEnvironment) {
+    let size = environment.setup().observation_size();
+    let actions: Vec<Action> = environment.observations().chunks_exact(size).map(chosen).collect();
+    environment.step(&actions).unwrap();
+}
+
 fn played(threads: usize) -> (Vec<u32>, Vec<learn::environment::Finished>) {
     let opponents = vec![(1.0, Player::Policy), (1.0, Player::Strategy(strategy("pav01")))];
     let setup = Setup { steps_max: Some(120), ..setup("surveyor_2v2", opponents) };
-    let mut environment = VectorEnvironment::new(setup, 6, threads, 11).unwrap_or_else(|error| panic!("{error}"));
-    let size = environment.setup().observation_size();
+    let mut environment = begun(setup, 6, threads, 11);
     let (mut numbers, mut finished) = (vec![], vec![]);
     for _ in 0..300 {
-        let actions: Vec<Action> = environment.observations().chunks_exact(size).map(chosen).collect();
-        environment.step(&actions).unwrap_or_else(|error| panic!("{error}"));
+        act(&mut environment);
         let shown =
             environment.observations().iter().chain(environment.rewards()).chain(environment.final_observations());
         numbers.extend(shown.map(|number| number.to_bits()));
@@ -72,10 +57,10 @@ fn played(threads: usize) -> (Vec<u32>, Vec<learn::environment::Finished>) {
 fn a_critic_is_given_the_truth_that_sensors_do_not_tell() {
     let opponents = vec![(1.0, Player::Policy)];
     let setup = Setup { critic: CriticInput::Truth, ..setup("surveyor_2v2", opponents) };
-    let mut environment = VectorEnvironment::new(setup, 2, 1, 3).unwrap_or_else(|error| panic!("{error}"));
+    let mut environment = begun(setup, 2, 1, 3);
     let (observation, state) = (environment.setup().observation_size(), environment.setup().state_size());
     for _ in 0..40 {
-        environment.step(&[Action::Discrete(3); 8]).unwrap_or_else(|error| panic!("{error}"));
+        environment.step(&[Action::Discrete(3); 8]).unwrap();
     }
     let mut off_m = 0.0_f64;
     for (row, (state, observed)) in
@@ -129,18 +114,21 @@ impl Mind for Scripted {
     }
 }
 
+/// Ends a game in the arena after 200 steps of an environment.
+fn goes_on(contest: &mut sim::Contest) -> bool {
+    // The environment has observed the boats after its last step.
+    contest.pictures();
+    contest.decision() < 1000
+}
+
 #[test]
 fn a_game_is_the_one_that_the_arena_plays() {
     for control in [Control::Direct, Control::Helm(strategy("teleop"))] {
         let setup = Setup { control, ..setup("surveyor_2v2", vec![(1.0, Player::Strategy(strategy("strategy_2")))]) };
         let seed = 4;
-        let mut environment = VectorEnvironment::new(setup.clone(), 1, 1, seed).unwrap();
-        let size = environment.setup().observation_size();
-        for _ in 0..200 {
-            let actions: Vec<Action> = environment.observations().chunks_exact(size).map(chosen).collect();
-            environment.step(&actions).unwrap();
-        }
-        let learner = environment.side(0).learner;
+        let mut environment = begun(setup.clone(), 1, 1, seed);
+        (0..200).for_each(|_| act(&mut environment));
+        let learner = environment.standing(0).side.learner;
         let scenario = setup.scenario.of_seed(seed).unwrap();
         let mind = |vehicle: VehicleId| -> Box<dyn Mind> {
             if scenario.team_of(vehicle) != learner {
@@ -155,12 +143,7 @@ fn a_game_is_the_one_that_the_arena_plays() {
             Box::new(Scripted { pilot, decisions: 0 })
         };
         let minds = (0..4).map(|i| mind(VehicleId::at(i))).collect();
-        let watch = |contest: &mut sim::Contest| {
-            // The environment has observed the boats after its last step.
-            contest.pictures();
-            contest.decision() < 1000
-        };
-        let outcome = arena::play_watched(&setup.scenario, minds, seed, watch).unwrap();
+        let outcome = arena::play_watched(&setup.scenario, minds, seed, goes_on).unwrap();
         assert_eq!(environment.contest(0).outcome().digest, outcome.digest);
     }
 }
@@ -170,7 +153,7 @@ fn a_teacher_plays_as_its_strategy_does_and_shows_actions_that_ask_for_it() {
     let teacher = Teacher { strategy: strategy("strategy_2"), options: BTreeMap::new() };
     let base = setup("surveyor_2v2", vec![(1.0, Player::Policy)]);
     let setup = Setup { teacher: Some(teacher), ..base };
-    let mut environment = VectorEnvironment::new(setup.clone(), 1, 1, 4).unwrap();
+    let mut environment = begun(setup.clone(), 1, 1, 4);
     let mut taught = vec![];
     for _ in 0..200 {
         environment.step(&[Action::Discrete(16); 4]).unwrap();
@@ -178,12 +161,7 @@ fn a_teacher_plays_as_its_strategy_does_and_shows_actions_that_ask_for_it() {
     }
     let scenario = setup.scenario.of_seed(4).unwrap();
     let mind = |i| agent::mind_by(&scenario, VehicleId::at(i), &strategy("strategy_2"));
-    let watch = |contest: &mut sim::Contest| {
-        // The environment has observed the boats after its last step.
-        contest.pictures();
-        contest.decision() < 1000
-    };
-    let outcome = arena::play_watched(&setup.scenario, (0..4).map(mind).collect(), 4, watch).unwrap();
+    let outcome = arena::play_watched(&setup.scenario, (0..4).map(mind).collect(), 4, goes_on).unwrap();
     assert_eq!(environment.contest(0).outcome().digest, outcome.digest);
     // Set-points nearly always; straight ahead at full speed more often than by chance; turns of
     // every kind.
@@ -197,7 +175,7 @@ fn rewards_are_what_events_say_and_potentials_cancel_out() {
     let opponents = vec![(1.0, Player::Strategy(strategy("pav01")))];
     let base = Setup { discount: 1.0, ..setup("surveyor_2v2", opponents) };
     let total = |rewards: Rewards| {
-        let mut environment = VectorEnvironment::new(Setup { rewards, ..base.clone() }, 1, 1, 5).unwrap();
+        let mut environment = begun(Setup { rewards, ..base.clone() }, 1, 1, 5);
         let (size, mut stream) = (environment.setup().observation_size(), Stream::new(3, "actions"));
         let mut sum = [0.0_f64; 2];
         while environment.finished().is_empty() {
@@ -218,9 +196,9 @@ fn rewards_are_what_events_say_and_potentials_cancel_out() {
     let potential = Potential { attack: 1.0, untag: 0.5 };
     let (sum, _) = total(Rewards { potential, ..Rewards::default() });
     let first: Vec<f64> = {
-        let environment = VectorEnvironment::new(base.clone(), 1, 1, 5).unwrap();
+        let environment = begun(base.clone(), 1, 1, 5);
         let contest = environment.contest(0);
-        let team = environment.side(0).learner;
+        let team = environment.standing(0).side.learner;
         let flag = contest.scenario().field.flags[1 - team.index()].home;
         let boats = contest.last_pictures()[team.index()].own.iter();
         boats.map(|boat| boat.nav.at().distance(flag) / contest.scenario().field.plan.width_m - 1.0).collect()
@@ -235,7 +213,7 @@ fn starts_come_round_again_and_are_those_of_their_seeds() {
     let of = |starts| {
         let opponents = vec![(1.0, Player::Policy)];
         let setup = Setup { starts, steps_max: Some(20), ..setup("surveyor_2v2", opponents) };
-        VectorEnvironment::new(setup, 2, 2, 30).unwrap_or_else(|error| panic!("{error}"))
+        begun(setup, 2, 2, 30)
     };
     let (mut new, mut again) = (of(None), of(Some(3)));
     let size = new.setup().observation_size();
@@ -252,10 +230,7 @@ fn starts_come_round_again_and_are_those_of_their_seeds() {
                 );
             }
         }
-        for environment in [&mut new, &mut again] {
-            let actions: Vec<Action> = environment.observations().chunks_exact(size).map(chosen).collect();
-            environment.step(&actions).unwrap_or_else(|error| panic!("{error}"));
-        }
+        [&mut new, &mut again].into_iter().for_each(act);
         seeds.extend(again.finished().iter().map(|one| one.standing.seed));
     }
     assert_eq!(seeds, [30, 31, 32, 30, 31, 32, 30, 31, 32, 30]);

@@ -1,5 +1,6 @@
 //! Two steps of each optimiser match numpy; see `reference.py`.
 
+use crate::fixture;
 use learn::nn::Perceptron;
 use learn::off_policy::Minibatch;
 use learn::off_policy::dqn::DqnLearner;
@@ -53,7 +54,7 @@ fn assert_reference(name: &str, got: &[f32]) {
 #[test]
 fn two_steps_of_td3_are_those_of_numpy() {
     let settings =
-        Td3 { learning_rate: 1e-3, discount: 0.9, reward_scale: 0.5, target_rate: 0.1, delay: 2, ..Td3::default() };
+        Td3 { learning_rate: 1e-3, discount: 0.9, reward_scale: 0.5, target_rate: 0.1, delay: 2, ..fixture::td3() };
     let mut learner = Td3Learner::new(3, &[5], 1);
     set(&mut learner.actor, 1.0);
     set(&mut learner.target_actor, 2.0);
@@ -78,7 +79,7 @@ fn two_steps_of_td3_are_those_of_numpy() {
 
 #[test]
 fn two_steps_of_double_dqn_are_those_of_numpy() {
-    let settings = Dqn { learning_rate: 1e-3, discount: 0.9, reward_scale: 0.5, target_every: 2, ..Dqn::default() };
+    let settings = Dqn { learning_rate: 1e-3, discount: 0.9, reward_scale: 0.5, target_every: 2, ..fixture::dqn() };
     let mut learner = DqnLearner::new(3, &[5], 4, 1);
     set(&mut learner.network, 7.0);
     set(&mut learner.target, 8.0);

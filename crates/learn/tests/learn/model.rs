@@ -1,5 +1,6 @@
 //! A trained policy acts in a strategy as it did in training.
 
+use super::fixture::{game, strategy};
 use agent::{Action, ActionSpace, HelmMind, Mind, ObservationSpace, Pilot, Spaces};
 use learn::nn::Perceptron;
 use messages::{Order, Picture};
@@ -9,7 +10,6 @@ use scenario::Scenario;
 use scenario::policy::{PartialSpec, PolicyModel, PolicySpec};
 use scenario::strategy::{Program, Strategy, Task};
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
 
 const SPEC: PolicySpec = PolicySpec {
     observation: ObservationSpace::Squall { mates: 1, enemies: 2, frames: 2 },
@@ -17,21 +17,17 @@ const SPEC: PolicySpec = PolicySpec {
     period_s: 0.7,
 };
 
-fn file(path: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(path)
-}
-
 /// A policy with random weights, large enough to vary its actions.
 fn model(spec: PolicySpec) -> PolicyModel {
     let mut stream = primitives::stream::Stream::new(8, "test/model");
     let (inputs, outputs) = (spec.observation.size(1, 2), spec.action.outputs());
-    let network = Perceptron::new(&[inputs, 32, outputs], 3.0, &mut stream);
-    let bytes = network.onnx("logits", BTreeMap::from(spec.metadata())).unwrap_or_else(|error| panic!("{error}"));
-    PolicyModel::read("random.onnx", &bytes, PartialSpec::default()).unwrap_or_else(|error| panic!("{error}"))
+    model_of(&Perceptron::new(&[inputs, 32, outputs], 3.0, &mut stream), spec)
 }
 
-fn strategy() -> Strategy {
-    scenario::load_strategy(&file("strategies/policy.toml")).unwrap_or_else(|problems| panic!("{problems}"))
+fn model_of(network: &Perceptron, spec: PolicySpec) -> PolicyModel {
+    let bytes = network.onnx("logits", None, BTreeMap::from(spec.metadata()));
+    let bytes = bytes.unwrap();
+    PolicyModel::read("test.onnx", &bytes, PartialSpec::default()).unwrap()
 }
 
 fn with_model(mut strategy: Strategy, model: &PolicyModel) -> Strategy {
@@ -69,8 +65,8 @@ impl Mind for Driven {
 
 #[test]
 fn a_model_in_a_strategy_plays_the_game_that_it_was_trained_in() {
-    let scenario = scenario::load(&file("games/surveyor_2v2.toml")).unwrap_or_else(|problems| panic!("{problems}"));
-    let (model, strategy) = (model(SPEC), strategy());
+    let scenario = game("surveyor_2v2");
+    let (model, strategy) = (model(SPEC), *strategy("policy"));
     let loaded = with_model(strategy.clone(), &model);
     let played = |is_loaded: bool| {
         let mind = |vehicle: VehicleId| -> Box<dyn Mind> {
@@ -97,15 +93,14 @@ fn model_of_nan() -> PolicyModel {
     let mut stream = primitives::stream::Stream::new(8, "test/model");
     let mut network = Perceptron::new(&[SPEC.observation.size(1, 2), 4, 17], 1.0, &mut stream);
     network.parameters_mut().iter_mut().for_each(|number| *number = 3e38);
-    let bytes = network.onnx("logits", BTreeMap::from(SPEC.metadata())).unwrap_or_else(|error| panic!("{error}"));
-    PolicyModel::read("nan.onnx", &bytes, PartialSpec::default()).unwrap_or_else(|error| panic!("{error}"))
+    model_of(&network, SPEC)
 }
 
 #[test]
 fn what_a_policy_cannot_do_its_helm_says_and_safety_is_left() {
-    let scenario = scenario::load(&file("games/surveyor_2v2.toml")).unwrap_or_else(|problems| panic!("{problems}"));
+    let scenario = game("surveyor_2v2");
     let for_one = model(PolicySpec { observation: ObservationSpace::Pyquaticus, ..SPEC });
-    let large = scenario::load(&file("games/fleet_20v20.toml")).unwrap_or_else(|problems| panic!("{problems}"));
+    let large = game("fleet_20v20");
     for (scenario, model, want) in [
         (&scenario, model_of_nan(), "the model output a non-finite value"),
         (
@@ -115,9 +110,9 @@ fn what_a_policy_cannot_do_its_helm_says_and_safety_is_left() {
         ),
     ] {
         let vehicle = VehicleId::at(0);
-        let (without, with) = (strategy(), with_model(strategy(), &model));
+        let (without, with) = (*strategy("policy"), with_model(*strategy("policy"), &model));
         let mut mind = agent::mind_by(scenario, vehicle, &with);
-        let mut contest = sim::Contest::new(scenario, 1).unwrap_or_else(|error| panic!("{error}"));
+        let mut contest = sim::Contest::new(scenario, 1).unwrap();
         contest.pictures();
         let order = mind.decide(contest.picture_of(vehicle));
         let safety_alone = agent::mind_by(scenario, vehicle, &without).decide(contest.picture_of(vehicle));
@@ -130,7 +125,7 @@ fn what_a_policy_cannot_do_its_helm_says_and_safety_is_left() {
 
 #[test]
 fn a_model_goes_to_agents_with_the_scenario() {
-    let strategy = with_model(strategy(), &model(SPEC));
+    let strategy = with_model(*strategy("policy"), &model(SPEC));
     let text = serde_json::to_string(&strategy).unwrap();
     let back: Strategy = serde_json::from_str(&text).unwrap();
     assert_eq!(back, strategy);

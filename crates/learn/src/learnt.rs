@@ -1,7 +1,5 @@
 //! Statistics of an update, for every algorithm.
 
-use crate::ppo::Statistics;
-
 /// Averages over the samples of an update. None where the algorithm has no such value.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Learnt {
@@ -33,18 +31,5 @@ impl Learnt {
             ("clipped", self.clipped),
             ("epochs", self.epochs),
         ]
-    }
-}
-
-impl From<Statistics> for Learnt {
-    fn from(statistics: Statistics) -> Learnt {
-        Learnt {
-            policy_loss: Some(statistics.policy_loss),
-            value_loss: Some(statistics.value_loss),
-            entropy: Some(statistics.entropy),
-            divergence: Some(statistics.divergence),
-            clipped: Some(statistics.clipped),
-            epochs: Some(statistics.epochs),
-        }
     }
 }

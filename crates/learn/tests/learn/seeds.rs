@@ -1,62 +1,24 @@
 //! Restarted environments: games with given seeds, one boat of a team, a setup as users write it.
 
-use agent::{Action, ActionSpace};
-use learn::environment::{CriticInput, Games, RawObservation, RawSetup, Rows, SetupError};
+use super::fixture::{checked, file, raw, written};
+use agent::Action;
+use learn::environment::{Games, RawObservation, RawSetup, SetupError};
 use primitives::TeamId;
-use std::path::{Path, PathBuf};
-
-fn scenario(file: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(file)
-}
-
-fn raw() -> RawSetup {
-    RawSetup {
-        game: scenario("games/pyquaticus_2v2.toml"),
-        observation: RawObservation::Squall { mates: None, enemies: None, frames: 2 },
-        action: ActionSpace::Pyquaticus,
-        helm: None,
-        decision_s: Some(0.5),
-        episode_max_s: Some(5.0),
-        starts: None,
-        team: None,
-        mates: None,
-        opponents: vec![(1.0, Some(scenario("strategies/pav01.toml")))],
-        rewards: Some(scenario("rewards/bold.toml")),
-        discount: 0.99,
-        critic: CriticInput::Observation,
-    }
-}
 
 fn games(raw: &RawSetup, count: usize, seed: u64) -> Games {
-    let setup = raw.check().unwrap_or_else(|error| panic!("{error}"));
-    Games::new(setup, count, 1, seed).unwrap_or_else(|error| panic!("{error}"))
+    Games::new(checked(raw), count, 1, seed, None).unwrap()
 }
 
 fn step(games: &mut Games, action: usize) {
-    let (rows, numbers) = (games.rows().0, games.rows().0 * games.setup().observation_size());
-    let (mut observations, mut final_observations) = (vec![0.0; numbers], vec![0.0; numbers]);
-    let (mut rewards, mut counts) = (vec![0.0; rows], vec![false; rows]);
-    let rows_shown = Rows {
-        observations: &mut observations,
-        final_observations: &mut final_observations,
-        rewards: &mut rewards,
-        counts: &mut counts,
-    };
-    games.step(&vec![Action::Discrete(action); rows], rows_shown).expect("new games begin");
+    written(games, |games, rows| {
+        let actions = vec![Action::Discrete(action); games.rows().0];
+        games.step(&actions, rows).expect("new games begin");
+    });
 }
 
 /// The observations after updating those of new games.
 fn shown(games: &mut Games) -> Vec<f32> {
-    let (rows, numbers) = (games.rows().0, games.rows().0 * games.setup().observation_size());
-    let (mut observations, mut rewards, mut counts) = (vec![9.0; numbers], vec![0.0; rows], vec![false; rows]);
-    let final_observations = &mut vec![0.0; numbers];
-    games.show(Rows {
-        observations: &mut observations,
-        final_observations,
-        rewards: &mut rewards,
-        counts: &mut counts,
-    });
-    observations
+    written(games, |games, rows| games.show(rows))
 }
 
 fn seeds(games: &Games) -> Vec<u64> {
@@ -111,7 +73,7 @@ fn a_seed_beyond_the_starts_is_refused() {
 
 #[test]
 fn a_policy_of_one_boat_has_each_boat_by_turns() {
-    let raw = RawSetup { mates: Some(scenario("strategies/strategy_2.toml")), ..raw() };
+    let raw = RawSetup { mates: Some(file("strategies/strategy_2.toml")), ..raw() };
     let one = games(&raw, 8, 0);
     assert_eq!(one.rows(), (8, 1));
     let boats: Vec<usize> = (0..8).map(|game| one.boats(game)[0].index()).collect();
@@ -143,7 +105,7 @@ fn standings_are_what_the_outcome_says() {
 
 #[test]
 fn what_is_wrong_with_a_setup_is_said() {
-    let nowhere = || Some(scenario("strategies/nowhere.toml"));
+    let nowhere = || Some(file("strategies/nowhere.toml"));
     for (raw, message) in [
         (
             RawSetup { decision_s: Some(0.25), ..raw() },
@@ -157,13 +119,13 @@ fn what_is_wrong_with_a_setup_is_said() {
         (RawSetup { opponents: vec![(-1.0, None)], ..raw() }, "an opponent's weight is -1"),
         (RawSetup { opponents: vec![(1.0, nowhere())], ..raw() }, "nowhere.toml"),
         (RawSetup { mates: nowhere(), ..raw() }, "nowhere.toml"),
-        (RawSetup { helm: Some(scenario("strategies/pav01.toml")), ..raw() }, "has no behaviour of kind"),
-        (RawSetup { game: scenario("games/uneven_3v2.toml"), ..raw() }, "the teams have 3 and 2 boats"),
+        (RawSetup { helm: Some(file("strategies/pav01.toml")), ..raw() }, "has no behaviour of kind"),
+        (RawSetup { game: file("games/uneven_3v2.toml"), ..raw() }, "the teams have 3 and 2 boats"),
     ] {
         let error = raw.check().map(|_| ()).map_err(|error: SetupError| error.to_string());
         assert!(error.as_ref().is_err_and(|error| error.contains(message)), "{message}: {error:?}");
     }
-    let observation = RawObservation::Squall { mates: None, enemies: None, frames: 0 };
+    let observation = RawObservation::Squall { frames: 0 };
     assert!(RawSetup { observation, ..raw() }.check().is_err());
 }
 
