@@ -51,20 +51,3 @@ impl<T> Watched<T> {
         std::ptr::from_ref(self).addr()
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::Watched;
-    use std::sync::Arc;
-    use std::time::Duration;
-
-    #[test]
-    fn a_reader_sees_what_is_written_and_does_not_wait_forever() {
-        let watched = Arc::new(Watched::new(0));
-        assert!(!watched.wait(Duration::from_millis(1), |n| *n == 1));
-        let writer = Arc::clone(&watched);
-        let thread = std::thread::spawn(move || writer.visit(|n| *n = 1));
-        assert!(watched.wait(Duration::from_secs(60), |n| *n == 1));
-        thread.join().expect("it writes");
-    }
-}
