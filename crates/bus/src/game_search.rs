@@ -195,8 +195,8 @@ pub fn join(
 /// Checks that the keys, if any, allow joining in this role: the hub drops queries without the
 /// right.
 fn check_keys(bus: &Bus, scenario: &Scenario, role: Role, vehicles: &[String]) -> Result<(), Refusal> {
-    let Some(keys) = bus.keys() else { return Ok(()) };
-    let is_own = |name: &String| match (keys.identity(), role) {
+    let Some(keys) = &bus.keys else { return Ok(()) };
+    let is_own = |name: &String| match (&keys.identity, role) {
         (Identity::Team(team), Role::Agent) => {
             // The sim itself refuses an unknown name.
             scenario.vehicle_by_name(name).is_none_or(|v| scenario.teams[scenario.team_of(v).index()].name == *team)
@@ -207,7 +207,7 @@ fn check_keys(bus: &Bus, scenario: &Scenario, role: Role, vehicles: &[String]) -
     match vehicles.iter().find(|name| !is_own(name)) {
         None => Ok(()),
         Some(name) => {
-            let (folder, identity) = (keys.folder().display(), keys.identity());
+            let (folder, identity) = (keys.folder.display(), &keys.identity);
             Err(Refusal::Refused(format!("{folder}: the keys of {identity} are not for the {role} of {name}")))
         }
     }

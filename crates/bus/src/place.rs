@@ -14,7 +14,8 @@ type Find = dyn Fn(Option<&GameName>) -> Result<Net, String> + Send + Sync;
 #[derive(Clone)]
 pub struct Place {
     find: Arc<Find>,
-    token: CurrentToken,
+    /// The last known token.
+    pub token: CurrentToken,
 }
 
 /// A session, and the place it leads to.
@@ -38,12 +39,6 @@ impl Place {
             self.token.set(net.token.clone());
         }
         Ok(net)
-    }
-
-    /// The last known token.
-    #[must_use]
-    pub fn token(&self) -> &CurrentToken {
-        &self.token
     }
 
     /// A session at the place of a game; reuses the previous one if it leads there.

@@ -72,7 +72,7 @@ fn whose_keys_do_not_fit_is_told_why() {
     let (sim, endpoint) = hub(bundle(&own, "sim"));
     let _sim = sim.expect("it listens");
     let blue = leaf(&endpoint, bundle(&own, "team-blue")).expect("it is let in");
-    assert_eq!(blue.keys().map(Bundle::identity), Some(&team("blue")));
+    assert_eq!(blue.keys.as_ref().map(|keys| &keys.identity), Some(&team("blue")));
     let text = refused(&endpoint, bundle(&foreign, "team-blue"));
     assert!(text.contains("another authority") && text.contains(endpoint.trim_start_matches("tcp/")), "{text}");
     assert!(matches!(leaf(&endpoint, None), Err(BusError::NeedsKeys(_))), "no keys");
@@ -156,7 +156,7 @@ fn keys_are_for_their_owner_only_and_never_written_over() {
     assert_eq!([mode("sim"), mode("sim/key.pem"), mode("team-blue/key.pem")], [0o700, 0o600, 0o600]);
     let again = make(own.path(), &[Identity::Observer], &[], DAY).expect_err("it is there already").to_string();
     assert!(again.contains("observer"), "{again}");
-    assert_eq!(Bundle::load(&own.path().join("sim")).expect("good keys").hosts(), ["localhost"]);
+    assert_eq!(Bundle::load(&own.path().join("sim")).expect("good keys").hosts, ["localhost"]);
 }
 
 /// Whether `to` receives what `from` publishes. It does not if only a later message has arrived.
