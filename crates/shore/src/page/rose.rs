@@ -161,9 +161,10 @@ fn whole(per_cent: f64) -> u8 {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use messages::helm::{DriftReport, FunctionReport};
+    use messages::helm::FunctionReport;
     use primitives::SimTime;
     use proptest::prelude::*;
+    use serde_json::json;
 
     pub(in super::super) fn scenario() -> Scenario {
         let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
@@ -175,26 +176,10 @@ pub(super) mod tests {
         FunctionReport { behaviour: "go".into(), contact, weight, utility: Some(50.0), utilities: utilities.to_vec() }
     }
 
-    pub(in super::super) fn report(functions: Vec<FunctionReport>) -> HelmReport {
-        HelmReport {
-            policies: vec![],
-            vehicle: VehicleId(0),
-            at: SimTime::from_s(1.5),
-            program: "pav01".into(),
-            mode: "attacking".into(),
-            course_deg: Some(90.0),
-            speed_m_s: Some(1.0),
-            heading_offset_deg: 0.0,
-            drift: DriftReport::default(),
-            hold: None,
-            value: None,
-            courses: 2,
-            speeds: 2,
-            speed_max_m_s: 2.0,
-            behaviours: vec![],
-            variables: vec![],
-            functions,
-        }
+    fn report(functions: Vec<FunctionReport>) -> HelmReport {
+        let report = json!({"vehicle": 0, "at": SimTime::from_s(1.5), "program": "pav01", "mode": "attacking",
+            "courses": 2, "speeds": 2, "speed_max_m_s": 2.0, "behaviours": [], "variables": [], "functions": []});
+        HelmReport { functions, ..serde_json::from_value(report).expect("a report") }
     }
 
     #[test]

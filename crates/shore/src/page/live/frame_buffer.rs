@@ -19,7 +19,8 @@ pub(super) struct FrameBuffer {
     pub(super) is_over: bool,
     /// When the newest frame arrived.
     pub(super) came: Option<Instant>,
-    newest: Bytes,
+    /// The newest frame with its leading byte.
+    pub(super) newest: Bytes,
     past: VecDeque<(SimTime, Bytes)>,
     counted: Option<(Instant, u64)>,
     rate_hz: f64,
@@ -45,10 +46,6 @@ impl FrameBuffer {
         (self.count, self.came) = (self.count + 1, Some(now));
         self.measure(now);
         missed
-    }
-
-    pub(super) fn newest(&self) -> Bytes {
-        self.newest.clone()
     }
 
     /// The past frames before the newest, each with its leading byte.
@@ -89,7 +86,7 @@ mod tests {
         for seq in 0..2000 {
             assert!(!frames.take(&frame(seq), &seq.to_le_bytes(), start + Duration::from_millis(100) * seq as u32));
         }
-        assert_eq!(frames.newest()[..], [&[1], &1999_u64.to_le_bytes()[..]].concat());
+        assert_eq!(frames.newest[..], [&[1], &1999_u64.to_le_bytes()[..]].concat());
         let past = frames.past();
         assert_eq!(past.len(), 120);
         assert_eq!(past[119][..], [&[2], &1995_u64.to_le_bytes()[..]].concat());

@@ -336,24 +336,23 @@ impl Sent {
             return Some(Outgoing::Past(past));
         }
         self.frame = state.frames.count;
-        Some(Outgoing::Now(state.frames.newest()))
+        Some(Outgoing::Now(state.frames.newest.clone()))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::page::rose::tests::scenario;
     use bus::{clock, inbox};
     use messages::topic::GameName;
     use messages::water::Water;
     use messages::{Frame, GameInfo};
-    use std::path::Path;
 
     #[test]
     fn what_is_told_of_the_selected_boat_waits_until_there_is_room() {
         let shared = Arc::new(SharedState::new(inbox(1).0, Box::new(|_| ()), |_| Err(String::new())).unwrap());
-        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
-        let (scenario, now) = (scenario::load(&file).unwrap(), clock::now());
+        let (scenario, now) = (scenario(), clock::now());
         let info = GameInfo { version: String::new(), pace: "lockstep".to_owned(), scenario };
         let name = GameName::new("pond").unwrap();
         shared.state.lock().begin(Arc::new(LiveGame::new(name, info, &Water::default())));
