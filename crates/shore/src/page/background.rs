@@ -5,6 +5,7 @@
 
 use primitives::input_file;
 use serde_json::{Value, json};
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
@@ -32,25 +33,15 @@ pub struct Background {
     pub(super) image: Option<(&'static str, Vec<u8>)>,
 }
 
-/// Why a background is rejected.
+/// Why a background is rejected: the file and its problem, with the values allowed.
 #[derive(Debug, Error)]
-pub enum BackgroundError {
-    /// The file cannot be read.
-    #[error("cannot read {}: {source}", path.display())]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// The system's error.
-        source: std::io::Error,
-    },
-    /// The content is invalid.
-    #[error("{}: {problem}", path.display())]
-    Bad {
-        /// The file.
-        path: PathBuf,
-        /// The problem, with the values allowed.
-        problem: String,
-    },
+#[error("{0}")]
+pub struct BackgroundError(String);
+
+impl BackgroundError {
+    fn of(path: &Path, problem: impl Display) -> BackgroundError {
+        BackgroundError(format!("{}: {problem}", path.display()))
+    }
 }
 
 impl Background {
@@ -61,7 +52,7 @@ impl Background {
     /// coordinates.
     pub fn read(path: &Path) -> Result<Background, BackgroundError> {
         let bytes = read(path, BYTES_MAX)?;
-        let bad = |problem| BackgroundError::Bad { path: path.to_owned(), problem };
+        let bad = |problem| BackgroundError::of(path, problem);
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         let kind = match imagesize::image_type(&bytes) {
             Ok(imagesize::ImageType::Png) => "image/png",
@@ -85,14 +76,14 @@ impl Background {
         }
         let (world_path, world) = world_file(path)?;
         let world = world_matrix(&world, [width as f64, height as f64])
-            .map_err(|problem| BackgroundError::Bad { path: world_path, problem })?;
+            .map_err(|problem| BackgroundError::of(&world_path, problem))?;
         let json = json!({"name": name, "image": {"width": width, "height": height, "world": world}}).to_string();
         Ok(Background { json, image: Some((kind, bytes)) })
     }
 }
 
 fn read(path: &Path, bytes_max: u64) -> Result<Vec<u8>, BackgroundError> {
-    input_file::read(path, bytes_max).map_err(|source| BackgroundError::Read { path: path.to_owned(), source })
+    input_file::read(path, bytes_max).map_err(|e| BackgroundError(format!("cannot read {}: {e}", path.display())))
 }
 
 fn world_file(image: &Path) -> Result<(PathBuf, String), BackgroundError> {
@@ -105,7 +96,7 @@ fn world_file(image: &Path) -> Result<(PathBuf, String), BackgroundError> {
              when they export an image in WGS 84)",
             names.join(", ")
         );
-        return Err(BackgroundError::Bad { path: image.to_owned(), problem });
+        return Err(BackgroundError::of(image, problem));
     };
     let text = String::from_utf8_lossy(&read(&path, WORLD_BYTES_MAX)?).into_owned();
     Ok((path, text))

@@ -94,11 +94,6 @@ impl LiveGame {
         &self.scenario().vehicles[vehicle.index()].name
     }
 
-    /// Whether the game runs in lockstep rather than in real time.
-    pub(super) fn is_lockstep(&self) -> bool {
-        self.info.pace == "lockstep"
-    }
-
     pub(super) fn has_real_boats(&self) -> bool {
         self.scenario().externals().next().is_some()
     }
