@@ -7,7 +7,8 @@ use crate::runtime::runtime;
 use crate::session::{Declaration, Encoding, Sender, Session};
 use crate::{BusError, Net, Token};
 use messages::Message;
-use messages::topic::GameName;
+use messages::external::GatewayStatus;
+use messages::topic::{self, GameName};
 use primitives::codec;
 use scenario::Scenario;
 use serde::Serialize;
@@ -132,6 +133,26 @@ impl Bus {
         receive: impl Fn(&[u8]) + Send + Sync + 'static,
     ) -> Result<Declaration, BusError> {
         self.session.subscribe(key, false, Box::new(receive))
+    }
+
+    /// Calls `take` with every status of this boat's gateway; drops unreadable statuses and those
+    /// of other boats.
+    ///
+    /// # Errors
+    /// [`BusError`] if the session is closed.
+    pub fn subscribe_status(
+        &self,
+        game: &GameName,
+        vehicle: &str,
+        take: impl Fn(GatewayStatus) + Send + Sync + 'static,
+    ) -> Result<Declaration, BusError> {
+        let name = vehicle.to_owned();
+        self.subscribe(topic::status(game, vehicle), move |bytes| {
+            let status = serde_json::from_slice::<GatewayStatus>(bytes).ok();
+            // Operators read the name in the status; a status whose name does not match its key is
+            // invalid.
+            status.filter(|status| status.vehicle == name).into_iter().for_each(&take);
+        })
     }
 
     /// Calls `receive` with the key of every node under `key` that appears (`true`) or leaves,

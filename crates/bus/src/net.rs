@@ -3,7 +3,7 @@
 use crate::error::reason;
 use crate::keys::{Bundle, Identity};
 use crate::open_files::OpenFiles;
-use crate::thread_check::check_threads_for_keys;
+use crate::zenoh_threads::check_threads_for_keys;
 use crate::{BusError, Token, access, random_bytes};
 use messages::topic::{self, GameName};
 use scenario::Scenario;

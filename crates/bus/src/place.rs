@@ -1,7 +1,7 @@
 //! The place of a game and its token. Both are looked up before each attempt to connect: the sim
 //! may start later than the searching node, and the next sim may have another place and token.
 
-use crate::missing::{Missing, Refusal};
+use crate::game_search::{Missing, Refusal};
 use crate::token::CurrentToken;
 use crate::{Bus, Net};
 use messages::topic::GameName;

@@ -35,15 +35,13 @@ impl<T> Watched<T> {
             match runtime.wait(self.address(), deadline) {
                 Some(true) => {}
                 Some(false) => return holds(&self.state.lock()),
-                None => return self.wait_for_change(limit, holds),
+                None => {
+                    let mut state = self.state.lock();
+                    return !self.changed.wait_while_for(&mut state, |state| !holds(state), limit).timed_out();
+                }
             }
         }
         true
-    }
-
-    fn wait_for_change(&self, limit: Duration, mut holds: impl FnMut(&T) -> bool) -> bool {
-        let mut state = self.state.lock();
-        !self.changed.wait_while_for(&mut state, |state| !holds(state), limit).timed_out()
     }
 
     /// The address by which a runtime identifies this value.
