@@ -41,23 +41,6 @@ pub(super) struct Policy {
 /// Number of actions listed per policy, the likeliest first.
 const ACTIONS: usize = 4;
 
-impl Policy {
-    fn new(scenario: &Scenario, vehicle: VehicleId, report: &PolicyReport, has_numbers: bool) -> Policy {
-        let mut words = report.words(scenario, vehicle);
-        words.actions.truncate(ACTIONS);
-        Policy {
-            behaviour: report.behaviour.clone(),
-            model: report.model.clone(),
-            course_deg: report.course_deg,
-            speed_m_s: report.speed_m_s,
-            option: report.option.clone(),
-            fault: report.fault.clone(),
-            actions: words.actions,
-            observed: if has_numbers { words.observed } else { vec![] },
-        }
-    }
-}
-
 /// An objective function.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(super) struct Function {
@@ -79,7 +62,20 @@ impl Helm {
             utility: function.utility,
             utilities: if has_utilities { percents(&function.utilities) } else { vec![] },
         };
-        let policy = |policy: &PolicyReport| Policy::new(scenario, report.vehicle, policy, has_utilities);
+        let policy = |policy: &PolicyReport| {
+            let mut words = policy.words(scenario, report.vehicle);
+            words.actions.truncate(ACTIONS);
+            Policy {
+                behaviour: policy.behaviour.clone(),
+                model: policy.model.clone(),
+                course_deg: policy.course_deg,
+                speed_m_s: policy.speed_m_s,
+                option: policy.option.clone(),
+                fault: policy.fault.clone(),
+                actions: words.actions,
+                observed: if has_utilities { words.observed } else { vec![] },
+            }
+        };
         Helm {
             at_s: report.at.as_s(),
             program: report.program.clone(),
