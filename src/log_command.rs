@@ -76,7 +76,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 fn look_at(args: &Args, file: &Path) -> Result<()> {
     let bag = recording_file::open_any(file, "read")?;
     let wants_page = args.csv.is_none() && args.plot.is_none() && args.alog.is_none() && args.gif.is_none();
-    if bag.kind() == Kind::Gateway {
+    if bag.kind == Kind::Gateway {
         if let Some(topic) = &args.csv {
             return csv(args, file, (&bag, None), topic);
         }

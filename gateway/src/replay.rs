@@ -76,11 +76,11 @@ fn complete(table: &mut Value, defaults: &Value) {
 /// # Errors
 /// [`RecordingError`] for anything except a valid recording of a gateway, complete or truncated.
 pub fn replay(bag: &Bag) -> Result<Replay, RecordingError> {
-    if bag.kind() != Kind::Gateway {
-        return Err(RecordingError::Kind { wanted: Kind::Gateway, found: bag.kind() });
+    if bag.kind != Kind::Gateway {
+        return Err(RecordingError::Kind { wanted: Kind::Gateway, found: bag.kind });
     }
     let plan = plan_of(bag.fact("plan")).map_err(|e| RecordingError::Foreign(format!("cannot parse its plan: {e}")))?;
-    let (steps, is_cut) = (steps(bag, &link_topic(&plan.vehicle))?, bag.is_cut());
+    let (steps, is_cut) = (steps(bag, &link_topic(&plan.vehicle))?, bag.is_cut);
     let mut bridge = Bridge::new(plan.clone());
     let (mut bytes_in, mut bytes_out) = (0, 0);
     let (mut events, mut difference) = (Vec::new(), None);

@@ -23,10 +23,10 @@ pub(super) fn gateway(bag: &Bag) -> String {
     let [boat, version, commit] = ["vehicle", "version", "commit"].map(|key| bag.fact(key));
     let gateway = analysis::gateway_of(bag, boat);
     let mut text = format!("gateway of {boat}\n");
-    add_line(&mut text, format_args!("recorded {} by Squall {version} ({commit})", utc::text(bag.began_utc_ns())));
+    add_line(&mut text, format_args!("recorded {} by Squall {version} ({commit})", utc::text(bag.began_utc_ns)));
     let duration_s = bag.messages().map(|message| message.at).max().unwrap_or_default().as_s();
     add_line(&mut text, format_args!("{duration_s:.1} s, {:.1} MB", bag.size() as f64 * 1e-6));
-    if bag.is_cut() {
+    if bag.is_cut {
         add_line(&mut text, format_args!("the file ends before the gateway did; the figures below are incomplete"));
     }
     damaged(&mut text, &gateway.damaged);

@@ -109,10 +109,10 @@ fn named(text: &str) -> Result<Identity> {
 
 fn show(folder: &Path) -> Result<()> {
     let bundle = Bundle::load(folder)?;
-    let [from, until] = bundle.valid();
-    let mut text = format!("{}: {}, valid from {from} until {until}", folder.display(), bundle.identity());
-    if !bundle.hosts().is_empty() {
-        write!(text, ", for the hosts {}", bundle.hosts().join(", ")).expect("a text can be written to");
+    let [from, until] = &bundle.valid;
+    let mut text = format!("{}: {}, valid from {from} until {until}", folder.display(), bundle.identity);
+    if !bundle.hosts.is_empty() {
+        write!(text, ", for the hosts {}", bundle.hosts.join(", ")).expect("a text can be written to");
     }
     screen::print(&(text + "\n"));
     Ok(())

@@ -123,12 +123,12 @@ impl PageArgs {
 
 /// The page's address for operators of real boats.
 pub(crate) fn operator_url(page: &Page) -> String {
-    address_of(page, Some(page.operator_token()))
+    address_of(page, Some(&page.operator_token))
 }
 
 fn address_of(page: &Page, token: Option<&str>) -> String {
     let token = token.map(|token| format!("#token={}", in_address(token))).unwrap_or_default();
-    let mut address = page.address();
+    let mut address = page.address;
     if let (true, Some(own)) = (address.ip().is_unspecified(), own_ip()) {
         address.set_ip(own);
     }

@@ -48,6 +48,6 @@ pub(crate) fn show(file: &Path) -> Result<ReplayView> {
 pub(crate) fn show_about(file: &Path, about: Option<String>) -> Result<ReplayView> {
     let recording = Arc::new(replay_command::open(file)?);
     let recorded = Recorded::new(Arc::clone(&recording), file.display().to_string());
-    recorded.damaged().remark().iter().for_each(|remark| screen::remark(remark));
+    recorded.damaged.remark().iter().for_each(|remark| screen::remark(remark));
     Ok(ReplayView::about(about, Arc::new(recorded), Some(Box::new(ReplayHelms::new(recording)))))
 }

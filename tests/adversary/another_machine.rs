@@ -57,7 +57,7 @@ fn a_stranger_on_another_machine_changes_no_game_and_hears_no_orders() {
     let sim = hosts.sim("pav01_600s", &["--speed", SPEED]);
     let agents = vec![hosts.agent(0, &FOUR[..2]), hosts.agent(1, &FOUR[2..])];
     sim.wait_for_kind("started");
-    let mut game = DisturbedGame::of(sim, agents, None);
+    let mut game = DisturbedGame { sim, agents, operator: None };
     let mut stranger = on_the_other(&hosts, "what_the_stranger_does");
     while stranger.0.try_wait().expect("it can be asked").is_none() {
         game.check();

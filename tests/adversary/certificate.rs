@@ -3,7 +3,7 @@
 
 use crate::crowd::{FILES, is_withstood, squall_with_files};
 use crate::disturbed_game::DisturbedGame;
-use crate::intruder::{Intruder, Target};
+use crate::intruder::{Intruder, Target, config};
 use crate::support::{FOUR, Process, Sim, free_endpoint, squall, temporary, wait_until};
 use bus::keys::{Bundle, Identity, make};
 use bus::token::TOKEN_VARIABLE;
@@ -78,6 +78,12 @@ fn traitor(sim: &Sim, keys: &TempDir, name: &str) -> Intruder {
     Target::of(sim).open_with("client", &tls(&folder, Some(&folder))).expect("its keys are good")
 }
 
+/// A request to join with these vehicles, without a proof.
+fn join_request(role: &str, vehicles: &Value) -> Vec<u8> {
+    let body = json!({ "version": primitives::VERSION, "role": role, "node": "x", "vehicles": vehicles });
+    json!({ "body": body }).to_string().into_bytes()
+}
+
 #[test]
 fn a_client_without_a_certificate_gets_no_session() {
     let (own, foreign) = (keys(DAY), keys(DAY));
@@ -106,13 +112,8 @@ fn who_crowds_the_port_keeps_nobody_with_keys_out_and_disturbs_nobody() {
     let own = keys(DAY);
     for files in FILES {
         let sim = sim_by(squall_with_files(files), &own, "long", &["--pace", "20x"]);
-        let mut agents = agents(&sim, &own);
-        sim.wait_for_kind("started");
-        let operator = node(&sim, &own, "operator").expect("good keys");
-        is_withstood(&sim, files, &operator, &|| node(&sim, &own, "observer").is_ok());
-        agents.iter_mut().for_each(|agent| assert!(agent.0.try_wait().expect("it can be asked").is_none()));
-        let done = sim.stop();
-        FOUR.iter().for_each(|name| assert_eq!(done["outcome"]["counts"]["boats"][name]["agents_lost"], 0, "{name}"));
+        let (agents, operator) = (agents(&sim, &own), node(&sim, &own, "operator").expect("good keys"));
+        is_withstood(sim, agents, files, &operator, &|sim| node(sim, &own, "observer").is_ok());
     }
 }
 
@@ -146,7 +147,7 @@ fn a_red_agent_learns_nothing_about_blue_and_changes_nothing() {
     let red = traitor(&served, &own, "team-red");
     // Forge from a second session: a session receives its own publications.
     let forger = traitor(&served, &own, "team-red");
-    let mut game = DisturbedGame::of(served, playing, Some(operator));
+    let mut game = DisturbedGame { sim: served, agents: playing, operator: Some(operator) };
     let secret =
         ["picture/blue", "say/blue", "policy/blue_one", "frame", "order/**", "**"].map(|word| red.listen(word));
     let open = red.listen("picture/red");
@@ -159,17 +160,13 @@ fn a_red_agent_learns_nothing_about_blue_and_changes_nothing() {
     wait_until("its own pictures come", || open.keys().len() > 20);
     let not_its_own = |key: &String| *key != red.topic("picture/red");
     assert_eq!(secret.iter().flat_map(|heard| heard.keys()).find(not_its_own), None);
-    let request = |vehicles: Value| {
-        let body = json!({ "version": primitives::VERSION, "role": "agent", "node": "red", "vehicles": vehicles });
-        json!({ "body": body }).to_string().into_bytes()
-    };
     for (place, vehicles) in [("join/agent/blue", json!(["blue_one"])), ("join/agent", json!(["blue_one", "red_one"]))]
     {
-        assert_eq!(red.ask(place, request(vehicles)).len(), 0, "{place}");
+        assert_eq!(red.ask(place, join_request("agent", &vehicles)).len(), 0, "{place}");
     }
     // Joining is allowed, but not for these boats.
     for vehicles in [json!(["blue_one"]), json!(["red_one", "blue_one"]), json!([])] {
-        let answer = red.ask("join/agent/red", request(vehicles.clone()));
+        let answer = red.ask("join/agent/red", join_request("agent", &vehicles));
         let answer: Value = serde_json::from_slice(&answer[0]).expect("JSON");
         assert!(answer["answer"]["Refused"].is_object(), "{vehicles}: {answer}");
     }
@@ -213,15 +210,11 @@ fn an_agents_certificate_cannot_serve_a_game() {
     let blue = own.path().join("team-blue");
     let endpoint = free_endpoint();
     let served = endpoint.replace("tcp/", "tls/");
-    let mut config = zenoh::Config::default();
-    for (key, value) in [
-        ("mode", "\"router\"".to_owned()),
-        ("listen/endpoints", format!("[{served:?}]")),
-        ("scouting/multicast/enabled", "false".to_owned()),
-        ("transport/link/tls", tls(&blue, Some(&blue)).to_string()),
-    ] {
-        config.insert_json5(key, &value).expect("a setting of zenoh");
-    }
+    let config = config(&[
+        ("mode", "\"router\""),
+        ("listen/endpoints", &format!("[{served:?}]")),
+        ("transport/link/tls", &tls(&blue, Some(&blue)).to_string()),
+    ]);
     let session = zenoh::Wait::wait(zenoh::open(config)).expect("the port is free");
     let shown = zenoh::Wait::wait(session.liveliness().declare_token(Target::of(&sim).topic("alive/sim/fake")));
     let refused = agent(&endpoint, &sim, &own.path().join("team-red"), &FOUR[2..]).refusal();
@@ -235,10 +228,7 @@ fn a_gateway_can_report_only_for_its_own_boat() {
     let own = keys(DAY);
     let sim = sim(&own, "mixed_60s", &["--pace", "realtime", "--join-s", "600"]);
     let red_one = traitor(&sim, &own, "gateway-red_one");
-    let request = |vehicle: &str| {
-        let body = json!({ "version": primitives::VERSION, "role": "gateway", "node": "x", "vehicles": [vehicle] });
-        json!({ "body": body }).to_string().into_bytes()
-    };
+    let request = |vehicle: &str| join_request("gateway", &json!([vehicle]));
     assert_eq!(red_one.ask("join/gateway/blue_one", request("blue_one")).len(), 0);
     assert_eq!(red_one.ask("join/gateway", request("blue_one")).len(), 0);
     let answer = |vehicle: &str| -> Value {

@@ -4,6 +4,7 @@
 //! `SQUALL_TRIES=1000` measures the delay and prints its distribution.
 
 use crate::boat::Boat;
+use crate::crowd::Repeated;
 use crate::intruder::Intruder;
 use crate::support::{LIMIT, Process, Sim, stderr, temporary, token, wait_until};
 use bus::ask_gateway;
@@ -13,7 +14,7 @@ use messages::{Message, Order, Stamp, VehicleOrder};
 use primitives::{SimTime, VehicleId, codec};
 use std::net::SocketAddr;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 /// Time limit from the request to the standby sentence on the wire.
@@ -105,44 +106,22 @@ impl Rig {
     }
 }
 
-/// Sends garbage to the game's port, from two threads, until dropped.
-struct Flood {
-    stop: Arc<AtomicBool>,
-    sent: Arc<AtomicU64>,
-    start: Instant,
-    threads: Vec<std::thread::JoinHandle<()>>,
-}
-
-impl Flood {
-    fn begin(sim: &Sim) -> Flood {
-        let (stop, sent) = (Arc::<AtomicBool>::default(), Arc::<AtomicU64>::default());
-        let threads = ["control", "order/x"].map(|topic| {
-            let (intruder, stop, sent) = (Intruder::at(sim), Arc::clone(&stop), Arc::clone(&sent));
-            std::thread::spawn(move || {
-                while !stop.load(Ordering::Relaxed) {
-                    intruder.publish(topic, "garbage");
-                    sent.fetch_add(1, Ordering::Relaxed);
-                }
-            })
-        });
-        Flood { stop, sent, start: Instant::now(), threads: threads.into() }
-    }
-
-    fn end(self) {
-        let rate = self.sent.load(Ordering::Relaxed) as f64 / self.start.elapsed().as_secs_f64();
-        eprintln!("garbage: {rate:.0} messages a second");
-        self.stop.store(true, Ordering::Relaxed);
-        self.threads.into_iter().for_each(|thread| thread.join().expect("it sends"));
-    }
-}
-
 #[test]
 fn an_e_stop_is_on_the_wire_in_time_whatever_happens_to_the_game() {
     let mut rig = Rig::start(&[]);
     rig.measure("undisturbed");
-    let flood = Flood::begin(&rig.sim);
+    let (sent, start) = (Arc::new(AtomicU64::new(0)), Instant::now());
+    let flood = ["control", "order/x"].map(|topic| {
+        let (intruder, sent) = (Intruder::at(&rig.sim), Arc::clone(&sent));
+        Repeated::start(move || {
+            intruder.publish(topic, "garbage");
+            sent.fetch_add(1, Ordering::Relaxed);
+        })
+    });
     rig.measure("under a flood of garbage");
-    flood.end();
+    let rate = sent.load(Ordering::Relaxed) as f64 / start.elapsed().as_secs_f64();
+    eprintln!("garbage: {rate:.0} messages a second");
+    drop(flood);
     rig.sim.process.signal("STOP");
     rig.measure("with a suspended sim");
     // As operators do, through this machine's registry: the game itself does not respond.

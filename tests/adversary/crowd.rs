@@ -1,8 +1,9 @@
 //! Crowds the port of a sim that may open few files: no authorised node is kept out, and no
 //! connected node is disturbed.
 
+use crate::disturbed_game::all_stay;
 use crate::intruder::Target;
-use crate::support::{Sim, squall, wait_until, wait_within};
+use crate::support::{FOUR, Process, Sim, squall, wait_until, wait_within};
 use bus::Bus;
 use messages::{Control, topic};
 use serde_json::Value;
@@ -33,40 +34,47 @@ const CROWDS: [Crowd; 4] = [
     ("silent", |target, count| Box::new(target.connections(&[], count))),
     ("half-way through a handshake", |target, count| Box::new(target.connections(&HALF_HELLO, count))),
     ("with garbage", |target, count| Box::new(target.connections(&[b'x'; 5000], count))),
-    ("new ones all the time", |target, count| Box::new(Stream::start(target, count))),
+    ("new ones all the time", |target, count| Box::new(stream(target, count))),
 ];
 
-/// New connections, opened as fast as the port accepts them.
-struct Stream {
+/// Work that is repeated in its own thread until it is dropped.
+pub(crate) struct Repeated {
     is_over: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
 
-impl Stream {
-    fn start(target: &Target, count: usize) -> Stream {
-        let (is_over, at) = (Arc::new(AtomicBool::new(false)), target.address().to_owned());
+impl Repeated {
+    pub(crate) fn start(mut work: impl FnMut() + Send + 'static) -> Repeated {
+        let is_over = Arc::new(AtomicBool::new(false));
         let over = Arc::clone(&is_over);
         let thread = std::thread::spawn(move || {
-            let mut newest = VecDeque::new();
             while !over.load(Ordering::Relaxed) {
-                newest.extend(TcpStream::connect(&at));
-                if newest.len() > count {
-                    newest.pop_front();
-                }
+                work();
             }
         });
-        let stream = Stream { is_over, thread: Some(thread) };
-        // Wait until all limits are reached.
-        std::thread::sleep(Duration::from_secs(5));
-        stream
+        Repeated { is_over, thread: Some(thread) }
     }
 }
 
-impl Drop for Stream {
+impl Drop for Repeated {
     fn drop(&mut self) {
         self.is_over.store(true, Ordering::Relaxed);
         self.thread.take().into_iter().for_each(|thread| thread.join().expect("it does not panic"));
     }
+}
+
+/// New connections, opened as fast as the port accepts them; the newest ones stay open.
+fn stream(target: &Target, count: usize) -> Repeated {
+    let (at, mut newest) = (target.address().to_owned(), VecDeque::new());
+    let stream = Repeated::start(move || {
+        newest.extend(TcpStream::connect(&at));
+        if newest.len() > count {
+            newest.pop_front();
+        }
+    });
+    // Wait until all limits are reached.
+    std::thread::sleep(Duration::from_secs(5));
+    stream
 }
 
 /// The program with this limit of open files.
@@ -97,20 +105,27 @@ impl Gaps {
 
 /// Crowds the port of a sim with this limit of open files. `operator` is connected to the game, and
 /// `comes_in` tries to join.
-pub(crate) fn is_withstood(sim: &Sim, files: usize, operator: &Bus, comes_in: &dyn Fn() -> bool) {
+pub(crate) fn is_withstood(
+    sim: Sim,
+    mut agents: Vec<Process>,
+    files: usize,
+    operator: &Bus,
+    comes_in: &dyn Fn(&Sim) -> bool,
+) {
+    sim.wait_for_kind("started");
     let gaps = Arc::new(Gaps::default());
     let noted = Arc::clone(&gaps);
     let _heard = operator.subscribe(topic::frame(&sim.name()), move |_| noted.note()).expect("it is in the game");
     for (what, crowd) in CROWDS {
-        let kept = crowd(&Target::of(sim), files * 3 / 2);
-        let during = wait_within(IN, &format!("somebody comes in beside connections {what}"), comes_in);
+        let kept = crowd(&Target::of(&sim), files * 3 / 2);
+        let during = wait_within(IN, &format!("somebody comes in beside connections {what}"), || comes_in(&sim));
         sim.newest_progress();
         let asked = Instant::now();
         bus::control(operator, &sim.name(), Control::EStop).expect("it is published");
         sim.wait_for_event("e_stopped", Value::Null);
         let stopped = asked.elapsed();
         drop(kept);
-        let after = wait_within(IN, &format!("somebody comes in after connections {what}"), comes_in);
+        let after = wait_within(IN, &format!("somebody comes in after connections {what}"), || comes_in(&sim));
         let gap = Duration::from_micros(gaps.longest_us.swap(0, Ordering::Relaxed));
         eprintln!(
             "{files} files, {what}: in after {during:.1?}, later after {after:.1?}; E-stop after {stopped:.1?}; no frame for {gap:.1?}"
@@ -120,4 +135,7 @@ pub(crate) fn is_withstood(sim: &Sim, files: usize, operator: &Bus, comes_in: &d
         sim.wait_for_event("released", Value::Null);
     }
     sim.play_on(1.0);
+    all_stay(&mut agents);
+    let done = sim.stop();
+    FOUR.iter().for_each(|name| assert_eq!(done["outcome"]["counts"]["boats"][name]["agents_lost"], 0, "{name}"));
 }

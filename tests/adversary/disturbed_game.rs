@@ -13,9 +13,16 @@ pub(crate) const SPEED: &str = "2";
 /// A lockstep game, slowed down so that it lasts as long as the attack.
 pub(crate) struct DisturbedGame {
     pub(crate) sim: Sim,
-    agents: Vec<Process>,
+    pub(crate) agents: Vec<Process>,
     /// A session that may speed the game up again, if there is one.
-    operator: Option<Bus>,
+    pub(crate) operator: Option<Bus>,
+}
+
+/// Checks that none of these agents has left its game.
+pub(crate) fn all_stay(agents: &mut [Process]) {
+    for agent in agents {
+        assert!(agent.0.try_wait().expect("it can be asked").is_none(), "an agent has left the game");
+    }
 }
 
 impl DisturbedGame {
@@ -25,17 +32,11 @@ impl DisturbedGame {
         DisturbedGame { sim, agents, operator }
     }
 
-    pub(crate) fn of(sim: Sim, agents: Vec<Process>, operator: Option<Bus>) -> DisturbedGame {
-        DisturbedGame { sim, agents, operator }
-    }
-
     /// Checks that no node has left and that the game goes on.
     pub(crate) fn check(&mut self) {
         self.sim.newest_progress();
         self.sim.play_on(1.0);
-        for agent in &mut self.agents {
-            assert!(agent.0.try_wait().expect("it can be asked").is_none(), "an agent has left the game");
-        }
+        all_stay(&mut self.agents);
     }
 
     /// Plays the rest, which must equal that of the undisturbed game. Returns the report.

@@ -1,12 +1,12 @@
 //! An impostor that offers the same game, at the sim's port and at one of its own.
 
 use crate::disturbed_game::DisturbedGame;
-use crate::intruder::{Intruder, Target};
-use crate::support::{FOUR, LIMIT, Process, Sim, agent, free_endpoint, squall, token};
+use crate::intruder::{Heard, Intruder, Target, config};
+use crate::support::{FOUR, LIMIT, Process, Sim, agent, free_endpoint, squall, token, wait_until};
 use bus::{Patience, SimState, SimWatch};
 use serde_json::{Value, json};
 use std::sync::{Arc, Mutex};
-use zenoh::{Config, Session, Wait};
+use zenoh::{Session, Wait};
 
 /// A zenoh router that answers for a game and records the requests.
 struct FakeSim {
@@ -18,14 +18,7 @@ struct FakeSim {
 impl FakeSim {
     /// Imitates the true sim's game, and answers requests with its own challenge.
     fn open(endpoint: &str, true_sim: &Intruder) -> FakeSim {
-        let mut config = Config::default();
-        for (key, value) in [
-            ("mode", "\"router\"".to_owned()),
-            ("listen/endpoints", format!("[{endpoint:?}]")),
-            ("scouting/multicast/enabled", "false".to_owned()),
-        ] {
-            config.insert_json5(key, &value).expect("a setting of zenoh");
-        }
+        let config = config(&[("mode", "\"router\""), ("listen/endpoints", &format!("[{endpoint:?}]"))]);
         let session = zenoh::open(config).wait().expect("the port is free");
         let asked = Arc::new(Mutex::new(Vec::new()));
         let challenge = vec![json!({ "challenge": "00".repeat(16) }).to_string().into_bytes()];
@@ -52,23 +45,35 @@ impl FakeSim {
     }
 }
 
+/// Neither as a client nor as a router, which receives announcements that clients must request.
 #[test]
-fn a_router_that_joins_the_network_cannot_impersonate_the_sim() {
+fn nobody_passes_for_the_sim_or_receives_orders_and_navigation() {
     let mut game = DisturbedGame::start();
     let target = Target::of(&game.sim);
     let observer = game.sim.bus();
     let watch = SimWatch::open(&observer, &game.sim.name(), Patience::of_player(LIMIT)).expect("a session");
-    let router = target.open("router").expect("the port is open");
-    let topics = ["scenario", "join", "join/**", "events", "water", "control", "**"];
-    let answers = topics.map(|topic| router.answer(topic));
-    let token = router.session.liveliness().declare_token(router.topic("alive/sim/zz")).wait();
-    let secret = ["**", "order/*", "order/**", "nav/*"].map(|topic| router.listen(topic));
+    let intruders = ["client", "router"].map(|mode| target.open(mode).expect("the port is open"));
+    let topics = ["scenario", "join", "join/**", "events", "water", "control", "*", "**"];
+    let answers: Vec<_> = intruders.iter().flat_map(|intruder| topics.map(|topic| intruder.answer(topic))).collect();
+    // Beside the sim's own.
+    let tokens = intruders.each_ref().map(|intruder| {
+        intruder.session.liveliness().declare_token(intruder.topic("alive/sim/zz")).wait().expect("a session")
+    });
+    // A session receives its own publications, so another client listens too.
+    let listener = Intruder::of(&target);
+    let listen = |intruder: &Intruder| -> Vec<Heard> {
+        ["**", "*/*", "order/*", "order/**", "nav/*"].map(|topic| intruder.listen(topic)).into()
+    };
+    let (mut heard, heard_by_router) = (listen(&listener), listen(&intruders[1]));
+    heard.push(listener.listen_anywhere("**"));
+    let open = listener.listen("picture/blue");
     for _ in 0..200 {
-        ["frame", "picture/blue", "picture/red", "run", "released"]
-            .iter()
-            .for_each(|topic| router.publish(topic, "forged"));
+        for topic in ["frame", "picture/blue", "picture/red", "run", "released"] {
+            intruders.iter().for_each(|intruder| intruder.publish(topic, "forged"));
+        }
     }
     game.check();
+    wait_until("what everybody may hear is heard", || open.keys().len() > 20);
     let asker = Intruder::of(&target);
     for topic in ["scenario", "events", "water", "join/agent/blue", "control"] {
         let answers = asker.ask(topic, json!({ "body": {} }).to_string().into_bytes());
@@ -76,9 +81,12 @@ fn a_router_that_joins_the_network_cannot_impersonate_the_sim() {
         assert!(answers[0] != b"forged", "{topic}");
     }
     assert_eq!(watch.state(), SimState::Alive);
+    // A message for one subscription of a session reaches all of its matching subscriptions.
+    let is_open = |key: &String| key.starts_with(&target.topic("picture/"));
+    assert_eq!(heard.iter().flat_map(|heard| heard.keys()).find(|key| !is_open(key)), None);
     let is_secret = |key: &String| key.contains("/order/") || key.contains("/nav/");
-    assert_eq!(secret.iter().flat_map(|heard| heard.keys()).find(is_secret), None);
-    drop((answers, token));
+    assert_eq!(heard_by_router.iter().flat_map(|heard| heard.keys()).find(is_secret), None);
+    drop((answers, tokens));
     game.ends_as_if_undisturbed();
 }
 

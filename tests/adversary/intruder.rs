@@ -29,6 +29,15 @@ pub(crate) struct Heard {
     _subscriber: zenoh::pubsub::Subscriber<()>,
 }
 
+/// A zenoh configuration with these settings, without scouting.
+pub(crate) fn config(settings: &[(&str, &str)]) -> Config {
+    let mut config = Config::default();
+    for (key, value) in settings.iter().chain(&[("scouting/multicast/enabled", "false")]) {
+        config.insert_json5(key, value).expect("a setting of zenoh");
+    }
+    config
+}
+
 impl Target {
     pub(crate) fn of(sim: &Sim) -> Target {
         Target { endpoint: sim.endpoint.clone(), game: sim.name() }
@@ -61,18 +70,14 @@ impl Target {
 
     /// Opens a session in a zenoh mode with these TLS settings.
     pub(crate) fn open_with(&self, mode: &str, tls: &Value) -> Option<Intruder> {
-        let mut config = Config::default();
-        for (key, value) in [
-            ("mode", format!("{mode:?}")),
-            ("connect/endpoints", format!("[{:?}]", self.endpoint)),
-            ("connect/timeout_ms", "0".to_owned()),
-            ("connect/exit_on_failure", "true".to_owned()),
-            ("listen/endpoints", "[]".to_owned()),
-            ("scouting/multicast/enabled", "false".to_owned()),
-            ("transport/link/tls", tls.to_string()),
-        ] {
-            config.insert_json5(key, &value).expect("a setting of zenoh");
-        }
+        let config = config(&[
+            ("mode", &format!("{mode:?}")),
+            ("connect/endpoints", &format!("[{:?}]", self.endpoint)),
+            ("connect/timeout_ms", "0"),
+            ("connect/exit_on_failure", "true"),
+            ("listen/endpoints", "[]"),
+            ("transport/link/tls", &tls.to_string()),
+        ]);
         let session = zenoh::open(config).wait().ok()?;
         Some(Intruder { session, game: self.game.clone() })
     }

@@ -4,7 +4,8 @@
 use crate::control_port::Rig;
 use crate::intruder::Intruder;
 use crate::support::{LIMIT, Sim, run, stderr, stdout, temporary, token, wait_until};
-use bus::{Bus, BusError, Net, Token};
+use crate::token::session;
+use bus::{Bus, BusError};
 use messages::external::{GatewayStatus, OperatorCommand, OperatorReply, Reported};
 use messages::topic;
 use parking_lot::Mutex;
@@ -15,10 +16,6 @@ use zenoh::query::Query;
 
 /// Longer than the validity of a proof.
 const LATER: Duration = Duration::from_secs(2);
-
-fn session(sim: &Sim, token: Option<Token>) -> Bus {
-    Bus::leaf(&Net { connect: vec![sim.endpoint.clone()], token, ..Net::default() }).expect("the port is open")
-}
 
 fn operate(bus: &Bus, sim: &Sim, command: &OperatorCommand) -> Result<Option<OperatorReply>, BusError> {
     bus.request_node(&topic::operate(&sim.name(), "blue_one"), command, LIMIT)

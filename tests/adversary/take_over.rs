@@ -4,7 +4,8 @@
 use crate::disturbed_game::DisturbedGame;
 use crate::intruder::Intruder;
 use crate::support::{LIMIT, Sim, token, wait_until};
-use bus::{Bus, Net, Priority, Token};
+use crate::token::session;
+use bus::{Bus, Priority, Token};
 use messages::topic::{self, GameName};
 use messages::{JoinReply, JoinRequest, Message, Order, Orders, Role, Stamp, VehicleOrder};
 use primitives::{SimTime, TeamId, VehicleId, codec};
@@ -17,11 +18,6 @@ use zenoh::Wait;
 const BOAT: &str = "red_two";
 const NUMBER: VehicleId = VehicleId(3);
 const FULL_AHEAD: Order = Order::Thrust { port: 1.0, starboard: 1.0 };
-
-/// A node of our own program, with this token or none.
-fn node(sim: &Sim, token: Option<Token>) -> Bus {
-    Bus::leaf(&Net { connect: vec![sim.endpoint.clone()], token, ..Net::default() }).expect("the port is open")
-}
 
 /// The reply to a request to join as the boat's agent; `None` if the token is refused.
 fn join((game, scenario): (&GameName, &Scenario), bus: &Bus) -> Option<JoinReply> {
@@ -49,7 +45,7 @@ fn of_many_that_race_for_a_boat_one_has_it_and_the_next_when_that_is_gone() {
     // Every third node has no token, and every third a wrong one.
     let token_of = |i: usize| [Some(token()), None, Some(Token::random())].into_iter().nth(i % 3).flatten();
     let tokens = (0..12).map(token_of);
-    let mut racers: Vec<Bus> = tokens.map(|token| node(&sim, token)).collect();
+    let mut racers: Vec<Bus> = tokens.map(|token| session(&sim, token)).collect();
     let scenario = sim.info(&racers[0]).scenario;
     let name = sim.name();
     let at = (&name, &scenario);
@@ -72,7 +68,7 @@ fn of_many_that_race_for_a_boat_one_has_it_and_the_next_when_that_is_gone() {
         // A repeated request does not harm the boat's agent, whatever the others do.
         assert_eq!(join(at, &racers[(winner + 3) % 12]), Some(JoinReply::Busy { vehicle: BOAT.to_owned() }));
         racers[winner].close();
-        racers[winner] = node(&sim, Some(token()));
+        racers[winner] = session(&sim, Some(token()));
     }
     sim.stop();
 }
@@ -81,13 +77,13 @@ fn of_many_that_race_for_a_boat_one_has_it_and_the_next_when_that_is_gone() {
 fn the_ticket_of_the_dead_is_void_once_somebody_else_has_the_boat() {
     let sim = Sim::start("patient", &["--pace", "realtime", "--join-s", "600"]);
     let _others = ["blue_one", "blue_two", "red_one"].map(|name| sim.agent(&[name]));
-    let first = node(&sim, Some(token()));
+    let first = session(&sim, Some(token()));
     let scenario = sim.info(&first).scenario;
     let old = ticket(join((&sim.name(), &scenario), &first)).expect("it is free");
     sim.wait_for_kind("started");
     first.close();
     sim.wait_for_event("agent_lost", BOAT);
-    let second = node(&sim, Some(token()));
+    let second = session(&sim, Some(token()));
     ticket(join((&sim.name(), &scenario), &second)).expect("it is free again");
     sim.wait_for_event("agent_back", BOAT);
     // The thief holds the old ticket and the key of its orders.
@@ -110,9 +106,9 @@ fn the_ticket_of_the_dead_is_void_once_somebody_else_has_the_boat() {
 fn nobody_without_a_ticket_can_take_over_a_steered_boat() {
     let mut game = DisturbedGame::start();
     let sim = &game.sim;
-    let (intruder, stranger) = (Intruder::at(sim), node(sim, None));
+    let (intruder, stranger) = (Intruder::at(sim), session(sim, None));
     let info = sim.info(&stranger);
-    let agents = node(sim, None);
+    let agents = session(sim, None);
     let proof = json!({ "challenge": "00".repeat(16), "mac": "ff".repeat(32) });
     for round in 0..20 {
         for name in info.scenario.vehicles.iter().map(|vehicle| &vehicle.name) {

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use std::time::Duration;
 
 /// A session of our own program, with this token or none.
-fn session(sim: &Sim, token: Option<Token>) -> Bus {
+pub(crate) fn session(sim: &Sim, token: Option<Token>) -> Bus {
     Bus::leaf(&Net { connect: vec![sim.endpoint.clone()], token, ..Net::default() }).expect("the port is open")
 }
 

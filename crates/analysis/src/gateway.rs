@@ -45,7 +45,7 @@ pub(crate) fn gateways(recording: &Recording) -> Vec<Gateway> {
 #[must_use]
 pub fn gateway_of(bag: &Bag, boat: &str) -> Gateway {
     // A gateway's recording starts with the gateway, which starts safed.
-    let state = (bag.kind() == Kind::Gateway).then(|| "safed".to_owned());
+    let state = (bag.kind == Kind::Gateway).then(|| "safed".to_owned());
     let mut gateway = Gateway { boat: boat.to_owned(), state, ..Gateway::default() };
     traffic(bag, &mut gateway);
     // Each status lists the failsafes so far, and a restarted gateway starts over: count each one
@@ -65,7 +65,7 @@ pub fn gateway_of(bag: &Bag, boat: &str) -> Gateway {
         if let Some(state) = event["event"]["state"]["to"].as_str() {
             gateway.state = Some(state.to_owned());
             // It has no status in which they are listed.
-            if let Some(cause) = state.strip_prefix("failsafe: ").filter(|_| bag.kind() == Kind::Gateway) {
+            if let Some(cause) = state.strip_prefix("failsafe: ").filter(|_| bag.kind == Kind::Gateway) {
                 gateway.failsafes.push(FailsafeReport { at_s: message.at.as_s(), cause: cause.to_owned() });
             }
         }

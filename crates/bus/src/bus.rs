@@ -7,12 +7,13 @@ use crate::runtime::runtime;
 use crate::session::{Declaration, Encoding, Sender, Session};
 use crate::{BusError, Net, Token};
 use messages::Message;
-use messages::topic::GameName;
+use messages::external::GatewayStatus;
+use messages::topic::{self, GameName};
 use primitives::codec;
 use scenario::Scenario;
 use serde::Serialize;
+use std::ops::Deref;
 use std::sync::Arc;
-use std::time::Duration;
 
 /// Message priority. No message waits for a link: a congested link drops what it cannot take
 /// immediately, and senders repeat what must arrive.
@@ -46,9 +47,21 @@ impl Delivery {
 #[derive(Clone)]
 pub struct Bus {
     pub(crate) session: Arc<dyn Session>,
+    /// The game's token, if known.
     pub(crate) token: Option<Token>,
-    pub(crate) keys: Option<Arc<Bundle>>,
-    is_on_this_machine: bool,
+    /// The keys of this node, in a game with keys.
+    pub keys: Option<Arc<Bundle>>,
+    /// Whether the connection to the hub uses loopback.
+    pub(crate) is_on_this_machine: bool,
+}
+
+/// What needs neither token nor keys and takes no callback, the session does itself.
+impl Deref for Bus {
+    type Target = dyn Session;
+
+    fn deref(&self) -> &Self::Target {
+        &*self.session
+    }
 }
 
 /// Sends messages on one key.
@@ -76,32 +89,10 @@ impl Bus {
         Bus { session, token: net.token.clone(), keys: net.keys.clone(), is_on_this_machine }
     }
 
-    /// The keys of this node, in a game with keys.
-    #[must_use]
-    pub fn keys(&self) -> Option<&Bundle> {
-        self.keys.as_deref()
-    }
-
-    /// Whether the connection to the hub uses loopback.
-    pub(crate) fn is_on_this_machine(&self) -> bool {
-        self.is_on_this_machine
-    }
-
-    /// The game's token, if known.
-    pub(crate) fn token(&self) -> Option<&Token> {
-        self.token.as_ref()
-    }
-
     /// The same session, for a node with this token.
     #[must_use]
     pub fn with_token(self, token: Option<Token>) -> Bus {
         Bus { token, ..self }
-    }
-
-    /// This session's identifier, unique on the network.
-    #[must_use]
-    pub fn id(&self) -> String {
-        self.session.id()
     }
 
     /// Prepares to publish on `key`.
@@ -144,12 +135,24 @@ impl Bus {
         self.session.subscribe(key, false, Box::new(receive))
     }
 
-    /// Shows a liveliness token under `key` until it is dropped or the node dies.
+    /// Calls `take` with every status of this boat's gateway; drops unreadable statuses and those
+    /// of other boats.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.
-    pub fn show_alive(&self, key: String) -> Result<Declaration, BusError> {
-        self.session.show_alive(key)
+    pub fn subscribe_status(
+        &self,
+        game: &GameName,
+        vehicle: &str,
+        take: impl Fn(GatewayStatus) + Send + Sync + 'static,
+    ) -> Result<Declaration, BusError> {
+        let name = vehicle.to_owned();
+        self.subscribe(topic::status(game, vehicle), move |bytes| {
+            let status = serde_json::from_slice::<GatewayStatus>(bytes).ok();
+            // Operators read the name in the status; a status whose name does not match its key is
+            // invalid.
+            status.filter(|status| status.vehicle == name).into_iter().for_each(&take);
+        })
     }
 
     /// Calls `receive` with the key of every node under `key` that appears (`true`) or leaves,
@@ -171,19 +174,6 @@ impl Bus {
     /// [`BusError`] if the session is closed.
     pub fn watch_links(&self, receive: impl Fn(String) + Send + Sync + 'static) -> Result<Declaration, BusError> {
         self.session.watch_links(Box::new(receive))
-    }
-
-    /// The keys of all nodes present under `key`.
-    ///
-    /// # Errors
-    /// [`BusError`] if the session is closed.
-    pub fn who_is_alive(&self, key: &str, limit: Duration) -> Result<Vec<String>, BusError> {
-        self.session.who_is_alive(key, limit)
-    }
-
-    /// Closes the session; other nodes learn of it immediately.
-    pub fn close(&self) {
-        self.session.close();
     }
 }
 

@@ -1,7 +1,6 @@
 //! Finding and joining a game, shared by agents, gateways and observers.
 
 use crate::keys::Identity;
-pub use crate::missing::{Missing, NotFound, Refusal};
 use crate::{Bus, BusError, Place, PlacedSession, clock};
 use messages::topic::{self, GameName};
 use messages::{GameInfo, JoinReply, JoinRequest, Role};
@@ -9,11 +8,62 @@ use primitives::{SimTime, VehicleId};
 use scenario::Scenario;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
+use thiserror::Error;
 
 /// Interval of a search's attempts.
 const LOOK_AGAIN: Duration = Duration::from_millis(100);
 /// Timeout of a query.
 pub const ANSWER: Duration = Duration::from_secs(2);
+
+/// Why something is missing.
+#[derive(Debug, Error)]
+pub enum Missing {
+    /// It may appear later.
+    #[error("{0}")]
+    Yet(String),
+    /// It never will.
+    #[error(transparent)]
+    Forever(#[from] Refusal),
+}
+
+/// Why a game cannot be joined even after retries.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum Refusal {
+    /// The sim refuses, for this reason.
+    #[error("{0}")]
+    Refused(String),
+    /// The sim has another version of Squall; the text describes it.
+    #[error("not of one version: this program is {ours}, {0}", ours = primitives::VERSION)]
+    Version(String),
+}
+
+/// Why a search failed.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum NotFound {
+    /// The search timed out; the text names what was still missing.
+    #[error("no game to join after {0:.0?}: {1}")]
+    InTime(Duration, String),
+    /// The search can never succeed.
+    #[error(transparent)]
+    Refused(#[from] Refusal),
+}
+
+impl From<BusError> for Missing {
+    fn from(error: BusError) -> Missing {
+        match error {
+            BusError::NeedsToken
+            // Waiting does not fix these; a person has to act. All others may pass, such as a sim
+            // that starts later or an unplugged cable.
+            | BusError::WrongToken
+            | BusError::Keys(_)
+            | BusError::NeedsKeys(_)
+            | BusError::NotAllowed { .. } => Missing::Forever(Refusal::Refused(error.to_string())),
+            // An unreadable answer comes from another version, and waiting does not change that.
+            BusError::Request { .. } => Missing::Forever(Refusal::Version(error.to_string())),
+            other => Missing::Yet(other.to_string()),
+        }
+    }
+}
 
 /// A search with a time limit.
 pub struct GameSearch<'a> {
@@ -195,8 +245,8 @@ pub fn join(
 /// Checks that the keys, if any, allow joining in this role: the hub drops queries without the
 /// right.
 fn check_keys(bus: &Bus, scenario: &Scenario, role: Role, vehicles: &[String]) -> Result<(), Refusal> {
-    let Some(keys) = bus.keys() else { return Ok(()) };
-    let is_own = |name: &String| match (keys.identity(), role) {
+    let Some(keys) = &bus.keys else { return Ok(()) };
+    let is_own = |name: &String| match (&keys.identity, role) {
         (Identity::Team(team), Role::Agent) => {
             // The sim itself refuses an unknown name.
             scenario.vehicle_by_name(name).is_none_or(|v| scenario.teams[scenario.team_of(v).index()].name == *team)
@@ -207,7 +257,7 @@ fn check_keys(bus: &Bus, scenario: &Scenario, role: Role, vehicles: &[String]) -
     match vehicles.iter().find(|name| !is_own(name)) {
         None => Ok(()),
         Some(name) => {
-            let (folder, identity) = (keys.folder().display(), keys.identity());
+            let (folder, identity) = (keys.folder.display(), &keys.identity);
             Err(Refusal::Refused(format!("{folder}: the keys of {identity} are not for the {role} of {name}")))
         }
     }

@@ -28,15 +28,14 @@ pub fn ask_gateway(
     let deadline = clock::now() + limit;
     // Commands that need the token are sent once, even if the answer is lost: a second release
     // could release a different stop.
-    let attempts = if command.needs_token() { 1 } else { ATTEMPTS };
-    let mut result = ask_once(at, token, command, deadline);
-    for _ in 1..attempts {
-        if !matches!(result, Err(BusError::Use { .. })) {
-            break;
+    let repeats = if command.needs_token() { 0 } else { ATTEMPTS - 1 };
+    for _ in 0..repeats {
+        match ask_once(at, token, command, deadline) {
+            Err(BusError::Use { .. }) => {}
+            result => return result,
         }
-        result = ask_once(at, token, command, deadline);
     }
-    result
+    ask_once(at, token, command, deadline)
 }
 
 fn ask_once(

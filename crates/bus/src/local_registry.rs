@@ -108,21 +108,16 @@ fn make_private(folder: &Path) -> std::io::Result<()> {
 fn register_in<E: Serialize>(folder: &Path, name: &str, entry: &E) -> std::io::Result<Registration> {
     make_private(folder)?;
     let registration = Registration(folder.join(name));
-    registration.write(entry)?;
+    registration.update(entry)?;
     Ok(registration)
 }
 
 impl Registration {
-    /// Replaces the gateway's entry.
+    /// Replaces the entry by one of the same kind. Concurrent readers see the previous entry.
     ///
     /// # Errors
     /// If the file cannot be written.
-    pub fn update(&self, entry: &GatewayEntry) -> std::io::Result<()> {
-        self.write(entry)
-    }
-
-    /// Concurrent readers see the previous entry.
-    fn write<E: Serialize>(&self, entry: &E) -> std::io::Result<()> {
+    pub fn update<E: Serialize>(&self, entry: &E) -> std::io::Result<()> {
         let unfinished = self.0.with_added_extension("new");
         let mut file = fs::OpenOptions::new().write(true).create(true).truncate(true).mode(0o600).open(&unfinished)?;
         file.write_all(&serde_json::to_vec(entry)?)?;

@@ -3,7 +3,7 @@
 use crate::error::reason;
 use crate::keys::{Bundle, Identity};
 use crate::open_files::OpenFiles;
-use crate::thread_check::check_threads_for_keys;
+use crate::zenoh_threads::check_threads_for_keys;
 use crate::{BusError, Token, access, random_bytes};
 use messages::topic::{self, GameName};
 use scenario::Scenario;
@@ -87,9 +87,9 @@ impl Net {
 
     /// The zenoh configuration of a game's hub for at most `nodes` nodes.
     pub(crate) fn hub(&self, game: &GameName, scenario: &Scenario, nodes: usize) -> Result<Config, BusError> {
-        if let Some(keys) = self.keys.as_ref().filter(|keys| *keys.identity() != Identity::Sim) {
-            let reason = format!("a sim needs the keys of sim, not those of {}", keys.identity());
-            return Err(BusError::Keys(format!("{}: {reason}", keys.folder().display())));
+        if let Some(keys) = self.keys.as_ref().filter(|keys| keys.identity != Identity::Sim) {
+            let reason = format!("a sim needs the keys of sim, not those of {}", keys.identity);
+            return Err(BusError::Keys(format!("{}: {reason}", keys.folder.display())));
         }
         let mut config = self.base()?;
         // A file with its own rules takes precedence.
@@ -113,9 +113,9 @@ impl Net {
 
     /// The zenoh configuration of a leaf. It keeps trying to connect, and reconnects after a cut.
     pub(crate) fn leaf(&self) -> Result<Config, BusError> {
-        if let Some(keys) = self.keys.as_ref().filter(|keys| *keys.identity() == Identity::Sim) {
+        if let Some(keys) = self.keys.as_ref().filter(|keys| keys.identity == Identity::Sim) {
             let reason = "the keys of sim only serve games: use those of a team, a gateway, an observer or an operator";
-            return Err(BusError::Keys(format!("{}: {reason}", keys.folder().display())));
+            return Err(BusError::Keys(format!("{}: {reason}", keys.folder.display())));
         }
         let mut config = self.base()?;
         set(&mut config, "mode", "\"client\"")?;

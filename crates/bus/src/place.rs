@@ -1,7 +1,7 @@
 //! The place of a game and its token. Both are looked up before each attempt to connect: the sim
 //! may start later than the searching node, and the next sim may have another place and token.
 
-use crate::missing::{Missing, Refusal};
+use crate::game_search::{Missing, Refusal};
 use crate::token::CurrentToken;
 use crate::{Bus, Net};
 use messages::topic::GameName;
@@ -14,7 +14,8 @@ type Find = dyn Fn(Option<&GameName>) -> Result<Net, String> + Send + Sync;
 #[derive(Clone)]
 pub struct Place {
     find: Arc<Find>,
-    token: CurrentToken,
+    /// The last known token.
+    pub token: CurrentToken,
 }
 
 /// A session, and the place it leads to.
@@ -38,12 +39,6 @@ impl Place {
             self.token.set(net.token.clone());
         }
         Ok(net)
-    }
-
-    /// The last known token.
-    #[must_use]
-    pub fn token(&self) -> &CurrentToken {
-        &self.token
     }
 
     /// A session at the place of a game; reuses the previous one if it leads there.

@@ -1,6 +1,5 @@
 //! Queries and answers over a session.
 
-use crate::keys::Bundle;
 use crate::parcel::Parcel;
 use crate::session::{Declaration, PendingQuery};
 use crate::{Bus, BusError, Priority, Token, access, token};
@@ -37,7 +36,7 @@ impl Bus {
     /// # Errors
     /// [`BusError`] if the session is closed.
     pub fn ask(&self, key: &str, payload: Vec<u8>, limit: Duration) -> Result<Option<Vec<u8>>, BusError> {
-        self.ask_at(Priority::Normal, key, Parcel::new(payload), limit, |_| true)
+        self.session.ask(Priority::Normal, key, Parcel::new(payload), limit, &mut |_| true)
     }
 
     /// Like [`Bus::ask`], at a key where other nodes answer. In a game without keys any node may
@@ -58,7 +57,7 @@ impl Bus {
     ) -> Result<Option<Vec<u8>>, BusError> {
         // With keys, access control lets no other node answer.
         let Some(token) = self.token.as_ref().filter(|_| self.keys.is_none()) else {
-            return self.ask_at(priority, key, Parcel::new(payload), limit, |_| true);
+            return self.session.ask(priority, key, Parcel::new(payload), limit, &mut |_| true);
         };
         // Any node may declare that it answers for a boat's gateway, and zenoh routes a query to
         // the first that claims completeness: a stranger could swallow an E-stop and answer
@@ -66,25 +65,12 @@ impl Bus {
         // have made each command depend on the sim's loop.
         let question = Parcel::question(payload);
         let mut refused = false;
-        let answer = self.ask_at(priority, key, question.clone(), limit, |answer| {
+        let answer = self.session.ask(priority, key, question.clone(), limit, &mut |answer| {
             let is_sealed = question.is_answered_by(key, answer, token);
             refused |= !is_sealed;
             is_sealed
         })?;
         if answer.is_none() && refused { Err(BusError::Unsealed { key: key.to_owned() }) } else { Ok(answer) }
-    }
-
-    /// The first answer that `accept` accepts.
-    fn ask_at(
-        &self,
-        priority: Priority,
-        key: &str,
-        question: Parcel,
-        limit: Duration,
-        mut accept: impl FnMut(&Parcel) -> bool,
-    ) -> Result<Option<Vec<u8>>, BusError> {
-        let answer = self.session.ask(priority, key, question, limit, &mut accept)?;
-        Ok(answer.map(|answer| answer.bytes))
     }
 
     /// Sends a request to the sim at `key` that may need the game's token, and proves knowledge of
@@ -101,7 +87,7 @@ impl Bus {
         limit: Duration,
     ) -> Result<Option<T>, BusError> {
         self.check_may_ask(key)?;
-        let ask = |payload| self.ask_at(Priority::Urgent, key, Parcel::new(payload), limit, |_| true);
+        let ask = |payload| self.session.ask(Priority::Urgent, key, Parcel::new(payload), limit, &mut |_| true);
         token::request(self.token.as_ref(), key, body, ask)
     }
 
@@ -126,7 +112,7 @@ impl Bus {
     }
 
     fn check_may_ask(&self, key: &str) -> Result<(), BusError> {
-        match self.keys().map(Bundle::identity) {
+        match self.keys.as_ref().map(|keys| &keys.identity) {
             Some(identity) if !access::may_ask(identity, key) => {
                 Err(BusError::NotAllowed { identity: identity.clone() })
             }

@@ -69,6 +69,23 @@ pub(crate) fn runtime() -> &'static dyn Runtime {
     REPLACED.get().copied().unwrap_or(&System)
 }
 
+/// An unpredictable random number.
+#[must_use]
+pub fn random_number() -> u64 {
+    u64::from_le_bytes(random_bytes())
+}
+
+/// Unpredictable random bytes, for challenges, tickets and session names.
+///
+/// # Panics
+/// If the operating system cannot provide randomness.
+#[must_use]
+pub fn random_bytes<const N: usize>() -> [u8; N] {
+    let mut bytes = [0; N];
+    runtime().fill_random(&mut bytes);
+    bytes
+}
+
 /// Replaces [`System`] in this process. Call it before any use of the network; only the first call
 /// counts.
 pub fn replace_runtime(runtime: &'static dyn Runtime) {

@@ -57,8 +57,8 @@ pub trait Session: Send + Sync {
     /// Calls `receive` with every query at `key`.
     fn answer(&self, key: String, receive: OnQuery) -> Result<Declaration, BusError>;
 
-    /// Queries `key`, and returns the first answer within `limit` that `accept` accepts. A query
-    /// that is not urgent has lower priority than all published messages.
+    /// Queries `key`, and returns the bytes of the first answer within `limit` that `accept`
+    /// accepts. A query that is not urgent has lower priority than all published messages.
     fn ask(
         &self,
         priority: Priority,
@@ -66,7 +66,7 @@ pub trait Session: Send + Sync {
         question: Parcel,
         limit: Duration,
         accept: &mut dyn FnMut(&Parcel) -> bool,
-    ) -> Result<Option<Parcel>, BusError>;
+    ) -> Result<Option<Vec<u8>>, BusError>;
 
     /// Shows a liveliness token under `key` until it is dropped or the node dies.
     fn show_alive(&self, key: String) -> Result<Declaration, BusError>;

@@ -147,7 +147,7 @@ struct Request {
 /// The wire format of an answer: JSON.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-enum Answer<T> {
+pub(crate) enum Answer<T> {
     Challenge(String),
     Answer(T),
 }
@@ -173,40 +173,22 @@ pub fn request<B: Serialize, T: DeserializeOwned>(
     let mut payload = first(body);
     for _ in 0..ATTEMPTS {
         let Some(answer) = ask(payload)? else { return Ok(None) };
-        match read(token, key, body, &answer).map_err(|e| refused(format!("cannot parse the reply: {e}")))? {
-            Answered::Answer(answer) => return Ok(Some(answer)),
-            Answered::Again(again) => payload = again,
-            Answered::NeedsToken => return Err(BusError::NeedsToken),
+        let answer = serde_json::from_slice(&answer);
+        match answer.map_err(|e| refused(format!("cannot parse the reply: {e}")))? {
+            Answer::Answer(answer) => return Ok(Some(answer)),
+            Answer::Challenge(challenge) => {
+                payload = proven(token.ok_or(BusError::NeedsToken)?, key, body, challenge);
+            }
         }
     }
     Err(BusError::WrongToken)
 }
 
-/// The meaning of an answer.
-pub(crate) enum Answered<T> {
-    Answer(T),
-    /// Repeat the request in this form.
-    Again(Vec<u8>),
-    /// The request needs a token, and none is known.
-    NeedsToken,
-}
-
-/// Reads an answer to a request on `key`.
-pub(crate) fn read<B: Serialize, T: DeserializeOwned>(
-    token: Option<&Token>,
-    key: &str,
-    body: &B,
-    answer: &[u8],
-) -> serde_json::Result<Answered<T>> {
-    Ok(match (serde_json::from_slice(answer)?, token) {
-        (Answer::Answer(answer), _) => Answered::Answer(answer),
-        (Answer::Challenge(challenge), Some(token)) => {
-            let body = spelled(body);
-            let proof = Some(token.prove(challenge, key, body.get().as_bytes()));
-            Answered::Again(json(&Request { body, proof }))
-        }
-        (Answer::Challenge(_), None) => Answered::NeedsToken,
-    })
+/// The request on `key` again, with the proof that a challenge asks for.
+fn proven<T: Serialize>(token: &Token, key: &str, body: &T, challenge: String) -> Vec<u8> {
+    let body = spelled(body);
+    let proof = Some(token.prove(challenge, key, body.get().as_bytes()));
+    json(&Request { body, proof })
 }
 
 /// The answer to a granted request.
@@ -311,13 +293,16 @@ mod tests {
         guard.check(key, payload, |_| true)
     }
 
+    /// The challenge in the answer to a request without a proof.
+    fn challenge(guard: &mut Guard, payload: &[u8]) -> String {
+        let Checked::Challenged(answer) = check(guard, KEY, payload) else { panic!("it needs a proof") };
+        let Ok(Answer::<()>::Challenge(challenge)) = serde_json::from_slice(&answer) else { panic!("a challenge") };
+        challenge
+    }
+
     /// The reply of a node with this token to a challenge.
     fn proven(guard: &mut Guard, token: &Token, body: &str) -> Vec<u8> {
-        let Checked::Challenged(challenge) = check(guard, KEY, &first(&body)) else { panic!("it needs a proof") };
-        match read::<_, String>(Some(token), KEY, &body, &challenge).expect("an answer") {
-            Answered::Again(again) => again,
-            Answered::Answer(_) | Answered::NeedsToken => panic!("it was challenged"),
-        }
+        super::proven(token, KEY, &body, challenge(guard, &first(&body)))
     }
 
     fn is_granted(checked: Checked<String>, body: &str) -> bool {
@@ -347,17 +332,15 @@ mod tests {
         let unasked = Request { body: spelled(&"x"), proof: Some(token.prove("00".repeat(16), KEY, br#""x""#)) };
         assert!(matches!(check(&mut guard, KEY, &json(&unasked)), Checked::Challenged(_)), "a challenge of its own");
         assert!(matches!(check(&mut guard, KEY, b"{}"), Checked::Garbage(_)));
-        assert!(matches!(read::<_, String>(None, KEY, &"x", br#"{"challenge":"ab"}"#), Ok(Answered::NeedsToken)));
+        let asked = request::<_, String>(None, KEY, &"x", |_| Ok(Some(br#"{"challenge":"ab"}"#.to_vec())));
+        assert!(matches!(asked, Err(BusError::NeedsToken)));
     }
 
     #[test]
     fn a_request_counts_as_it_is_spelled() {
         let token = Token::random();
         let mut guard = guard(&token);
-        let Checked::Challenged(challenge) = check(&mut guard, KEY, br#"{ "body": "a\u0062" }"#) else {
-            panic!("a proof")
-        };
-        let Ok(Answer::<()>::Challenge(challenge)) = serde_json::from_slice(&challenge) else { panic!("a challenge") };
+        let challenge = challenge(&mut guard, br#"{ "body": "a\u0062" }"#);
         let Proof { challenge, mac } = token.prove(challenge, KEY, br#""a\u0062""#);
         let again = format!(r#"{{"proof": {{"mac": "{mac}", "challenge": "{challenge}"}}, "body":  "a\u0062" }}"#);
         assert!(is_granted(check(&mut guard, KEY, again.as_bytes()), "ab"));

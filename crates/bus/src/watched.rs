@@ -35,36 +35,17 @@ impl<T> Watched<T> {
             match runtime.wait(self.address(), deadline) {
                 Some(true) => {}
                 Some(false) => return holds(&self.state.lock()),
-                None => return self.wait_for_change(limit, holds),
+                None => {
+                    let mut state = self.state.lock();
+                    return !self.changed.wait_while_for(&mut state, |state| !holds(state), limit).timed_out();
+                }
             }
         }
         true
     }
 
-    fn wait_for_change(&self, limit: Duration, mut holds: impl FnMut(&T) -> bool) -> bool {
-        let mut state = self.state.lock();
-        !self.changed.wait_while_for(&mut state, |state| !holds(state), limit).timed_out()
-    }
-
     /// The address by which a runtime identifies this value.
     fn address(&self) -> usize {
         std::ptr::from_ref(self).addr()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::Watched;
-    use std::sync::Arc;
-    use std::time::Duration;
-
-    #[test]
-    fn a_reader_sees_what_is_written_and_does_not_wait_forever() {
-        let watched = Arc::new(Watched::new(0));
-        assert!(!watched.wait(Duration::from_millis(1), |n| *n == 1));
-        let writer = Arc::clone(&watched);
-        let thread = std::thread::spawn(move || writer.visit(|n| *n = 1));
-        assert!(watched.wait(Duration::from_secs(60), |n| *n == 1));
-        thread.join().expect("it writes");
     }
 }

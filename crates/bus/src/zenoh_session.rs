@@ -108,7 +108,7 @@ impl Session for ZenohSession {
         question: Parcel,
         limit: Duration,
         accept: &mut dyn FnMut(&Parcel) -> bool,
-    ) -> Result<Option<Parcel>, BusError> {
+    ) -> Result<Option<Vec<u8>>, BusError> {
         let priority = match priority {
             Priority::Urgent => qos::Priority::RealTime,
             Priority::Normal => qos::Priority::DataLow,
@@ -124,7 +124,7 @@ impl Session for ZenohSession {
         let replies = query.wait().map_err(failed("ask at", key))?;
         let answers = std::iter::from_fn(|| replies.recv().ok()).filter_map(|reply| reply.into_result().ok());
         let mut parcels = answers.map(|sample| Parcel::of(Some(sample.payload()), sample.attachment()));
-        Ok(parcels.find(accept))
+        Ok(parcels.find(accept).map(|answer| answer.bytes))
     }
 
     fn show_alive(&self, key: String) -> Result<Declaration, BusError> {

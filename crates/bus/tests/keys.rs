@@ -4,8 +4,6 @@ use bus::keys::{Bundle, Identity, make};
 use bus::{Bus, BusError, Delivery, Net, Priority, Query, Watched, clock};
 use messages::topic::{self, GameName};
 use scenario::Scenario;
-use std::io::Write;
-use std::net::TcpStream;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
@@ -72,7 +70,7 @@ fn whose_keys_do_not_fit_is_told_why() {
     let (sim, endpoint) = hub(bundle(&own, "sim"));
     let _sim = sim.expect("it listens");
     let blue = leaf(&endpoint, bundle(&own, "team-blue")).expect("it is let in");
-    assert_eq!(blue.keys().map(Bundle::identity), Some(&team("blue")));
+    assert_eq!(blue.keys.as_ref().map(|keys| &keys.identity), Some(&team("blue")));
     let text = refused(&endpoint, bundle(&foreign, "team-blue"));
     assert!(text.contains("another authority") && text.contains(endpoint.trim_start_matches("tcp/")), "{text}");
     assert!(matches!(leaf(&endpoint, None), Err(BusError::NeedsKeys(_))), "no keys");
@@ -90,25 +88,6 @@ fn whose_keys_do_not_fit_is_told_why() {
     let _sim = sim.expect("it listens");
     let text = refused(&endpoint, bundle(&own, "observer"));
     assert!(text.contains("does not speak TLS"), "{text}");
-}
-
-#[test]
-fn handshakes_that_fail_keep_nobody_out() {
-    let own = keys(&["127.0.0.1"], DAY);
-    let (sim, endpoint) = hub(bundle(&own, "sim"));
-    let _sim = sim.expect("it listens");
-    let strangers: Vec<TcpStream> = (0..200)
-        .map(|_| {
-            let mut stranger = TcpStream::connect(endpoint.trim_start_matches("tcp/")).expect("it listens");
-            stranger.write_all(b"GET / HTTP/1.1\r\n\r\n").expect("it is sent");
-            stranger
-        })
-        .collect();
-    // zenoh would refuse all connections for 0.1 s after each failure, and stop after ten.
-    let start = clock::now();
-    leaf(&endpoint, bundle(&own, "observer")).expect("it is let in");
-    assert!(clock::since(start) < Duration::from_secs(8), "{:?}", clock::since(start));
-    drop(strangers);
 }
 
 #[test]
@@ -156,7 +135,7 @@ fn keys_are_for_their_owner_only_and_never_written_over() {
     assert_eq!([mode("sim"), mode("sim/key.pem"), mode("team-blue/key.pem")], [0o700, 0o600, 0o600]);
     let again = make(own.path(), &[Identity::Observer], &[], DAY).expect_err("it is there already").to_string();
     assert!(again.contains("observer"), "{again}");
-    assert_eq!(Bundle::load(&own.path().join("sim")).expect("good keys").hosts(), ["localhost"]);
+    assert_eq!(Bundle::load(&own.path().join("sim")).expect("good keys").hosts, ["localhost"]);
 }
 
 /// Whether `to` receives what `from` publishes. It does not if only a later message has arrived.

@@ -14,8 +14,8 @@ pub fn open(file: &Path, to: &str) -> Result<Recording> {
 /// Opens a recording of any kind.
 pub fn open_any(file: &Path, to: &str) -> Result<Bag> {
     let bag = Bag::open(file).with_context(|| format!("cannot {to} {}", file.display()))?;
-    if let [first, ..] = bag.damage() {
-        let places = bag.damage().len();
+    if let [first, ..] = &bag.damage[..] {
+        let places = bag.damage.len();
         let of = if places == 1 { String::new() } else { format!(" (the first of {places} damaged ranges)") };
         let place = format!("bytes {} to {}{of}", first.start, first.end - 1);
         let file = file.display();

@@ -119,8 +119,9 @@ impl fmt::Display for Reported {
 }
 
 /// An operator's command to a gateway.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum OperatorCommand {
     /// Return the status.
     Status,

@@ -77,12 +77,17 @@ impl RecordingError {
 #[derive(Debug)]
 pub struct Bag {
     source: Source,
-    kind: Kind,
+    /// The kind of recording.
+    pub kind: Kind,
     facts: Facts,
-    began_utc_ns: u64,
-    result: Option<Facts>,
-    is_cut: bool,
-    damage: Vec<Range<u64>>,
+    /// Start of the recording: UTC, ns since 1970.
+    pub began_utc_ns: u64,
+    /// The facts written at its end; none if the file is truncated.
+    pub result: Option<Facts>,
+    /// Whether the file is truncated.
+    pub is_cut: bool,
+    /// Byte ranges whose checksums do not match: their content may be wrong or missing.
+    pub damage: Vec<Range<u64>>,
     channels: BTreeMap<u16, Channel>,
     index: Index,
 }
@@ -163,51 +168,21 @@ impl Bag {
         Ok(Bag { source, kind, facts, began_utc_ns, result, is_cut, damage, channels, index })
     }
 
-    /// The kind of recording.
-    #[must_use]
-    pub fn kind(&self) -> Kind {
-        self.kind
-    }
-
     /// A fact of the header; empty if missing.
     #[must_use]
     pub fn fact(&self, key: &str) -> &str {
         self.facts.get(key).map_or("", String::as_str)
     }
 
-    /// Start of the recording: UTC, ns since 1970.
-    #[must_use]
-    pub fn began_utc_ns(&self) -> u64 {
-        self.began_utc_ns
-    }
-
-    /// The facts written at its end; none if the file is truncated.
-    #[must_use]
-    pub fn result(&self) -> Option<&Facts> {
-        self.result.as_ref()
-    }
-
-    /// Whether the file is truncated.
-    #[must_use]
-    pub fn is_cut(&self) -> bool {
-        self.is_cut
-    }
-
-    /// Byte ranges whose checksums do not match: their content may be wrong or missing.
-    #[must_use]
-    pub fn damage(&self) -> &[Range<u64>] {
-        &self.damage
-    }
-
     /// Its size, bytes.
     #[must_use]
     pub fn size(&self) -> u64 {
-        self.source.length()
+        self.source.length
     }
 
     /// All messages, in recording order.
     pub fn messages(&self) -> impl ExactSizeIterator<Item = RecordedMessage<'_>> {
-        (0..self.index.count()).map(|place| self.message(place))
+        (0..self.index.count).map(|place| self.message(place))
     }
 
     /// The messages of one topic.
@@ -221,7 +196,7 @@ impl Bag {
         let is_wanted = move |place: &usize| {
             wanted.is_some() && self.index.entry(&self.source, *place).map(|entry| entry.channel) == wanted
         };
-        (0..self.index.count()).filter(is_wanted)
+        (0..self.index.count).filter(is_wanted)
     }
 
     /// The message at a position among all messages.
@@ -256,7 +231,7 @@ impl Bag {
     #[must_use]
     pub fn topics(&self) -> BTreeMap<&str, usize> {
         let mut topics = BTreeMap::new();
-        for (channel, count) in self.index.counts() {
+        for (channel, count) in &self.index.counts {
             let topic = self.channels.get(channel).map_or("", |channel| channel.topic.as_str());
             *topics.entry(topic).or_insert(0) += count;
         }

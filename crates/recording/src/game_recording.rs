@@ -84,7 +84,7 @@ impl Header {
         Ok(Header {
             commit: bag.fact("commit").to_owned(),
             game: bag.fact("game").to_owned(),
-            began_utc_ns: bag.began_utc_ns(),
+            began_utc_ns: bag.began_utc_ns,
             info: GameInfo { version: bag.fact("version").to_owned(), pace: bag.fact("pace").to_owned(), scenario },
             water: serde_json::from_str(bag.fact("water")).map_err(|e| RecordingError::not_understood("water", e))?,
         })
@@ -145,11 +145,11 @@ impl Recording {
     /// # Errors
     /// [`RecordingError`] if it is of another kind, or its header is invalid.
     pub fn of_bag(bag: Bag) -> Result<Recording, RecordingError> {
-        if bag.kind() != Kind::Game {
-            return Err(RecordingError::Kind { wanted: Kind::Game, found: bag.kind() });
+        if bag.kind != Kind::Game {
+            return Err(RecordingError::Kind { wanted: Kind::Game, found: bag.kind });
         }
         let header = Header::of(&bag)?;
-        let ending = bag.result().and_then(Ending::of);
+        let ending = bag.result.as_ref().and_then(Ending::of);
         Ok(Recording { header, ending, frames: OnceLock::new(), bag })
     }
 
@@ -180,7 +180,7 @@ impl Recording {
     /// Whether the file is truncated.
     #[must_use]
     pub fn is_cut(&self) -> bool {
-        self.bag.is_cut() || self.ending.is_none()
+        self.bag.is_cut || self.ending.is_none()
     }
 
     /// The number of frames.

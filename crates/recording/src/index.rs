@@ -55,9 +55,9 @@ struct Stretch {
 pub(crate) struct Index {
     stretches: Vec<Stretch>,
     /// The number of messages.
-    count: usize,
-    /// Number of messages, by channel.
-    counts: BTreeMap<u16, usize>,
+    pub(crate) count: usize,
+    /// The number of messages, by channel.
+    pub(crate) counts: BTreeMap<u16, usize>,
     /// The first and the last wall-clock time, ns.
     span_utc_ns: Option<(u64, u64)>,
     /// Start of the chunk of the message added last.
@@ -83,16 +83,6 @@ impl Index {
         *self.counts.entry(entry.channel).or_default() += 1;
         let (first, last) = self.span_utc_ns.unwrap_or((entry.utc_ns, entry.utc_ns));
         self.span_utc_ns = Some((first.min(entry.utc_ns), last.max(entry.utc_ns)));
-    }
-
-    /// The number of messages.
-    pub(crate) fn count(&self) -> usize {
-        self.count
-    }
-
-    /// The number of messages, by channel.
-    pub(crate) fn counts(&self) -> &BTreeMap<u16, usize> {
-        &self.counts
     }
 
     /// Wall-clock time from the first to the last message, ns.

@@ -243,13 +243,22 @@ mod tests {
     use std::io::{Cursor, ErrorKind, SeekFrom};
     use std::sync::Mutex;
 
-    /// A disk that blocks while another thread holds the lock.
-    #[derive(Clone, Default)]
-    struct Disk(Arc<Mutex<Cursor<Vec<u8>>>>);
+    /// A disk with room for a limited number of bytes. It blocks while another thread holds the
+    /// lock.
+    #[derive(Clone)]
+    struct Disk(Arc<Mutex<Cursor<Vec<u8>>>>, usize);
+
+    impl Disk {
+        fn of(room: usize) -> Disk {
+            Disk(Arc::default(), room)
+        }
+    }
 
     impl Write for Disk {
         fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-            self.0.lock().expect("nobody panics").write(bytes)
+            let mut written = self.0.lock().expect("nobody panics");
+            let room = self.1.saturating_sub(written.get_ref().len());
+            if room == 0 { Err(ErrorKind::StorageFull.into()) } else { written.write(&bytes[..bytes.len().min(room)]) }
         }
         fn flush(&mut self) -> std::io::Result<()> {
             Ok(())
@@ -262,32 +271,13 @@ mod tests {
         }
     }
 
-    /// A disk with room for a limited number of bytes.
-    struct Full(Cursor<Vec<u8>>, usize);
-
-    impl Write for Full {
-        fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-            let room = self.1.saturating_sub(self.0.get_ref().len());
-            if room == 0 { Err(ErrorKind::StorageFull.into()) } else { self.0.write(&bytes[..bytes.len().min(room)]) }
-        }
-        fn flush(&mut self) -> std::io::Result<()> {
-            Ok(())
-        }
-    }
-
-    impl Seek for Full {
-        fn seek(&mut self, to: SeekFrom) -> std::io::Result<u64> {
-            self.0.seek(to)
-        }
-    }
-
     fn opening() -> Opening {
         Opening { kind: Kind::Game, began_utc_ns: 0, facts: Facts::new(), more: vec![], teams: vec![] }
     }
 
     #[test]
     fn a_full_disk_is_told_and_everything_after_it_counted() {
-        let full = |room| Recorder::over(Full(Cursor::default(), room), PathBuf::new(), &opening(), WAITING_BYTES);
+        let full = |room| Recorder::over(Disk::of(room), PathBuf::new(), &opening(), WAITING_BYTES);
         assert!(full(4).is_err_and(|e| e.to_string().contains("no storage space")), "not even the beginning fits");
         let recorder = full(20_000).expect("it begins");
         (0..2000).for_each(|_| recorder.record(Entry::Decision(Box::default())));
@@ -297,7 +287,7 @@ mod tests {
 
     #[test]
     fn a_slow_disk_loses_the_newest_data_and_does_not_delay_the_game() {
-        let disk = Disk::default();
+        let disk = Disk::of(usize::MAX);
         let recorder = Recorder::over(disk.clone(), PathBuf::new(), &opening(), 100_000).expect("it begins");
         let stuck = disk.0.lock().expect("nobody panics");
         let mut recorded = 0;
@@ -311,7 +301,7 @@ mod tests {
         let state = recorder.end(Facts::new());
         assert_eq!((state.dropped, state.failed), (3, None));
         let bag = Bag::of(disk.0.lock().expect("nobody panics").get_ref().clone()).expect("a recording");
-        assert_eq!(bag.result().map(|result| result["dropped"].as_str()), Some("3"));
+        assert_eq!(bag.result.as_ref().map(|result| result["dropped"].as_str()), Some("3"));
         for topic in [FRAME, INPUTS] {
             assert_eq!(bag.on(topic).count() + 3, recorded as usize, "{topic}");
         }
@@ -324,7 +314,7 @@ mod tests {
     #[test]
     fn bulk_leaves_room_for_everything_else_and_the_file_is_completed_though_somebody_still_records_bulk() {
         for (size, waiting_max) in [(1000, 100_000), (1, WAITING_BYTES)] {
-            let disk = Disk::default();
+            let disk = Disk::of(usize::MAX);
             let recorder = Recorder::over(disk.clone(), PathBuf::new(), &opening(), waiting_max).expect("it begins");
             let stuck = disk.0.lock().expect("nobody panics");
             let bulk = recorder.bulk();
@@ -337,7 +327,7 @@ mod tests {
             assert_eq!(recorder.end(Facts::new()).failed, None);
             bulk.record(message("payload/camera", size));
             let bag = Bag::of(disk.0.lock().expect("nobody panics").get_ref().clone()).expect("a recording");
-            assert_eq!((bag.on("link/blue_one").count(), bag.is_cut()), (40, false), "pieces of {size} bytes");
+            assert_eq!((bag.on("link/blue_one").count(), bag.is_cut), (40, false), "pieces of {size} bytes");
             assert!(bag.on("payload/camera").count() > 40);
         }
     }

@@ -42,7 +42,7 @@ pub(crate) fn for_each_record(
     if source.array::<MAGIC>(0)?.is_none_or(|magic| magic != *mcap::MAGIC) {
         return Err(RecordingError::Foreign("it is not an MCAP file".to_owned()));
     }
-    let end = source.length();
+    let end = source.length;
     let mut place = MAGIC as u64;
     let mut is_cut = true;
     let mut damage = Vec::new();
@@ -163,7 +163,7 @@ fn chunk_records(source: &Source, body: &Range<u64>) -> Result<Range<u64>, Recor
     const NUMBERS: u64 = CHUNK_CRC_AT + 4;
     /// Longest name shown in a message.
     const NAME_MAX: u64 = 40;
-    let end = source.length();
+    let end = source.length;
     let name_length = source.array(body.start + NUMBERS)?.map(|length| u64::from(u32::from_le_bytes(length)));
     let name_at = body.start + NUMBERS + 4;
     let Some(name_length) = name_length.filter(|length| name_at + length <= end) else { return Ok(end..end) };

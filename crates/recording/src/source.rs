@@ -18,7 +18,8 @@ impl<T: Read + Seek + Send> Bytes for T {}
 /// The bytes of a recording, with the length it had when opened.
 pub(crate) struct Source {
     reader: Mutex<Reader>,
-    length: u64,
+    /// The number of bytes.
+    pub(crate) length: u64,
 }
 
 struct Reader {
@@ -49,11 +50,6 @@ impl Source {
 
     fn new(bytes: Box<dyn Bytes>, length: u64) -> Source {
         Source { reader: Mutex::new(Reader { bytes: BufReader::with_capacity(BUFFER, bytes), at: 0 }), length }
-    }
-
-    /// The number of bytes.
-    pub(crate) fn length(&self) -> u64 {
-        self.length
     }
 
     pub(crate) fn read(&self, place: Range<u64>) -> Result<Vec<u8>, Error> {

@@ -251,19 +251,19 @@ fn first_schema(bytes: &[u8]) -> usize {
 fn a_byte_that_is_another_is_noticed_and_its_chunk_named() {
     let whole = recorded(&[1.0]);
     let opened = Recording::of(whole.clone()).unwrap_or_else(|e| panic!("{e}"));
-    assert!(opened.bag().damage().is_empty(), "nothing is");
+    assert!(opened.bag().damage.is_empty(), "nothing is");
     let (all, schema) = (all_of(&opened), first_schema(&whole));
     for place in schema - 60..whole.len() {
         let mut bytes = whole.clone();
         bytes[place] ^= 0x10;
         let Ok(recording) = Recording::of(bytes) else { continue };
-        let is_noticed = recording.is_cut() || !recording.bag().damage().is_empty();
+        let is_noticed = recording.is_cut() || !recording.bag().damage.is_empty();
         assert!(is_noticed || all_of(&recording) == all, "byte {place} is another, and nobody says so");
     }
     let mut bytes = whole;
     bytes[schema] ^= 0x10;
     let damaged = Recording::of(bytes).unwrap_or_else(|e| panic!("{e}"));
-    let [range] = damaged.bag().damage() else { panic!("{:?}", damaged.bag().damage()) };
+    let [range] = &damaged.bag().damage[..] else { panic!("{:?}", damaged.bag().damage) };
     let schema = schema as u64;
     assert!((schema - 60..schema).contains(&range.start) && range.end > schema, "{range:?} of the schema at {schema}");
 }

@@ -221,8 +221,8 @@ impl Session for SimulatedSession {
         question: Parcel,
         limit: Duration,
         accept: &mut dyn FnMut(&Parcel) -> bool,
-    ) -> Result<Option<Parcel>, BusError> {
-        Ok(self.query(key, Asked::Payload(question), limit, accept))
+    ) -> Result<Option<Vec<u8>>, BusError> {
+        Ok(self.query(key, Asked::Payload(question), limit, accept).map(|answer| answer.bytes))
     }
 
     fn show_alive(&self, key: String) -> Result<Declaration, BusError> {

@@ -306,7 +306,7 @@ fn boats_text(orders: &StopOrders, now: Instant) -> String {
     let boats = orders.boats().map(|(name, boat)| match (&boat.state, boat.heard) {
         (Some(state), Some(heard)) => {
             let age_s = now.saturating_duration_since(heard).as_secs_f64();
-            format!("{name}  {}, {age_s:.1} s ago\n", if boat.is_silent() { "silent" } else { state })
+            format!("{name}  {}, {age_s:.1} s ago\n", if boat.is_silent { "silent" } else { state })
         }
         _ => format!("{name}  not heard yet\n"),
     });

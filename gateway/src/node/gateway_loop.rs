@@ -284,7 +284,7 @@ impl GatewayLoop<'_> {
                 self.game_clock.join(self.clock.at(joined.asked), joined.now);
                 if let Some(port) = self.port {
                     // In a game with keys the port keeps its own.
-                    if let Some(known) = self.settings.place.token().get() {
+                    if let Some(known) = self.settings.place.token.get() {
                         port.token().set(Some(known));
                     }
                     (self.notify)(NodeEvent::ControlPort { address: port.address, token: port.token().get() });
@@ -380,7 +380,7 @@ impl GatewayLoop<'_> {
 
     /// Answers a query; with an objection, nothing that needs the token is done.
     fn operate(&mut self, query: Query, objection: Option<&str>) -> Result<(), NodeError> {
-        let token = self.settings.place.token().get();
+        let token = self.settings.place.token.get();
         let refused = match self.guard.check(query.key(), query.payload(), OperatorCommand::needs_token) {
             Checked::Granted(command) if objection.is_some() && command.needs_token() => objection.map(str::to_owned),
             Checked::Granted(command) => self.execute(command)?,

@@ -107,7 +107,7 @@ pub fn serve(
     drop(settings.place.net(settings.game.as_ref()));
     // Until a game provides one, the port has a token of its own; in a game with keys it keeps
     // that.
-    let token = settings.place.token().get().unwrap_or_else(Token::random);
+    let token = settings.place.token.get().unwrap_or_else(Token::random);
     // Before the link: a port in use is an error before the boat receives anything from us.
     let port = ControlPort::open(outside.control, &settings.plan.vehicle, Some(token).into(), input.0.clone())?;
     // A boat that receives only standby needs no guard.
@@ -184,7 +184,7 @@ fn connect(
         encoder: StepEncoder::new(&plan.vehicle),
         counters: Counters::new(),
         notify: &mut *notify,
-        guard: Guard::new(settings.place.token().clone()),
+        guard: Guard::new(settings.place.token.clone()),
         port: port.as_ref(),
     };
     // On its own thread: a gateway that searched for its game first abandoned a moving boat

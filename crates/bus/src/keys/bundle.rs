@@ -17,10 +17,14 @@ const FILE_MAX: u64 = 1 << 16;
 /// The keys of one node: a folder made by [`make`](super::make()).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bundle {
-    folder: PathBuf,
-    identity: Identity,
-    hosts: Vec<String>,
-    valid: [String; 2],
+    /// The folder of the bundle.
+    pub folder: PathBuf,
+    /// The identity in the certificate.
+    pub identity: Identity,
+    /// The names and addresses that its certificate covers: those of a sim.
+    pub hosts: Vec<String>,
+    /// The period for which its certificate is valid, from and until, as text.
+    pub valid: [String; 2],
 }
 
 /// A file of a bundle, and what is wrong with it.
@@ -45,12 +49,11 @@ impl Bundle {
         }
         let (chain, key) = (certificates(&path(CERTIFICATE_FILE))?, private_key(&path(KEY_FILE))?);
         certificates(&path(AUTHORITY_FILE))?;
-        let refused = |name, problem: String| BundleError { file: path(name), problem };
         // zenoh would only report that it cannot open a session. This names the faulty file and its
         // fault before anything is opened.
         CertifiedKey::from_der(chain.clone(), key, &ring::default_provider())
-            .map_err(|e| refused(KEY_FILE, format!("is not the key of {CERTIFICATE_FILE}: {e}")))?;
-        let not_understood = |problem: String| refused(CERTIFICATE_FILE, problem);
+            .map_err(|e| refused(&path(KEY_FILE), format!("is not the key of {CERTIFICATE_FILE}: {e}")))?;
+        let not_understood = |problem: String| refused(&path(CERTIFICATE_FILE), problem);
         let (_, certificate) =
             X509Certificate::from_der(&chain[0]).map_err(|e| not_understood(format!("is not a certificate: {e}")))?;
         let name = certificate.subject().iter_common_name().find_map(|name| name.as_str().ok()).unwrap_or_default();
@@ -61,30 +64,6 @@ impl Bundle {
         let (validity, hosts) = (certificate.validity(), hosts(&certificate));
         let valid = [validity.not_before, validity.not_after].map(|at| at.to_string());
         Ok(Bundle { folder: folder.to_owned(), identity, hosts, valid })
-    }
-
-    /// The identity in the certificate.
-    #[must_use]
-    pub fn identity(&self) -> &Identity {
-        &self.identity
-    }
-
-    /// The folder of the bundle.
-    #[must_use]
-    pub fn folder(&self) -> &Path {
-        &self.folder
-    }
-
-    /// The names and addresses that its certificate covers: those of a sim.
-    #[must_use]
-    pub fn hosts(&self) -> &[String] {
-        &self.hosts
-    }
-
-    /// The period for which its certificate is valid, from and until, as text.
-    #[must_use]
-    pub fn valid(&self) -> &[String; 2] {
-        &self.valid
     }
 
     /// The paths of the authority, the certificate and the key.

@@ -36,7 +36,7 @@ pub(crate) fn refusal(endpoint: &str, keys: &Bundle) -> Option<BusError> {
         tls.complete_io(&mut stream).and_then(|_| rustls::Stream::new(&mut tls, &mut stream).read(&mut [0; 1]));
     let error = outcome.err()?;
     if let Some(error) = error.get_ref().and_then(|inner| inner.downcast_ref::<Error>()) {
-        return Some(refused(explained(error, host, keys.identity())));
+        return Some(refused(explained(error, host, &keys.identity)));
     }
     // A suspended sim does not answer either, and may resume.
     let reason = "who listens there does not speak TLS: the game may be served without keys".to_owned();

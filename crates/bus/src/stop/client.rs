@@ -4,12 +4,12 @@
 use super::datagram::States;
 use super::gateway_link::{Asked, DatagramPath, GatewayPath, OnNews, PathNews};
 use super::orders::{Saying, Source, StopOrders};
-use super::{StopCommand, StopNews, publisher};
+use super::{StopCommand, StopNews, StopTopics};
 use crate::net::address;
-use crate::{Bus, BusError, CurrentToken, Declaration, Publisher, Token, Watched, clock, control, start_thread};
+use crate::{Bus, BusError, CurrentToken, Publisher, Token, Watched, clock, control, start_thread};
 use messages::Control;
 use messages::external::{FleetCommand, GatewayCommand, GatewayStatus, OperatorCommand};
-use messages::topic::{self, GameName};
+use messages::topic::GameName;
 use parking_lot::Mutex;
 use std::collections::BTreeMap;
 use std::io;
@@ -31,21 +31,12 @@ pub struct StopClient(Arc<Shared>);
 /// The state that its threads share.
 struct Shared {
     orders: Watched<StopOrders>,
-    game: Mutex<Option<Arc<GamePath>>>,
+    game: Mutex<Option<Arc<StopTopics>>>,
     gateways: Mutex<BTreeMap<SocketAddr, GatewayPath>>,
     /// Control ports named in statuses, not opened yet.
     named: Mutex<BTreeMap<SocketAddr, String>>,
     hubs: Mutex<Vec<DatagramPath>>,
     is_closing: AtomicBool,
-}
-
-/// The topics of a game.
-struct GamePath {
-    bus: Bus,
-    name: GameName,
-    control: Publisher,
-    stops: BTreeMap<String, Publisher>,
-    _statuses: Vec<Declaration>,
 }
 
 impl StopClient {
@@ -111,16 +102,10 @@ impl StopClient {
     /// # Errors
     /// [`BusError`] if the session is closed.
     pub fn join(&self, bus: &Bus, game: &GameName, boats: &[String]) -> Result<(), BusError> {
-        let (mut stops, mut statuses, is_here) = (BTreeMap::new(), Vec::new(), bus.is_on_this_machine());
-        for boat in boats {
-            stops.insert(boat.clone(), publisher(bus, topic::stop(game, boat))?);
-            let shared = Arc::downgrade(&self.0);
-            statuses.push(bus.subscribe_status(game, boat, move |status| {
-                shared.upgrade().iter().for_each(|shared| shared.hear(&status, is_here));
-            })?);
-        }
-        let control = publisher(bus, topic::control(game))?;
-        let path = GamePath { bus: bus.clone(), name: game.clone(), control, stops, _statuses: statuses };
+        let (shared, is_here) = (Arc::downgrade(&self.0), bus.is_on_this_machine);
+        let path = StopTopics::open(bus, game, boats, move |status| {
+            shared.upgrade().iter().for_each(|shared| shared.hear(&status, is_here));
+        })?;
         let before = self.0.game.lock().replace(Arc::new(path));
         // A callback of a dropped subscription may still be running, so no lock is held here.
         drop(before);
@@ -187,7 +172,7 @@ impl StopClient {
 
     /// Waits up to `limit` for news and returns it.
     pub fn news(&self, limit: Duration) -> Vec<StopNews> {
-        self.0.orders.wait(limit, StopOrders::has_news);
+        self.0.orders.wait(limit, |orders| !orders.news.is_empty());
         self.0.orders.visit(StopOrders::take_news)
     }
 }
@@ -213,7 +198,7 @@ impl Shared {
             self.say(now);
             let named = std::mem::take(&mut *self.named.lock());
             for (at, vehicle) in named {
-                let token = self.game.lock().as_ref().and_then(|game| game.bus.token().cloned());
+                let token = self.game.lock().as_ref().and_then(|game| game.bus.token.clone());
                 // The next status names it again.
                 drop(self.add_gateway(at, Some(&vehicle), token));
             }
@@ -222,9 +207,9 @@ impl Shared {
                 status_at = now + STATUS_AGAIN;
                 self.ask_status();
             }
-            let (next, changes) = self.orders.visit(|orders| (orders.next(now), orders.changes()));
+            let (next, changes) = self.orders.visit(|orders| (orders.next(now), orders.changes));
             let wait = next.saturating_duration_since(clock::now());
-            self.orders.wait(wait, |orders| orders.changes() != changes);
+            self.orders.wait(wait, |orders| orders.changes != changes);
         }
     }
 
@@ -309,7 +294,7 @@ impl Shared {
     /// Asks the sim to stop all boats and waits for its answer: it stops the boats that it
     /// simulates.
     fn ask_sim(self: &Arc<Self>, stop: u64) {
-        let game = self.game.lock().as_ref().map(|game| (game.bus.clone(), game.name.clone()));
+        let game = self.game.lock().as_ref().map(|game| (game.bus.clone(), game.game.clone()));
         let Some((bus, name)) = game else { return };
         let shared = Arc::downgrade(self);
         let asked = start_thread("stop-sim", move || {

@@ -16,29 +16,22 @@ const FILLED: usize = 1200;
 /// The key of answers, in proofs.
 const ANSWER_KEY: &str = "stop datagram";
 
-/// A request in a datagram: a stop, or a request for the status.
-#[derive(Clone, Debug, PartialEq)]
+/// A request in a datagram: a stop, or a request for the status. A line of a control port has the
+/// same format.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StopRequest {
+    /// The command; never one that needs a token.
+    #[serde(rename = "body")]
+    pub command: GatewayCommand,
     /// A random number that identifies the sender.
+    #[serde(default)]
     pub session: u64,
     /// Sequence number of the request.
+    #[serde(default)]
     pub number: u64,
     /// The game; if unset, any.
-    pub game: Option<String>,
-    /// The command; never one that needs a token.
-    pub command: GatewayCommand,
-}
-
-/// The wire format. A line of a control port has it too.
-#[derive(Serialize, Deserialize)]
-struct RequestDatagram {
-    body: Box<RawValue>,
-    #[serde(default)]
-    session: u64,
-    #[serde(default)]
-    number: u64,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    game: Option<String>,
+    pub game: Option<String>,
 }
 
 /// The states of boats, by name: the state as text, and its age when the answer was made, ms. The
@@ -63,9 +56,7 @@ impl StopRequest {
     /// Never: a request is JSON.
     #[must_use]
     pub fn encode(&self) -> Vec<u8> {
-        let body = to_raw_value(&self.command).expect("a command is JSON");
-        let datagram = RequestDatagram { body, session: self.session, number: self.number, game: self.game.clone() };
-        let mut bytes = serde_json::to_vec(&datagram).expect("a request is JSON");
+        let mut bytes = serde_json::to_vec(self).expect("a request is JSON");
         // The answer may be no longer than the request, and has to name all boats. With its headers
         // it stays below the 1280 bytes that every IPv6 link carries (RFC 8200); a fragmented
         // datagram is lost with any one fragment.
@@ -79,11 +70,10 @@ impl StopRequest {
         if bytes.len() > DATAGRAM_MAX {
             return None;
         }
-        let RequestDatagram { body, session, number, game } = serde_json::from_slice(bytes).ok()?;
-        let command: GatewayCommand = serde_json::from_str(body.get()).ok()?;
+        let request: StopRequest = serde_json::from_slice(bytes).ok()?;
         // A datagram has no challenge: a recorded one could be replayed. It is accepted only for
         // commands that any node may repeat.
-        (!command.needs_token()).then_some(StopRequest { session, number, game, command })
+        (!request.command.needs_token()).then_some(request)
     }
 
     /// The answer with the states of boats; `None` if it does not fit into `room` bytes, the length

@@ -1,14 +1,15 @@
 //! The sim's ports for stop datagrams, besides the links of its session.
 
+use super::StopTopics;
 use super::datagram::{States, StopRequest};
 use super::datagram_port::DatagramPort;
-use super::publisher;
 use crate::net::address;
 use crate::runtime::runtime;
-use crate::{Bus, BusError, Declaration, Net, Publisher, Watched, clock};
+use crate::{Bus, BusError, Net, Publisher, clock};
 use messages::Control;
 use messages::external::{FleetCommand, GatewayCommand, OperatorCommand};
-use messages::topic::{self, GameName};
+use messages::topic::GameName;
+use parking_lot::Mutex;
 use std::collections::BTreeMap;
 use std::net::{ToSocketAddrs, UdpSocket};
 use std::sync::Arc;
@@ -18,21 +19,15 @@ use std::time::{Duration, Instant};
 const FRESH: Duration = Duration::from_secs(3);
 
 /// The ports of a sim, closed on drop.
-pub struct HubStopPort {
-    _ports: Vec<DatagramPort>,
-    _statuses: Vec<Declaration>,
-}
+pub struct HubStopPort(#[expect(dead_code, reason = "kept for its drop")] Vec<DatagramPort>);
 
 /// The states of the real boats by name, and when each was heard.
 type Heard = BTreeMap<String, Option<(String, Instant)>>;
 
 /// The state that the threads share.
 struct Server {
-    game: GameName,
-    bus: Bus,
-    control: Publisher,
-    stops: BTreeMap<String, Publisher>,
-    heard: Arc<Watched<Heard>>,
+    topics: StopTopics,
+    heard: Arc<Mutex<Heard>>,
 }
 
 impl HubStopPort {
@@ -42,21 +37,16 @@ impl HubStopPort {
     /// # Errors
     /// [`BusError`] if a port is taken, or the session is closed.
     pub fn open(bus: &Bus, net: &Net, game: &GameName, boats: &[String]) -> Result<HubStopPort, BusError> {
-        let heard = Arc::new(Watched::new(boats.iter().map(|boat| (boat.clone(), None)).collect::<Heard>()));
-        let (mut stops, mut statuses) = (BTreeMap::new(), Vec::new());
         // A datagram carries no certificate, and a game with keys accepts nothing without one.
         if !runtime().has_sockets() || net.keys.is_some() {
-            return Ok(HubStopPort { _ports: vec![], _statuses: vec![] });
+            return Ok(HubStopPort(vec![]));
         }
-        for boat in boats {
-            stops.insert(boat.clone(), publisher(bus, topic::stop(game, boat))?);
-            let heard = Arc::clone(&heard);
-            statuses.push(bus.subscribe_status(game, boat, move |status| {
-                heard.visit(|heard| heard.insert(status.vehicle, Some((status.state, clock::now()))));
-            })?);
-        }
-        let control = publisher(bus, topic::control(game))?;
-        let server = Arc::new(Server { game: game.clone(), bus: bus.clone(), control, stops, heard });
+        let heard = Arc::new(Mutex::new(boats.iter().map(|boat| (boat.clone(), None)).collect::<Heard>()));
+        let told = Arc::clone(&heard);
+        let topics = StopTopics::open(bus, game, boats, move |status| {
+            told.lock().insert(status.vehicle, Some((status.state, clock::now())));
+        })?;
+        let server = Arc::new(Server { topics, heard });
         let mut ports = Vec::new();
         for endpoint in net.listen.iter().filter(|endpoint| endpoint.starts_with("tcp/")) {
             let failed = |e: std::io::Error| BusError::Open {
@@ -75,14 +65,15 @@ impl HubStopPort {
                 ports.push(DatagramPort::open(socket, "stops", move |bytes| server.serve(bytes)).map_err(failed)?);
             }
         }
-        Ok(HubStopPort { _ports: ports, _statuses: statuses })
+        Ok(HubStopPort(ports))
     }
 }
 
 impl Server {
     fn serve(&self, bytes: &[u8]) -> Option<Vec<u8>> {
         let request = StopRequest::decode(bytes)?;
-        if request.game.as_ref().is_some_and(|game| game != self.game.as_str()) {
+        let StopTopics { bus, game: own, control, stops, .. } = &self.topics;
+        if request.game.as_ref().is_some_and(|game| game != own.as_str()) {
             return None;
         }
         let publish = |publisher: &Publisher, json: serde_json::Result<Vec<u8>>| {
@@ -91,11 +82,11 @@ impl Server {
         };
         match &request.command {
             // This session receives it too.
-            GatewayCommand::Fleet(FleetCommand::EStop) => publish(&self.control, serde_json::to_vec(&Control::EStop)),
+            GatewayCommand::Fleet(FleetCommand::EStop) => publish(control, serde_json::to_vec(&Control::EStop)),
             GatewayCommand::Boat { name, command } if *command != OperatorCommand::Status => {
                 // Published by the sim's session, which needs no rule at the hub. An unknown boat
                 // gets no answer: nothing can be learnt.
-                publish(self.stops.get(name)?, serde_json::to_vec(command));
+                publish(stops.get(name)?, serde_json::to_vec(command));
             }
             _ => {}
         }
@@ -106,8 +97,7 @@ impl Server {
             fresh.map(|(state, age)| (state.clone(), age.as_millis() as u64)).unwrap_or_default()
         };
         // Names all boats, so that the operator knows that there are no others.
-        let states: States =
-            self.heard.visit(|heard| heard.iter().map(|(boat, heard)| (boat.clone(), state(heard))).collect());
-        request.answer(bytes.len(), self.bus.token(), &states)
+        let states: States = self.heard.lock().iter().map(|(boat, heard)| (boat.clone(), state(heard))).collect();
+        request.answer(bytes.len(), bus.token.as_ref(), &states)
     }
 }

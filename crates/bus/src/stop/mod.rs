@@ -18,13 +18,38 @@ pub use datagram_port::DatagramPort;
 pub use hub_port::HubStopPort;
 pub use orders::{KnownBoat, StopNews, StopOrders};
 
-use crate::{Bus, BusError, Delivery, Priority, Publisher};
-use messages::external::OperatorCommand;
+use crate::{Bus, BusError, Declaration, Delivery, Priority, Publisher};
+use messages::external::{GatewayStatus, OperatorCommand};
+use messages::topic::{self, GameName};
+use std::collections::BTreeMap;
 
-/// A publisher of stops: before everything else, and not behind a lost packet, because stops are
-/// repeated.
-fn publisher(bus: &Bus, key: String) -> Result<Publisher, BusError> {
-    bus.publisher_with(key, Priority::Urgent, Delivery::Newest)
+/// The topics of a game with real boats on which these are stopped.
+struct StopTopics {
+    bus: Bus,
+    game: GameName,
+    control: Publisher,
+    stops: BTreeMap<String, Publisher>,
+    _statuses: Vec<Declaration>,
+}
+
+impl StopTopics {
+    /// Prepares to publish, and calls `take` with every status of the boats' gateways.
+    fn open(
+        bus: &Bus,
+        game: &GameName,
+        boats: &[String],
+        take: impl Fn(GatewayStatus) + Clone + Send + Sync + 'static,
+    ) -> Result<StopTopics, BusError> {
+        // Before everything else, and not behind a lost packet, because stops are repeated.
+        let publisher = |key| bus.publisher_with(key, Priority::Urgent, Delivery::Newest);
+        let (mut stops, mut statuses) = (BTreeMap::new(), Vec::new());
+        for boat in boats {
+            stops.insert(boat.clone(), publisher(topic::stop(game, boat))?);
+            statuses.push(bus.subscribe_status(game, boat, take.clone())?);
+        }
+        let control = publisher(topic::control(game))?;
+        Ok(StopTopics { bus: bus.clone(), game: game.clone(), control, stops, _statuses: statuses })
+    }
 }
 
 /// A command that stops boats.

@@ -42,15 +42,8 @@ pub struct KnownBoat {
     heard_itself: Option<Instant>,
     /// When its gateway started, by the status with the shortest delay.
     began: Option<Instant>,
-    is_silent: bool,
-}
-
-impl KnownBoat {
     /// Whether the boat has been silent for some time.
-    #[must_use]
-    pub fn is_silent(&self) -> bool {
-        self.is_silent
-    }
+    pub is_silent: bool,
 }
 
 /// News for an operator.
@@ -146,8 +139,10 @@ pub struct StopOrders {
     is_complete: bool,
     stops: Vec<Stop>,
     count: u64,
-    changes: u64,
-    news: VecDeque<StopNews>,
+    /// The number of requests and added paths so far.
+    pub(super) changes: u64,
+    /// The unread news.
+    pub(super) news: VecDeque<StopNews>,
 }
 
 impl StopOrders {
@@ -176,12 +171,6 @@ impl StopOrders {
         let is_for_all = self.stops.iter().any(|stop| stop.target.is_none());
         let is_sure = |stop: &Stop| now >= stop.asked + DOUBTED || stop.shown.values().all(|is_sure| *is_sure);
         (self.is_complete || !is_for_all) && self.unfinished().is_empty() && self.stops.iter().all(is_sure)
-    }
-
-    /// Whether there is unread news.
-    #[must_use]
-    pub fn has_news(&self) -> bool {
-        !self.news.is_empty()
     }
 
     /// Returns and clears the unread news.
@@ -239,11 +228,6 @@ impl StopOrders {
     pub(super) fn hurry(&mut self) {
         self.stops.iter_mut().for_each(|stop| stop.is_hurried = true);
         self.changes += 1;
-    }
-
-    /// The number of requests and added paths so far.
-    pub(super) fn changes(&self) -> u64 {
-        self.changes
     }
 
     /// The stops of all boats that no sim has answered.

@@ -44,8 +44,8 @@ fn check(mut bytes: &[u8]) {
     }
     match Bundle::load(FOLDER.path()) {
         Ok(bundle) => {
-            assert_eq!(bundle.identity().to_string().parse(), Ok(bundle.identity().clone()));
-            check_shown(&bundle.valid().join(" "));
+            assert_eq!(bundle.identity.to_string().parse(), Ok(bundle.identity.clone()));
+            check_shown(&bundle.valid.join(" "));
         }
         Err(error) => {
             check_shown(&error);

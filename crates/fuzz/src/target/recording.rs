@@ -83,7 +83,7 @@ fn check(bytes: &[u8]) {
         Err(error) => return check_shown(&error),
     };
     assert!(bag.messages().len() == bag.topics().values().sum::<usize>());
-    match bag.kind() {
+    match bag.kind {
         Kind::Gateway => match gateway::replay::replay(&bag) {
             Ok(replay) => drop(analysis::gateway_of(&bag, &replay.plan.vehicle)),
             Err(error) => check_shown(&error),

@@ -4,7 +4,8 @@
 //! file. The page places them relative to the field's datum.
 
 use primitives::input_file;
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
@@ -32,25 +33,15 @@ pub struct Background {
     pub(super) image: Option<(&'static str, Vec<u8>)>,
 }
 
-/// Why a background is rejected.
+/// Why a background is rejected: the file and its problem, with the values allowed.
 #[derive(Debug, Error)]
-pub enum BackgroundError {
-    /// The file cannot be read.
-    #[error("cannot read {}: {source}", path.display())]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// The system's error.
-        source: std::io::Error,
-    },
-    /// The content is invalid.
-    #[error("{}: {problem}", path.display())]
-    Bad {
-        /// The file.
-        path: PathBuf,
-        /// The problem, with the values allowed.
-        problem: String,
-    },
+#[error("{0}")]
+pub struct BackgroundError(String);
+
+impl BackgroundError {
+    fn of(path: &Path, problem: impl Display) -> BackgroundError {
+        BackgroundError(format!("{}: {problem}", path.display()))
+    }
 }
 
 impl Background {
@@ -61,7 +52,7 @@ impl Background {
     /// coordinates.
     pub fn read(path: &Path) -> Result<Background, BackgroundError> {
         let bytes = read(path, BYTES_MAX)?;
-        let bad = |problem| BackgroundError::Bad { path: path.to_owned(), problem };
+        let bad = |problem| BackgroundError::of(path, problem);
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         let kind = match imagesize::image_type(&bytes) {
             Ok(imagesize::ImageType::Png) => "image/png",
@@ -85,14 +76,14 @@ impl Background {
         }
         let (world_path, world) = world_file(path)?;
         let world = world_matrix(&world, [width as f64, height as f64])
-            .map_err(|problem| BackgroundError::Bad { path: world_path, problem })?;
+            .map_err(|problem| BackgroundError::of(&world_path, problem))?;
         let json = json!({"name": name, "image": {"width": width, "height": height, "world": world}}).to_string();
         Ok(Background { json, image: Some((kind, bytes)) })
     }
 }
 
 fn read(path: &Path, bytes_max: u64) -> Result<Vec<u8>, BackgroundError> {
-    input_file::read(path, bytes_max).map_err(|source| BackgroundError::Read { path: path.to_owned(), source })
+    input_file::read(path, bytes_max).map_err(|e| BackgroundError(format!("cannot read {}: {e}", path.display())))
 }
 
 fn world_file(image: &Path) -> Result<(PathBuf, String), BackgroundError> {
@@ -105,7 +96,7 @@ fn world_file(image: &Path) -> Result<(PathBuf, String), BackgroundError> {
              when they export an image in WGS 84)",
             names.join(", ")
         );
-        return Err(BackgroundError::Bad { path: image.to_owned(), problem });
+        return Err(BackgroundError::of(image, problem));
     };
     let text = String::from_utf8_lossy(&read(&path, WORLD_BYTES_MAX)?).into_owned();
     Ok((path, text))
@@ -201,62 +192,38 @@ impl Shoreline {
     }
 
     fn object(&mut self, value: &Value, at: &str) -> Result<(), String> {
-        let object = value.as_object().ok_or_else(|| format!("{} is not an object", named(at)))?;
-        match object.get("type").and_then(Value::as_str) {
-            Some("FeatureCollection") => self.each(object, "features", at, Shoreline::object),
-            Some("Feature") if object.get("geometry").is_none_or(Value::is_null) => Ok(()),
-            Some("Feature") => self.geometry(&object["geometry"], &within(at, "geometry"), &name_of(value)),
+        check_object(value, at)?;
+        match value["type"].as_str() {
+            Some("FeatureCollection") => {
+                each(&value["features"], &within(at, "features"), |it, at| self.object(it, at))
+            }
+            Some("Feature") if value["geometry"].is_null() => Ok(()),
+            Some("Feature") => {
+                let name = value["properties"]["name"].as_str().unwrap_or_default();
+                self.geometry(&value["geometry"], &within(at, "geometry"), name)
+            }
             _ => self.geometry(value, at, ""),
         }
     }
 
-    fn each(
-        &mut self,
-        object: &Map<String, Value>,
-        key: &str,
-        at: &str,
-        take: fn(&mut Shoreline, &Value, &str) -> Result<(), String>,
-    ) -> Result<(), String> {
-        let at = within(at, key);
-        let list = object.get(key).and_then(Value::as_array).ok_or_else(|| format!("{at} is not a list"))?;
-        list.iter().enumerate().try_for_each(|(i, value)| take(self, value, &format!("{at}[{i}]")))
-    }
-
     fn geometry(&mut self, value: &Value, at: &str, name: &str) -> Result<(), String> {
-        let object = value.as_object().ok_or_else(|| format!("{} is not an object", named(at)))?;
-        let kind = object.get("type").and_then(Value::as_str).unwrap_or_default();
-        let (coordinates, place) = (object.get("coordinates").unwrap_or(&Value::Null), within(at, "coordinates"));
-        match kind {
-            "Point" => self.point(coordinates, &place, name)?,
-            "MultiPoint" => {
-                for (i, each) in list(coordinates, &place)?.iter().enumerate() {
-                    self.point(each, &format!("{place}[{i}]"), name)?;
-                }
-            }
-            "LineString" => self.line(coordinates, &place)?,
-            "MultiLineString" => {
-                for (i, each) in list(coordinates, &place)?.iter().enumerate() {
-                    self.line(each, &format!("{place}[{i}]"))?;
-                }
-            }
-            "Polygon" => self.area(coordinates, &place)?,
-            "MultiPolygon" => {
-                for (i, each) in list(coordinates, &place)?.iter().enumerate() {
-                    self.area(each, &format!("{place}[{i}]"))?;
-                }
-            }
+        check_object(value, at)?;
+        let (kind, coordinates, place) = (&value["type"], &value["coordinates"], within(at, "coordinates"));
+        match kind.as_str().unwrap_or_default() {
+            "Point" => self.point(coordinates, &place, name),
+            "MultiPoint" => each(coordinates, &place, |it, at| self.point(it, at, name)),
+            "LineString" => self.line(coordinates, &place),
+            "MultiLineString" => each(coordinates, &place, |it, at| self.line(it, at)),
+            "Polygon" => self.area(coordinates, &place),
+            "MultiPolygon" => each(coordinates, &place, |it, at| self.area(it, at)),
             "GeometryCollection" => {
-                self.each(object, "geometries", at, |shoreline, each, at| shoreline.geometry(each, at, ""))?;
+                each(&value["geometries"], &within(at, "geometries"), |it, at| self.geometry(it, at, ""))
             }
-            _ => {
-                return Err(format!(
-                    "{} is {}, expected a GeoJSON type such as \"FeatureCollection\" or \"Polygon\"",
-                    within(at, "type"),
-                    object.get("type").unwrap_or(&Value::Null)
-                ));
-            }
+            _ => Err(format!(
+                "{} is {kind}, expected a GeoJSON type such as \"FeatureCollection\" or \"Polygon\"",
+                within(at, "type")
+            )),
         }
-        Ok(())
     }
 
     fn point(&mut self, value: &Value, at: &str, name: &str) -> Result<(), String> {
@@ -272,15 +239,13 @@ impl Shoreline {
     }
 
     fn area(&mut self, value: &Value, at: &str) -> Result<(), String> {
-        let rings = list(value, at)?.iter().enumerate();
-        let rings = rings.map(|(i, ring)| self.positions(ring, &format!("{at}[{i}]"))).collect::<Result<_, _>>()?;
+        let rings = each(value, at, |ring, at| self.positions(ring, at))?;
         self.areas.push(rings);
         Ok(())
     }
 
     fn positions(&mut self, value: &Value, at: &str) -> Result<Vec<[f64; 2]>, String> {
-        let places = list(value, at)?.iter().enumerate();
-        places.map(|(i, each)| self.position(each, &format!("{at}[{i}]"))).collect()
+        each(value, at, |it, at| self.position(it, at))
     }
 
     fn position(&mut self, value: &Value, at: &str) -> Result<[f64; 2], String> {
@@ -302,16 +267,22 @@ fn list<'a>(value: &'a Value, at: &str) -> Result<&'a Vec<Value>, String> {
     value.as_array().ok_or_else(|| format!("{at} is not a list"))
 }
 
-fn named(at: &str) -> &str {
-    if at.is_empty() { "the file" } else { at }
+/// Calls `take` with every item of a list and its place.
+fn each<C: FromIterator<T>, T>(
+    value: &Value,
+    at: &str,
+    mut take: impl FnMut(&Value, &str) -> Result<T, String>,
+) -> Result<C, String> {
+    list(value, at)?.iter().enumerate().map(|(i, item)| take(item, &format!("{at}[{i}]"))).collect()
+}
+
+fn check_object(value: &Value, at: &str) -> Result<(), String> {
+    let named = if at.is_empty() { "the file" } else { at };
+    if value.is_object() { Ok(()) } else { Err(format!("{named} is not an object")) }
 }
 
 fn within(at: &str, key: &str) -> String {
     if at.is_empty() { key.to_owned() } else { format!("{at}.{key}") }
-}
-
-fn name_of(feature: &Value) -> String {
-    feature["properties"]["name"].as_str().unwrap_or_default().to_owned()
 }
 
 #[cfg(test)]

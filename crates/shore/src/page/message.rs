@@ -93,10 +93,7 @@ pub(super) enum PageMessage<'a> {
         at_s: f64,
         modes: &'a [Option<String>],
     },
-    Curves {
-        #[serde(flatten)]
-        curves: &'a Curves<'a>,
-    },
+    Curves(&'a Curves<'a>),
     Estimate {
         vehicle: &'a str,
         x: f64,

@@ -89,8 +89,10 @@ pub enum PageError {
 
 /// A web server in its own thread. Dropping it closes the connections to all pages.
 pub struct Page {
-    address: SocketAddr,
-    operator_token: String,
+    /// The address on which it listens.
+    pub address: SocketAddr,
+    /// The token that pages need to operate real boats: the configured or a generated one.
+    pub operator_token: String,
     shown: Option<watch::Sender<Option<Arc<dyn View>>>>,
     report: LateReport,
     ended: Arc<AtomicBool>,
@@ -149,18 +151,6 @@ impl Page {
         Ok(Page { address, operator_token, shown: Some(shown), report, ended, thread: Some(thread) })
     }
 
-    /// The address on which it listens.
-    #[must_use]
-    pub fn address(&self) -> SocketAddr {
-        self.address
-    }
-
-    /// The token that pages need to operate real boats: the configured or a generated one.
-    #[must_use]
-    pub fn operator_token(&self) -> &str {
-        &self.operator_token
-    }
-
     /// Publishes a report with its games. Only the first call has an effect.
     pub fn publish(&self, report: Arc<dyn Report>) {
         self.report.get_or_init(|| report);
@@ -211,9 +201,13 @@ mod tests {
     use super::*;
 
     fn open(listen: &str, token: Option<&str>) -> Result<Page, PageError> {
-        let listen = listen.parse().expect("an address");
-        let token = token.map(str::to_owned);
-        Page::open(PageSettings { listen, token, hosts: vec![], background: None, stop: Arc::default() })
+        open_named(listen, token, &[])
+    }
+
+    fn open_named(listen: &str, token: Option<&str>, hosts: &[&str]) -> Result<Page, PageError> {
+        let hosts = hosts.iter().map(|host| (*host).to_owned()).collect();
+        let (listen, token) = (listen.parse().expect("an address"), token.map(str::to_owned));
+        Page::open(PageSettings { listen, token, hosts, background: None, stop: Arc::default() })
     }
 
     #[test]
@@ -227,16 +221,7 @@ mod tests {
 
     #[test]
     fn a_further_name_needs_a_token() {
-        let open = |token: Option<&str>| {
-            let (listen, hosts) = ("127.0.0.1:0".parse().unwrap(), vec!["boat.local".to_owned()]);
-            Page::open(PageSettings {
-                listen,
-                token: token.map(str::to_owned),
-                hosts,
-                background: None,
-                stop: Arc::default(),
-            })
-        };
+        let open = |token| open_named("127.0.0.1:0", token, &["boat.local"]);
         let error = open(None).err().expect("the page is refused").to_string();
         assert!(["boat.local", "--host", "--page-token-file"].iter().all(|word| error.contains(word)), "{error}");
         assert!(open(Some("secret")).is_ok());
@@ -245,7 +230,7 @@ mod tests {
     #[test]
     fn a_port_that_is_taken_is_an_error() {
         let first = open("127.0.0.1:0", None).expect("any port");
-        let again = open(&first.address().to_string(), None);
+        let again = open(&first.address.to_string(), None);
         assert!(matches!(again, Err(PageError::Listen { .. })));
     }
 }

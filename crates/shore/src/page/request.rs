@@ -108,12 +108,6 @@ impl PageRequest {
             PageRequest::Operate { .. } | PageRequest::Mission { .. } => Access::Operate,
         }
     }
-
-    /// Whether it changes a live game.
-    #[must_use]
-    pub fn acts(&self) -> bool {
-        self.needs() > Access::Watch
-    }
 }
 
 #[cfg(test)]

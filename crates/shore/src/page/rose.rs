@@ -41,23 +41,6 @@ pub(super) struct Policy {
 /// Number of actions listed per policy, the likeliest first.
 const ACTIONS: usize = 4;
 
-impl Policy {
-    fn new(scenario: &Scenario, vehicle: VehicleId, report: &PolicyReport, has_numbers: bool) -> Policy {
-        let mut words = report.words(scenario, vehicle);
-        words.actions.truncate(ACTIONS);
-        Policy {
-            behaviour: report.behaviour.clone(),
-            model: report.model.clone(),
-            course_deg: report.course_deg,
-            speed_m_s: report.speed_m_s,
-            option: report.option.clone(),
-            fault: report.fault.clone(),
-            actions: words.actions,
-            observed: if has_numbers { words.observed } else { vec![] },
-        }
-    }
-}
-
 /// An objective function.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(super) struct Function {
@@ -79,7 +62,20 @@ impl Helm {
             utility: function.utility,
             utilities: if has_utilities { percents(&function.utilities) } else { vec![] },
         };
-        let policy = |policy: &PolicyReport| Policy::new(scenario, report.vehicle, policy, has_utilities);
+        let policy = |policy: &PolicyReport| {
+            let mut words = policy.words(scenario, report.vehicle);
+            words.actions.truncate(ACTIONS);
+            Policy {
+                behaviour: policy.behaviour.clone(),
+                model: policy.model.clone(),
+                course_deg: policy.course_deg,
+                speed_m_s: policy.speed_m_s,
+                option: policy.option.clone(),
+                fault: policy.fault.clone(),
+                actions: words.actions,
+                observed: if has_utilities { words.observed } else { vec![] },
+            }
+        };
         Helm {
             at_s: report.at.as_s(),
             program: report.program.clone(),
@@ -161,9 +157,10 @@ fn whole(per_cent: f64) -> u8 {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use messages::helm::{DriftReport, FunctionReport};
+    use messages::helm::FunctionReport;
     use primitives::SimTime;
     use proptest::prelude::*;
+    use serde_json::json;
 
     pub(in super::super) fn scenario() -> Scenario {
         let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
@@ -175,26 +172,10 @@ pub(super) mod tests {
         FunctionReport { behaviour: "go".into(), contact, weight, utility: Some(50.0), utilities: utilities.to_vec() }
     }
 
-    pub(in super::super) fn report(functions: Vec<FunctionReport>) -> HelmReport {
-        HelmReport {
-            policies: vec![],
-            vehicle: VehicleId(0),
-            at: SimTime::from_s(1.5),
-            program: "pav01".into(),
-            mode: "attacking".into(),
-            course_deg: Some(90.0),
-            speed_m_s: Some(1.0),
-            heading_offset_deg: 0.0,
-            drift: DriftReport::default(),
-            hold: None,
-            value: None,
-            courses: 2,
-            speeds: 2,
-            speed_max_m_s: 2.0,
-            behaviours: vec![],
-            variables: vec![],
-            functions,
-        }
+    fn report(functions: Vec<FunctionReport>) -> HelmReport {
+        let report = json!({"vehicle": 0, "at": SimTime::from_s(1.5), "program": "pav01", "mode": "attacking",
+            "courses": 2, "speeds": 2, "speed_max_m_s": 2.0, "behaviours": [], "variables": [], "functions": []});
+        HelmReport { functions, ..serde_json::from_value(report).expect("a report") }
     }
 
     #[test]

@@ -259,7 +259,7 @@ mod tests {
                 session.next_message(now);
                 prop_assert!(session.undrawn <= UNDRAWN_MAX && session.refusals.len() <= REFUSALS_MAX);
             }
-            prop_assert!(asked.lock().unwrap().iter().all(|ask| !ask.acts()));
+            prop_assert!(asked.lock().unwrap().iter().all(|ask| ask.needs() == Access::Watch));
         }
     }
 }

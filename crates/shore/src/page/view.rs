@@ -93,7 +93,7 @@ impl Outgoing {
 }
 
 /// A frame with its leading byte, which states its purpose.
-pub(super) fn marked(byte: u8, cdr: &[u8]) -> Bytes {
+fn marked(byte: u8, cdr: &[u8]) -> Bytes {
     let mut bytes = Vec::with_capacity(1 + cdr.len());
     bytes.push(byte);
     bytes.extend_from_slice(cdr);

@@ -14,7 +14,7 @@ const AGAIN: u16 = 1013;
 #[test]
 fn the_page_is_served_under_its_own_names_and_sealed() {
     let page = page(show(), Some("a secret"), &["boat.local"]);
-    let at = page.address();
+    let at = page.address;
     for (host, path, status) in [
         (at.to_string(), "/", 200),
         (format!("localhost:{}", at.port()), "/index.html", 200),
@@ -22,6 +22,9 @@ fn the_page_is_served_under_its_own_names_and_sealed() {
         ("evil.example".to_owned(), "/", 403),
         ("evil.example".to_owned(), "/ws", 403),
         (at.to_string(), "/whale", 404),
+        (at.to_string(), "/whale.js", 404),
+        (at.to_string(), "/../Cargo.toml", 404),
+        (at.to_string(), "/%2e%2e/Cargo.toml", 404),
         (at.to_string(), "/ws", 400),
     ] {
         let (got, answer) = get(at, path, &host);
@@ -36,6 +39,7 @@ fn the_page_is_served_under_its_own_names_and_sealed() {
             assert!(low.contains(header), "no {header} in {answer}");
         }
         assert!(status != 403 || answer.contains("not known as"), "no reason in {answer}");
+        assert!(status != 200 || low.contains("content-type: text/html; charset=utf-8"), "no page in {answer}");
     }
     drop(page);
 }
@@ -43,14 +47,14 @@ fn the_page_is_served_under_its_own_names_and_sealed() {
 #[test]
 fn other_pages_cannot_open_a_websocket() {
     let page = page(show(), None, &[]);
-    let own = format!("http://{}", page.address());
+    let own = format!("http://{}", page.address);
     for (headers, refused) in [
         (vec![("Origin", own.as_str())], None),
         (vec![("Origin", "http://evil.example")], Some(403)),
         (vec![("Origin", "null")], Some(403)),
         (vec![("Host", "evil.example"), ("Origin", "http://evil.example")], Some(403)),
     ] {
-        assert_eq!(Client::connect(page.address(), "/ws", &headers).err(), refused, "{headers:?}");
+        assert_eq!(Client::connect(page.address, "/ws", &headers).err(), refused, "{headers:?}");
     }
 }
 
@@ -58,7 +62,7 @@ fn other_pages_cannot_open_a_websocket() {
 fn only_clients_that_present_the_token_have_rights() {
     let page = page(show(), Some("a secret"), &[]);
     for (path, rights) in [("/ws", false), ("/ws?token=guess", false), ("/ws?token=a%20secret", true)] {
-        let mut client = Client::connect(page.address(), path, &[]).expect("everyone may watch");
+        let mut client = Client::connect(page.address, path, &[]).expect("everyone may watch");
         assert_eq!(client.text()["rights"], rights, "{path}");
     }
 }
@@ -85,7 +89,7 @@ fn a_new_page_replaces_the_longest_idle_of_too_many() {
 #[test]
 fn those_who_only_look_keep_nobody_out_who_may_act() {
     let page = page(show(), Some("secret"), &[]);
-    let come = || Client::connect(page.address(), "/ws?token=secret", &[]).expect("a slot is free");
+    let come = || Client::connect(page.address, "/ws?token=secret", &[]).expect("a slot is free");
     let mut operators: Vec<Client> = (0..8).map(|_| come()).collect();
     let onlookers: Vec<Client> = (0..200).map(|_| open_viewer(&page)).collect();
     operators.iter_mut().for_each(|operator| assert_eq!(operator.text()["rights"], true));
@@ -102,7 +106,7 @@ fn those_who_only_look_keep_nobody_out_who_may_act() {
 fn a_request_that_does_not_come_to_its_end_is_not_waited_for() {
     let page = page(show(), None, &[]);
     let end = now() + Duration::from_secs(25);
-    let mut line = TcpStream::connect(page.address()).expect("the server listens");
+    let mut line = TcpStream::connect(page.address).expect("the server listens");
     line.set_read_timeout(Some(Duration::from_millis(100))).expect("the timeout is valid");
     line.write_all(b"GET / HTTP/1.1\r\nHost: localhost\r\nX-Slow: ").expect("the server listens");
     let is_cut =

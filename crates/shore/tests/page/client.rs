@@ -97,6 +97,13 @@ impl Client {
         panic!("no such {kind} in time; last: {last}");
     }
 
+    /// The next refusal, whose reason must contain `why`.
+    pub(crate) fn is_refused(&mut self, why: &str) -> Value {
+        let refused = self.until("refused", |_| true);
+        assert!(refused["reason"].as_str().is_some_and(|reason| reason.contains(why)), "{why}: {refused}");
+        refused
+    }
+
     /// The next frame with its leading byte. Skips texts.
     pub(crate) fn frame(&mut self) -> Vec<u8> {
         loop {

@@ -44,5 +44,5 @@ fn visit(show: Arc<dyn View>) -> (Page, Client) {
 
 /// A page connected to the server.
 fn open_viewer(page: &Page) -> Client {
-    Client::connect(page.address(), "/ws", &[]).expect("everyone may watch")
+    Client::connect(page.address, "/ws", &[]).expect("everyone may watch")
 }

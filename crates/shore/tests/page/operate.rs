@@ -42,8 +42,8 @@ fn gateway(bus: &Bus, takes: Duration) -> (Told, Declaration) {
 }
 
 fn operator(page: &Page) -> Client {
-    let path = format!("/ws?token={}", page.operator_token());
-    Client::connect(page.address(), &path, &[]).expect("everyone may watch")
+    let path = format!("/ws?token={}", page.operator_token);
+    Client::connect(page.address, &path, &[]).expect("everyone may watch")
 }
 
 fn command(vehicle: &str, command: &str) -> String {
@@ -58,8 +58,7 @@ fn arming_needs_the_operators_token_and_disarming_only_the_right_to_stop() {
     operator.until("hello", |hello| hello["rights"] == true && hello["operates"] == true);
     for word in ["arm", "release", "station_keep", "go_to_erp"] {
         control.send(&command(BOAT, word));
-        let refused = control.until("refused", |_| true);
-        assert!(refused["reason"].as_str().is_some_and(|reason| reason.contains("operator's token")), "{refused}");
+        control.is_refused("operator's token");
     }
     assert!(told.visit(|told| told.is_empty()), "no command reaches the gateway");
     control.send(r#"{"do":"control","what":"release"}"#);
@@ -120,10 +119,10 @@ fn what_is_drawn_below_the_field_is_served_and_null_without() {
         [(Some(with), r#"{"areas":[],"lines":[],"name":"site.geojson","points":[[-73.9,41.3,""]]}"#), (None, "null")]
     {
         let page = Page::open(shore::page::PageSettings { background, ..settings(None, &[]) }).expect("a free port");
-        let host = page.address().to_string();
-        let (status, answer) = get(page.address(), "/background.json", &host);
+        let host = page.address.to_string();
+        let (status, answer) = get(page.address, "/background.json", &host);
         assert_eq!(status, 200);
         assert!(answer.ends_with(want), "{answer}");
-        assert_eq!(get(page.address(), "/background-image", &host).0, 404);
+        assert_eq!(get(page.address, "/background-image", &host).0, 404);
     }
 }

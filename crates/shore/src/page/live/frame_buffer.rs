@@ -1,7 +1,6 @@
 //! A buffer of frames: the newest one to show, and past ones for trails.
 
-use crate::page::view::{TRAIL_S, TRAIL_STEP_S, marked};
-use axum::body::Bytes;
+use crate::page::view::{Outgoing, TRAIL_S, TRAIL_STEP_S};
 use messages::{Frame, Stamp};
 use primitives::SimTime;
 use std::collections::VecDeque;
@@ -19,8 +18,8 @@ pub(super) struct FrameBuffer {
     pub(super) is_over: bool,
     /// When the newest frame arrived.
     pub(super) came: Option<Instant>,
-    newest: Bytes,
-    past: VecDeque<(SimTime, Bytes)>,
+    pub(super) newest: Option<Outgoing>,
+    past: VecDeque<(SimTime, Outgoing)>,
     counted: Option<(Instant, u64)>,
     rate_hz: f64,
 }
@@ -34,27 +33,23 @@ impl FrameBuffer {
             self.past.clear();
         }
         if self.past.back().is_none_or(|(last, _)| (at - *last).as_s() >= TRAIL_STEP_S) {
-            self.past.push_back((at, marked(2, cdr)));
+            self.past.push_back((at, Outgoing::past(cdr)));
         }
         while self.past.front().is_some_and(|(first, _)| (at - *first).as_s() > TRAIL_S) {
             self.past.pop_front();
         }
         // The sim's own bytes: the page decodes CDR by the `.msg` texts in the first message, so no
         // second encoding can diverge.
-        (self.stamp, self.is_over, self.newest) = (frame.stamp, frame.over, marked(1, cdr));
+        (self.stamp, self.is_over, self.newest) = (frame.stamp, frame.over, Some(Outgoing::now(cdr)));
         (self.count, self.came) = (self.count + 1, Some(now));
         self.measure(now);
         missed
     }
 
-    pub(super) fn newest(&self) -> Bytes {
-        self.newest.clone()
-    }
-
-    /// The past frames before the newest, each with its leading byte.
-    pub(super) fn past(&self) -> VecDeque<Bytes> {
+    /// The past frames before the newest.
+    pub(super) fn past(&self) -> VecDeque<Outgoing> {
         let before = self.past.iter().filter(|(at, _)| *at < self.stamp.valid_ns);
-        before.map(|(_, bytes)| bytes.clone()).collect()
+        before.map(|(_, frame)| frame.clone()).collect()
     }
 
     pub(super) fn rate_hz(&self, now: Instant) -> f64 {
@@ -89,10 +84,10 @@ mod tests {
         for seq in 0..2000 {
             assert!(!frames.take(&frame(seq), &seq.to_le_bytes(), start + Duration::from_millis(100) * seq as u32));
         }
-        assert_eq!(frames.newest()[..], [&[1], &1999_u64.to_le_bytes()[..]].concat());
+        assert_eq!(frames.newest, Some(Outgoing::now(&1999_u64.to_le_bytes())));
         let past = frames.past();
         assert_eq!(past.len(), 120);
-        assert_eq!(past[119][..], [&[2], &1995_u64.to_le_bytes()[..]].concat());
+        assert_eq!(past[119], Outgoing::past(&1995_u64.to_le_bytes()));
         let end = start + Duration::from_millis(199_900);
         assert!((frames.rate_hz(end) - 10.0).abs() < 0.1);
         assert_eq!(frames.rate_hz(end + Duration::from_secs(5)), 0.0);

@@ -7,7 +7,7 @@ use super::{Command, SharedState};
 use bus::clock;
 use bus::game_search::{self, Missing};
 use bus::{
-    Bus, BusError, Declaration, Delivery, Inbox, InboxSender, NodeThread, Patience, Place, PlacedSession, Priority,
+    ANSWER, Bus, BusError, Declaration, Delivery, Inbox, NodeThread, Patience, Place, PlacedSession, Priority,
     Publisher, SimState, SimWatch, Watched, inbox,
 };
 use messages::picture::Picture;
@@ -29,8 +29,6 @@ const ROUND: Duration = Duration::from_millis(50);
 const ATTEMPTS: u64 = 20;
 /// Maximum number of queued requests to the sim.
 const REQUESTS: usize = 16;
-/// Timeout of a query.
-const ANSWER: Duration = Duration::from_secs(2);
 /// How long a sim's token may be missing, at first or after a cut: a short interruption does not
 /// mean that the sim has gone.
 const PATIENCE: Patience =
@@ -111,8 +109,10 @@ impl GameWatcher {
         let request_thread =
             NodeThread::start(move || request(&shared, &bus, &game, (&requested, &until))).inspect_err(no_thread);
         while !self.shared.is_closing() && session.sim.state() == SimState::Alive {
-            if let Some(command) = self.commands.take(ROUND) {
-                GameSession::send(command, &requests);
+            // Every round handles steering; a command to steer only starts a round.
+            if let Some(Command::Control(control)) = self.commands.take(ROUND) {
+                // Requests beyond the queue are dropped; the page has to repeat them.
+                requests.put(control);
             }
             session.steer(&self.shared);
             session.expire_steering(&self.shared);
@@ -158,16 +158,6 @@ impl GameSession {
         }
         let (policies, pictures) = (BTreeMap::new(), BTreeMap::new());
         Ok(GameSession { bus, game, policies, pictures, sim, _standing: standing })
-    }
-
-    /// Forwards a page's command. Unsent commands are lost with the session.
-    fn send(command: Command, requests: &InboxSender<Control>) {
-        match command {
-            // Requests beyond the queue are dropped; the page has to repeat them.
-            Command::Control(control) => requests.put(control),
-            // Every round handles steering; this only starts a round.
-            Command::Steer => {}
-        }
     }
 
     /// Publishes set-points for steered boats, stamped with the newest frame.

@@ -9,7 +9,7 @@ use bus::Bus;
 use messages::external::GatewayStatus;
 use messages::helm::HelmReport;
 use messages::picture::{OwnBoat, Picture};
-use messages::run_state::{Phase, RunState};
+use messages::run_state::RunState;
 use messages::topic::GameName;
 use messages::water::Water;
 use messages::{Frame, GameInfo};
@@ -92,11 +92,6 @@ impl LiveGame {
 
     pub(super) fn name_of(&self, vehicle: VehicleId) -> &str {
         &self.scenario().vehicles[vehicle.index()].name
-    }
-
-    /// Whether the game runs in lockstep rather than in real time.
-    pub(super) fn is_lockstep(&self) -> bool {
-        self.info.pace == "lockstep"
     }
 
     pub(super) fn has_real_boats(&self) -> bool {
@@ -205,12 +200,7 @@ impl LiveState {
         let still = self.frames.came.is_none_or(|came| now.saturating_duration_since(came) > STILL);
         match (&self.run, self.is_gone) {
             (_, true) => "gone",
-            (Some(run), _) => match run.phase {
-                Phase::Waiting => "waiting",
-                Phase::Playing => "playing",
-                Phase::Paused => "paused",
-                Phase::Over => "over",
-            },
+            (Some(run), _) => run.phase.into(),
             // Older sims publish no run state.
             (None, _) if self.frames.is_over => "over",
             (None, _) if self.frames.count == 0 => "waiting",

@@ -24,8 +24,7 @@ use messages::external::Mission;
 use messages::topic::GameName;
 use parking_lot::Mutex;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use stopping::Stopping;
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use viewer::PageViewer;
 
 /// Maximum number of commands queued for the network.
@@ -49,7 +48,8 @@ struct SharedState {
     news: Changes,
     commands: InboxSender<Command>,
     stops: StopClient,
-    stopping: Stopping,
+    /// The number of threads that stop boats.
+    stopping: AtomicUsize,
     /// Reports failures to a person.
     tell: Tell,
     read_mission: ReadMission,
@@ -120,7 +120,7 @@ impl SharedState {
             commands,
             // A person at the page can repeat the stop.
             stops: StopClient::open(ANSWER)?,
-            stopping: Stopping::default(),
+            stopping: AtomicUsize::new(0),
             tell,
             read_mission,
             pages: AtomicU64::new(1),

@@ -83,7 +83,7 @@ pub(super) fn operate(
         None if command != OperatorCommand::Status => shared.stops.cancel(Some(name)),
         None => {}
     }
-    let (generation, needs_token, word) = (state.generation, command.needs_token(), word(&command));
+    let (generation, needs_token, word) = (state.generation, command.needs_token(), (&command).into());
     let (at_work, named) = (Arc::clone(shared), name.to_owned());
     let thread = start_thread("page-operate", move || {
         let reply = ask(&bus, &game, vehicle, &command);
@@ -123,21 +123,6 @@ fn ask(bus: &Bus, game: &LiveGame, vehicle: VehicleId, command: &OperatorCommand
         Ok(reply)
     } else {
         Err(format!("the gateway of {} answered a request meant for {name}", reply.status.vehicle))
-    }
-}
-
-/// A command's name in the protocol.
-fn word(command: &OperatorCommand) -> &'static str {
-    match command {
-        OperatorCommand::Status => "status",
-        OperatorCommand::Arm => "arm",
-        OperatorCommand::Disarm => "disarm",
-        OperatorCommand::EStop => "e_stop",
-        OperatorCommand::Release => "release",
-        OperatorCommand::StationKeep => "station_keep",
-        OperatorCommand::GoToErp => "go_to_erp",
-        OperatorCommand::Mission(_) => "mission",
-        OperatorCommand::Mode(_) => "mode",
     }
 }
 

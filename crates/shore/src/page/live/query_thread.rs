@@ -59,26 +59,19 @@ impl QuerySchedule {
         if self.rest.is_some_and(|rest| now < rest) {
             return None;
         }
-        let is_due = |vehicle: &VehicleId, functions: bool| {
-            self.asked.get(vehicle).is_none_or(|(start, had)| {
-                (functions && !had) || now.saturating_duration_since(*start) >= HELM_INTERVAL
+        let start = |turn: &Turn| self.asked.get(&turn.vehicle).map(|(start, _)| *start);
+        let is_due = |turn: &Turn| {
+            let interval = if turn.is_listed { LIST_INTERVAL } else { HELM_INTERVAL };
+            self.asked.get(&turn.vehicle).is_none_or(|(start, had)| {
+                (turn.functions && !had) || now.saturating_duration_since(*start) >= interval
             })
         };
-        let due = wanted.iter().filter(|(vehicle, functions)| is_due(vehicle, **functions));
-        let longest = due.min_by_key(|(vehicle, _)| self.asked.get(vehicle).map(|(start, _)| *start));
-        let longest =
-            longest.map(|(vehicle, functions)| Turn { vehicle: *vehicle, functions: *functions, is_listed: false });
-        longest.or_else(|| self.next_listed(wanted, listed, now))
-    }
-
-    fn next_listed(&self, wanted: &BTreeMap<VehicleId, bool>, listed: &[VehicleId], now: Instant) -> Option<Turn> {
-        let start = |vehicle: &VehicleId| self.asked.get(vehicle).map(|(start, _)| *start);
-        let is_due = |vehicle: &&VehicleId| {
-            !wanted.contains_key(vehicle)
-                && start(vehicle).is_none_or(|start| now.saturating_duration_since(start) >= LIST_INTERVAL)
-        };
-        let longest = listed.iter().filter(is_due).min_by_key(|vehicle| start(vehicle));
-        longest.map(|vehicle| Turn { vehicle: *vehicle, functions: false, is_listed: true })
+        let selected = wanted.iter().map(|(vehicle, functions)| (*vehicle, *functions, false));
+        let others =
+            listed.iter().filter(|vehicle| !wanted.contains_key(vehicle)).map(|vehicle| (*vehicle, false, true));
+        let turns =
+            selected.chain(others).map(|(vehicle, functions, is_listed)| Turn { vehicle, functions, is_listed });
+        turns.filter(is_due).min_by_key(|turn| (turn.is_listed, start(turn)))
     }
 
     /// Records a query from `start` to `end`. A lockstep game waits while a mind answers, and one
@@ -159,11 +152,7 @@ mod tests {
     const BOATS: [VehicleId; 3] = [VehicleId(0), VehicleId(1), VehicleId(2)];
 
     /// Simulates queries with equal reply times. Returns the helms queried, with times in ms.
-    fn asked(wanted: &BTreeMap<VehicleId, bool>, took_ms: u64, until_ms: u64, is_going: bool) -> Vec<(VehicleId, u64)> {
-        asked_and_listed((wanted, &[]), took_ms, until_ms, is_going)
-    }
-
-    fn asked_and_listed(
+    fn asked(
         (wanted, listed): (&BTreeMap<VehicleId, bool>, &[VehicleId]),
         took_ms: u64,
         until_ms: u64,
@@ -187,7 +176,7 @@ mod tests {
     fn long_answers_leave_most_of_the_time_to_the_game_however_many_boats_are_looked_at() {
         for boats in 1..=BOATS.len() {
             let wanted: BTreeMap<VehicleId, bool> = BOATS[..boats].iter().map(|boat| (*boat, true)).collect();
-            let all = asked(&wanted, 400, 12_000, true);
+            let all = asked((&wanted, &[]), 400, 12_000, true);
             assert_eq!(all.iter().map(|(_, at_ms)| *at_ms).collect::<Vec<_>>(), [0, 2000, 4000, 6000, 8000, 10_000]);
             let schedule: Vec<VehicleId> = BOATS[..boats].iter().copied().cycle().take(all.len()).collect();
             assert_eq!(all.iter().map(|(boat, _)| *boat).collect::<Vec<_>>(), schedule, "all are queried in turn");
@@ -197,7 +186,7 @@ mod tests {
     #[test]
     fn short_answers_come_as_often_as_pages_are_told() {
         let wanted = BTreeMap::from([(BOATS[0], false), (BOATS[1], false)]);
-        let all = asked(&wanted, 0, 2000, true);
+        let all = asked((&wanted, &[]), 0, 2000, true);
         for boat in &BOATS[..2] {
             assert_eq!(all.iter().filter(|(asked, _)| asked == boat).count(), 4, "{all:?}");
         }
@@ -207,7 +196,8 @@ mod tests {
     fn in_a_game_that_stands_a_miss_is_soon_asked_for_again() {
         let wanted = BTreeMap::from([(BOATS[0], true)]);
         let took_ms = HELM_ANSWER.as_millis() as u64;
-        let times = |is_going| asked(&wanted, took_ms, 6000, is_going).iter().map(|(_, at)| *at).collect::<Vec<_>>();
+        let times =
+            |is_going| asked((&wanted, &[]), took_ms, 6000, is_going).iter().map(|(_, at)| *at).collect::<Vec<_>>();
         assert_eq!(times(true), [0, 5000]);
         assert_eq!(times(false), [0, 1050, 2100, 3150, 4200, 5250]);
     }
@@ -225,10 +215,10 @@ mod tests {
     fn modes_of_all_boats_cost_little_and_keep_no_boat_that_is_looked_at_waiting() {
         let wanted = BTreeMap::from([(BOATS[0], true)]);
         let of = |all: &[(VehicleId, u64)], boat| all.iter().filter(|(asked, _)| *asked == boat).count();
-        let quick = asked_and_listed((&wanted, &BOATS), 0, 4000, true);
+        let quick = asked((&wanted, &BOATS), 0, 4000, true);
         assert_eq!(BOATS.map(|boat| of(&quick, boat)), [8, 2, 2], "{quick:?}");
         // With no boat selected: a twentieth of the time, each in turn.
-        let slow = asked_and_listed((&BTreeMap::new(), &BOATS), 100, 12_000, true);
+        let slow = asked((&BTreeMap::new(), &BOATS), 100, 12_000, true);
         assert_eq!(slow.len(), 6, "{slow:?}");
         assert_eq!(BOATS.map(|boat| of(&slow, boat)), [2, 2, 2]);
     }

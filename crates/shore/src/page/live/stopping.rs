@@ -8,16 +8,13 @@ use bus::start_thread;
 use bus::stop::{StopCommand, StopNews};
 use messages::Control;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 /// Maximum number of concurrent threads; each ends within seconds.
 const THREADS_MAX: usize = 256;
 /// Interval of checks whether the view closes.
 const ROUND: Duration = Duration::from_millis(500);
-
-#[derive(Default)]
-pub(super) struct Stopping(AtomicUsize);
 
 /// Stops boats. Gateways are reachable even without a game.
 pub(super) fn stop(shared: &Arc<SharedState>, state: &LiveState, control: Control) -> Result<(), String> {
@@ -55,7 +52,7 @@ pub(super) fn tell_late(shared: &SharedState) {
 
 /// Runs `work` in its own thread.
 fn begin(shared: &Arc<SharedState>, work: impl FnOnce(&SharedState) + Send + 'static) -> Result<(), String> {
-    let under_way = &shared.stopping.0;
+    let under_way = &shared.stopping;
     if under_way.fetch_add(1, Ordering::SeqCst) >= THREADS_MAX {
         under_way.fetch_sub(1, Ordering::SeqCst);
         return Err(format!("{THREADS_MAX} stops are already in progress"));
@@ -63,7 +60,7 @@ fn begin(shared: &Arc<SharedState>, work: impl FnOnce(&SharedState) + Send + 'st
     let at_work = Arc::clone(shared);
     let thread = start_thread("page-stop", move || {
         work(&at_work);
-        at_work.stopping.0.fetch_sub(1, Ordering::SeqCst);
+        at_work.stopping.fetch_sub(1, Ordering::SeqCst);
     });
     if let Err(e) = thread {
         under_way.fetch_sub(1, Ordering::SeqCst);

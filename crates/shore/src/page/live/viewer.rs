@@ -6,7 +6,6 @@ use super::{Command, SharedState, operating, stopping};
 use crate::page::message::{EventMessage, Mode, PageMessage, seconds};
 use crate::page::request::PageRequest;
 use crate::page::view::{Access, Budget, ESTIMATE_INTERVAL, MODES_INTERVAL, Outgoing, SEND_INTERVAL, Viewer};
-use axum::body::Bytes;
 use messages::Control;
 use messages::external::{GatewayStatus, OperatorCommand};
 use messages::picture::OwnBoat;
@@ -44,7 +43,7 @@ struct Sent {
     /// Number of the newest frame sent; 0 for none.
     frame: u64,
     /// Past frames to send before the first current one.
-    past: Option<VecDeque<Bytes>>,
+    past: Option<VecDeque<Outgoing>>,
 }
 
 impl PageViewer {
@@ -100,7 +99,9 @@ impl PageViewer {
             return Err("the speed of a game with real boats cannot be changed".to_owned());
         }
         match factor {
-            None if !game.is_lockstep() => Err("only a game in lockstep can run at unlimited speed".to_owned()),
+            None if game.info.pace != "lockstep" => {
+                Err("only a game in lockstep can run at unlimited speed".to_owned())
+            }
             Some(factor) if !Control::SPEEDS.contains(&factor) => {
                 let (min, max) = (Control::SPEEDS.start(), Control::SPEEDS.end());
                 Err(format!("the speed is {factor}, expected {min} to {max}"))
@@ -333,27 +334,26 @@ impl Sent {
             return None;
         }
         if let Some(past) = self.past.get_or_insert_with(|| state.frames.past()).pop_front() {
-            return Some(Outgoing::Past(past));
+            return Some(past);
         }
         self.frame = state.frames.count;
-        Some(Outgoing::Now(state.frames.newest()))
+        state.frames.newest.clone()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::page::rose::tests::scenario;
     use bus::{clock, inbox};
     use messages::topic::GameName;
     use messages::water::Water;
     use messages::{Frame, GameInfo};
-    use std::path::Path;
 
     #[test]
     fn what_is_told_of_the_selected_boat_waits_until_there_is_room() {
         let shared = Arc::new(SharedState::new(inbox(1).0, Box::new(|_| ()), |_| Err(String::new())).unwrap());
-        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
-        let (scenario, now) = (scenario::load(&file).unwrap(), clock::now());
+        let (scenario, now) = (scenario(), clock::now());
         let info = GameInfo { version: String::new(), pace: "lockstep".to_owned(), scenario };
         let name = GameName::new("pond").unwrap();
         shared.state.lock().begin(Arc::new(LiveGame::new(name, info, &Water::default())));

@@ -29,7 +29,7 @@ impl Plotter {
 
     /// The score, a boat's curves and its range to another, as a message to the page.
     pub(super) fn curves(&mut self, vehicle: Option<VehicleId>, other: Option<VehicleId>) -> String {
-        let Some(recording) = &self.recording else { return PageMessage::Curves { curves: &Curves::default() }.json() };
+        let Some(recording) = &self.recording else { return PageMessage::Curves(&Curves::default()).json() };
         let series = self.series.get_or_insert_with(|| {
             let boats = recording.scenario().vehicles.len();
             GameSeries::of_at_most(recording, SAMPLES.saturating_mul(boats).min(SAMPLES_MAX))
@@ -51,7 +51,7 @@ impl Plotter {
                 .map(|vehicle| boat_curves(series, &recording.scenario().field, vehicle)),
             range_m: one.zip(another).map(range),
         };
-        PageMessage::Curves { curves: &curves }.json()
+        PageMessage::Curves(&curves).json()
     }
 }
 

@@ -45,9 +45,9 @@ impl ReplayView {
     #[must_use]
     pub fn about(about: Option<String>, source: Arc<Recorded>, helms: Option<Box<dyn Helms>>) -> ReplayView {
         let news = Changes::default();
-        let scenario = source.info().scenario.clone();
-        let chart = chart(&scenario, &source.header().water);
-        let plotter = Plotter::new(source.recording());
+        let scenario = source.recording.scenario().clone();
+        let chart = chart(&scenario, &source.recording.header().water);
+        let plotter = Plotter::new(Arc::clone(&source.recording));
         let queries = QueryThread::open(Sources { scenario, helms, plotter }, news.clone());
         ReplayView {
             shared: Arc::new(SharedReplay { source, chart, about, queries, viewers: AtomicU64::new(0) }),

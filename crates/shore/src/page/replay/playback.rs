@@ -13,7 +13,8 @@ pub(super) struct Playback {
     at: SimTime,
     /// Since when `at` has been advancing, if it is.
     since: Option<Instant>,
-    speed: f64,
+    /// The speed, simulated seconds per second.
+    pub(super) speed: f64,
 }
 
 impl Playback {
@@ -32,11 +33,6 @@ impl Playback {
     /// Whether the position is advancing.
     pub(super) fn is_playing(&self) -> bool {
         self.since.is_some()
-    }
-
-    /// The speed, simulated seconds per second.
-    pub(super) fn speed(&self) -> f64 {
-        self.speed
     }
 
     /// When a moment will be shown without further commands; `None` if never.
@@ -112,8 +108,8 @@ mod tests {
             assert_eq!(playback.at(start), SimTime::from_s(want_s), "{to_s}");
         }
         playback.set_speed(None, start);
-        assert_eq!(playback.speed(), SPEED.1);
+        assert_eq!(playback.speed, SPEED.1);
         playback.set_speed(Some(0.0), start);
-        assert_eq!(playback.speed(), SPEED.0);
+        assert_eq!(playback.speed, SPEED.0);
     }
 }

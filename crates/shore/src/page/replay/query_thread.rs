@@ -170,7 +170,7 @@ impl Queue {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::path::Path;
+    use crate::page::rose::tests::scenario;
     use std::sync::mpsc::{Receiver, Sender, channel};
 
     /// Helms that signal their start and wait for permission to continue.
@@ -190,11 +190,10 @@ mod tests {
 
     #[test]
     fn nothing_is_kept_for_a_reader_who_left_while_the_answer_was_worked_on() {
-        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
-        let scenario = scenario::load(&file).unwrap();
         let ((began, begins), (go, goes)) = (channel(), channel());
         let helms: Option<Box<dyn Helms>> = Some(Box::new(SlowHelms(began, goes)));
-        let thread = QueryThread::open(Sources { scenario, helms, plotter: Plotter::default() }, Changes::default());
+        let thread =
+            QueryThread::open(Sources { scenario: scenario(), helms, plotter: Plotter::default() }, Changes::default());
         let request = HelmRequest { vehicle: VehicleId::at(0), decision: 1, functions: false };
         for (viewer, leaves) in [(1, true), (2, false), (3, false)] {
             thread.request(viewer, Query::Helm(request));

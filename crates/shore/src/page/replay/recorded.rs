@@ -1,22 +1,23 @@
 //! A recording, indexed for replay.
 
-use messages::GameInfo;
 use messages::external::GatewayStatus;
 use messages::picture::{OwnBoat, Picture};
 use primitives::{SimTime, VehicleId};
-use recording::{Damaged, Header, Recording, picture};
+use recording::{Damaged, Recording, picture};
 use scenario::outcome::EventOutcome;
 use std::sync::Arc;
 
 /// A recording ready for replay.
 pub struct Recorded {
-    recording: Arc<Recording>,
+    pub(super) recording: Arc<Recording>,
     /// The file's name.
     pub(super) file: String,
-    /// Indices of valid frames in the recording, and their times.
+    /// Indices of valid frames in the recording.
     frames: Vec<usize>,
-    times: Vec<SimTime>,
-    damaged: Damaged,
+    /// The times of the frames, in order.
+    pub frame_times: Vec<SimTime>,
+    /// The number of skipped frames.
+    pub damaged: Damaged,
     /// By team: time and location of every picture.
     pictures: Vec<Vec<(SimTime, usize)>>,
     /// By vehicle: the same for every status from its gateway.
@@ -40,7 +41,7 @@ impl Recorded {
             recording: Arc::clone(&recording),
             file,
             frames: Vec::new(),
-            times: Vec::new(),
+            frame_times: Vec::new(),
             damaged: Damaged::default(),
             pictures,
             statuses,
@@ -49,7 +50,7 @@ impl Recorded {
         for (number, frame) in recording.frames().enumerate() {
             let Some(frame) = recorded.damaged.sound(frame) else { continue };
             recorded.frames.push(number);
-            recorded.times.push(frame.stamp.valid_ns);
+            recorded.frame_times.push(frame.stamp.valid_ns);
             recorded.events.extend(frame.logged(scenario).map(|logged| EventOutcome::new(scenario, &logged)));
         }
         recorded.add_failsafes();
@@ -85,37 +86,6 @@ impl Recorded {
         serde_json::from_slice(&self.recording.bag().message(place).bytes).ok()
     }
 
-    /// The underlying recording.
-    pub(super) fn recording(&self) -> Arc<Recording> {
-        Arc::clone(&self.recording)
-    }
-
-    pub(super) fn header(&self) -> &Header {
-        self.recording.header()
-    }
-
-    /// The description of the game.
-    pub(super) fn info(&self) -> &GameInfo {
-        &self.header().info
-    }
-
-    /// Whether the file is truncated.
-    pub(super) fn is_cut(&self) -> bool {
-        self.recording.is_cut()
-    }
-
-    /// The number of skipped frames.
-    #[must_use]
-    pub fn damaged(&self) -> &Damaged {
-        &self.damaged
-    }
-
-    /// The times of the frames, in order.
-    #[must_use]
-    pub fn frame_times(&self) -> &[SimTime] {
-        &self.times
-    }
-
     pub(super) fn frame_bytes(&self, frame: usize) -> Vec<u8> {
         self.recording.frame(self.frames[frame]).bytes
     }
@@ -123,8 +93,8 @@ impl Recorded {
     /// A boat's own position estimate at a frame.
     #[must_use]
     pub fn estimate(&self, vehicle: VehicleId, frame: usize) -> Option<OwnBoat> {
-        let team = self.info().scenario.vehicles.get(vehicle.index())?.team;
-        let place = last_until(&self.pictures[team.index()], *self.times.get(frame)?)?;
+        let team = self.recording.scenario().vehicles.get(vehicle.index())?.team;
+        let place = last_until(&self.pictures[team.index()], *self.frame_times.get(frame)?)?;
         let picture: Picture = self.recording.bag().message(place).read().ok()?;
         picture.own(vehicle).copied()
     }

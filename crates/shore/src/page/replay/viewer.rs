@@ -12,6 +12,7 @@ use crate::page::view::{
 use messages::Control;
 use messages::external::GatewayStatus;
 use primitives::{SimTime, VehicleId};
+use recording::Header;
 use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -48,9 +49,9 @@ pub(super) struct PageViewer {
 
 impl PageViewer {
     pub(super) fn new(shared: Arc<SharedReplay>, access: Access, viewer: u64) -> PageViewer {
-        let times = shared.source.frame_times();
+        let times = &shared.source.frame_times;
         let (from, to) = (times.first().copied().unwrap_or_default(), times.last().copied().unwrap_or_default());
-        let (info, game) = (shared.source.info(), &shared.source.header().game);
+        let Header { game, info, .. } = shared.source.recording.header();
         let gateways = info.scenario.externals().map(|vehicle| (vehicle, None)).collect();
         let hello =
             PageMessage::hello(&info.version, Mode::Replay, access, (game, shared.about.as_deref()), &shared.chart);
@@ -76,7 +77,7 @@ impl PageViewer {
 
     /// The frame to show at a moment: the last one up to it.
     fn frame_at(&self, moment: SimTime) -> Option<usize> {
-        let times = self.shared.source.frame_times();
+        let times = &self.shared.source.frame_times;
         let after = times.partition_point(|time| *time <= moment);
         after.checked_sub(1).or(if times.is_empty() { None } else { Some(0) })
     }
@@ -89,7 +90,7 @@ impl PageViewer {
 
     /// The past frames that lead to this one.
     fn trail(&self, frame: usize) -> VecDeque<usize> {
-        let times = self.shared.source.frame_times();
+        let times = &self.shared.source.frame_times;
         let steps = (TRAIL_S / TRAIL_STEP_S) as i64;
         let moments = (1..=steps).rev().map(|back| times[frame] - SimTime::from_s(TRAIL_STEP_S) * back);
         let mut trail: VecDeque<usize> =
@@ -102,7 +103,7 @@ impl PageViewer {
 
     fn step(&mut self, by: i64, now: Instant) {
         self.playback.pause(now);
-        let times = self.shared.source.frame_times();
+        let times = &self.shared.source.frame_times;
         let Some(frame) = self.frame_at(self.playback.at(now)) else { return };
         let to = (frame as i64).saturating_add(by).clamp(0, times.len() as i64 - 1) as usize;
         let (one_on, moment) = (to == frame + 1, times[to]);
@@ -131,14 +132,14 @@ impl PageViewer {
             return None;
         }
         self.sent_playback = Some((self.playback.clone(), now));
-        let (source, times) = (&self.shared.source, self.shared.source.frame_times());
+        let (source, times) = (&self.shared.source, &self.shared.source.frame_times);
         let tell = PageMessage::Player {
             playing: self.playback.is_playing(),
             t_s: seconds(self.playback.at(now)),
-            speed: self.playback.speed(),
+            speed: self.playback.speed,
             from_s: times.first().map_or(0.0, |time| seconds(*time)),
             to_s: times.last().map_or(0.0, |time| seconds(*time)),
-            cut: source.is_cut(),
+            cut: source.recording.is_cut(),
             file: &source.file,
         };
         Some(Outgoing::Text(tell.json()))
@@ -168,14 +169,14 @@ impl PageViewer {
             && self.requested_modes.is_none_or(|requested| is_due(requested, decision))
         {
             self.requested_modes = Some((decision, now));
-            let at = self.shared.source.frame_times()[frame];
+            let at = self.shared.source.frame_times[frame];
             self.shared.queries.request(self.viewer, Query::Modes(decision, at));
         }
         self.shared.queries.take_other(self.viewer).map(Outgoing::Text)
     }
 
     fn request_curves(&self, vehicle: Option<&str>, other: Option<&str>) -> Result<(), String> {
-        let named = |name: &str| self.shared.source.info().scenario.vehicle_named(name).map_err(|e| e.to_string());
+        let named = |name: &str| self.shared.source.recording.scenario().vehicle_named(name).map_err(|e| e.to_string());
         let query = Query::Curves(vehicle.map(named).transpose()?, other.map(named).transpose()?);
         self.shared.queries.request(self.viewer, query);
         Ok(())
@@ -202,8 +203,8 @@ impl PageViewer {
         }
         self.estimated = Some((frame, now));
         let boat = self.shared.source.estimate(vehicle, frame)?;
-        let at = self.shared.source.frame_times()[frame];
-        let name = &self.shared.source.info().scenario.vehicles[vehicle.index()].name;
+        let at = self.shared.source.frame_times[frame];
+        let name = &self.shared.source.recording.scenario().vehicles[vehicle.index()].name;
         Some(Outgoing::Text(PageMessage::estimate(name, &boat, at).json()))
     }
 
@@ -211,14 +212,14 @@ impl PageViewer {
         let is_sent = |(sent, at): (usize, Instant)| sent == frame || now.saturating_duration_since(at) < SEND_INTERVAL;
         if self.statuses.is_empty() && !self.looked.is_some_and(is_sent) {
             self.looked = Some((frame, now));
-            let (source, at) = (&self.shared.source, self.shared.source.frame_times()[frame]);
+            let (source, at) = (&self.shared.source, self.shared.source.frame_times[frame]);
             for (vehicle, sent) in &mut self.gateways {
                 let status = source.status(*vehicle, at);
                 if status == *sent {
                     continue;
                 }
                 if let Some(status) = &status {
-                    let name = &source.info().scenario.vehicles[vehicle.index()].name;
+                    let name = &source.recording.scenario().vehicles[vehicle.index()].name;
                     self.statuses.push_back(PageMessage::Status { vehicle: name, status }.json());
                 }
                 *sent = status;
@@ -251,7 +252,7 @@ impl Viewer for PageViewer {
             PageRequest::Ack => {}
             PageRequest::Select { vehicle: None, .. } => self.selected = None,
             PageRequest::Select { vehicle: Some(name), functions } => {
-                let vehicle = self.shared.source.info().scenario.vehicle_named(name).map_err(|e| e.to_string())?;
+                let vehicle = self.shared.source.recording.scenario().vehicle_named(name).map_err(|e| e.to_string())?;
                 let is_other = self.selected.is_none_or(|(before, _)| before != vehicle);
                 self.selected = Some((vehicle, *functions));
                 if is_other {
@@ -309,7 +310,7 @@ impl Viewer for PageViewer {
 
     fn due(&self, now: Instant) -> Option<Instant> {
         let playing = self.playback.is_playing();
-        let times = self.shared.source.frame_times();
+        let times = &self.shared.source.frame_times;
         let next = self.shown.and_then(|frame| times.get(frame + 1)).and_then(|time| self.playback.when(*time));
         let sent = self.sent_playback.as_ref().filter(|_| playing).map(|(_, at)| *at + SEND_INTERVAL);
         // Messages delayed because the same kind was sent shortly before.
