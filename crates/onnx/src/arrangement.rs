@@ -8,7 +8,7 @@ use super::limit::RANK_MAX;
 use super::node::Node;
 use super::plan::{Element, Planner, Row, Value};
 use super::proto::{self, data_type_name};
-use super::step::{Blocks, Step};
+use super::step::{Blocks, Step, Work};
 use super::tensor::{Numbers, Tensor, product};
 
 pub(super) fn identity(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
@@ -166,19 +166,17 @@ pub(super) fn concat(planner: &mut Planner, node: &Node) -> Result<Value, Networ
     for row in rows {
         let size = row.place.len() / count;
         let blocks = Blocks { count, size, from: (0, size), to: (at, whole) };
-        planner.steps.push(Step::Copy { blocks, input: row.place, output: output.place.clone() });
+        planner.steps.push(Step { work: Work::Copy(blocks), input: row.place, output: output.place.clone() });
         at += size;
     }
     Ok(Value::Computed(output))
 }
 
-/// Plans `Slice`, one axis after the other. In old files its bounds are attributes.
+/// Plans `Slice`, one axis after the other.
 pub(super) fn slice(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
     let mut row = planner.row(node, 0)?;
-    let attribute = |name: &str| node.integers(name).map(|integers| integers.map(<[i64]>::to_vec));
-    let starts = planner.integers(node, 1)?.map_or_else(|| attribute("starts"), |numbers| Ok(Some(numbers)))?;
-    let ends = planner.integers(node, 2)?.map_or_else(|| attribute("ends"), |numbers| Ok(Some(numbers)))?;
-    let axes = planner.integers(node, 3)?.map_or_else(|| attribute("axes"), |numbers| Ok(Some(numbers)))?;
+    let (starts, ends) = (integers(planner, node, 1, "starts")?, integers(planner, node, 2, "ends")?);
+    let axes = integers(planner, node, 3, "axes")?;
     let (Some(starts), Some(ends)) = (starts, ends) else { return Err(node.wrong("no bounds", "starts and ends")) };
     let axes = axes.unwrap_or_else(|| (0..).take(starts.len()).collect());
     let steps = planner.integers(node, 4)?.unwrap_or_else(|| vec![1; starts.len()]);
@@ -220,24 +218,26 @@ fn slice_axis(
     let count = (to - from).div_ceil(step);
     let mut shape = input.shape;
     shape[axis] = count;
-    let output = planner.new_row(shape)?;
     let blocks = if step == 1 {
         let size = count * inner;
         Blocks { count: outer, size, from: (from * inner, length * inner), to: (0, size) }
     } else {
         Blocks { count, size: inner, from: (from * inner, step.min(length) * inner), to: (0, inner) }
     };
-    planner.steps.push(Step::Copy { blocks, input: input.place, output: output.place.clone() });
-    Ok(output)
+    planner.add(Work::Copy(blocks), input.place, shape)
 }
 
-/// The axes of a `Squeeze` or `Unsqueeze`: an attribute in old files, an input in newer ones.
+/// Integers that are an attribute in old files and an input in newer ones.
+fn integers(planner: &Planner, node: &Node, input: usize, name: &str) -> Result<Option<Vec<i64>>, NetworkError> {
+    Ok(match planner.integers(node, input)? {
+        Some(integers) => Some(integers),
+        None => node.integers(name)?.map(<[i64]>::to_vec),
+    })
+}
+
+/// The axes of a `Squeeze` or `Unsqueeze`.
 fn axes(planner: &Planner, node: &Node) -> Result<Option<Vec<i64>>, NetworkError> {
-    let axes = match planner.integers(node, 1)? {
-        Some(axes) => Some(axes),
-        None => node.integers("axes")?.map(<[i64]>::to_vec),
-    };
-    match axes {
+    match integers(planner, node, 1, "axes")? {
         Some(axes) if axes.len() > RANK_MAX => {
             Err(node.wrong(format!("{} axes", axes.len()), format!("at most {RANK_MAX}")))
         }

@@ -5,7 +5,7 @@ use super::activation;
 use super::error::shape_text;
 use super::node::Node;
 use super::plan::{Planner, Row, Value};
-use super::step::Step;
+use super::step::Work;
 
 /// A function of one number. NaN in gives NaN out.
 #[derive(Clone, Copy)]
@@ -81,9 +81,7 @@ fn pairs(left: &[f32], right: &[f32], output: &mut [f32], operation: impl Fn(f32
 /// Plans a function of single numbers.
 pub(super) fn function(planner: &mut Planner, node: &Node, function: Function) -> Result<Value, NetworkError> {
     let input = planner.row(node, 0)?;
-    let output = planner.new_row(input.shape)?;
-    planner.steps.push(Step::Function { function, input: input.place, output: output.place.clone() });
-    Ok(Value::Computed(output))
+    planner.add(Work::Function(function), input.place, input.shape).map(Value::Computed)
 }
 
 /// Plans `Clip`. In old files its bounds are attributes.
@@ -108,10 +106,7 @@ pub(super) fn binary(planner: &mut Planner, node: &Node, operation: Operation) -
             return Err(node.wrong(found, "equal shapes, a shape that ends the other one, or a single number"));
         }
     }
-    let output = planner.new_row(shape)?;
-    let (left, right) = (left.place, right.place);
-    planner.steps.push(Step::Binary { operation, left, right, output: output.place.clone() });
-    Ok(Value::Computed(output))
+    planner.add(Work::Binary { operation, right: right.place }, left.place, shape).map(Value::Computed)
 }
 
 /// Whether the row can be repeated to this shape: without leading ones, its own is a suffix of it.

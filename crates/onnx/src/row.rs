@@ -4,8 +4,8 @@ use super::NetworkError;
 use super::activation::{exp, ln};
 use super::error::shape_text;
 use super::node::Node;
-use super::plan::{Element, Planner, Value};
-use super::step::Step;
+use super::plan::{Element, Planner, Row, Value};
+use super::step::Work;
 use super::tensor::product;
 
 #[derive(Clone, Copy)]
@@ -31,9 +31,7 @@ pub(super) fn softmax(planner: &mut Planner, node: &Node, scale: Scale) -> Resul
         check_is_last(node, &input.shape, axis)?;
     }
     let row_size = product(&input.shape[axis..]).unwrap_or(0);
-    let output = planner.new_row(input.shape)?;
-    planner.steps.push(Step::Softmax { scale, row_size, input: input.place, output: output.place.clone() });
-    Ok(Value::Computed(output))
+    planner.add(Work::Softmax { scale, row_size }, input.place, input.shape).map(Value::Computed)
 }
 
 pub(super) fn arg_max(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
@@ -48,9 +46,8 @@ pub(super) fn arg_max(planner: &mut Planner, node: &Node) -> Result<Value, Netwo
     } else {
         shape[axis] = 1;
     }
-    let output = planner.new_row(shape)?;
-    planner.steps.push(Step::ArgMax { tie, row_size, input: input.place, output: output.place.clone() });
-    Ok(Value::Computed(super::plan::Row { element: Element::Integer, ..output }))
+    let output = planner.add(Work::ArgMax { tie, row_size }, input.place, shape)?;
+    Ok(Value::Computed(Row { element: Element::Integer, ..output }))
 }
 
 /// Rejects an axis whose elements are not adjacent.

@@ -6,13 +6,19 @@ use super::row::{Scale, Tie};
 use std::ops::Range;
 
 /// The output always comes after the inputs.
-pub(super) enum Step {
-    Function { function: Function, input: Range<usize>, output: Range<usize> },
-    Binary { operation: Operation, left: Range<usize>, right: Range<usize>, output: Range<usize> },
-    Linear { linear: Linear, input: Range<usize>, output: Range<usize> },
-    Softmax { scale: Scale, row_size: usize, input: Range<usize>, output: Range<usize> },
-    ArgMax { tie: Tie, row_size: usize, input: Range<usize>, output: Range<usize> },
-    Copy { blocks: Blocks, input: Range<usize>, output: Range<usize> },
+pub(super) struct Step {
+    pub(super) work: Work,
+    pub(super) input: Range<usize>,
+    pub(super) output: Range<usize>,
+}
+
+pub(super) enum Work {
+    Function(Function),
+    Binary { operation: Operation, right: Range<usize> },
+    Linear(Linear),
+    Softmax { scale: Scale, row_size: usize },
+    ArgMax { tie: Tie, row_size: usize },
+    Copy(Blocks),
 }
 
 /// Blocks of numbers at regular intervals.
@@ -27,39 +33,17 @@ pub(super) struct Blocks {
 
 impl Step {
     pub(super) fn take(&self, values: &mut [f32]) {
-        match self {
-            Step::Function { function, input, output } => {
-                let (before, to) = split(values, output);
-                function.apply(&before[input.clone()], to);
-            }
-            Step::Binary { operation, left, right, output } => {
-                let (before, to) = split(values, output);
-                operation.apply(&before[left.clone()], &before[right.clone()], to);
-            }
-            Step::Linear { linear, input, output } => {
-                let (before, to) = split(values, output);
-                linear.apply(&before[input.clone()], to);
-            }
-            Step::Softmax { scale, row_size, input, output } => {
-                let (before, to) = split(values, output);
-                scale.apply(*row_size, &before[input.clone()], to);
-            }
-            Step::ArgMax { tie, row_size, input, output } => {
-                let (before, to) = split(values, output);
-                tie.apply(*row_size, &before[input.clone()], to);
-            }
-            Step::Copy { blocks, input, output } => {
-                let (before, to) = split(values, output);
-                blocks.copy(&before[input.clone()], to);
-            }
+        let (before, after) = values.split_at_mut(self.output.start);
+        let (input, output) = (&before[self.input.clone()], &mut after[..self.output.len()]);
+        match &self.work {
+            Work::Function(function) => function.apply(input, output),
+            Work::Binary { operation, right } => operation.apply(input, &before[right.clone()], output),
+            Work::Linear(linear) => linear.apply(input, output),
+            Work::Softmax { scale, row_size } => scale.apply(*row_size, input, output),
+            Work::ArgMax { tie, row_size } => tie.apply(*row_size, input, output),
+            Work::Copy(blocks) => blocks.copy(input, output),
         }
     }
-}
-
-/// Splits the values into those that a step may read and its output.
-fn split<'a>(values: &'a mut [f32], output: &Range<usize>) -> (&'a [f32], &'a mut [f32]) {
-    let (before, after) = values.split_at_mut(output.start);
-    (before, &mut after[..output.len()])
 }
 
 impl Blocks {

@@ -1,9 +1,9 @@
 //! A constant of a network: weights, or integers such as a shape.
 
-use super::error::shape_text;
+use super::NetworkError;
+use super::error::{shape_text, shown};
 use super::limit::{PARAMETERS_MAX, RANK_MAX, at_most};
 use super::proto::{DOUBLE, EXTERNAL, FLOAT, INT32, INT64, TensorProto, data_type_name};
-use super::{NetworkError, error};
 use std::rc::Rc;
 
 /// Numbers with a shape; the last dimension varies fastest.
@@ -28,7 +28,8 @@ impl Tensor {
     /// Reads a tensor. `name` appears in errors.
     pub(super) fn read(proto: &TensorProto, name: &str) -> Result<Tensor, NetworkError> {
         if proto.data_location == EXTERNAL || !proto.external_data.is_empty() {
-            return Err(NetworkError::ExternalData { tensor: error::shown(name) });
+            let expected = "its numbers: export the model with external_data=False";
+            return Err(NetworkError::tensor(name, "a reference to another file", expected));
         }
         if proto.dims.len() > RANK_MAX {
             let found = format!("{} dimensions", proto.dims.len());
@@ -38,7 +39,7 @@ impl Tensor {
         let Some(shape) = shape else {
             return Err(NetworkError::tensor(name, "a negative dimension", "dimensions of 0 or more"));
         };
-        let count = at_most(&format!("numbers of tensor `{}`", error::shown(name)), product(&shape), PARAMETERS_MAX)?;
+        let count = at_most(&format!("numbers of tensor `{}`", shown(name)), product(&shape), PARAMETERS_MAX)?;
         let numbers = match proto.data_type {
             FLOAT => Numbers::Floats(listed(proto, &proto.float_data, f32::from_le_bytes)),
             DOUBLE => Numbers::Floats(
