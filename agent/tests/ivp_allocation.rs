@@ -2,7 +2,7 @@
 //!
 //! `stats_alloc` counts; see `sim/tests/allocation.rs`. There is a single test because it counts the whole process.
 
-use agent::ivp::{Approach, Closest, Grid, Objective, Peak, Preference, Problem, SpeedLimit, Table};
+use agent::ivp::{Approach, Closest, Grid, Objective, Peak, Preference, Problem, Table};
 use primitives::Ned;
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 use std::alloc::System;
@@ -34,7 +34,7 @@ fn a_decision_takes_nothing_from_the_heap_once_its_lists_have_grown() {
         problem.clear();
         problem.add(100.0, &Objective::Coupled { course: peak, speed: peak, course_share: 0.5 });
         problem.add(200.0, &Objective::Closest(closest));
-        problem.add(20.0, &Objective::Limit(SpeedLimit { high_m_s: 2.0, base_m_s: 0.5 }));
+        problem.add(20.0, &Objective::speed(Peak { peak_width: 2.0, ..Peak::tent(0.0, 0.5) }));
         problem.add(10.0, &Objective::Table(&table));
         let choice = problem.solve(Preference::default());
         let used = heap.change();

@@ -1,7 +1,6 @@
 //! Memory turn limit: discourages turns away from the mean recent heading.
 
-use super::logic::BehaviourLogic;
-use super::output::BehaviourOutput;
+use super::{BehaviourLogic, BehaviourOutput};
 use crate::ivp::{Objective, Peak};
 use crate::situation::Situation;
 use primitives::{SimTime, math};
@@ -52,7 +51,7 @@ impl BehaviourLogic for MemoryTurnLimitBehaviour {
             self.headings.push_back((situation.now, situation.own.nav.psi_rad));
         }
         let range_rad = self.task.turn_range_deg.value(situation).to_radians();
-        output.add(&Objective::Course(Peak {
+        output.add(&Objective::course(Peak {
             summit: self.mean_rad(),
             peak_width: range_rad,
             base_width: BASE * (PI - range_rad).max(0.0),

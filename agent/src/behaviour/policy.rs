@@ -1,7 +1,6 @@
 //! Policy: a model or an external program proposes course and speed, weighed with everything else.
 
-use super::logic::BehaviourLogic;
-use super::output::BehaviourOutput;
+use super::{BehaviourLogic, BehaviourOutput};
 use crate::ivp::{Objective, Peak};
 use crate::policy::{BoardPolicy, Chosen};
 use crate::situation::Situation;

@@ -243,7 +243,7 @@ impl Sums {
                 _ if clear.is_so(i) => add_full(&mut sums, *weight),
                 Field::Closest(ready) => {
                     bounded.measure_best(ready, cells);
-                    add_worth(&mut sums, *weight, ready, if ready.seeks() { &bounded.least } else { &bounded.most });
+                    add_worth(&mut sums, *weight, ready, if ready.seek { &bounded.least } else { &bounded.most });
                 }
                 Field::Closing(ready) => add_closing_bounds(&mut sums, *weight, ready, cells),
             }
@@ -263,7 +263,7 @@ impl Sums {
             match field {
                 Field::Closest(ready) => {
                     bounded.measure(ready, cells);
-                    if ready.seeks() {
+                    if ready.seek {
                         add_worth(&mut sums, *weight, ready, &bounded.least);
                     } else {
                         add_worth(&mut sums, *weight, ready, &bounded.most);
@@ -336,7 +336,7 @@ impl Clear<'_> {
 /// Adds the utilities of distances.
 #[inline(always)]
 fn add_worth(sums: &mut Lanes<i32>, weight: Weight, ready: &closest::Ready, distances: &Lanes<f32>) {
-    if ready.seeks() {
+    if ready.seek {
         for i in 0..LANES {
             sums.0[i] += weight.quanta(ready.worth_near(distances.0[i]));
         }

@@ -1,8 +1,8 @@
 //! The solver compared with the whole grid.
 
-use crate::scene::{self, Table, decision, points, solved};
+use crate::scene::{self, decision, points, random_table, solved};
 use agent::ivp::{Approach, Choice, Closest, Closing, Decision, FUNCTIONS_MAX, Grid, Objective, Peak};
-use agent::ivp::{Preference, Problem, QUANTUM, SpeedLimit, WEIGHT_MAX};
+use agent::ivp::{Preference, Problem, QUANTUM, Table, WEIGHT_MAX};
 use primitives::Ned;
 use primitives::angle::wrap_pi;
 use primitives::stream::Stream;
@@ -33,7 +33,7 @@ fn the_solver_finds_what_a_search_of_the_whole_grid_finds_with_all_instructions(
     for seed in 0..4_000 {
         let mut stream = Stream::new(seed, "ivp/exact");
         let grid = scene::grid(&mut stream);
-        let table = Table::random(&mut stream, &grid);
+        let table = random_table(&mut stream, &grid);
         let functions = scene::functions(&mut stream, &grid, &table);
         let preference = scene::preference(&mut stream, &grid);
         let sums = sums(&grid, &functions);
@@ -74,7 +74,7 @@ fn the_order_of_functions_changes_nothing() {
     for seed in 0..1_000 {
         let mut stream = Stream::new(seed, "ivp/order");
         let grid = scene::grid(&mut stream);
-        let table = Table::random(&mut stream, &grid);
+        let table = random_table(&mut stream, &grid);
         let mut functions = scene::functions(&mut stream, &grid, &table);
         let preference = scene::preference(&mut stream, &grid);
         let first = solved(&grid, &functions, preference);
@@ -91,7 +91,7 @@ fn a_problem_that_was_cleared_is_as_new() {
     let mut old = Problem::new(grid.clone());
     for seed in 0..200 {
         let mut stream = Stream::new(seed, "ivp/again");
-        let table = Table::random(&mut stream, &grid);
+        let table = random_table(&mut stream, &grid);
         let functions = scene::functions(&mut stream, &grid, &table);
         let preference = scene::preference(&mut stream, &grid);
         old.clear();
@@ -118,8 +118,8 @@ fn without_functions_the_boat_goes_on_as_it_does() {
 #[test]
 fn of_equal_courses_the_one_to_starboard_and_of_equal_speeds_the_lower_is_taken() {
     let grid = Grid::new(4, 3, 2.0);
-    let courses = agent::ivp::Table::of(&grid, |k, _| [0.0, 70.0, 0.0, 70.0][k]);
-    let speeds = agent::ivp::Table::of(&grid, |_, j| [60.0, 0.0, 60.0][j]);
+    let courses = Table::of(&grid, |k, _| [0.0, 70.0, 0.0, 70.0][k]);
+    let speeds = Table::of(&grid, |_, j| [60.0, 0.0, 60.0][j]);
     for (course_rad, want) in [(0.0, 1), (std::f64::consts::PI, 3), (-0.1, 3), (0.1, 1)] {
         let preference = Preference { course_rad, speed_m_s: 1.0 };
         let got = solved(&grid, &[(1.0, Objective::Table(&courses)), (2.0, Objective::Table(&speeds))], preference);
@@ -182,14 +182,13 @@ fn a_problem_tells_what_is_decided() {
     let grid = Grid::new(8, 4, 2.0);
     let peak = Peak::tent(0.0, 1.0);
     let coupled = |course_share| Objective::Coupled { course: peak, speed: peak, course_share };
-    let table = agent::ivp::Table::of(&grid, |_, _| 1.0);
+    let table = Table::of(&grid, |_, _| 1.0);
     let cases = [
-        (1.0, Objective::Course(peak), (true, false)),
-        (1.0, Objective::Speed(peak), (false, true)),
+        (1.0, Objective::course(peak), (true, false)),
+        (1.0, Objective::speed(peak), (false, true)),
         (1.0, coupled(0.5), (true, true)),
         (1.0, coupled(1.0), (true, false)),
         (0.0, coupled(0.5), (false, false)),
-        (1.0, Objective::Limit(SpeedLimit { high_m_s: 1.0, base_m_s: 0.5 }), (false, true)),
         (1.0, Objective::Table(&table), (true, true)),
     ];
     for (weight, objective, want) in cases {
@@ -206,20 +205,20 @@ fn numbers_that_are_not_finite_count_nothing() {
     let mut stream = Stream::new(1, "ivp/nan");
     let closest = scene::closest(&mut stream, &grid);
     let peak = Peak::tent(1.0, 1.0);
-    let sound = [(10.0, Objective::Course(peak))];
+    let sound = [(10.0, Objective::course(peak))];
     let preference = Preference { course_rad: 1.0, speed_m_s: 1.0 };
     let want = solved(&grid, &sound, preference);
     let nan = f64::NAN;
-    let no_numbers = agent::ivp::Table::of(&grid, |_, _| f32::NAN);
+    let no_numbers = Table::of(&grid, |_, _| f32::NAN);
     let unsound = [
         (5.0, Objective::Closest(Closest { offset: Ned { north: nan, east: 0.0 }, ..closest })),
         (5.0, Objective::Closest(Closest { horizon_s: f64::INFINITY, ..closest })),
-        (5.0, Objective::Course(Peak { summit: nan, ..peak })),
-        (5.0, Objective::Speed(Peak { summit: f64::INFINITY, ..peak })),
-        (5.0, Objective::Limit(SpeedLimit { high_m_s: nan, base_m_s: 1.0 })),
+        (5.0, Objective::course(Peak { summit: nan, ..peak })),
+        (5.0, Objective::speed(Peak { summit: f64::INFINITY, ..peak })),
+        (5.0, Objective::speed(Peak { peak_width: nan, ..peak })),
         (5.0, Objective::Table(&no_numbers)),
-        (nan, Objective::Speed(peak)),
-        (-3.0, Objective::Speed(peak)),
+        (nan, Objective::speed(peak)),
+        (-3.0, Objective::speed(peak)),
     ];
     for bad in unsound {
         let got = solved(&grid, &[sound[0], bad], preference);
