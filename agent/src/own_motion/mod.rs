@@ -30,12 +30,16 @@ const BRAKES_S: f64 = 1.0;
 const LARGE_TURN_RAD: f64 = 2.2;
 
 /// The speed reference of a front seat.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 enum SpeedReference {
     /// Ahead over the ground.
     Ground,
     /// Through the water, as for point boats.
-    Water,
+    Water {
+        /// For a boat that steers by differential thrust, with thrust proportional to the ordered
+        /// speed: it brakes at full deceleration when its order is lower by this much, m/s.
+        brakes_by_m_s: Option<f64>,
+    },
 }
 
 #[derive(Clone, Debug)]
@@ -43,9 +47,6 @@ pub(crate) struct OwnMotion {
     file: Handling,
     reference: SpeedReference,
     speed_max_m_s: f64,
-    /// For a boat that steers by differential thrust, with thrust proportional to the ordered
-    /// speed: it brakes at full deceleration when its order is lower by this much, m/s.
-    brakes_by_m_s: Option<f64>,
     /// Whether orders compensate for drift and offset.
     compensates: bool,
     drift: DriftEstimate,
@@ -64,21 +65,17 @@ impl OwnMotion {
     pub(crate) fn new(boat: &Boat, speed_max_m_s: f64, compensates: bool) -> OwnMotion {
         // Front seats steer by speed over the ground, from a satellite receiver; point boats by
         // speed through the water, as in MOOS.
-        let reference = match boat.drive {
+        let reference = match &boat.drive {
             Drive::Thrusters { .. } => SpeedReference::Ground,
-            Drive::Kinematic(_) => SpeedReference::Water,
-        };
-        let brakes_by_m_s = match &boat.drive {
-            Drive::Kinematic(point) if point.speed_factor > 0.0 && point.deceleration_max_m_s2 > 0.0 => {
-                Some(BRAKES_S * point.deceleration_max_m_s2)
+            Drive::Kinematic(point) => {
+                let brakes = point.speed_factor > 0.0 && point.deceleration_max_m_s2 > 0.0;
+                SpeedReference::Water { brakes_by_m_s: brakes.then_some(BRAKES_S * point.deceleration_max_m_s2) }
             }
-            _ => None,
         };
         OwnMotion {
             file: Handling::of(boat),
             reference,
             speed_max_m_s,
-            brakes_by_m_s,
             compensates,
             drift: DriftEstimate::default(),
             offset: HeadingOffset::default(),
@@ -107,7 +104,7 @@ impl OwnMotion {
         match self.ordered.filter(|_| obeys) {
             Some((_, ordered_rad)) => {
                 self.offset.observe(ordered_rad, own.nav.psi_rad, &self.file, step_s);
-                let error_rad = wrap_pi(ordered_rad + self.offset.offset_rad() - own.nav.psi_rad);
+                let error_rad = wrap_pi(ordered_rad + self.offset.offset_rad - own.nav.psi_rad);
                 self.turn.observe(error_rad, own.nav.yaw_rate_rad_s, &self.file, step_s);
             }
             None => self.offset.forget(),
@@ -116,13 +113,13 @@ impl OwnMotion {
 
     /// Velocity over the ground minus that through the water, m/s.
     pub(crate) fn drift(&self) -> Ned {
-        if self.compensates { self.drift.drift() } else { Ned::default() }
+        if self.compensates { self.drift.drift } else { Ned::default() }
     }
 
     /// The velocity to add to a decision's, m/s: the estimated drift, or the boat's present sway if
     /// drift is not estimated.
     pub(crate) fn drift_now(&self, nav: &Nav) -> Ned {
-        if self.compensates { self.drift.drift() } else { nav.pose().rotation().starboard().scaled(nav.sway_m_s) }
+        if self.compensates { self.drift.drift } else { nav.pose().rotation().starboard().scaled(nav.sway_m_s) }
     }
 
     /// Standard deviation of the velocity around the drift, m/s.
@@ -132,7 +129,7 @@ impl OwnMotion {
 
     /// The heading's offset from the ordered one, rad clockwise.
     pub(crate) fn heading_offset_rad(&self) -> f64 {
-        if self.compensates { self.offset.offset_rad() } else { 0.0 }
+        if self.compensates { self.offset.offset_rad } else { 0.0 }
     }
 
     /// The observed handling.
@@ -176,7 +173,7 @@ impl OwnMotion {
         if let Some((wanted_rad, _)) = self.ordered {
             self.offset.turn(wrap_pi(heading_rad - wanted_rad));
         }
-        let ordered_rad = wrap_pi(self.turn_toward(heading_rad) - self.offset.offset_rad());
+        let ordered_rad = wrap_pi(self.turn_toward(heading_rad) - self.offset.offset_rad);
         self.ordered = Some((heading_rad, ordered_rad));
         let ahead_m_s = match self.reference {
             SpeedReference::Ground => {
@@ -184,7 +181,9 @@ impl OwnMotion {
                 (speed_m_s + self.drift().dot(Ned { north, east })).clamp(0.0, self.speed_max_m_s)
             }
             // With its final low speed ordered at once, it could not steer while it brakes.
-            SpeedReference::Water => self.brakes_by_m_s.map_or(speed_m_s, |by| speed_m_s.max(self.surge_m_s - by)),
+            SpeedReference::Water { brakes_by_m_s } => {
+                brakes_by_m_s.map_or(speed_m_s, |by| speed_m_s.max(self.surge_m_s - by))
+            }
         };
         Order::Steer { heading_rad: ordered_rad, speed_m_s: ahead_m_s }
     }
