@@ -6,13 +6,12 @@ mod moving_point;
 mod team_messages;
 mod turn_estimate;
 
-pub(crate) use game_model::GameModel;
 pub(crate) use interception::meeting_time_s;
 pub(crate) use moving_point::MovingPoint;
-pub(crate) use team_messages::TeamMessages;
 
 use crate::mind::Proposal;
 use crate::own_motion::OwnMotion;
+use game_model::GameModel;
 use interception::{Interceptor, Intruder, Pair};
 use messages::Picture;
 use messages::picture::{Contact, OwnBoat};
@@ -20,8 +19,10 @@ use primitives::frame::{Body, Rotation, ned_from_body};
 use primitives::{FlagId, Ned, SimTime, VehicleId};
 use rules::event::{EventRecord, TagCause};
 use rules::{Ability, Event, TaggedBoat, tag_wait_s};
+use scenario::Scenario;
 use scenario::strategy::{Boat, Expression, Fact, Mark, Measure, Place, Program, Values};
 use std::cell::OnceCell;
+use team_messages::TeamMessages;
 use turn_estimate::{TurnEstimate, turning_on};
 
 /// A contact is assumed to keep its velocity for this long and then to slow down, s.
@@ -124,14 +125,13 @@ pub(crate) struct Situation {
 }
 
 impl Situation {
-    pub(crate) fn new(
-        model: GameModel,
-        motion: OwnMotion,
-        program: &Program,
-        team_messages: TeamMessages,
-    ) -> Situation {
+    /// Before the first picture. `compensates` is whether the drift is estimated.
+    pub(crate) fn new(scenario: &Scenario, vehicle: VehicleId, program: &Program, compensates: bool) -> Situation {
+        let model = GameModel::new(scenario, vehicle, program);
         Situation {
             own: OwnBoat::new(model.me, messages::picture::Nav::default()),
+            motion: OwnMotion::new(scenario.boat_of(vehicle), model.speed_max_m_s, compensates),
+            team_messages: TeamMessages::new(program, &model.mates),
             model,
             now: SimTime::ZERO,
             begun: false,
@@ -141,12 +141,10 @@ impl Situation {
             at: Ned::default(),
             ahead: Ned::default(),
             velocity: Ned::default(),
-            motion,
             others: Vec::new(),
             turns: Vec::new(),
             tag_ready: Vec::new(),
             variables: program.variables.iter().map(|variable| variable.initial).collect(),
-            team_messages,
             proposed: None,
             carriers: Vec::new(),
             score: 0.0,
