@@ -71,16 +71,16 @@ impl Scene {
         let referee = Referee::new(rules, field, team_of);
         let standing = referee.start(&mut Stream::new(1, "rules"));
         let start_position = |(i, team): (usize, &TeamId)| {
-            let before = referee.team_of()[..i].iter().filter(|other| *other == team).count();
+            let before = referee.team_of[..i].iter().filter(|other| *other == team).count();
             still(if team.0 == 0 { 45.0 } else { 115.0 }, 5.0 + 12.0 * before as f64)
         };
-        let fleet = referee.team_of().iter().enumerate().map(start_position).collect();
-        let asks = vec![Asks::default(); referee.team_of().len()];
+        let fleet = referee.team_of.iter().enumerate().map(start_position).collect();
+        let asks = vec![Asks::default(); referee.team_of.len()];
         Scene { standing, fleet, asks, referee, notes: Notes::default(), near: Near::default(), now: SimTime::ZERO }
     }
 
     pub(crate) fn name(&self) -> &str {
-        &self.referee.rules().name
+        &self.referee.rules.name
     }
 
     pub(crate) fn put(&mut self, vehicle: usize, x: f64, y: f64) -> &mut Scene {
@@ -103,7 +103,7 @@ impl Scene {
     /// Advances one tick and returns its events.
     pub(crate) fn look(&mut self) -> Vec<Event> {
         self.now = self.now + TICK;
-        let near = self.near.pairs(|i| self.fleet[i].to, self.fleet.len(), self.referee.rules().reach_m());
+        let near = self.near.pairs(|i| self.fleet[i].to, self.fleet.len(), self.referee.rules.reach_m());
         let mut events = vec![];
         let look = Look { legs: &self.fleet, asks: &self.asks, near, now: self.now };
         self.referee.advance(&mut self.standing, &mut self.notes, &look, &mut events);
@@ -136,8 +136,4 @@ pub(crate) fn grabbed(vehicle: u16, flag: u8) -> Event {
 
 pub(crate) fn lost(vehicle: u16, flag: u8) -> Event {
     Event::FlagReturned { vehicle: VehicleId(vehicle), flag: FlagId(flag) }
-}
-
-pub(crate) fn ended(winner: Option<u8>) -> Event {
-    Event::Ended { winner: winner.map(TeamId) }
 }
