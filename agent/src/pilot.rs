@@ -103,7 +103,7 @@ impl Pilot {
         let Some(policy) = self.policy.as_mut().filter(|policy| policy.is_due(picture.stamp.valid_ns)) else { return };
         self.control.preview(picture);
         policy.choose_if_due(self.control.situation());
-        if let Ok(chosen) = policy.chosen() {
+        if let Ok(chosen) = policy.chosen {
             self.follow(chosen);
         } else {
             // If the model outputs a non-finite value, the boat stops: otherwise the last action
@@ -157,8 +157,8 @@ impl Teacher {
     fn see(&mut self, helm: &HelmMind, order: Order, actions: ActionSpace) {
         if std::mem::take(&mut self.is_observed) {
             self.did = match actions {
-                ActionSpace::Options => helm.mode().and_then(|mode| self.options[mode]).map(Action::Discrete),
-                ActionSpace::Pyquaticus | ActionSpace::Continuous => steered(helm.situation(), order, actions),
+                ActionSpace::Options => helm.mode.and_then(|mode| self.options[mode]).map(Action::Discrete),
+                ActionSpace::Pyquaticus | ActionSpace::Continuous => steered(&helm.situation, order, actions),
             };
         }
     }
@@ -184,7 +184,7 @@ impl Control {
     fn situation(&self) -> &Situation {
         match self {
             Control::Direct(situation) => situation,
-            Control::Helm(helm, _) => helm.situation(),
+            Control::Helm(helm, _) => &helm.situation,
         }
     }
 

@@ -44,8 +44,9 @@ enum Decided {
 /// A mind that follows a program.
 pub struct HelmMind {
     program: Program,
-    situation: Situation,
-    mode: Option<usize>,
+    pub(crate) situation: Situation,
+    /// The mode of the last decision, by index in the program.
+    pub(crate) mode: Option<usize>,
     instances: Vec<BehaviourInstance>,
     functions: Functions,
     /// Values posted in this decision; they take effect after all behaviours have run.
@@ -105,15 +106,6 @@ impl HelmMind {
     /// Observes the picture before deciding on it.
     pub(crate) fn preview(&mut self, picture: &Picture) {
         self.situation.preview(picture);
-    }
-
-    pub(crate) fn situation(&self) -> &Situation {
-        &self.situation
-    }
-
-    /// The mode of the last decision, by index in the program.
-    pub(crate) fn mode(&self) -> Option<usize> {
-        self.mode
     }
 
     /// Selects the option requested from outside, if the program has options.
@@ -242,8 +234,7 @@ impl HelmMind {
             }
             Decided::Steer(Choice { decision: Decision { course, speed }, .. }) => {
                 let grid = self.functions.problem.grid();
-                let (heading_rad, speed_m_s) =
-                    (grid.course_rad(usize::from(course)), grid.speed_m_s(usize::from(speed)));
+                let (heading_rad, speed_m_s) = (grid.course_rad(course), grid.speed_m_s(speed));
                 self.situation.motion.order(heading_rad, speed_m_s)
             }
         }

@@ -40,7 +40,6 @@ impl Grid {
     /// not positive and finite.
     #[must_use]
     pub fn new(courses: usize, speeds: usize, speed_max_m_s: f64) -> Grid {
-        // A decision stores its course and speed indices as two `u16`.
         assert!((1..=1 << 16).contains(&courses), "{courses} courses, expected 1 to 65536");
         assert!((2..=1 << 16).contains(&speeds), "{speeds} speeds, expected 2 to 65536");
         assert!(

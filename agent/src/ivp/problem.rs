@@ -9,12 +9,12 @@ use super::sums::Sums;
 use primitives::instructions::Instructions;
 
 /// A point of the grid.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Decision {
     /// Index of the course.
-    pub course: u16,
+    pub course: usize,
     /// Index of the speed.
-    pub speed: u16,
+    pub speed: usize,
 }
 
 /// Tie-breaker between equally good candidates.
@@ -133,15 +133,6 @@ impl Problem {
         self.decides_speed
     }
 
-    /// The weighted sum at course `k` and speed `j`.
-    ///
-    /// # Panics
-    /// Beyond the grid.
-    #[must_use]
-    pub fn collective(&self, k: usize, j: usize) -> f64 {
-        f64::from(self.quanta(k, j)) * QUANTUM
-    }
-
     /// The best decision, with exactly the largest weighted sum on the grid.
     ///
     /// Ties go to the course with the smallest angle from the present one, then to starboard; on
@@ -155,17 +146,10 @@ impl Problem {
             present: Present { course: self.grid.ticks_of(preference.course_rad), speed_m_s: preference.speed_m_s },
             // A good first guess lets most cells be skipped at once. It changes how many points are
             // evaluated, but never the result.
-            guess: self.found.map(|found| (found.course.into(), found.speed.into())),
+            guess: self.found,
         };
         let (best, evaluated) = self.instructions.run(search);
-        let found = Decision { course: best.course as u16, speed: best.speed as u16 };
-        self.found = Some(found);
-        Choice { decision: found, value: f64::from(best.value) * QUANTUM, evaluated }
-    }
-
-    /// The weighted sum at one point, in quanta.
-    fn quanta(&self, k: usize, j: usize) -> i32 {
-        assert!(k < self.grid.courses() && j < self.grid.speeds(), "course {k}, speed {j}");
-        self.sums.at(&self.grid, k, j)
+        self.found = Some(best.decision);
+        Choice { decision: best.decision, value: f64::from(best.value) * QUANTUM, evaluated }
     }
 }

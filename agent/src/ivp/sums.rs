@@ -86,15 +86,6 @@ impl Sums {
         let first = LANES * (along * self.courses.len() + across);
         self.lowered[across].then(|| &self.table[first..][..LANES])
     }
-
-    /// The weighted sum at one point, in quanta.
-    pub(super) fn at(&self, grid: &Grid, k: usize, j: usize) -> i32 {
-        let (north, east) = grid.direction(k);
-        let speed = grid.speed_m_s(j) as f32;
-        let of_fields: i32 = self.fields.iter().map(|(w, field)| w.quanta(field.utility(north, east, speed))).sum();
-        let of_table = self.rows(k / LANES, j / LANES).map_or(0, |rows| rows[k % LANES].0[j % LANES]);
-        self.courses[k / LANES].0[k % LANES] + self.speeds[j / LANES].0[j % LANES] + of_fields + of_table
-    }
 }
 
 /// Adds a function of course and a function of speed.

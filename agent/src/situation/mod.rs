@@ -247,11 +247,6 @@ impl Situation {
         }
     }
 
-    /// The boat's velocity through the water, as far as known, m/s.
-    pub(crate) fn velocity_through_water(&self) -> Ned {
-        self.velocity - self.motion.drift()
-    }
-
     /// The boat extrapolated through a brief continued turn.
     pub(crate) fn turning_on(&self) -> MovingPoint {
         turning_on(MovingPoint { at: self.at, velocity: self.velocity }, self.own.nav.yaw_rate_rad_s)

@@ -1,6 +1,6 @@
 //! The solver compared with the whole grid.
 
-use crate::scene::{self, decision, points, random_table, solved};
+use crate::scene::{self, points, random_table, solved};
 use agent::ivp::{Approach, Choice, Closest, Closing, Decision, FUNCTIONS_MAX, Grid, Objective, Peak};
 use agent::ivp::{Preference, Problem, QUANTUM, Table, WEIGHT_MAX};
 use primitives::Ned;
@@ -11,6 +11,10 @@ use primitives::stream::Stream;
 fn sums(grid: &Grid, functions: &[(f64, Objective)]) -> Vec<i64> {
     let at = |(k, j)| functions.iter().map(|(w, f)| i64::from(f.contribution(grid, *w, k, j))).sum();
     points(grid).map(at).collect()
+}
+
+fn decision(course: usize, speed: usize) -> Decision {
+    Decision { course, speed }
 }
 
 /// The best decision by exhaustive search, with the documented tie-break.
@@ -102,8 +106,6 @@ fn a_problem_that_was_cleared_is_as_new() {
         let want = solved(&grid, &functions, preference);
         // The solver starts from its last result, so the number of evaluated points varies.
         assert_eq!(got, Choice { evaluated: got.evaluated, ..want }, "seed {seed}");
-        let Decision { course, speed } = got.decision;
-        assert_eq!(old.collective(course.into(), speed.into()), got.value, "seed {seed}");
     }
 }
 

@@ -1,6 +1,6 @@
 //! Random decisions, with functions of every kind and many ties.
 
-use agent::ivp::{Approach, Choice, Closest, Closing, Decision, Grid, Lag, Objective, Peak};
+use agent::ivp::{Approach, Choice, Closest, Closing, Grid, Lag, Objective, Peak};
 use agent::ivp::{Preference, Problem, Side, Table};
 use primitives::Ned;
 use primitives::instructions::Instructions;
@@ -146,9 +146,4 @@ pub(crate) fn solved(grid: &Grid, functions: &[(f64, Objective)], preference: Pr
 pub(crate) fn points(grid: &Grid) -> impl Iterator<Item = (usize, usize)> + use<> {
     let speeds = grid.speeds();
     (0..grid.courses()).flat_map(move |k| (0..speeds).map(move |j| (k, j)))
-}
-
-/// A point of the grid.
-pub(crate) fn decision(k: usize, j: usize) -> Decision {
-    Decision { course: k as u16, speed: j as u16 }
 }

@@ -93,7 +93,7 @@ fn holds_under(motion: Motion, grid: &Grid, seed: u64) {
     let moved: Vec<(f64, Objective)> = functions.iter().map(|(w, f)| (*w, motion.objective(f, &moved_table))).collect();
     let mut want = solved(grid, &functions, preference);
     let got = solved(grid, &moved, Preference { course_rad: motion.angle(preference.course_rad), ..preference });
-    want.decision.course = motion.course(want.decision.course.into(), grid.courses()) as u16;
+    want.decision.course = motion.course(want.decision.course, grid.courses());
     // The number of evaluated points depends on the starting point of the search.
     want.evaluated = got.evaluated;
     assert_eq!(got, want, "seed {seed}, {motion:?}: {functions:?}");
