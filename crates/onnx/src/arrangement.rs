@@ -11,10 +11,6 @@ use super::proto::{self, data_type_name};
 use super::step::{Blocks, Step, Work};
 use super::tensor::{Numbers, Tensor, product};
 
-pub(super) fn identity(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
-    planner.value(node, 0)
-}
-
 pub(super) fn constant(_: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
     let [attribute] = node.proto.attribute.as_slice() else {
         return Err(node.wrong(format!("{} attributes", node.proto.attribute.len()), "one"));
@@ -260,7 +256,7 @@ fn reshaped(node: &Node, value: Value, shape: Vec<usize>) -> Result<Value, Netwo
         return Err(node.wrong(format!("{found} of `{name}`"), format!("at most {RANK_MAX}")));
     }
     Ok(match value {
-        Value::Constant(tensor) => Value::Constant(tensor.reshaped(shape)),
+        Value::Constant(tensor) => Value::Constant(Tensor { shape, ..tensor }),
         Value::Computed(row) => Value::Computed(Row { shape, ..row }),
     })
 }

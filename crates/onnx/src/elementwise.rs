@@ -27,7 +27,7 @@ impl Function {
                 if above > max { max } else { above }
             }),
             Function::Elu { alpha } => {
-                each(input, output, |x| if x < 0.0 { alpha * (activation::exp(x) - 1.0) } else { x });
+                each(input, output, |x| if x < 0.0 { alpha * (libm::expf(x) - 1.0) } else { x });
             }
             Function::LeakyRelu { alpha } => each(input, output, |x| if x < 0.0 { alpha * x } else { x }),
             Function::Negative => each(input, output, |x| -x),

@@ -36,7 +36,7 @@ pub(super) const OPERATORS: [Operator; 25] = [
     }),
     operator("Flatten", &["axis"], 1..=1, arrangement::flatten),
     operator("Gemm", &["alpha", "beta", "transA", "transB"], 2..=3, linear::gemm),
-    operator("Identity", &[], 1..=1, arrangement::identity),
+    operator("Identity", &[], 1..=1, |planner, node| planner.value(node, 0)),
     operator("LeakyRelu", &["alpha"], 1..=1, |planner, node| {
         elementwise::function(planner, node, Function::LeakyRelu { alpha: node.float("alpha", 0.01)? })
     }),

@@ -6,7 +6,7 @@ use super::node::{self, Node};
 use super::operator::OPERATORS;
 use super::plan::{Plan, Planner, Row, Value};
 use super::proto::{self, GraphProto, ModelProto, NodeProto, ValueInfoProto, data_type_name};
-use super::tensor::Tensor;
+use super::tensor::{Tensor, product};
 use super::{NetworkError, Port};
 use prost::Message;
 use std::collections::{BTreeMap, BTreeSet};
@@ -129,7 +129,7 @@ fn constants(planner: &mut Planner, graph: &GraphProto) -> Result<(), NetworkErr
     let mut numbers = Some(0_usize);
     for proto in &graph.initializer {
         let tensor = Tensor::read(proto, &proto.name)?;
-        numbers = numbers.and_then(|all| all.checked_add(tensor.len()));
+        numbers = numbers.and_then(|all| all.checked_add(product(&tensor.shape)?));
         at_most("numbers of the initializers", numbers, PARAMETERS_MAX)?;
         planner.define(&proto.name, Value::Constant(tensor))?;
     }

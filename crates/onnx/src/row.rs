@@ -1,7 +1,6 @@
 //! Operators along the last dimension: Softmax, LogSoftmax and ArgMax.
 
 use super::NetworkError;
-use super::activation::{exp, ln};
 use super::error::shape_text;
 use super::node::Node;
 use super::plan::{Element, Planner, Row, Value};
@@ -65,13 +64,13 @@ impl Scale {
             let greatest = from.iter().fold(f32::NEG_INFINITY, |greatest, x| if *x > greatest { *x } else { greatest });
             let mut sum = 0.0;
             for (to, from) in to.iter_mut().zip(from) {
-                *to = exp(from - greatest);
+                *to = libm::expf(from - greatest);
                 sum += *to;
             }
             match self {
                 Scale::Linear => to.iter_mut().for_each(|to| *to /= sum),
                 Scale::Logarithmic => {
-                    let of_sum = ln(sum);
+                    let of_sum = libm::logf(sum);
                     to.iter_mut().zip(from).for_each(|(to, from)| *to = from - greatest - of_sum);
                 }
             }

@@ -71,18 +71,6 @@ impl Tensor {
         }
         Ok(Tensor::new(shape, numbers))
     }
-
-    pub(super) fn len(&self) -> usize {
-        match &*self.numbers {
-            Numbers::Floats(floats) => floats.len(),
-            Numbers::Integers(integers) => integers.len(),
-        }
-    }
-
-    /// The same numbers in another shape of the same size.
-    pub(super) fn reshaped(&self, shape: Vec<usize>) -> Tensor {
-        Tensor { shape, numbers: Rc::clone(&self.numbers) }
-    }
 }
 
 /// The size of a shape, unless it overflows.
