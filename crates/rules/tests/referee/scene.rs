@@ -2,9 +2,9 @@
 
 use primitives::near::Near;
 use primitives::stream::Stream;
-use primitives::{FlagId, LatLon, Leg, Ned, SimTime, TeamId, VehicleId};
+use primitives::{FlagId, Leg, Ned, SimTime, TeamId, VehicleId};
 use rules::event::{Event, TagCause};
-use rules::field::{Field, Flag, Plan, Walls};
+use rules::field::{Field, Flag, Plan};
 use rules::{Asks, Directive, Look, Notes, Referee, Rules, Standing};
 
 pub(crate) struct Scene {
@@ -27,18 +27,8 @@ pub(crate) fn field(extra_flags: Vec<Flag>) -> Field {
 }
 
 fn rectangle(x_m: f64, width_m: f64, extra_flags: Vec<Flag>) -> Field {
-    Field::new(Plan {
-        name: "test".into(),
-        datum: LatLon::default(),
-        corner: Ned::from_xy(x_m, 0.0),
-        along_deg: 90.0,
-        width_m,
-        depth_m: 80.0,
-        flag_inset_m: 20.0,
-        extra_flags,
-        obstacles: vec![],
-        walls: Walls::None,
-    })
+    let plan = Plan { along_deg: 90.0, depth_m: 80.0, flag_inset_m: 20.0, ..Plan::default() };
+    Field::new(Plan { corner: Ned::from_xy(x_m, 0.0), width_m, extra_flags, ..plan })
 }
 
 pub(crate) fn flag(team: u8, x: f64, y: f64) -> Flag {
