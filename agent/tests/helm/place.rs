@@ -19,7 +19,7 @@ fn scenario(game: &str) -> Scenario {
     let program = "[variables]\ncapture_m = 0\nown_flag_m = 0\nuntag_m = 0\n[[rule]]\nwhen = \"true\"\n\
                    set = { capture_m = \"distance(capture_place)\", own_flag_m = \"distance(own_flag)\", \
                    untag_m = \"distance(untag_place)\" }\n[behaviour.stop]\nkind = \"full_stop\"\n";
-    loaded(&[("game.toml", &game)], &unsafely(program))
+    loaded(&[("game.toml", &game), ("strategy.toml", &unsafely(program))])
 }
 
 /// The picture of a boat alone at this position.

@@ -11,15 +11,15 @@ use std::path::Path;
 /// The scenario in which all boats follow the program `strategy`: two against two on the test
 /// field.
 pub(crate) fn scenario(strategy: &str) -> Scenario {
-    loaded(&[("game.toml", include_str!("game.toml")), ("field.toml", include_str!("field.toml"))], strategy)
+    let (game, field) = (include_str!("game.toml"), include_str!("field.toml"));
+    loaded(&[("game.toml", game), ("field.toml", field), ("strategy.toml", strategy)])
 }
 
-/// The scenario of `game.toml` among these files, with `strategy.toml`. `SCENARIOS` in them is the folder of the
-/// shipped files.
-pub(crate) fn loaded(files: &[(&str, &str)], strategy: &str) -> Scenario {
+/// The scenario of `game.toml` among these files. `SCENARIOS` in them is the folder of the shipped files.
+pub(crate) fn loaded(files: &[(&str, &str)]) -> Scenario {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios").display().to_string();
-    for (name, text) in files.iter().chain(&[("strategy.toml", strategy)]) {
+    for (name, text) in files {
         let text = text.replace("SCENARIOS", &scenarios);
         std::fs::write(folder.path().join(name), text).expect("the file can be written");
     }
