@@ -10,8 +10,6 @@ use std::f64::consts::PI;
 
 /// Maximum number of remembered headings.
 const MOST: usize = 256;
-/// Width of the fall from the free range to zero, as a share of the rest of half a turn.
-const BASE: f64 = 1.0;
 
 pub(super) struct MemoryTurnLimitBehaviour {
     task: MemoryTurnLimit,
@@ -54,7 +52,7 @@ impl BehaviourLogic for MemoryTurnLimitBehaviour {
         output.add(&Objective::course(Peak {
             summit: self.mean_rad(),
             peak_width: range_rad,
-            base_width: BASE * (PI - range_rad).max(0.0),
+            base_width: (PI - range_rad).max(0.0),
             summit_delta: 0.0,
             height: 100.0,
         }));

@@ -203,10 +203,10 @@ impl HelmMind {
             return Decided::Hold("no behaviour has a preference");
         }
         // A decision without a preferred course would be the first on the grid, which is north.
-        if !problem.decides_course() {
+        if !problem.decides_course {
             return Decided::Hold("no behaviour prefers a course");
         }
-        if !problem.decides_speed() {
+        if !problem.decides_speed {
             return Decided::Hold("no behaviour prefers a speed");
         }
         let last = match self.decided {

@@ -268,7 +268,7 @@ mod tests {
             let courses = [5, 12, 36, 47, 90, 360][stream.below(6) as usize];
             let grid = Grid::new(courses, [2, 9, 21, 36][stream.below(4) as usize], stream.between(0.5, 8.0));
             let (cells, field) = (Cells::new(&grid), field(&mut stream, &grid));
-            for (k, j) in (0..courses).flat_map(|k| (0..grid.speeds()).map(move |j| (k, j))) {
+            for (k, j) in grid.points() {
                 let (across, along) = (k / LANES, j / LANES);
                 let sector = along * cells.sector_courses + across;
                 let (of_courses, of_speeds) = &cells.sectors[sector / LANES];

@@ -75,6 +75,12 @@ impl Grid {
         self.speeds
     }
 
+    /// All points: the indices of course and speed, speeds varying fastest.
+    pub fn points(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
+        let speeds = self.speeds;
+        (0..self.courses).flat_map(move |k| (0..speeds).map(move |j| (k, j)))
+    }
+
     /// The top speed, m/s.
     #[must_use]
     pub fn speed_max_m_s(&self) -> f64 {

@@ -112,10 +112,10 @@ impl Objective<'_> {
             Objective::Closest(closest) => field(closest.ready(fastest_m_s).map(Field::Closest)),
             Objective::Closing(closing) => field(closing.ready(fastest_m_s).map(Field::Closing)),
             Objective::Table(table) => {
-                let size = (grid.courses(), grid.speeds());
+                let (found, size) = ((table.courses, table.speeds), (grid.courses(), grid.speeds()));
                 // A bug of the caller, not a fault of a file: a table of another grid would be read
                 // beyond its end.
-                assert!(table.size() == size, "table of {:?} courses and speeds, expected {size:?}", table.size());
+                assert!(found == size, "table of {found:?} courses and speeds, expected {size:?}");
                 Parts::Table(table)
             }
         }

@@ -46,8 +46,10 @@ pub struct Problem {
     sums: Sums,
     bounds: Bounds,
     functions: usize,
-    decides_course: bool,
-    decides_speed: bool,
+    /// Whether any function distinguishes courses.
+    pub decides_course: bool,
+    /// Whether any function distinguishes speeds.
+    pub decides_speed: bool,
     /// The last result, usually nearly as good at the next decision.
     found: Option<Decision>,
 }
@@ -119,18 +121,6 @@ impl Problem {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.functions == 0
-    }
-
-    /// Whether any function distinguishes courses.
-    #[must_use]
-    pub fn decides_course(&self) -> bool {
-        self.decides_course
-    }
-
-    /// Whether any function distinguishes speeds.
-    #[must_use]
-    pub fn decides_speed(&self) -> bool {
-        self.decides_speed
     }
 
     /// The best decision, with exactly the largest weighted sum on the grid.

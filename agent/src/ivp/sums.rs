@@ -155,7 +155,7 @@ impl Kernel for AddTable<'_> {
     #[inline(always)]
     fn run(self) {
         let AddTable { sums, grid, weight, table } = self;
-        for (across, lowered) in table.lowered().iter().enumerate() {
+        for (across, lowered) in table.lowered.iter().enumerate() {
             let first = LANES * across;
             let count = (grid.courses() - first).min(LANES);
             for (i, sum) in sums.courses[across].0.iter_mut().enumerate().take(count) {

@@ -47,7 +47,7 @@ pub(crate) struct OwnMotion {
     file: Handling,
     reference: SpeedReference,
     speed_max_m_s: f64,
-    /// Whether orders compensate for drift and offset.
+    /// Whether orders compensate for drift and offset; if not, both estimates stay at their defaults.
     compensates: bool,
     drift: DriftEstimate,
     offset: HeadingOffset,
@@ -113,7 +113,7 @@ impl OwnMotion {
 
     /// Velocity over the ground minus that through the water, m/s.
     pub(crate) fn drift(&self) -> Ned {
-        if self.compensates { self.drift.drift } else { Ned::default() }
+        self.drift.drift
     }
 
     /// The velocity to add to a decision's, m/s: the estimated drift, or the boat's present sway if
@@ -124,12 +124,12 @@ impl OwnMotion {
 
     /// Standard deviation of the velocity around the drift, m/s.
     pub(crate) fn spread_m_s(&self) -> f64 {
-        if self.compensates { self.drift.spread_m_s() } else { 0.0 }
+        self.drift.spread_m_s()
     }
 
     /// The heading's offset from the ordered one, rad clockwise.
     pub(crate) fn heading_offset_rad(&self) -> f64 {
-        if self.compensates { self.offset.offset_rad } else { 0.0 }
+        self.offset.offset_rad
     }
 
     /// The observed handling.
@@ -223,10 +223,10 @@ mod tests {
     }
 
     /// Feeds navigation ten times per second for `for_s`, from `after_s` on.
-    fn show(motion: &mut OwnMotion, after_s: f64, for_s: f64, nav: impl Fn(f64) -> Nav) {
+    fn show(motion: &mut OwnMotion, after_s: f64, for_s: f64, nav: Nav) {
         for i in 0..(10.0 * for_s) as u32 {
             let at_s = 0.1 * f64::from(i);
-            let mut own = OwnBoat::new(VehicleId(0), nav(at_s));
+            let mut own = OwnBoat::new(VehicleId(0), nav);
             own.fix_ns = SimTime::from_s(after_s + at_s + 0.1);
             motion.observe(&own, 0.1, true);
         }
@@ -236,7 +236,7 @@ mod tests {
     fn a_course_over_the_ground_is_kept_with_a_crab_angle() {
         let mut motion = motion("surveyor_m1_8");
         // Northward with an eastward drift of 0.5 m/s.
-        show(&mut motion, 0.0, 60.0, |_| Nav { surge_m_s: 2.0, sway_m_s: 0.5, ..Nav::default() });
+        show(&mut motion, 0.0, 60.0, Nav { surge_m_s: 2.0, sway_m_s: 0.5, ..Nav::default() });
         assert!(motion.drift().distance(Ned { north: 0.0, east: 0.5 }) < 0.01, "{:?}", motion.drift());
         let drift_m_s = motion.drift().length();
         let (heading_rad, speed_m_s) = motion.steer(0.0, 1.5);
@@ -256,7 +256,7 @@ mod tests {
         let mut ordered_rad = 0.0;
         for i in 0..600 {
             // A lasting moment holds it 0.3 rad to starboard of its order.
-            show(&mut motion, 0.1 * f64::from(i), 0.1, |_| Nav { psi_rad: ordered_rad + 0.3, ..Nav::default() });
+            show(&mut motion, 0.1 * f64::from(i), 0.1, Nav { psi_rad: ordered_rad + 0.3, ..Nav::default() });
             if let Order::Steer { heading_rad, .. } = motion.order(1.0, 2.0) {
                 ordered_rad = heading_rad;
             }
@@ -270,7 +270,7 @@ mod tests {
             [("large_usv_kinematic", 0.3, 5.5), ("large_usv_kinematic", 7.0, 7.0), ("surveyor_kinematic", 0.3, 0.3)]
         {
             let mut motion = motion(boat);
-            show(&mut motion, 0.0, 1.0, |_| Nav { surge_m_s: 6.0, ..Nav::default() });
+            show(&mut motion, 0.0, 1.0, Nav { surge_m_s: 6.0, ..Nav::default() });
             let Order::Steer { speed_m_s: got_m_s, .. } = motion.order(1.0, speed_m_s) else {
                 panic!("expected a steer order")
             };
@@ -284,7 +284,7 @@ mod tests {
         let mut sides = vec![];
         // The heading wavers about the opposite of the desired one.
         for (i, psi_rad) in [0.1, -0.1, 0.2, -0.3, 0.1].into_iter().enumerate() {
-            show(&mut motion, i as f64, 0.1, |_| Nav { psi_rad, ..Nav::default() });
+            show(&mut motion, i as f64, 0.1, Nav { psi_rad, ..Nav::default() });
             if let Order::Steer { heading_rad, .. } = motion.order(PI, 2.0) {
                 sides.push(wrap_pi(heading_rad - psi_rad).signum());
             }
@@ -310,7 +310,7 @@ mod tests {
         for i in 0..200 {
             motion.order(2.0, 2.0);
             let nav = Nav { psi_rad: 0.0, yaw_rate_rad_s: 0.4 * before_rad_s, ..Nav::default() };
-            show(&mut motion, 0.1 * f64::from(i), 0.1, |_| nav);
+            show(&mut motion, 0.1 * f64::from(i), 0.1, nav);
         }
         let seen = motion.handling().turn_rad_s / before_rad_s;
         assert!((0.35..0.65).contains(&seen), "observed turn rate is {seen} of that in its file");

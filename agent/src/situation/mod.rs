@@ -299,7 +299,8 @@ impl Situation {
 
     /// Computes the interception pairs.
     fn intercepted(&self) -> Vec<Pair> {
-        let mut intruders: Vec<Intruder> = self.intruders().map(Intruder::from).collect();
+        let intruder = |boat: &OtherBoat| Intruder { vehicle: boat.vehicle, at: boat.at, velocity: boat.velocity() };
+        let mut intruders: Vec<Intruder> = self.intruders().map(intruder).collect();
         // By the flag nearest to each intruder, not the one nearest to this boat, so that all boats
         // of the team find the same order. By their distance to the flag in the whole team's
         // knowledge, so that every mate computes the same pairs.
@@ -431,12 +432,6 @@ impl Values for Situation {
 
     fn mates(&self, condition: &Expression) -> f64 {
         self.team_messages.count(condition)
-    }
-}
-
-impl From<&OtherBoat> for Intruder {
-    fn from(boat: &OtherBoat) -> Intruder {
-        Intruder { vehicle: boat.vehicle, at: boat.at, velocity: boat.velocity() }
     }
 }
 

@@ -1,6 +1,6 @@
 //! The solver compared with the whole grid.
 
-use crate::scene::{self, points, random_table, solved};
+use crate::scene::{self, random_table, solved};
 use agent::ivp::{Approach, Choice, Closest, Closing, Decision, FUNCTIONS_MAX, Grid, Objective, Peak};
 use agent::ivp::{Preference, Problem, QUANTUM, Table, WEIGHT_MAX};
 use primitives::Ned;
@@ -10,7 +10,7 @@ use primitives::stream::Stream;
 /// Every sum on the grid, in quanta, by course and speed.
 fn sums(grid: &Grid, functions: &[(f64, Objective)]) -> Vec<i64> {
     let at = |(k, j)| functions.iter().map(|(w, f)| i64::from(f.contribution(grid, *w, k, j))).sum();
-    points(grid).map(at).collect()
+    grid.points().map(at).collect()
 }
 
 fn decision(course: usize, speed: usize) -> Decision {
@@ -24,7 +24,7 @@ fn searched(grid: &Grid, sums: &[i64], preference: Preference) -> (Decision, f64
         let away = wrap_pi(grid.course_rad(k) - preference.course_rad);
         ((away.abs(), away < 0.0), (grid.speed_m_s(j) - preference.speed_m_s).abs(), j)
     };
-    let equal = points(grid).zip(sums).filter(|(_, sum)| **sum == largest).map(|(point, _)| point);
+    let equal = grid.points().zip(sums).filter(|(_, sum)| **sum == largest).map(|(point, _)| point);
     let (k, j) =
         equal.min_by(|a, b| key(*a).partial_cmp(&key(*b)).expect("values are not NaN")).expect("the grid has points");
     (decision(k, j), largest as f64 * QUANTUM)
@@ -45,7 +45,7 @@ fn the_solver_finds_what_a_search_of_the_whole_grid_finds_with_all_instructions(
         let got = solved(&grid, &functions, preference);
         assert_eq!((got.decision, got.value), (want, value), "seed {seed}: {functions:?} {preference:?}");
         ties += usize::from(sums.iter().filter(|&&sum| sum as f64 * QUANTUM == value).count() > 1);
-        passed_over += points(&grid).count().saturating_sub(got.evaluated);
+        passed_over += grid.points().count().saturating_sub(got.evaluated);
     }
     assert!(ties > 400, "only {ties} scenes with ties");
     assert!(passed_over > 400_000, "only {passed_over} points skipped");
@@ -99,7 +99,7 @@ fn a_problem_that_was_cleared_is_as_new() {
         let functions = scene::functions(&mut stream, &grid, &table);
         let preference = scene::preference(&mut stream, &grid);
         old.clear();
-        assert!(old.is_empty() && !old.decides_course() && !old.decides_speed());
+        assert!(old.is_empty() && !old.decides_course && !old.decides_speed);
         functions.iter().for_each(|(weight, objective)| old.add(*weight, objective));
         assert_eq!(old.len(), functions.len());
         let got: Choice = old.solve(preference);
@@ -196,7 +196,7 @@ fn a_problem_tells_what_is_decided() {
     for (weight, objective, want) in cases {
         let mut problem = Problem::new(grid.clone());
         problem.add(weight, &objective);
-        assert_eq!((problem.decides_course(), problem.decides_speed()), want, "{objective:?}");
+        assert_eq!((problem.decides_course, problem.decides_speed), want, "{objective:?}");
     }
 }
 

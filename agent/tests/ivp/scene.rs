@@ -142,8 +142,3 @@ pub(crate) fn solved(grid: &Grid, functions: &[(f64, Objective)], preference: Pr
     }
     plainest
 }
-
-pub(crate) fn points(grid: &Grid) -> impl Iterator<Item = (usize, usize)> + use<> {
-    let speeds = grid.speeds();
-    (0..grid.courses()).flat_map(move |k| (0..speeds).map(move |j| (k, j)))
-}
