@@ -52,12 +52,6 @@ pub struct Look<'a> {
 }
 
 impl Referee {
-    /// A referee with these rules on this field; `team_of` is indexed by vehicle.
-    #[must_use]
-    pub fn new(rules: Rules, field: Field, team_of: Vec<TeamId>) -> Referee {
-        Referee { rules, field, team_of }
-    }
-
     /// The standing before the start. Only power plays draw from `stream`.
     pub fn start(&self, stream: &mut Stream) -> Standing {
         let mut standing = Standing::new(self.team_of.len(), self.field.flags.len(), self.teams());

@@ -1,6 +1,6 @@
 //! A scenario knows whether its seed matters: games of two seeds differ exactly if it says so.
 
-use crate::files::shipped;
+use crate::files::{played, shipped};
 use primitives::reseed::Reseed;
 use primitives::time::SimTime;
 use scenario::{Overrides, Scenario, load_with};
@@ -10,7 +10,7 @@ use sim::Contest;
 fn digest(scenario: &Scenario, seed: u64) -> String {
     let mut game = scenario.of_seed(seed).unwrap_or_else(|problems| panic!("{problems}"));
     game.rules.time_limit = SimTime::from_s(60.0);
-    arena::play(&game, agent::minds_of(&game), seed).unwrap_or_else(|why| panic!("{why}")).digest
+    played(&game).digest
 }
 
 /// The shipped games of few boats: larger ones have the same sources of randomness, and take long.

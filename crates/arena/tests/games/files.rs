@@ -1,7 +1,7 @@
 //! Games from files, and their contests.
 
 use agent::MindRunner;
-use scenario::Scenario;
+use scenario::{Outcome, Scenario};
 use sim::Contest;
 use std::path::{Path, PathBuf};
 
@@ -18,6 +18,11 @@ pub(crate) fn loaded(files: &[(&str, impl AsRef<str>)]) -> Scenario {
         std::fs::write(folder.path().join(name), text).expect("a file in it");
     }
     scenario::load(&folder.path().join("game.toml")).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// The outcome of the game of its seed.
+pub(crate) fn played(scenario: &Scenario) -> Outcome {
+    arena::play(scenario, agent::minds_of(scenario), scenario.seed).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// Plays, and shows the contest after every decision until `shown` returns `false`.

@@ -22,8 +22,7 @@ fn played(game: &'static str, seed: u64) -> Outcome {
 }
 
 fn play(scenario: &Scenario, seed: u64) -> Outcome {
-    let scenario = Scenario { seed, ..scenario.clone() };
-    arena::play(&scenario, agent::minds_of(&scenario), seed).unwrap_or_else(|e| panic!("{e}"))
+    files::played(&Scenario { seed, ..scenario.clone() })
 }
 
 fn all(outcome: &Outcome, count: impl Fn(&Counts) -> u32) -> u32 {

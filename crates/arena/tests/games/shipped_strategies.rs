@@ -1,6 +1,6 @@
 //! Shipped strategies: their documented behaviour.
 
-use crate::files::{loaded, shipped};
+use crate::files::{loaded, played, shipped};
 use agent::Mind;
 use messages::helm::HelmReport;
 use primitives::VehicleId;
@@ -18,10 +18,6 @@ fn game(boats: u32, blue: &str, red: &str, seed: u64) -> Scenario {
     };
     let game = format!("base = \"SCENARIOS/games/surveyor_2v2.toml\"\n{}{}", team("blue", blue), team("red", red));
     loaded(&[("game.toml", game)]).of_seed(seed).unwrap_or_else(|e| panic!("{e}"))
-}
-
-fn played(scenario: &Scenario) -> Outcome {
-    arena::play(scenario, agent::minds_of(scenario), scenario.seed).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// The final report of the first boat's helm, and the modes it was in.

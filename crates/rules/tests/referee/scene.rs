@@ -58,7 +58,7 @@ impl Scene {
 
     /// Every boat waits on its own side, 12 m from its neighbours, out of reach of everything.
     pub(crate) fn on(rules: Rules, field: Field, team_of: Vec<TeamId>) -> Scene {
-        let referee = Referee::new(rules, field, team_of);
+        let referee = Referee { rules, field, team_of };
         let standing = referee.start(&mut Stream::new(1, "rules"));
         let start_position = |(i, team): (usize, &TeamId)| {
             let before = referee.team_of[..i].iter().filter(|other| *other == team).count();

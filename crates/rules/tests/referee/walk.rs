@@ -44,7 +44,7 @@ fn hurried(rules: Rules) -> Rules {
 impl Walk {
     fn referee(&self) -> Referee {
         let extra = if self.extra_flags { vec![flag(0, 62.0, 70.0), flag(1, 98.0, 10.0)] } else { vec![] };
-        Referee::new(self.rules.clone(), field(extra), teams_of(self.boats, 2))
+        Referee { rules: self.rules.clone(), field: field(extra), team_of: teams_of(self.boats, 2) }
     }
 
     /// The motion of every boat, look by look, from one interesting place to the next.
