@@ -15,7 +15,6 @@ mod observation;
 mod own_motion;
 mod pilot;
 mod policy;
-mod restart;
 pub mod roles;
 mod runner;
 mod situation;
@@ -36,13 +35,13 @@ use scenario::strategy::Strategy;
 /// The mind that the scenario's strategy assigns to this vehicle, for the scenario's seed.
 #[must_use]
 pub fn mind_of(scenario: &Scenario, vehicle: VehicleId) -> Box<dyn Mind> {
-    restart::helm_of(scenario, vehicle, roles::role_of(scenario, vehicle))
+    Box::new(HelmMind::restarting(scenario, vehicle, roles::role_of(scenario, vehicle)))
 }
 
 /// The mind that `strategy` assigns to this vehicle, whatever the scenario's own strategy.
 #[must_use]
 pub fn mind_by(scenario: &Scenario, vehicle: VehicleId, strategy: &Strategy) -> Box<dyn Mind> {
-    restart::helm_of(scenario, vehicle, roles::role_in(scenario, vehicle, strategy))
+    Box::new(HelmMind::restarting(scenario, vehicle, roles::role_in(scenario, vehicle, strategy)))
 }
 
 /// The minds of all vehicles, in the scenario's order.

@@ -4,10 +4,9 @@
 use crate::helm::HelmMind;
 use crate::mind::{Mind, Proposal};
 use crate::observation::Observer;
-use crate::own_motion::OwnMotion;
 use crate::policy::{BoardPolicy, Chosen};
 use crate::roles::role_of;
-use crate::situation::{GameModel, Situation, TeamMessages};
+use crate::situation::Situation;
 use messages::helm::HelmReport;
 use messages::{Order, Picture, Word};
 use primitives::VehicleId;
@@ -15,22 +14,20 @@ use scenario::Scenario;
 use scenario::action::{Action, ActionSpace, SetPoint};
 use scenario::observation::ObservationSpace;
 use scenario::policy::PolicyModel;
-use scenario::strategy::{Fact, Mark, Place, Program, Proposer, Values};
+use scenario::strategy::{Fact, Mark, Place, Program, Values};
 use std::collections::BTreeMap;
 
 /// How actions reach the boat.
 enum Control {
     /// Directly: the set-point is the order.
     Direct(Box<Situation>),
-    /// Through a helm, as a proposal that it weighs against safety.
-    Helm(Box<HelmMind>),
-    /// Actions are ignored: a strategy plays, and its actions serve as a demonstration.
-    Taught(Box<Teacher>),
+    /// Through a helm, as a proposal that it weighs against safety; with a teacher, not at all.
+    Helm(Box<HelmMind>, Option<Teacher>),
 }
 
-/// A strategy that plays in place of the policy that imitates it.
+/// Makes a helm play in place of the policy that imitates it: actions are ignored, and the helm's own
+/// serve as a demonstration.
 struct Teacher {
-    helm: HelmMind,
     /// The option that each mode corresponds to, by mode index.
     options: Vec<Option<usize>>,
     /// Its first action since the last observation, if the policy could have chosen that action.
@@ -62,20 +59,16 @@ impl Pilot {
     /// nothing else.
     #[must_use]
     pub fn direct(scenario: &Scenario, vehicle: VehicleId, spaces: Spaces) -> Pilot {
-        let program = role_of(scenario, vehicle);
-        let model = GameModel::new(scenario, vehicle, program);
         // With the drift estimated, which is part of the observation even if nothing compensates
         // for it.
-        let motion = OwnMotion::new(scenario.boat_of(vehicle), model.speed_max_m_s, true);
-        let team_messages = TeamMessages::new(program, &model.mates);
-        let situation = Box::new(Situation::new(model, motion, program, team_messages));
-        Pilot::new(Control::Direct(situation), spaces)
+        let situation = Situation::new(scenario, vehicle, role_of(scenario, vehicle), true);
+        Pilot::new(Control::Direct(Box::new(situation)), spaces)
     }
 
     /// Actions are proposals to the helm of `program`, which has a behaviour of kind `policy`.
     #[must_use]
     pub fn helm(scenario: &Scenario, vehicle: VehicleId, program: &Program, spaces: Spaces) -> Pilot {
-        Pilot::new(Control::Helm(Box::new(HelmMind::new(scenario, vehicle, program))), spaces)
+        Pilot::new(Control::Helm(Box::new(HelmMind::new(scenario, vehicle, program)), None), spaces)
     }
 
     /// The strategy's program for this boat plays. [`Pilot::taught`] returns the action that a
@@ -88,13 +81,13 @@ impl Pilot {
         options: &BTreeMap<String, usize>,
         spaces: Spaces,
     ) -> Pilot {
-        let helm = HelmMind::new(scenario, vehicle, program);
         let options = (0..program.modes.len()).map(|mode| options.get(&program.path(mode)).copied()).collect();
-        Pilot::new(Control::Taught(Box::new(Teacher { helm, options, did: None, is_observed: false })), spaces)
+        let teacher = Some(Teacher { options, did: None, is_observed: false });
+        Pilot::new(Control::Helm(Box::new(HelmMind::new(scenario, vehicle, program)), teacher), spaces)
     }
 
     fn new(control: Control, spaces: Spaces) -> Pilot {
-        let observer = Observer::new(spaces.observation, situation_of(&control));
+        let observer = Observer::new(spaces.observation, control.situation());
         Pilot { observer, control, actions: spaces.action, set_point: SetPoint::default(), policy: None }
     }
 
@@ -108,9 +101,9 @@ impl Pilot {
     /// Evaluates the model, if any, when its decision is due.
     fn ask_model(&mut self, picture: &Picture) {
         let Some(policy) = self.policy.as_mut().filter(|policy| policy.is_due(picture.stamp.valid_ns)) else { return };
-        preview(&mut self.control, picture);
-        policy.choose_if_due(situation_of(&self.control));
-        if let Ok(chosen) = policy.chosen() {
+        self.control.preview(picture);
+        policy.choose_if_due(self.control.situation());
+        if let Ok(chosen) = policy.chosen {
             self.follow(chosen);
         } else {
             // If the model outputs a non-finite value, the boat stops: otherwise the last action
@@ -122,29 +115,29 @@ impl Pilot {
     fn follow(&mut self, chosen: Chosen) {
         match (chosen, &mut self.control) {
             (Chosen::SetPoint(set_point), _) => self.set_point = set_point,
-            (Chosen::Option(option), Control::Helm(helm)) => helm.choose(option),
-            (Chosen::Option(_), Control::Direct(_) | Control::Taught(_)) => self.set_point = SetPoint::default(),
+            (Chosen::Option(option), Control::Helm(helm, None)) => helm.choose(option),
+            (Chosen::Option(_), _) => self.set_point = SetPoint::default(),
         }
     }
 
     /// Takes in the picture for the next decision. Returns the observation.
     pub fn observe(&mut self, picture: &Picture) -> &[f32] {
-        preview(&mut self.control, picture);
-        if let Control::Taught(teacher) = &mut self.control {
+        self.control.preview(picture);
+        if let Control::Helm(_, Some(teacher)) = &mut self.control {
             (teacher.did, teacher.is_observed) = (None, true);
         }
-        self.observer.observe(situation_of(&self.control))
+        self.observer.observe(self.control.situation())
     }
 
     /// Applies this action from the next decision on.
     pub fn act(&mut self, action: Action) {
-        self.follow(Chosen::of(self.actions, action, situation_of(&self.control)));
+        self.follow(Chosen::of(self.actions, action, self.control.situation()));
     }
 
     /// Whether actions take effect: a tagged boat drives home, and one out of action stays still.
     #[must_use]
     pub fn obeys(&self) -> bool {
-        let situation = situation_of(&self.control);
+        let situation = self.control.situation();
         !situation.own.tagged && situation.fact(Fact::Disabled) == 0.0
     }
 
@@ -153,83 +146,73 @@ impl Pilot {
     #[must_use]
     pub fn taught(&self) -> Option<Action> {
         match &self.control {
-            Control::Taught(teacher) => teacher.did,
-            Control::Direct(_) | Control::Helm(_) => None,
+            Control::Helm(_, Some(teacher)) => teacher.did,
+            _ => None,
         }
     }
 }
 
 impl Teacher {
-    fn decide(&mut self, picture: &Picture, actions: ActionSpace) -> Order {
-        let order = self.helm.decide(picture);
+    /// Takes note of the helm's order.
+    fn see(&mut self, helm: &HelmMind, order: Order, actions: ActionSpace) {
         if std::mem::take(&mut self.is_observed) {
             self.did = match actions {
-                ActionSpace::Options => self.helm.mode().and_then(|mode| self.options[mode]).map(Action::Discrete),
-                ActionSpace::Pyquaticus | ActionSpace::Continuous => self.steered(order, actions),
+                ActionSpace::Options => helm.mode.and_then(|mode| self.options[mode]).map(Action::Discrete),
+                ActionSpace::Pyquaticus | ActionSpace::Continuous => steered(&helm.situation, order, actions),
             };
         }
-        order
-    }
-
-    fn steered(&self, order: Order, actions: ActionSpace) -> Option<Action> {
-        // A teacher's hold is not among the policy's actions, so imitation skips such a decision.
-        let Order::Steer { heading_rad, speed_m_s } = order else { return None };
-        let situation = self.helm.situation();
-        let asked = SetPoint { course_rad: heading_rad, speed_m_s };
-        actions.nearest(asked, situation.own.nav.psi_rad, situation.model.speed_max_m_s)
     }
 }
 
-/// Takes in the picture for the next decision.
-fn preview(control: &mut Control, picture: &Picture) {
-    match control {
-        Control::Direct(situation) => situation.preview(picture),
-        Control::Helm(helm) => helm.preview(picture),
-        Control::Taught(teacher) => teacher.helm.preview(picture),
-    }
+/// The action that comes nearest to an order.
+fn steered(situation: &Situation, order: Order, actions: ActionSpace) -> Option<Action> {
+    // A teacher's hold is not among the policy's actions, so imitation skips such a decision.
+    let Order::Steer { heading_rad, speed_m_s } = order else { return None };
+    let asked = SetPoint { course_rad: heading_rad, speed_m_s };
+    actions.nearest(asked, situation.own.nav.psi_rad, situation.model.speed_max_m_s)
 }
 
-fn helm_of(control: &Control) -> Option<&HelmMind> {
-    match control {
-        Control::Direct(_) => None,
-        Control::Helm(helm) => Some(helm),
-        Control::Taught(teacher) => Some(&teacher.helm),
+impl Control {
+    /// Takes in the picture for the next decision.
+    fn preview(&mut self, picture: &Picture) {
+        match self {
+            Control::Direct(situation) => situation.preview(picture),
+            Control::Helm(helm, _) => helm.preview(picture),
+        }
     }
-}
 
-fn helm_of_mut(control: &mut Control) -> Option<&mut HelmMind> {
-    match control {
-        Control::Direct(_) => None,
-        Control::Helm(helm) => Some(helm),
-        Control::Taught(teacher) => Some(&mut teacher.helm),
+    fn situation(&self) -> &Situation {
+        match self {
+            Control::Direct(situation) => situation,
+            Control::Helm(helm, _) => &helm.situation,
+        }
     }
-}
 
-fn situation_of(control: &Control) -> &Situation {
-    match control {
-        Control::Direct(situation) => situation,
-        Control::Helm(helm) => helm.situation(),
-        Control::Taught(teacher) => teacher.helm.situation(),
+    fn helm(&self) -> Option<&HelmMind> {
+        if let Control::Helm(helm, _) = self { Some(helm) } else { None }
     }
 }
 
 impl Mind for Pilot {
     fn decide(&mut self, picture: &Picture) -> Order {
         self.ask_model(picture);
+        let SetPoint { course_rad, speed_m_s } = self.set_point;
         let situation = match &mut self.control {
             Control::Direct(situation) => situation,
-            Control::Helm(helm) => {
+            Control::Helm(helm, None) => {
                 // Valid until the next action, however long the period.
-                let SetPoint { course_rad, speed_m_s } = self.set_point;
                 helm.propose(Proposal { at: picture.stamp.valid_ns, course_rad, speed_m_s });
                 return helm.decide(picture);
             }
-            Control::Taught(teacher) => return teacher.decide(picture, self.actions),
+            Control::Helm(helm, Some(teacher)) => {
+                let order = helm.decide(picture);
+                teacher.see(helm, order, self.actions);
+                return order;
+            }
         };
         if !situation.update(picture) {
             return Order::Hold;
         }
-        let SetPoint { course_rad, speed_m_s } = self.set_point;
         if !situation.own.tagged {
             return Order::Steer { heading_rad: course_rad, speed_m_s };
         }
@@ -240,32 +223,28 @@ impl Mind for Pilot {
     }
 
     fn shares(&self) -> bool {
-        helm_of(&self.control).is_some_and(Mind::shares)
-    }
-
-    fn proposer(&self) -> Option<Proposer> {
-        None
+        self.control.helm().is_some_and(Mind::shares)
     }
 
     fn send(&self, messages: &mut Vec<Word>) {
-        if let Some(helm) = helm_of(&self.control) {
+        if let Some(helm) = self.control.helm() {
             helm.send(messages);
         }
     }
 
     fn receive(&mut self, messages: &[Word]) {
-        if let Some(helm) = helm_of_mut(&mut self.control) {
+        if let Control::Helm(helm, _) = &mut self.control {
             helm.receive(messages);
         }
     }
 
     fn show(&mut self, shown: bool) {
-        if let Some(helm) = helm_of_mut(&mut self.control) {
+        if let Control::Helm(helm, _) = &mut self.control {
             helm.show(shown);
         }
     }
 
     fn report(&self) -> Option<HelmReport> {
-        helm_of(&self.control).and_then(Mind::report)
+        self.control.helm().and_then(Mind::report)
     }
 }

@@ -29,13 +29,14 @@ pub(crate) enum PolicyFault {
 
 /// A policy that decides for one boat.
 pub(crate) struct BoardPolicy {
-    model: PolicyModel,
+    pub(crate) model: PolicyModel,
     network: Network,
     /// Created at the first decision.
     observer: Option<Observer>,
     /// The time of the next decision; `None`: at once.
     due: Option<SimTime>,
-    chosen: Result<Chosen, PolicyFault>,
+    /// The last choice.
+    pub(crate) chosen: Result<Chosen, PolicyFault>,
 }
 
 /// A policy's choice.
@@ -71,11 +72,6 @@ impl BoardPolicy {
         self.chosen = self.choose(situation);
     }
 
-    /// The last choice.
-    pub(crate) fn chosen(&self) -> Result<Chosen, PolicyFault> {
-        self.chosen
-    }
-
     fn choose(&mut self, situation: &Situation) -> Result<Chosen, PolicyFault> {
         let spec = self.model.spec;
         // Created late, because the observation size depends on the teams in the situation.
@@ -101,11 +97,7 @@ impl BoardPolicy {
 
     /// The last observation.
     pub(crate) fn observed(&self) -> &[f32] {
-        self.observer.as_ref().map_or(&[], Observer::observed)
-    }
-
-    pub(crate) fn model(&self) -> &PolicyModel {
-        &self.model
+        self.observer.as_ref().map_or(&[], |observer| &observer.frames)
     }
 }
 

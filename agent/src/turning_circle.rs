@@ -1,9 +1,8 @@
 //! Warnings about points of a strategy within a boat's turning circle, which the boat cannot reach.
 
 use crate::behaviour::corners_of;
-use crate::own_motion::OwnMotion;
 use crate::roles::role_of;
-use crate::situation::{GameModel, Situation, TeamMessages};
+use crate::situation::Situation;
 use primitives::{Ned, VehicleId};
 use scenario::Scenario;
 use scenario::strategy::{Behaviour, Mark, Parameter, Place, Shape, Task};
@@ -26,11 +25,8 @@ pub fn warnings(scenario: &Scenario) -> Vec<String> {
 fn of_boat(scenario: &Scenario, vehicle: VehicleId) -> Vec<String> {
     let program = role_of(scenario, vehicle);
     let boat = scenario.boat_of(vehicle);
-    let model = GameModel::new(scenario, vehicle, program);
-    let motion = OwnMotion::new(boat, model.speed_max_m_s, program.helm.compensates_drift);
-    let (turn_rad_s, most_m_s) = (motion.handling().turn_rad_s, model.speed_max_m_s);
-    let team_messages = TeamMessages::new(program, &model.mates);
-    let situation = Situation::new(model, motion, program, team_messages);
+    let situation = Situation::new(scenario, vehicle, program, program.helm.compensates_drift);
+    let (turn_rad_s, most_m_s) = (situation.motion.handling().turn_rad_s, situation.model.speed_max_m_s);
     let warning = |behaviour: &Behaviour| {
         let (points, again, speed_m_s, capture_m) = way(&behaviour.task, &situation)?;
         let speed_m_s = speed_m_s.constant().unwrap_or(most_m_s).min(most_m_s);

@@ -16,7 +16,7 @@ fn a_file_in_scenarios_is_the_same_from_every_folder() {
         ("scenarios/games", "mine.toml"),
         ("scenarios/games", "../games/mine.toml"),
     ] {
-        let said = printed(&dir.path().join(folder), &["check", path]);
+        let said = printed(dir.path().join(folder), &["check", path]);
         assert_eq!(said.trim_end(), format!("{path}: valid game"));
     }
 }

@@ -3,7 +3,7 @@
 
 use crate::program::{printed, project, refusal, scenario};
 use messages::helm::{PolicyReport, PolicyWords};
-use onnx::{Activation, Head, Layer, Perceptron};
+use onnx::{Head, Layer, Perceptron};
 use scenario::Overrides;
 use scenario::action::ActionSpace;
 use scenario::observation::ObservationSpace;
@@ -26,12 +26,9 @@ fn model() -> Vec<u8> {
     layer.biases[ACTION] = 3.0;
     layer.weights[ACTION * inputs + names.iter().position(|name| name == MATTERS).unwrap()] = 2.0;
     let network = Perceptron {
-        input: "observation".to_owned(),
-        normalisation: None,
         hidden: vec![],
-        activation: Activation::Tanh,
         heads: vec![Head { name: "logits".to_owned(), layer }],
-        end: None,
+        bounded: false,
         metadata: BTreeMap::from(SPEC.metadata()),
     };
     network.onnx().unwrap()

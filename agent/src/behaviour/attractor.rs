@@ -1,9 +1,8 @@
 //! Attractor: draws the boat to a place, more strongly the nearer it is.
 
-use super::logic::BehaviourLogic;
 use super::nearest::nearness;
-use super::output::BehaviourOutput;
 use super::steering::toward;
+use super::{BehaviourLogic, BehaviourOutput};
 use crate::situation::Situation;
 use scenario::strategy::Attractor;
 

@@ -1,10 +1,9 @@
 //! Collision avoidance: keeps clear of other boats by the closest point of approach, with one
 //! function per contact.
 
-use super::logic::BehaviourLogic;
 use super::nearest::{Nearest, is_meant, nearness};
-use super::output::BehaviourOutput;
 use super::steering::keep_clear;
+use super::{BehaviourLogic, BehaviourOutput};
 use crate::ivp::Side;
 use crate::situation::{MovingPoint, Situation};
 use scenario::strategy::{AvoidCollision, Grade};

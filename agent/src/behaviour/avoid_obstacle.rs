@@ -1,10 +1,9 @@
 //! Obstacle avoidance: keeps clear of fixed obstacles.
 
-use super::logic::BehaviourLogic;
 use super::nearest::{Nearest, nearness};
 use super::outline::{Outline, Passes};
-use super::output::BehaviourOutput;
 use super::steering::{keep_clear, lag};
+use super::{BehaviourLogic, BehaviourOutput};
 use crate::ivp::{Objective, Table};
 use crate::situation::{MovingPoint, Situation};
 use primitives::Ned;

@@ -427,8 +427,7 @@ mod tests {
                     save_m: 6.0,
                     bend: 0.4,
                 });
-                let points = (0..grid.courses()).flat_map(|k| (0..grid.speeds()).map(move |j| (k, j)));
-                points.map(|(k, j)| table.utility(k, j).to_bits()).collect::<Vec<u32>>()
+                grid.points().map(|(k, j)| table.utility(k, j).to_bits()).collect::<Vec<u32>>()
             };
             let all: Vec<Vec<u32>> = Instructions::of_this_machine().iter().map(bits).collect();
             assert!(all.iter().all(|bits| *bits == all[0]), "seed {seed}");

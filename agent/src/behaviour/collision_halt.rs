@@ -1,8 +1,7 @@
 //! The collision halt: a boat that has come too close to another stops, whatever other behaviours
 //! want, until it is released. In the games of 2023, people separated such boats.
 
-use super::logic::BehaviourLogic;
-use super::output::BehaviourOutput;
+use super::{BehaviourLogic, BehaviourOutput};
 use crate::situation::Situation;
 use primitives::SimTime;
 use scenario::strategy::{AvoidCollision, Parameter};

@@ -1,18 +1,17 @@
-//! Constant heading and constant speed.
+//! Behaviours without a goal: constant heading, constant speed, full stop, and the timer.
 
-use super::logic::BehaviourLogic;
-use super::output::BehaviourOutput;
+use super::{BehaviourLogic, BehaviourOutput};
 use crate::ivp::{Objective, Peak};
 use crate::situation::Situation;
 use primitives::angle::rad_from_compass_deg;
-use scenario::strategy::{ConstantHeading, ConstantSpeed};
+use scenario::strategy::{ConstantHeading, ConstantSpeed, FullStop, Timer};
 
 /// Utility drop from the summit of a peak to its edge.
 const SUMMIT_DELTA: f64 = 25.0;
 
 impl BehaviourLogic for ConstantHeading {
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
-        output.add(&Objective::Course(Peak {
+        output.add(&Objective::course(Peak {
             summit: rad_from_compass_deg(self.heading_deg.value(situation)),
             peak_width: self.peak_width_deg.value(situation).to_radians(),
             base_width: self.base_width_deg.value(situation).to_radians(),
@@ -24,7 +23,7 @@ impl BehaviourLogic for ConstantHeading {
 
 impl BehaviourLogic for ConstantSpeed {
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
-        output.add(&Objective::Speed(Peak {
+        output.add(&Objective::speed(Peak {
             // A summit beyond the top speed would lower the utility of the top speed, and the
             // course would outweigh it.
             summit: self.speed_m_s.value(situation).min(situation.model.speed_max_m_s),
@@ -34,4 +33,17 @@ impl BehaviourLogic for ConstantSpeed {
             height: 100.0,
         }));
     }
+}
+
+impl BehaviourLogic for FullStop {
+    fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
+        // A preference, not a command: a stationary boat cannot avoid an approaching one. It has no
+        // preference for a course.
+        output.add(&Objective::speed(Peak::tent(0.0, situation.model.speed_max_m_s)));
+    }
+}
+
+/// Runs until its duration is over; the helm ends it.
+impl BehaviourLogic for Timer {
+    fn run(&mut self, _situation: &Situation, _output: &mut BehaviourOutput<'_>) {}
 }

@@ -1,7 +1,6 @@
 //! Cut range: closes in on a boat, by present closing speed and later closest point of approach.
 
-use super::logic::BehaviourLogic;
-use super::output::BehaviourOutput;
+use super::{BehaviourLogic, BehaviourOutput};
 use crate::ivp::{Approach, Closest, Closing, Objective};
 use crate::situation::Situation;
 use scenario::strategy::CutRange;

@@ -1,8 +1,7 @@
 //! Intercept: steers for the earliest point at which a boat can be met (lead pursuit).
 
-use super::logic::BehaviourLogic;
-use super::output::BehaviourOutput;
 use super::steering::steer_heading;
+use super::{BehaviourLogic, BehaviourOutput};
 use crate::situation::{MovingPoint, Situation, meeting_time_s};
 use primitives::Ned;
 use scenario::strategy::Intercept;

@@ -1,9 +1,8 @@
 //! Loiter: circles a convex polygon.
 
 use super::arrival::Arrival;
-use super::logic::BehaviourLogic;
-use super::output::BehaviourOutput;
 use super::steering::toward;
+use super::{BehaviourLogic, BehaviourOutput};
 use crate::situation::Situation;
 use primitives::{Ned, math};
 use rules::field::{distance_to_outline, sides};

@@ -1,9 +1,8 @@
 //! Maximum speed: limits the speed, always or near other boats.
 
-use super::logic::BehaviourLogic;
 use super::nearest::is_meant;
-use super::output::BehaviourOutput;
-use crate::ivp::{Objective, SpeedLimit};
+use super::{BehaviourLogic, BehaviourOutput};
+use crate::ivp::{Objective, Peak};
 use crate::situation::{OtherBoat, Situation};
 use primitives::angle::wrap_pi;
 use scenario::strategy::MaxSpeed;
@@ -12,8 +11,9 @@ impl BehaviourLogic for MaxSpeed {
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
         let always = self.range_m.value(situation) <= 0.0;
         if always || situation.others.iter().any(|other| is_near(self, situation, other)) {
-            let (high_m_s, base_m_s) = (self.speed_m_s.value(situation), self.tolerance_m_s.value(situation));
-            output.add(&Objective::Limit(SpeedLimit { high_m_s, base_m_s }));
+            let (peak_width, base_width) = (self.speed_m_s.value(situation), self.tolerance_m_s.value(situation));
+            // Half of a peak around rest: full utility up to the limit, as in MOOS-IvP's `ZAIC_LEQ`.
+            output.add(&Objective::speed(Peak { peak_width, ..Peak::tent(0.0, base_width) }));
         }
     }
 }

@@ -1,7 +1,6 @@
 //! Memory turn limit: discourages turns away from the mean recent heading.
 
-use super::logic::BehaviourLogic;
-use super::output::BehaviourOutput;
+use super::{BehaviourLogic, BehaviourOutput};
 use crate::ivp::{Objective, Peak};
 use crate::situation::Situation;
 use primitives::{SimTime, math};
@@ -11,8 +10,6 @@ use std::f64::consts::PI;
 
 /// Maximum number of remembered headings.
 const MOST: usize = 256;
-/// Width of the fall from the free range to zero, as a share of the rest of half a turn.
-const BASE: f64 = 1.0;
 
 pub(super) struct MemoryTurnLimitBehaviour {
     task: MemoryTurnLimit,
@@ -52,10 +49,10 @@ impl BehaviourLogic for MemoryTurnLimitBehaviour {
             self.headings.push_back((situation.now, situation.own.nav.psi_rad));
         }
         let range_rad = self.task.turn_range_deg.value(situation).to_radians();
-        output.add(&Objective::Course(Peak {
+        output.add(&Objective::course(Peak {
             summit: self.mean_rad(),
             peak_width: range_rad,
-            base_width: BASE * (PI - range_rad).max(0.0),
+            base_width: (PI - range_rad).max(0.0),
             summit_delta: 0.0,
             height: 100.0,
         }));

@@ -9,9 +9,7 @@ mod clearance;
 mod collision_halt;
 mod constant;
 mod cut_range;
-mod full_stop;
 mod intercept;
-mod logic;
 mod loiter;
 mod max_speed;
 mod memory_turn_limit;
@@ -23,15 +21,37 @@ mod policy;
 mod shield;
 mod station_keep;
 mod steering;
-mod timer;
 mod trail;
 mod waypoint;
 
-pub(crate) use logic::BehaviourLogic;
 pub(crate) use loiter::corners_of;
 pub(crate) use output::{BehaviourOutput, Functions};
 
+use crate::policy::BoardPolicy;
+use crate::situation::Situation;
 use scenario::strategy::Task;
+
+/// The logic of a behaviour; the helm decides when it runs.
+pub(crate) trait BehaviourLogic: Send {
+    /// Observes the situation of a decision, whether the behaviour runs or not.
+    fn observe(&mut self, _situation: &Situation) {}
+
+    /// The variable that this behaviour sets and the index of its text, whether it runs or not.
+    fn option(&self) -> Option<(u16, usize)> {
+        None
+    }
+
+    /// Resets the memory when the behaviour starts running.
+    fn begin(&mut self, _situation: &Situation) {}
+
+    /// Adds the objective functions of this decision.
+    fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>);
+
+    /// The trained policy of this behaviour, if any.
+    fn policy(&self) -> Option<&BoardPolicy> {
+        None
+    }
+}
 
 pub(crate) fn logic_of(task: &Task) -> Box<dyn BehaviourLogic> {
     match task.clone() {

@@ -1,8 +1,7 @@
 //! Operation region: keeps the boat on the field, and brings it back slowly from outside.
 
 use super::clearance::Clearance;
-use super::logic::BehaviourLogic;
-use super::output::BehaviourOutput;
+use super::{BehaviourLogic, BehaviourOutput};
 use crate::ivp::{Objective, Peak, Table};
 use crate::own_motion::Handling;
 use crate::situation::Situation;

@@ -70,8 +70,7 @@ impl<'a> BehaviourOutput<'a> {
         // of the time nobody requests them.
         if self.functions.shown {
             let grid = self.grid();
-            let points = (0..grid.courses()).flat_map(|k| (0..grid.speeds()).map(move |j| (k, j)));
-            utilities.extend(points.map(|(k, j)| objective.utility(grid, k, j)));
+            utilities.extend(grid.points().map(|(k, j)| objective.utility(grid, k, j)));
         }
         self.functions.list.push(WeightedFunction { behaviour: self.behaviour, contact, weight, utilities });
     }

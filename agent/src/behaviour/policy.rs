@@ -1,7 +1,6 @@
 //! Policy: a model or an external program proposes course and speed, weighed with everything else.
 
-use super::logic::BehaviourLogic;
-use super::output::BehaviourOutput;
+use super::{BehaviourLogic, BehaviourOutput};
 use crate::ivp::{Objective, Peak};
 use crate::policy::{BoardPolicy, Chosen};
 use crate::situation::Situation;
@@ -26,7 +25,7 @@ impl PolicyBehaviour {
     /// The current proposal.
     fn proposed(&self, situation: &Situation) -> Option<SetPoint> {
         match &self.policy {
-            Some(policy) => match policy.chosen() {
+            Some(policy) => match policy.chosen {
                 Ok(Chosen::SetPoint(chosen)) => Some(chosen),
                 Ok(Chosen::Option(_)) | Err(_) => None,
             },
@@ -50,7 +49,7 @@ impl BehaviourLogic for PolicyBehaviour {
 
     fn option(&self) -> Option<(u16, usize)> {
         let variable = self.task.sets?;
-        match self.policy.as_ref()?.chosen() {
+        match self.policy.as_ref()?.chosen {
             Ok(Chosen::Option(option)) => Some((variable, option)),
             _ => None,
         }

@@ -1,8 +1,7 @@
 //! Shield: stays between the guarded place and the nearest enemy.
 
-use super::logic::BehaviourLogic;
-use super::output::BehaviourOutput;
 use super::steering::{speed_to_turn_onto, steer};
+use super::{BehaviourLogic, BehaviourOutput};
 use crate::situation::Situation;
 use scenario::strategy::Shield;
 

@@ -1,7 +1,6 @@
 //! Station keeping: holds a place, with more weight the farther the boat has drifted away.
 
-use super::logic::BehaviourLogic;
-use super::output::BehaviourOutput;
+use super::{BehaviourLogic, BehaviourOutput};
 use crate::ivp::{Objective, Peak};
 use crate::situation::{MovingPoint, Situation};
 use primitives::Ned;

@@ -20,7 +20,7 @@ pub(super) const CPA_MIN_UTILITY: f64 = 50.0;
 pub(super) fn lag(situation: &Situation) -> Lag {
     let handling = situation.motion.handling();
     Lag {
-        velocity: situation.velocity_through_water(),
+        velocity: situation.velocity - situation.motion.drift(),
         heading: situation.ahead,
         reaction_s: handling.reaction_s,
         // The observed turn rate, not only that of the boat file: wind and speed change it.

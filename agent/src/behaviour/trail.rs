@@ -1,8 +1,7 @@
 //! Trail: keeps a position relative to a moving boat.
 
-use super::logic::BehaviourLogic;
-use super::output::BehaviourOutput;
 use super::steering::steer;
+use super::{BehaviourLogic, BehaviourOutput};
 use crate::situation::Situation;
 use primitives::{Ned, math};
 use scenario::strategy::Trail;

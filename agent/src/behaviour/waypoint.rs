@@ -1,9 +1,8 @@
 //! Waypoint: drives along a list of points.
 
 use super::arrival::Arrival;
-use super::logic::BehaviourLogic;
-use super::output::BehaviourOutput;
 use super::steering::steer;
+use super::{BehaviourLogic, BehaviourOutput};
 use crate::situation::Situation;
 use primitives::Ned;
 use scenario::strategy::Waypoint;

@@ -12,14 +12,15 @@ mod steadiness;
 use crate::behaviour::{BehaviourLogic, BehaviourOutput, Functions, logic_of};
 use crate::ivp::{Choice, Decision, Grid, Preference};
 use crate::mind::{Mind, Proposal};
-use crate::own_motion::OwnMotion;
-use crate::situation::{GameModel, Situation, TeamMessages};
+use crate::situation::Situation;
 use messages::helm::HelmReport;
 use messages::{Order, Picture, Word};
 use primitives::VehicleId;
 use rules::Event;
+use rules::event::EventRecord;
 use run_state::BehaviourRun;
 use scenario::Scenario;
+use scenario::fault::{Fault, FaultKind};
 use scenario::strategy::{Expression, Moment, Parameter, Program, Proposer, Rule, What, Who};
 use steadiness::Steadiness;
 
@@ -43,47 +44,68 @@ enum Decided {
 /// A mind that follows a program.
 pub struct HelmMind {
     program: Program,
-    situation: Situation,
-    mode: Option<usize>,
+    pub(crate) situation: Situation,
+    /// The mode of the last decision, by index in the program.
+    pub(crate) mode: Option<usize>,
     instances: Vec<BehaviourInstance>,
     functions: Functions,
     /// Values posted in this decision; they take effect after all behaviours have run.
     posted: Vec<(u16, f64)>,
     decided: Decided,
+    /// A new helm for the one that a fault has killed, if any does.
+    restarted: Option<Box<dyn Fn() -> HelmMind + Send>>,
 }
 
 impl HelmMind {
     /// The helm of a vehicle that follows `program`.
     #[must_use]
     pub fn new(scenario: &Scenario, vehicle: VehicleId, program: &Program) -> HelmMind {
-        let model = GameModel::new(scenario, vehicle, program);
-        let grid = Grid::new(program.helm.courses, program.helm.speeds, model.speed_max_m_s);
-        let team_messages = TeamMessages::new(program, &model.mates);
-        let motion = OwnMotion::new(scenario.boat_of(vehicle), model.speed_max_m_s, program.helm.compensates_drift);
+        let situation = Situation::new(scenario, vehicle, program, program.helm.compensates_drift);
+        let grid = Grid::new(program.helm.courses, program.helm.speeds, situation.model.speed_max_m_s);
         let instance = |task| BehaviourInstance { run: BehaviourRun::new(), logic: logic_of(task), weight: 0.0 };
         HelmMind {
             instances: program.behaviours.iter().map(|behaviour| instance(&behaviour.task)).collect(),
-            situation: Situation::new(model, motion, program, team_messages),
+            situation,
             mode: None,
             functions: Functions::new(grid),
             posted: Vec::new(),
             decided: Decided::Hold("no decision yet"),
             program: program.clone(),
+            restarted: None,
+        }
+    }
+
+    /// Like [`HelmMind::new`], but loses its memory at each fault of the scenario that kills the vehicle's
+    /// agent, as a restarted process does.
+    pub(crate) fn restarting(scenario: &Scenario, vehicle: VehicleId, program: &Program) -> HelmMind {
+        let mut helm = HelmMind::new(scenario, vehicle, program);
+        let is_killed = |fault: &Fault| fault.kind == FaultKind::AgentLost && fault.vehicles.contains(&vehicle);
+        // Only if a fault requires it: a copy of the scenario for each boat would be too expensive in a
+        // fleet.
+        if scenario.faults.iter().any(is_killed) {
+            let (scenario, program) = (scenario.clone(), program.clone());
+            helm.restarted = Some(Box::new(move || HelmMind::new(&scenario, vehicle, &program)));
+        }
+        helm
+    }
+
+    /// Starts afresh if the picture says that its agent is back.
+    fn restart_if_back(&mut self, picture: &Picture) {
+        let back = Event::AgentBack(self.situation.model.me);
+        let is_back = |record: &EventRecord| record.logged().is_some_and(|logged| logged.event == back);
+        if let Some(restarted) = self.restarted.take_if(|_| picture.events.iter().any(is_back)) {
+            // The arena kills no process, and its result must match that of separate processes, so
+            // the mind forgets what a process would.
+            let shown = self.functions.shown;
+            *self = restarted();
+            self.functions.shown = shown;
+            self.restarted = Some(restarted);
         }
     }
 
     /// Observes the picture before deciding on it.
     pub(crate) fn preview(&mut self, picture: &Picture) {
         self.situation.preview(picture);
-    }
-
-    pub(crate) fn situation(&self) -> &Situation {
-        &self.situation
-    }
-
-    /// The mode of the last decision, by index in the program.
-    pub(crate) fn mode(&self) -> Option<usize> {
-        self.mode
     }
 
     /// Selects the option requested from outside, if the program has options.
@@ -181,10 +203,10 @@ impl HelmMind {
             return Decided::Hold("no behaviour has a preference");
         }
         // A decision without a preferred course would be the first on the grid, which is north.
-        if !problem.decides_course() {
+        if !problem.decides_course {
             return Decided::Hold("no behaviour prefers a course");
         }
-        if !problem.decides_speed() {
+        if !problem.decides_speed {
             return Decided::Hold("no behaviour prefers a speed");
         }
         let last = match self.decided {
@@ -212,8 +234,7 @@ impl HelmMind {
             }
             Decided::Steer(Choice { decision: Decision { course, speed }, .. }) => {
                 let grid = self.functions.problem.grid();
-                let (heading_rad, speed_m_s) =
-                    (grid.course_rad(usize::from(course)), grid.speed_m_s(usize::from(speed)));
+                let (heading_rad, speed_m_s) = (grid.course_rad(course), grid.speed_m_s(speed));
                 self.situation.motion.order(heading_rad, speed_m_s)
             }
         }
@@ -222,6 +243,7 @@ impl HelmMind {
 
 impl Mind for HelmMind {
     fn decide(&mut self, picture: &Picture) -> Order {
+        self.restart_if_back(picture);
         if !self.situation.update(picture) {
             self.decided = Decided::Hold("the picture does not show this boat");
             self.situation.motion.hold();

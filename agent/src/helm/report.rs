@@ -12,7 +12,7 @@ impl HelmMind {
             Decided::Steer(choice) => Some(choice),
             Decided::Hold(_) => None,
         };
-        let at = steered.map(|choice| (usize::from(choice.decision.course), usize::from(choice.decision.speed)));
+        let at = steered.map(|choice| (choice.decision.course, choice.decision.speed));
         let utility = |utilities: &[f32]| at.and_then(|(k, j)| utilities.get(k * grid.speeds() + j).copied());
         let functions = self.functions.list.iter().map(|function| FunctionReport {
             behaviour: self.program.behaviours[function.behaviour].name.clone(),
@@ -63,14 +63,14 @@ impl HelmMind {
 }
 
 fn policy_report(behaviour: &str, policy: &BoardPolicy) -> PolicyReport {
-    let (set_point, option, fault) = match policy.chosen() {
+    let (set_point, option, fault) = match policy.chosen {
         Ok(Chosen::SetPoint(set_point)) => (Some(set_point), None, None),
-        Ok(Chosen::Option(option)) => (None, Some(policy.model().words(option)), None),
+        Ok(Chosen::Option(option)) => (None, Some(policy.model.words(option)), None),
         Err(fault) => (None, None, Some(fault.to_string())),
     };
     PolicyReport {
         behaviour: behaviour.to_owned(),
-        model: policy.model().name.clone(),
+        model: policy.model.name.clone(),
         course_deg: set_point.map(|chosen| compass_deg_from_rad(chosen.course_rad)),
         speed_m_s: set_point.map(|chosen| chosen.speed_m_s),
         option,

@@ -32,8 +32,8 @@ impl Steadiness {
         let near = |summit, peak_width| Peak { summit, peak_width, base_width: STEP, summit_delta: 0.0, height: 100.0 };
         let grid = problem.grid();
         let objective = Objective::Coupled {
-            course: near(grid.course_rad(usize::from(last.course)), NEAR_RAD),
-            speed: near(grid.speed_m_s(usize::from(last.speed)), NEAR_M_S),
+            course: near(grid.course_rad(last.course), NEAR_RAD),
+            speed: near(grid.speed_m_s(last.speed), NEAR_M_S),
             course_share: 0.5,
         };
         problem.add(weight, &objective);
@@ -42,7 +42,7 @@ impl Steadiness {
 
     /// A choice with the value that behaviours alone give it.
     pub(super) fn without(&self, grid: &Grid, choice: Choice) -> Choice {
-        let (course, speed) = (usize::from(choice.decision.course), usize::from(choice.decision.speed));
+        let Decision { course, speed } = choice.decision;
         let extra = f64::from(self.objective.contribution(grid, self.weight, course, speed)) * crate::ivp::QUANTUM;
         Choice { value: choice.value - extra, ..choice }
     }

@@ -28,7 +28,8 @@ pub(super) struct Cell {
     pub(super) mean: f32,
     /// The factor of the outer corners beyond the fastest speed; 1 for a whole disc.
     stretch: f32,
-    is_disc: bool,
+    /// Whether it counts as a whole disc.
+    pub(super) is_disc: bool,
 }
 
 impl Cell {
@@ -39,14 +40,8 @@ impl Cell {
         let at = |(north, east): (f32, f32), speed: f32| (speed * north, speed * east);
         // For a disc the corners lie on both sides of the middle: the square uses the same four
         // products as a ring segment, so that no lane branches.
-        let (slow, fast) = (if self.is_disc() { -self.slow } else { self.slow }, self.stretch * self.fast);
+        let (slow, fast) = (if self.is_disc { -self.slow } else { self.slow }, self.stretch * self.fast);
         [at(self.first, slow), at(self.last, slow), at(self.first, fast), at(self.last, fast)]
-    }
-
-    /// Whether it counts as a whole disc.
-    #[inline(always)]
-    pub(super) fn is_disc(&self) -> bool {
-        self.is_disc
     }
 }
 
@@ -253,9 +248,9 @@ mod tests {
     fn bounds(field: &Field, cell: &Cell) -> (f32, f32) {
         match field {
             Field::Closest(ready) => {
-                let ways = ready.ways(&ready.turning().fan(cell), cell);
+                let ways = ready.ways(&ready.turning.fan(cell), cell);
                 let (least_m, most_m) = (ready.least(&ways), ready.most(&ways));
-                if ready.seeks() {
+                if ready.seek {
                     (ready.worth_near(least_m), ready.worth_near(most_m))
                 } else {
                     (ready.worth_far(most_m), ready.worth_far(least_m))
@@ -273,7 +268,7 @@ mod tests {
             let courses = [5, 12, 36, 47, 90, 360][stream.below(6) as usize];
             let grid = Grid::new(courses, [2, 9, 21, 36][stream.below(4) as usize], stream.between(0.5, 8.0));
             let (cells, field) = (Cells::new(&grid), field(&mut stream, &grid));
-            for (k, j) in (0..courses).flat_map(|k| (0..grid.speeds()).map(move |j| (k, j))) {
+            for (k, j) in grid.points() {
                 let (across, along) = (k / LANES, j / LANES);
                 let sector = along * cells.sector_courses + across;
                 let (of_courses, of_speeds) = &cells.sectors[sector / LANES];

@@ -174,9 +174,10 @@ pub(super) struct Ready {
     /// Utility per metre below the least distance.
     inner_slope: f32,
     at_min: f32,
-    seek: bool,
+    /// Whether to approach.
+    pub(super) seek: bool,
     /// The own ship's turn.
-    turning: Turning,
+    pub(super) turning: Turning,
     mean_speed: MeanSpeed,
     /// Perpendicular to the present line of sight, towards the side on which to leave the contact;
     /// and the weight of distances on the other side.
@@ -211,11 +212,6 @@ pub(super) struct Ways {
 }
 
 impl Ready {
-    /// Whether to approach.
-    pub(super) fn seeks(&self) -> bool {
-        self.seek
-    }
-
     /// Utility of a course, a unit vector, at a speed, m/s.
     pub(super) fn utility(&self, north: f32, east: f32, speed: f32) -> f32 {
         let course = (north, east);
@@ -223,11 +219,6 @@ impl Ready {
         // value is the one that decided.
         let distance = self.distance(&self.turning.to(course), course, speed);
         if self.seek { self.worth_near(distance) } else { self.worth_far(distance) }
-    }
-
-    /// The own ship's turn model.
-    pub(super) fn turning(&self) -> Turning {
-        self.turning
     }
 
     /// Whether another function has the same distances.

@@ -44,7 +44,6 @@ impl Weight {
 
     /// A share (0 to 1) of this weight.
     pub(super) fn share(self, share: f64) -> Weight {
-        let share = if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 };
         Weight((f64::from(self.0) * share) as f32)
     }
 

@@ -40,7 +40,6 @@ impl Grid {
     /// not positive and finite.
     #[must_use]
     pub fn new(courses: usize, speeds: usize, speed_max_m_s: f64) -> Grid {
-        // A decision stores its course and speed indices as two `u16`.
         assert!((1..=1 << 16).contains(&courses), "{courses} courses, expected 1 to 65536");
         assert!((2..=1 << 16).contains(&speeds), "{speeds} speeds, expected 2 to 65536");
         assert!(
@@ -74,6 +73,12 @@ impl Grid {
     #[must_use]
     pub fn speeds(&self) -> usize {
         self.speeds
+    }
+
+    /// All points: the indices of course and speed, speeds varying fastest.
+    pub fn points(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
+        let speeds = self.speeds;
+        (0..self.courses).flat_map(move |k| (0..speeds).map(move |j| (k, j)))
     }
 
     /// The top speed, m/s.

@@ -28,9 +28,7 @@ impl<T: Copy> Lanes<T> {
     pub(super) fn each(number: impl FnMut(usize) -> T) -> Lanes<T> {
         Lanes(std::array::from_fn(number))
     }
-}
 
-impl<T: Copy> Lanes<T> {
     /// Reduces all lanes to one number, two at a time.
     #[inline(always)]
     pub(crate) fn reduced(&self, of_two: impl Fn(T, T) -> T) -> T {

@@ -51,9 +51,9 @@ impl<'a> Distances<'a> {
         if self.known.is_some_and(|known| ready.group == known.group) {
             return;
         }
-        let turning = ready.turning();
+        let turning = ready.turning;
         // The own ship's turns are the same for all contacts; each costs a square root.
-        if self.known.is_none_or(|known| turning != known.turning()) {
+        if self.known.is_none_or(|known| turning != known.turning) {
             for i in 0..LANES {
                 self.turns.set(i, &turning.to((north.0[i], east.0[i])));
             }
@@ -102,7 +102,7 @@ impl<'a> Bounded<'a> {
         if !self.turn(ready, cells) {
             return;
         }
-        if ready.seeks() {
+        if ready.seek {
             for i in 0..LANES {
                 self.least.0[i] = ready.least(&ready.ways(&self.fan(i), &cell(cells.0, cells.1, i)));
             }
@@ -119,8 +119,8 @@ impl<'a> Bounded<'a> {
         if self.known.is_some_and(|known| ready.group == known.group) {
             return false;
         }
-        let turning = ready.turning();
-        if self.known.is_none_or(|known| turning != known.turning()) {
+        let turning = ready.turning;
+        if self.known.is_none_or(|known| turning != known.turning) {
             for i in 0..LANES {
                 let fan = turning.fan(&cell(cells.0, cells.1, i));
                 self.first.set(i, &fan.first);

@@ -40,14 +40,12 @@ impl Peak {
     }
 
     /// Utility of speed `j`.
-    #[must_use]
-    pub fn of_speed(&self, grid: &Grid, j: usize) -> f32 {
+    pub(super) fn of_speed(&self, grid: &Grid, j: usize) -> f32 {
         self.at(grid.speed_m_s(j) - self.summit)
     }
 
     /// Utility of course `k`; angles wrap.
-    #[must_use]
-    pub fn of_course(&self, grid: &Grid, k: usize) -> f32 {
+    pub(super) fn of_course(&self, grid: &Grid, k: usize) -> f32 {
         self.on_courses(grid).at(grid, k)
     }
 

@@ -9,12 +9,12 @@ use super::sums::Sums;
 use primitives::instructions::Instructions;
 
 /// A point of the grid.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Decision {
     /// Index of the course.
-    pub course: u16,
+    pub course: usize,
     /// Index of the speed.
-    pub speed: u16,
+    pub speed: usize,
 }
 
 /// Tie-breaker between equally good candidates.
@@ -46,8 +46,10 @@ pub struct Problem {
     sums: Sums,
     bounds: Bounds,
     functions: usize,
-    decides_course: bool,
-    decides_speed: bool,
+    /// Whether any function distinguishes courses.
+    pub decides_course: bool,
+    /// Whether any function distinguishes speeds.
+    pub decides_speed: bool,
     /// The last result, usually nearly as good at the next decision.
     found: Option<Decision>,
 }
@@ -121,27 +123,6 @@ impl Problem {
         self.functions == 0
     }
 
-    /// Whether any function distinguishes courses.
-    #[must_use]
-    pub fn decides_course(&self) -> bool {
-        self.decides_course
-    }
-
-    /// Whether any function distinguishes speeds.
-    #[must_use]
-    pub fn decides_speed(&self) -> bool {
-        self.decides_speed
-    }
-
-    /// The weighted sum at course `k` and speed `j`.
-    ///
-    /// # Panics
-    /// Beyond the grid.
-    #[must_use]
-    pub fn collective(&self, k: usize, j: usize) -> f64 {
-        f64::from(self.quanta(k, j)) * QUANTUM
-    }
-
     /// The best decision, with exactly the largest weighted sum on the grid.
     ///
     /// Ties go to the course with the smallest angle from the present one, then to starboard; on
@@ -155,17 +136,10 @@ impl Problem {
             present: Present { course: self.grid.ticks_of(preference.course_rad), speed_m_s: preference.speed_m_s },
             // A good first guess lets most cells be skipped at once. It changes how many points are
             // evaluated, but never the result.
-            guess: self.found.map(|found| (found.course.into(), found.speed.into())),
+            guess: self.found,
         };
         let (best, evaluated) = self.instructions.run(search);
-        let found = Decision { course: best.course as u16, speed: best.speed as u16 };
-        self.found = Some(found);
-        Choice { decision: found, value: f64::from(best.value) * QUANTUM, evaluated }
-    }
-
-    /// The weighted sum at one point, in quanta.
-    fn quanta(&self, k: usize, j: usize) -> i32 {
-        assert!(k < self.grid.courses() && j < self.grid.speeds(), "course {k}, speed {j}");
-        self.sums.at(&self.grid, k, j)
+        self.found = Some(best.decision);
+        Choice { decision: best.decision, value: f64::from(best.value) * QUANTUM, evaluated }
     }
 }

@@ -7,6 +7,7 @@ use super::grid::Grid;
 use super::lanes::{LANES, Lanes, SIDE, larger};
 use super::measured::{Bounded, Distances};
 use super::objective::Field;
+use super::problem::Decision;
 use super::sums::Sums;
 use super::{closest, closing};
 use primitives::instructions::Kernel;
@@ -19,8 +20,7 @@ const DONE: i32 = i32::MIN;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Best {
     pub(super) value: i32,
-    pub(super) course: usize,
-    pub(super) speed: usize,
+    pub(super) decision: Decision,
 }
 
 /// The own ship's present motion.
@@ -62,7 +62,7 @@ pub(super) struct Search<'a> {
     pub(super) bounds: &'a mut Bounds,
     pub(super) present: Present,
     /// A point that is probably good: its value excludes most others at once.
-    pub(super) guess: Option<(usize, usize)>,
+    pub(super) guess: Option<Decision>,
 }
 
 impl Kernel for Search<'_> {
@@ -74,10 +74,10 @@ impl Kernel for Search<'_> {
         self.bound_lists();
         self.bound_sectors();
         // Above the mark of finished places, so that none of them is taken, and below every sum.
-        let mut best = Best { value: DONE + 1, course: 0, speed: 0 };
+        let mut best = Best { value: DONE + 1, decision: Decision { course: 0, speed: 0 } };
         let mut evaluated = 0;
-        if let Some((k, j)) = self.guess {
-            self.evaluate((k / SIDE, j / SIDE), &mut best);
+        if let Some(Decision { course, speed }) = self.guess {
+            self.evaluate((course / SIDE, speed / SIDE), &mut best);
             evaluated += LANES;
         }
         // Most promising first.
@@ -181,15 +181,15 @@ impl Search<'_> {
     #[inline(never)]
     fn keep_best(&self, sums: &Lanes<i32>, value: i32, (course, speed): (usize, usize), best: &mut Best) {
         for (lane, &sum) in sums.0.iter().enumerate() {
-            let point = Best { value, course: course + lane / SIDE, speed: speed + lane % SIDE };
-            if sum == value && (value > best.value || self.is_nearer(&point, best)) {
-                *best = point;
+            let decision = Decision { course: course + lane / SIDE, speed: speed + lane % SIDE };
+            if sum == value && (value > best.value || self.is_nearer(decision, best.decision)) {
+                *best = Best { value, decision };
             }
         }
     }
 
     /// Whether the first of two equal points wins.
-    fn is_nearer(&self, point: &Best, other: &Best) -> bool {
+    fn is_nearer(&self, point: Decision, other: Decision) -> bool {
         let turn = |k: usize| {
             let ticks = self.grid.ticks_between(self.present.course, k) as i64;
             // A fixed tie-break: otherwise the choice would depend on the search order.
@@ -243,7 +243,7 @@ impl Sums {
                 _ if clear.is_so(i) => add_full(&mut sums, *weight),
                 Field::Closest(ready) => {
                     bounded.measure_best(ready, cells);
-                    add_worth(&mut sums, *weight, ready, if ready.seeks() { &bounded.least } else { &bounded.most });
+                    add_worth(&mut sums, *weight, ready, if ready.seek { &bounded.least } else { &bounded.most });
                 }
                 Field::Closing(ready) => add_closing_bounds(&mut sums, *weight, ready, cells),
             }
@@ -263,7 +263,7 @@ impl Sums {
             match field {
                 Field::Closest(ready) => {
                     bounded.measure(ready, cells);
-                    if ready.seeks() {
+                    if ready.seek {
                         add_worth(&mut sums, *weight, ready, &bounded.least);
                     } else {
                         add_worth(&mut sums, *weight, ready, &bounded.most);
@@ -336,7 +336,7 @@ impl Clear<'_> {
 /// Adds the utilities of distances.
 #[inline(always)]
 fn add_worth(sums: &mut Lanes<i32>, weight: Weight, ready: &closest::Ready, distances: &Lanes<f32>) {
-    if ready.seeks() {
+    if ready.seek {
         for i in 0..LANES {
             sums.0[i] += weight.quanta(ready.worth_near(distances.0[i]));
         }

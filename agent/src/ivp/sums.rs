@@ -3,8 +3,7 @@
 use super::fixed::{self, FUNCTIONS_MAX, NOWHERE, Weight};
 use super::grid::Grid;
 use super::lanes::{LANES, Lanes};
-use super::limit::SpeedLimit;
-use super::objective::{Field, Objective, Parts};
+use super::objective::{Field, Objective, Parts, Separable};
 use super::peak::{CoursePeak, Peak};
 use super::table::Table;
 use primitives::instructions::{Instructions, Kernel};
@@ -51,7 +50,7 @@ impl Sums {
     /// Adds a function.
     pub(super) fn add(&mut self, grid: &Grid, instructions: Instructions, weight: Weight, objective: &Objective) {
         match objective.parts(grid) {
-            Parts::Separable => instructions.run(AddSeparable { sums: self, grid, weight, objective }),
+            Parts::Separable(separable) => instructions.run(AddSeparable { sums: self, grid, weight, separable }),
             Parts::Field(field) => self.add_field(weight, field),
             Parts::Table(table) => {
                 // The first table allocates for all; later decisions allocate nothing.
@@ -87,15 +86,6 @@ impl Sums {
         let first = LANES * (along * self.courses.len() + across);
         self.lowered[across].then(|| &self.table[first..][..LANES])
     }
-
-    /// The weighted sum at one point, in quanta.
-    pub(super) fn at(&self, grid: &Grid, k: usize, j: usize) -> i32 {
-        let (north, east) = grid.direction(k);
-        let speed = grid.speed_m_s(j) as f32;
-        let of_fields: i32 = self.fields.iter().map(|(w, field)| w.quanta(field.utility(north, east, speed))).sum();
-        let of_table = self.rows(k / LANES, j / LANES).map_or(0, |rows| rows[k % LANES].0[j % LANES]);
-        self.courses[k / LANES].0[k % LANES] + self.speeds[j / LANES].0[j % LANES] + of_fields + of_table
-    }
 }
 
 /// Adds a function of course and a function of speed.
@@ -103,7 +93,7 @@ struct AddSeparable<'a> {
     sums: &'a mut Sums,
     grid: &'a Grid,
     weight: Weight,
-    objective: &'a Objective<'a>,
+    separable: Separable<'a>,
 }
 
 impl Kernel for AddSeparable<'_> {
@@ -111,10 +101,10 @@ impl Kernel for AddSeparable<'_> {
 
     #[inline(always)]
     fn run(self) {
-        let AddSeparable { sums, grid, weight, objective } = self;
-        let (of_course, of_speed) = objective.weights(weight);
-        if let Some(peak) = objective.course_peak().filter(|_| !of_course.is_zero()) {
-            let peak = peak.on_courses(grid);
+        let AddSeparable { sums, grid, weight, separable } = self;
+        let (of_course, of_speed) = separable.weights(weight);
+        if !of_course.is_zero() {
+            let peak = separable.course.on_courses(grid);
             for (i, sums) in sums.courses.iter_mut().enumerate() {
                 add_peak(sums, LANES * i, of_course, &peak, grid);
             }
@@ -125,11 +115,7 @@ impl Kernel for AddSeparable<'_> {
         for (i, speeds) in grid.speeds_m_s().chunks(LANES).enumerate() {
             let mut speed_m_s = Lanes::splat(0.0);
             speed_m_s.0[..speeds.len()].copy_from_slice(speeds);
-            let quanta = match objective {
-                Objective::Speed(peak) | Objective::Coupled { speed: peak, .. } => of_peak(of_speed, peak, &speed_m_s),
-                Objective::Limit(limit) => of_limit(of_speed, limit, &speed_m_s),
-                _ => return,
-            };
+            let quanta = of_peak(of_speed, separable.speed, &speed_m_s);
             for (sum, quanta) in sums.speeds[i].0.iter_mut().zip(quanta.0).take(speeds.len()) {
                 *sum += quanta;
             }
@@ -156,16 +142,6 @@ fn of_peak(weight: Weight, peak: &Peak, speed_m_s: &Lanes<f64>) -> Lanes<i32> {
     quanta
 }
 
-/// A weighted limit, by speed, m/s.
-#[inline(always)]
-fn of_limit(weight: Weight, limit: &SpeedLimit, speed_m_s: &Lanes<f64>) -> Lanes<i32> {
-    let mut quanta = Lanes::splat(0);
-    for i in 0..LANES {
-        quanta.0[i] = weight.quanta(limit.at(speed_m_s.0[i]));
-    }
-    quanta
-}
-
 struct AddTable<'a> {
     sums: &'a mut Sums,
     grid: &'a Grid,
@@ -179,7 +155,7 @@ impl Kernel for AddTable<'_> {
     #[inline(always)]
     fn run(self) {
         let AddTable { sums, grid, weight, table } = self;
-        for (across, lowered) in table.lowered().iter().enumerate() {
+        for (across, lowered) in table.lowered.iter().enumerate() {
             let first = LANES * across;
             let count = (grid.courses() - first).min(LANES);
             for (i, sum) in sums.courses[across].0.iter_mut().enumerate().take(count) {

@@ -6,13 +6,14 @@ use super::lanes::{LANES, Lanes};
 /// Utilities by course and speed, initially 100. Courses that stay at 100 cost nothing.
 #[derive(Clone, Debug, Default)]
 pub struct Table {
-    courses: usize,
-    speeds: usize,
+    /// The numbers of courses and speeds.
+    pub(super) courses: usize,
+    pub(super) speeds: usize,
     /// By course: as many groups as hold all speeds. Undefined for courses that are not lowered,
     /// and beyond the last speed.
     rows: Vec<Lanes<f32>>,
     /// By group of courses: a bit for each lowered one.
-    lowered: Vec<u16>,
+    pub(super) lowered: Vec<u16>,
 }
 
 impl Table {
@@ -49,16 +50,6 @@ impl Table {
             row.fill(Lanes::splat(100.0));
         }
         row
-    }
-
-    /// The numbers of courses and speeds.
-    pub(super) fn size(&self) -> (usize, usize) {
-        (self.courses, self.speeds)
-    }
-
-    /// By group of courses, a bit for each lowered one.
-    pub(super) fn lowered(&self) -> &[u16] {
-        &self.lowered
     }
 
     /// The utilities of a lowered course, by speed, in groups.

@@ -145,7 +145,7 @@ impl Turning {
         let (at_bow, at_back) = (within & (cosine > 0.0), within & (cosine <= 0.0));
         off += if at_bow { 1.1 * cell.half } else { 0.0 } + if at_back { 4.0 } else { 0.0 };
         off_s += if at_bow { 1.3 * cell.half } else { 0.0 } + if at_back { 3.2 } else { 0.0 };
-        let whole = if cell.is_disc() { 1e6 } else { 0.0 };
+        let whole = if cell.is_disc { 1e6 } else { 0.0 };
         Fan { first, last, off: off * self.radius + whole, off_s: off_s * self.s_per_rad }
     }
 }

@@ -38,7 +38,12 @@ pub(super) struct AgentLoop {
     /// it.
     helm_queries: Option<HelmQueries>,
     orders: Publisher,
-    subscriptions: Subscriptions,
+    /// The pictures of each team, oldest first, that the minds have not seen.
+    unread: Arc<Latest<Vec<Vec<u8>>>>,
+    sim: SimWatch,
+    /// The teams of this agent's boats, whose pictures it receives.
+    teams: Vec<TeamId>,
+    _declarations: Vec<Declaration>,
     ticket: u64,
     /// The newest picture, by team.
     pictures: Vec<Option<Picture>>,
@@ -68,14 +73,24 @@ impl AgentLoop {
         let is_lockstep = info.pace == "lockstep";
         let delivery = Delivery::per_decision(is_lockstep);
         let limit = |wait: Duration| if is_lockstep { wait.min(half_patience) } else { Duration::ZERO };
-        let subscriptions = Subscriptions::open(bus, game, scenario, &runner, settings.silence)?;
-        let orders = topic::orders(game, scenario, &subscriptions.teams, &bus.id());
+        let mut teams: Vec<TeamId> = runner.minds().map(|(vehicle, _)| scenario.team_of(vehicle)).collect();
+        teams.sort_unstable();
+        teams.dedup();
+        let unread = Arc::new(Latest::new(scenario.teams.len()));
+        let subscribe =
+            |team: &TeamId| bus.subscribe(topic::picture(game, scenario, *team), keep(&unread, team.index()));
+        let declarations = teams.iter().map(subscribe).collect::<Result<Vec<_>, _>>()?;
+        let sim = SimWatch::open(bus, game, Patience::of_player(settings.silence))?;
+        let orders = topic::orders(game, scenario, &teams, &bus.id());
         Ok(AgentLoop {
             talk: Talk::open(bus, game, scenario, &runner, limit(MESSAGES_LATE))?,
             policies: PolicyInbox::open(bus, game, scenario, &runner, limit(settings.policy_wait))?,
             helm_queries: None,
             orders: bus.publisher_with(orders, Priority::Normal, delivery)?,
-            subscriptions,
+            unread,
+            sim,
+            teams,
+            _declarations: declarations,
             runner,
             ticket: 0,
             pictures: vec![None; scenario.teams.len()],
@@ -110,9 +125,9 @@ impl AgentLoop {
     pub(super) fn play(&mut self, stop: &AtomicBool) -> Result<(), NodeError> {
         while !stop.load(Ordering::Relaxed) {
             let mut decided = false;
-            for (cell, unread) in self.subscriptions.pictures.take(LOOK_AGAIN).into_iter().enumerate() {
+            for (cell, unread) in self.unread.take(LOOK_AGAIN).into_iter().enumerate() {
                 let Some(unread) = unread else { continue };
-                self.subscriptions.sim.hears();
+                self.sim.hears();
                 unread.iter().try_for_each(|bytes| self.see(cell, bytes))?;
                 if self.pictures[cell].as_ref().is_some_and(|picture| picture.over) {
                     return Ok(());
@@ -126,7 +141,7 @@ impl AgentLoop {
                 // of its decisions.
                 queries.answer(&mut self.runner, decided);
             }
-            match self.subscriptions.sim.state() {
+            match self.sim.state() {
                 SimState::Alive => {}
                 SimState::Replaced => return Err(NodeError::SimReplaced),
                 SimState::Dead(silent) => return Err(NodeError::SimGone(silent)),
@@ -153,10 +168,10 @@ impl AgentLoop {
     /// same orders. Returns whether the minds have decided.
     fn decide(&mut self) -> Result<bool, NodeError> {
         let stamp_of = |team: &TeamId| self.pictures[team.index()].as_ref().map(|picture| picture.stamp);
-        let Some(stamp) = self.subscriptions.teams.first().and_then(stamp_of) else { return Ok(false) };
+        let Some(stamp) = self.teams.first().and_then(stamp_of) else { return Ok(false) };
         // Boats of several teams decide on the same tick: with pictures of different ticks the
         // result would depend on their order of arrival.
-        if self.subscriptions.teams.iter().any(|team| stamp_of(team) != Some(stamp)) {
+        if self.teams.iter().any(|team| stamp_of(team) != Some(stamp)) {
             return Ok(false);
         }
         // The sim repeats unanswered pictures every 250 ms. The agent repeats the same orders,
@@ -192,42 +207,16 @@ fn with_missed_events(mut picture: Picture, before: Option<Picture>, decided: Op
     picture
 }
 
-/// Input from the sim: the newest pictures of each team, oldest first, and its liveliness.
-struct Subscriptions {
-    pictures: Arc<Latest<Vec<Vec<u8>>>>,
-    sim: SimWatch,
-    /// The teams of this agent's boats, whose pictures it receives.
-    teams: Vec<TeamId>,
-    _declarations: Vec<Declaration>,
-}
-
-impl Subscriptions {
-    fn open(
-        bus: &Bus,
-        game: &GameName,
-        scenario: &Scenario,
-        runner: &MindRunner,
-        silence: Duration,
-    ) -> Result<Subscriptions, NodeError> {
-        let pictures = Arc::new(Latest::new(scenario.teams.len()));
-        let mut teams: Vec<TeamId> = runner.minds().map(|(vehicle, _)| scenario.team_of(vehicle)).collect();
-        teams.sort_unstable();
-        teams.dedup();
-        let mut declarations = Vec::new();
-        for team in &teams {
-            let (latest, cell) = (Arc::clone(&pictures), team.index());
-            let take = move |bytes: &[u8]| {
-                latest.change(cell, |unread| {
-                    let mut unread: Vec<Vec<u8>> = unread.unwrap_or_default();
-                    unread.drain(..(unread.len() + 1).saturating_sub(UNREAD_MAX));
-                    unread.push(bytes.to_vec());
-                    unread
-                });
-            };
-            declarations.push(bus.subscribe(topic::picture(game, scenario, *team), take)?);
-        }
-        let sim = SimWatch::open(bus, game, Patience::of_player(silence))?;
-        Ok(Subscriptions { pictures, sim, teams, _declarations: declarations })
+/// Adds pictures to the unread ones of a team.
+fn keep(pictures: &Arc<Latest<Vec<Vec<u8>>>>, cell: usize) -> impl Fn(&[u8]) + use<> {
+    let latest = Arc::clone(pictures);
+    move |bytes| {
+        latest.change(cell, |unread| {
+            let mut unread: Vec<Vec<u8>> = unread.unwrap_or_default();
+            unread.drain(..(unread.len() + 1).saturating_sub(UNREAD_MAX));
+            unread.push(bytes.to_vec());
+            unread
+        });
     }
 }
 

@@ -17,7 +17,7 @@ use scenario::observation::ObservationSpace;
 pub(crate) struct Observer {
     space: ObservationSpace,
     /// The values of the last decisions, newest first.
-    frames: Vec<f32>,
+    pub(crate) frames: Vec<f32>,
     begun: bool,
 }
 
@@ -44,11 +44,6 @@ impl Observer {
             }
         }
         self.begun = true;
-        &self.frames
-    }
-
-    /// The observation at the last decision.
-    pub(crate) fn observed(&self) -> &[f32] {
         &self.frames
     }
 }

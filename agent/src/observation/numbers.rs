@@ -1,23 +1,20 @@
 //! A writer of consecutive numbers.
 
+use std::slice::IterMut;
+
 /// A slice filled from the front.
-pub(super) struct Numbers<'a> {
-    left: &'a mut [f32],
-}
+pub(super) struct Numbers<'a>(IterMut<'a, f32>);
 
 impl<'a> Numbers<'a> {
     pub(super) fn new(all: &'a mut [f32]) -> Numbers<'a> {
-        Numbers { left: all }
+        Numbers(all.iter_mut())
     }
 
     /// Writes the next number.
     pub(super) fn push(&mut self, number: f64) {
         // Spaces report their size to trainers before anything is written, so a mismatch is our
         // bug.
-        let (next, left) =
-            std::mem::take(&mut self.left).split_first_mut().expect("the slice has space for every number");
-        *next = number as f32;
-        self.left = left;
+        *self.0.next().expect("the slice has space for every number") = number as f32;
     }
 
     /// Writes several numbers.

@@ -46,7 +46,8 @@ const SLIDE_TIME_S: f64 = 4.0;
 /// The estimate. The default belongs to an unknown boat.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct DriftEstimate {
-    drift: Ned,
+    /// The drift over the ground, m/s.
+    pub(super) drift: Ned,
     /// Variances towards north and east, and their covariance, m²/s².
     variance: (f64, f64, f64),
     /// Mean square of the innovation, m²/s².
@@ -98,11 +99,6 @@ impl DriftEstimate {
         // In a turn the slide causes the innovation.
         let own_m2_s2 = (surprise_m_s * surprise_m_s - error_m_s * error_m_s).max(NOISE_M_S * NOISE_M_S);
         self.square_m2_s2 += (step_s / SPREAD_TIME_S).min(1.0) * (own_m2_s2 - self.square_m2_s2);
-    }
-
-    /// The drift over the ground, m/s.
-    pub(crate) fn drift(&self) -> Ned {
-        self.drift
     }
 
     /// Standard deviation of the velocity around the drift, m/s: waves and gusts, without the

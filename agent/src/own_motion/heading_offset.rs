@@ -28,7 +28,8 @@ const OFFSET_MAX_RAD: f64 = 0.7;
 /// The estimate. The default is no offset.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct HeadingOffset {
-    offset_rad: f64,
+    /// The offset, rad clockwise.
+    pub(super) offset_rad: f64,
     /// The modelled heading without the offset; `None` before the first.
     model_rad: Option<f64>,
 }
@@ -56,10 +57,5 @@ impl HeadingOffset {
     /// Resets the estimate when the boat is not steered as ordered.
     pub(crate) fn forget(&mut self) {
         *self = HeadingOffset::default();
-    }
-
-    /// The offset, rad clockwise.
-    pub(crate) fn offset_rad(&self) -> f64 {
-        self.offset_rad
     }
 }

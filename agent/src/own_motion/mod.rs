@@ -30,12 +30,16 @@ const BRAKES_S: f64 = 1.0;
 const LARGE_TURN_RAD: f64 = 2.2;
 
 /// The speed reference of a front seat.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 enum SpeedReference {
     /// Ahead over the ground.
     Ground,
     /// Through the water, as for point boats.
-    Water,
+    Water {
+        /// For a boat that steers by differential thrust, with thrust proportional to the ordered
+        /// speed: it brakes at full deceleration when its order is lower by this much, m/s.
+        brakes_by_m_s: Option<f64>,
+    },
 }
 
 #[derive(Clone, Debug)]
@@ -43,10 +47,7 @@ pub(crate) struct OwnMotion {
     file: Handling,
     reference: SpeedReference,
     speed_max_m_s: f64,
-    /// For a boat that steers by differential thrust, with thrust proportional to the ordered
-    /// speed: it brakes at full deceleration when its order is lower by this much, m/s.
-    brakes_by_m_s: Option<f64>,
-    /// Whether orders compensate for drift and offset.
+    /// Whether orders compensate for drift and offset; if not, both estimates stay at their defaults.
     compensates: bool,
     drift: DriftEstimate,
     offset: HeadingOffset,
@@ -64,21 +65,17 @@ impl OwnMotion {
     pub(crate) fn new(boat: &Boat, speed_max_m_s: f64, compensates: bool) -> OwnMotion {
         // Front seats steer by speed over the ground, from a satellite receiver; point boats by
         // speed through the water, as in MOOS.
-        let reference = match boat.drive {
+        let reference = match &boat.drive {
             Drive::Thrusters { .. } => SpeedReference::Ground,
-            Drive::Kinematic(_) => SpeedReference::Water,
-        };
-        let brakes_by_m_s = match &boat.drive {
-            Drive::Kinematic(point) if point.speed_factor > 0.0 && point.deceleration_max_m_s2 > 0.0 => {
-                Some(BRAKES_S * point.deceleration_max_m_s2)
+            Drive::Kinematic(point) => {
+                let brakes = point.speed_factor > 0.0 && point.deceleration_max_m_s2 > 0.0;
+                SpeedReference::Water { brakes_by_m_s: brakes.then_some(BRAKES_S * point.deceleration_max_m_s2) }
             }
-            _ => None,
         };
         OwnMotion {
             file: Handling::of(boat),
             reference,
             speed_max_m_s,
-            brakes_by_m_s,
             compensates,
             drift: DriftEstimate::default(),
             offset: HeadingOffset::default(),
@@ -107,7 +104,7 @@ impl OwnMotion {
         match self.ordered.filter(|_| obeys) {
             Some((_, ordered_rad)) => {
                 self.offset.observe(ordered_rad, own.nav.psi_rad, &self.file, step_s);
-                let error_rad = wrap_pi(ordered_rad + self.offset.offset_rad() - own.nav.psi_rad);
+                let error_rad = wrap_pi(ordered_rad + self.offset.offset_rad - own.nav.psi_rad);
                 self.turn.observe(error_rad, own.nav.yaw_rate_rad_s, &self.file, step_s);
             }
             None => self.offset.forget(),
@@ -116,23 +113,23 @@ impl OwnMotion {
 
     /// Velocity over the ground minus that through the water, m/s.
     pub(crate) fn drift(&self) -> Ned {
-        if self.compensates { self.drift.drift() } else { Ned::default() }
+        self.drift.drift
     }
 
     /// The velocity to add to a decision's, m/s: the estimated drift, or the boat's present sway if
     /// drift is not estimated.
     pub(crate) fn drift_now(&self, nav: &Nav) -> Ned {
-        if self.compensates { self.drift.drift() } else { nav.pose().rotation().starboard().scaled(nav.sway_m_s) }
+        if self.compensates { self.drift.drift } else { nav.pose().rotation().starboard().scaled(nav.sway_m_s) }
     }
 
     /// Standard deviation of the velocity around the drift, m/s.
     pub(crate) fn spread_m_s(&self) -> f64 {
-        if self.compensates { self.drift.spread_m_s() } else { 0.0 }
+        self.drift.spread_m_s()
     }
 
     /// The heading's offset from the ordered one, rad clockwise.
     pub(crate) fn heading_offset_rad(&self) -> f64 {
-        if self.compensates { self.offset.offset_rad() } else { 0.0 }
+        self.offset.offset_rad
     }
 
     /// The observed handling.
@@ -176,7 +173,7 @@ impl OwnMotion {
         if let Some((wanted_rad, _)) = self.ordered {
             self.offset.turn(wrap_pi(heading_rad - wanted_rad));
         }
-        let ordered_rad = wrap_pi(self.turn_toward(heading_rad) - self.offset.offset_rad());
+        let ordered_rad = wrap_pi(self.turn_toward(heading_rad) - self.offset.offset_rad);
         self.ordered = Some((heading_rad, ordered_rad));
         let ahead_m_s = match self.reference {
             SpeedReference::Ground => {
@@ -184,7 +181,9 @@ impl OwnMotion {
                 (speed_m_s + self.drift().dot(Ned { north, east })).clamp(0.0, self.speed_max_m_s)
             }
             // With its final low speed ordered at once, it could not steer while it brakes.
-            SpeedReference::Water => self.brakes_by_m_s.map_or(speed_m_s, |by| speed_m_s.max(self.surge_m_s - by)),
+            SpeedReference::Water { brakes_by_m_s } => {
+                brakes_by_m_s.map_or(speed_m_s, |by| speed_m_s.max(self.surge_m_s - by))
+            }
         };
         Order::Steer { heading_rad: ordered_rad, speed_m_s: ahead_m_s }
     }
@@ -224,10 +223,10 @@ mod tests {
     }
 
     /// Feeds navigation ten times per second for `for_s`, from `after_s` on.
-    fn show(motion: &mut OwnMotion, after_s: f64, for_s: f64, nav: impl Fn(f64) -> Nav) {
+    fn show(motion: &mut OwnMotion, after_s: f64, for_s: f64, nav: Nav) {
         for i in 0..(10.0 * for_s) as u32 {
             let at_s = 0.1 * f64::from(i);
-            let mut own = OwnBoat::new(VehicleId(0), nav(at_s));
+            let mut own = OwnBoat::new(VehicleId(0), nav);
             own.fix_ns = SimTime::from_s(after_s + at_s + 0.1);
             motion.observe(&own, 0.1, true);
         }
@@ -237,7 +236,7 @@ mod tests {
     fn a_course_over_the_ground_is_kept_with_a_crab_angle() {
         let mut motion = motion("surveyor_m1_8");
         // Northward with an eastward drift of 0.5 m/s.
-        show(&mut motion, 0.0, 60.0, |_| Nav { surge_m_s: 2.0, sway_m_s: 0.5, ..Nav::default() });
+        show(&mut motion, 0.0, 60.0, Nav { surge_m_s: 2.0, sway_m_s: 0.5, ..Nav::default() });
         assert!(motion.drift().distance(Ned { north: 0.0, east: 0.5 }) < 0.01, "{:?}", motion.drift());
         let drift_m_s = motion.drift().length();
         let (heading_rad, speed_m_s) = motion.steer(0.0, 1.5);
@@ -257,7 +256,7 @@ mod tests {
         let mut ordered_rad = 0.0;
         for i in 0..600 {
             // A lasting moment holds it 0.3 rad to starboard of its order.
-            show(&mut motion, 0.1 * f64::from(i), 0.1, |_| Nav { psi_rad: ordered_rad + 0.3, ..Nav::default() });
+            show(&mut motion, 0.1 * f64::from(i), 0.1, Nav { psi_rad: ordered_rad + 0.3, ..Nav::default() });
             if let Order::Steer { heading_rad, .. } = motion.order(1.0, 2.0) {
                 ordered_rad = heading_rad;
             }
@@ -271,7 +270,7 @@ mod tests {
             [("large_usv_kinematic", 0.3, 5.5), ("large_usv_kinematic", 7.0, 7.0), ("surveyor_kinematic", 0.3, 0.3)]
         {
             let mut motion = motion(boat);
-            show(&mut motion, 0.0, 1.0, |_| Nav { surge_m_s: 6.0, ..Nav::default() });
+            show(&mut motion, 0.0, 1.0, Nav { surge_m_s: 6.0, ..Nav::default() });
             let Order::Steer { speed_m_s: got_m_s, .. } = motion.order(1.0, speed_m_s) else {
                 panic!("expected a steer order")
             };
@@ -285,7 +284,7 @@ mod tests {
         let mut sides = vec![];
         // The heading wavers about the opposite of the desired one.
         for (i, psi_rad) in [0.1, -0.1, 0.2, -0.3, 0.1].into_iter().enumerate() {
-            show(&mut motion, i as f64, 0.1, |_| Nav { psi_rad, ..Nav::default() });
+            show(&mut motion, i as f64, 0.1, Nav { psi_rad, ..Nav::default() });
             if let Order::Steer { heading_rad, .. } = motion.order(PI, 2.0) {
                 sides.push(wrap_pi(heading_rad - psi_rad).signum());
             }
@@ -311,7 +310,7 @@ mod tests {
         for i in 0..200 {
             motion.order(2.0, 2.0);
             let nav = Nav { psi_rad: 0.0, yaw_rate_rad_s: 0.4 * before_rad_s, ..Nav::default() };
-            show(&mut motion, 0.1 * f64::from(i), 0.1, |_| nav);
+            show(&mut motion, 0.1 * f64::from(i), 0.1, nav);
         }
         let seen = motion.handling().turn_rad_s / before_rad_s;
         assert!((0.35..0.65).contains(&seen), "observed turn rate is {seen} of that in its file");

@@ -6,13 +6,12 @@ mod moving_point;
 mod team_messages;
 mod turn_estimate;
 
-pub(crate) use game_model::GameModel;
 pub(crate) use interception::meeting_time_s;
 pub(crate) use moving_point::MovingPoint;
-pub(crate) use team_messages::TeamMessages;
 
 use crate::mind::Proposal;
 use crate::own_motion::OwnMotion;
+use game_model::GameModel;
 use interception::{Interceptor, Intruder, Pair};
 use messages::Picture;
 use messages::picture::{Contact, OwnBoat};
@@ -20,8 +19,10 @@ use primitives::frame::{Body, Rotation, ned_from_body};
 use primitives::{FlagId, Ned, SimTime, VehicleId};
 use rules::event::{EventRecord, TagCause};
 use rules::{Ability, Event, TaggedBoat, tag_wait_s};
+use scenario::Scenario;
 use scenario::strategy::{Boat, Expression, Fact, Mark, Measure, Place, Program, Values};
 use std::cell::OnceCell;
+use team_messages::TeamMessages;
 use turn_estimate::{TurnEstimate, turning_on};
 
 /// A contact is assumed to keep its velocity for this long and then to slow down, s.
@@ -124,14 +125,13 @@ pub(crate) struct Situation {
 }
 
 impl Situation {
-    pub(crate) fn new(
-        model: GameModel,
-        motion: OwnMotion,
-        program: &Program,
-        team_messages: TeamMessages,
-    ) -> Situation {
+    /// Before the first picture. `compensates` is whether the drift is estimated.
+    pub(crate) fn new(scenario: &Scenario, vehicle: VehicleId, program: &Program, compensates: bool) -> Situation {
+        let model = GameModel::new(scenario, vehicle, program);
         Situation {
             own: OwnBoat::new(model.me, messages::picture::Nav::default()),
+            motion: OwnMotion::new(scenario.boat_of(vehicle), model.speed_max_m_s, compensates),
+            team_messages: TeamMessages::new(program, &model.mates),
             model,
             now: SimTime::ZERO,
             begun: false,
@@ -141,12 +141,10 @@ impl Situation {
             at: Ned::default(),
             ahead: Ned::default(),
             velocity: Ned::default(),
-            motion,
             others: Vec::new(),
             turns: Vec::new(),
             tag_ready: Vec::new(),
             variables: program.variables.iter().map(|variable| variable.initial).collect(),
-            team_messages,
             proposed: None,
             carriers: Vec::new(),
             score: 0.0,
@@ -249,11 +247,6 @@ impl Situation {
         }
     }
 
-    /// The boat's velocity through the water, as far as known, m/s.
-    pub(crate) fn velocity_through_water(&self) -> Ned {
-        self.velocity - self.motion.drift()
-    }
-
     /// The boat extrapolated through a brief continued turn.
     pub(crate) fn turning_on(&self) -> MovingPoint {
         turning_on(MovingPoint { at: self.at, velocity: self.velocity }, self.own.nav.yaw_rate_rad_s)
@@ -306,7 +299,8 @@ impl Situation {
 
     /// Computes the interception pairs.
     fn intercepted(&self) -> Vec<Pair> {
-        let mut intruders: Vec<Intruder> = self.intruders().map(Intruder::from).collect();
+        let intruder = |boat: &OtherBoat| Intruder { vehicle: boat.vehicle, at: boat.at, velocity: boat.velocity() };
+        let mut intruders: Vec<Intruder> = self.intruders().map(intruder).collect();
         // By the flag nearest to each intruder, not the one nearest to this boat, so that all boats
         // of the team find the same order. By their distance to the flag in the whole team's
         // knowledge, so that every mate computes the same pairs.
@@ -438,12 +432,6 @@ impl Values for Situation {
 
     fn mates(&self, condition: &Expression) -> f64 {
         self.team_messages.count(condition)
-    }
-}
-
-impl From<&OtherBoat> for Intruder {
-    fn from(boat: &OtherBoat) -> Intruder {
-        Intruder { vehicle: boat.vehicle, at: boat.at, velocity: boat.velocity() }
     }
 }
 

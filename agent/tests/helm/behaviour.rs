@@ -1,6 +1,6 @@
 //! Each behaviour alone: its decisions in given scenes.
 
-use crate::scene::{Boat, alone, decided, helm, only, picture, scenario, without_safety};
+use crate::scene::{Boat, alone, decided, helm, only, picture, scenario, steered, without_safety};
 use agent::Mind;
 use messages::helm::{HelmReport, RunState};
 use messages::picture::Picture;
@@ -78,14 +78,13 @@ fn every_behaviour_alone_decides_as_the_cases_say() {
 }
 
 /// A boat with this maximum turn rate, rad/s, that takes a second to change its speed, simulated
-/// for a minute.
-fn driven(behaviour: &str, from: Boat, turn_rad_s: f64, contact: Boat) -> Vec<Boat> {
+/// for this many tenths of a second.
+fn driven(behaviour: &str, from: Boat, turn_rad_s: f64, contact: Boat, steps: u32) -> Vec<Boat> {
     let (mut helm, mut own, mut track) = (helm(&only(behaviour)), from, vec![]);
-    for step in 0..600 {
+    for step in 0..steps {
         let mut scene = with_contact(own, contact);
         scene.stamp.valid_ns = SimTime::from_s(0.1 * f64::from(step));
-        let report = decided(&mut helm, &scene);
-        let wanted = report.course_deg.zip(report.speed_m_s).expect("the helm steers");
+        let wanted = steered(&mut helm, &scene);
         let off_rad = primitives::angle::wrap_pi((wanted.0 - own.heading_deg).to_radians());
         own.heading_deg += off_rad.clamp(-0.1 * turn_rad_s, 0.1 * turn_rad_s).to_degrees();
         own.speed_m_s += 0.1 * (wanted.1 - own.speed_m_s);
@@ -103,7 +102,7 @@ fn a_shield_settles_at_its_station_from_wherever_it_comes() {
     // The station is at (-56, 0).
     for heading_deg in [0.0, 90.0, 200.0, 270.0] {
         let from = Boat::at(-52.0, -8.0).going(heading_deg, 2.4);
-        let track = driven(shield, from, TURN_RAD_S, Boat::at(40.0, 0.0));
+        let track = driven(shield, from, TURN_RAD_S, Boat::at(40.0, 0.0), 600);
         let farthest_m = track[300..].iter().map(|own| libm::hypot(own.x + 56.0, own.y)).fold(0.0, f64::max);
         assert!(farthest_m < 4.0, "heading {heading_deg}: {farthest_m} m from its station after half a minute");
     }
@@ -121,7 +120,7 @@ fn a_loiter_goes_round_the_way_it_is_told() {
         [("clockwise", 270.0, true), ("counterclockwise", 90.0, false), ("best", 80.0, true), ("best", 280.0, false)]
     {
         let picture = alone(0.0, Boat::at(0.0, 20.0).going(heading_deg, 1.0));
-        let course_deg = alone_decides(&ring(turn), &picture).course_deg.expect("the helm steers");
+        let (course_deg, _) = steered(&mut helm(&only(&ring(turn))), &picture);
         assert_eq!((0.0..180.0).contains(&course_deg), east, "{turn} with heading {heading_deg}: {course_deg}");
     }
 }
@@ -129,15 +128,10 @@ fn a_loiter_goes_round_the_way_it_is_told() {
 #[test]
 fn a_loiter_goes_all_the_way_round() {
     let ring = "kind = 'loiter'\nellipse = { centre = [0, 0], along_m = 60, across_m = 30 }\nturn = 'clockwise'\nspeed_m_s = 2";
-    let (mut helm, mut at, mut turned_deg, mut last) = (helm(&only(ring)), (0.0_f64, 15.0_f64), 0.0, 0.0_f64);
-    for step in 0..1500 {
-        let report = decided(&mut helm, &alone(f64::from(step) * 0.1, Boat::at(at.0, at.1).going(90.0, 2.0)));
-        let (course, speed_m_s) = (report.course_deg.expect("a course").to_radians(), 2.0);
-        at = (at.0 + 0.1 * speed_m_s * libm::sin(course), at.1 + 0.1 * speed_m_s * libm::cos(course));
-        let bearing_deg = libm::atan2(at.0, at.1).to_degrees();
-        turned_deg += (bearing_deg - last + 540.0).rem_euclid(360.0) - 180.0;
-        last = bearing_deg;
-    }
+    // It turns at once.
+    let track = driven(ring, Boat::at(0.0, 15.0).going(90.0, 2.0), 100.0, Boat::at(75.0, 35.0), 1500);
+    let bearings: Vec<f64> = track.iter().map(|own| libm::atan2(own.x, own.y).to_degrees()).collect();
+    let turned_deg: f64 = bearings.windows(2).map(|two| (two[1] - two[0] + 540.0).rem_euclid(360.0) - 180.0).sum();
     // The perimeter is 145 m: 300 m are two rounds.
     assert!((650.0..850.0).contains(&turned_deg), "turned {turned_deg} degrees");
 }
@@ -171,12 +165,11 @@ fn a_boat_in_the_way_is_passed_and_one_astern_changes_nothing() {
         [behaviour.avoid]\nkind = 'avoid_collision'\nweight = 300\n";
     let scene = |x: f64| with_contact(Boat::at(0.0, 0.0).going(90.0, 2.0), Boat::at(x, 0.0));
     let scenario = without_safety(behaviours);
-    let ahead = decided(&mut helm(&scenario), &scene(13.0));
-    let course_rad = ahead.course_deg.expect("a course").to_radians();
+    let course_rad = steered(&mut helm(&scenario), &scene(13.0)).0.to_radians();
     // It keeps its motion for a moment before it turns.
     let miss_m = ((13.0 - 2.0 * 0.7) * libm::cos(course_rad)).abs();
     assert!(miss_m > 5.5, "on course {course_rad} rad it passes at {miss_m} m");
-    assert!((decided(&mut helm(&scenario), &scene(-9.0)).course_deg.expect("a course") - 90.0).abs() < 0.51);
+    assert!((steered(&mut helm(&scenario), &scene(-9.0)).0 - 90.0).abs() < 0.51);
 }
 
 #[test]
@@ -184,10 +177,10 @@ fn obstacles_are_passed() {
     let behaviours = "[behaviour.go]\nkind = 'waypoint'\npoints = [[0, 39]]\nspeed_m_s = 2\nweight = 50\n\
         [behaviour.avoid]\nkind = 'avoid_obstacle'\nweight = 300\n";
     // The field's obstacle is a disc of 2 m at (0, 30).
-    let report = decided(&mut helm(&without_safety(behaviours)), &alone(0.0, Boat::at(0.0, 14.0).going(0.0, 2.0)));
-    let course_rad = report.course_deg.expect("a course").to_radians();
+    let scene = alone(0.0, Boat::at(0.0, 14.0).going(0.0, 2.0));
+    let course_rad = steered(&mut helm(&without_safety(behaviours)), &scene).0.to_radians();
     let miss_m = (16.0 * libm::sin(course_rad)).abs() - 2.0;
-    assert!(miss_m > 2.9, "passes its edge at {miss_m} m: {report:?}");
+    assert!(miss_m > 2.9, "passes its edge at {miss_m} m on course {course_rad} rad");
 }
 
 #[test]
@@ -195,26 +188,22 @@ fn the_operation_region_turns_a_boat_back_and_recovers_it_slowly() {
     let program = "[behaviour.go]\nkind = 'waypoint'\npoints = [[300, 0]]\nspeed_m_s = 3\nweight = 50\n\
         [behaviour.stay]\nkind = 'op_region'\nhalt_m = 20\nbeyond_halt = 'stops'\nexit_s = 1\nentry_s = 1\nrecovery_speed_m_s = 0.5\nweight = 300\n";
     let mut helm = helm(&without_safety(program));
-    let mut see = |at_s: f64, x: f64| decided(&mut helm, &alone(at_s, Boat::at(x, 5.0).going(90.0, 2.0)));
-    let deep_inside = see(0.0, 0.0);
-    assert!((deep_inside.course_deg.expect("a course") - 91.0).abs() < 1.0, "far inside, the waypoint decides");
-    let near = see(1.0, 76.0);
-    let outward_m_s = near.speed_m_s.expect("a speed") * libm::sin(near.course_deg.expect("a course").to_radians());
+    let scene = |at_s: f64, x: f64| alone(at_s, Boat::at(x, 5.0).going(90.0, 2.0));
+    let (course_deg, _) = steered(&mut helm, &scene(0.0, 0.0));
+    assert!((course_deg - 91.0).abs() < 1.0, "far inside, the waypoint decides");
+    let (course_deg, speed_m_s) = steered(&mut helm, &scene(1.0, 76.0));
+    let outward_m_s = speed_m_s * libm::sin(course_deg.to_radians());
     assert!(outward_m_s <= 0.01, "near the edge it still goes outward: {outward_m_s} m/s");
-    let just_out = see(2.0, 81.0);
-    assert!(just_out.speed_m_s.expect("a speed") > 0.6, "outside only for a moment, it returns at normal speed");
-    let out = see(3.1, 81.0);
-    assert!((out.course_deg.expect("a course") - 270.0).abs() < 0.51, "{:?}", out.course_deg);
-    assert!((out.speed_m_s.expect("a speed") - 0.5).abs() < 0.05, "{:?}", out.speed_m_s);
-    let far_out = see(4.0, 101.0);
+    let (_, speed_m_s) = steered(&mut helm, &scene(2.0, 81.0));
+    assert!(speed_m_s > 0.6, "outside only for a moment, it returns at normal speed");
+    let (course_deg, speed_m_s) = steered(&mut helm, &scene(3.1, 81.0));
+    assert!((course_deg - 270.0).abs() < 0.51 && (speed_m_s - 0.5).abs() < 0.05, "{course_deg}, {speed_m_s}");
+    let far_out = decided(&mut helm, &scene(4.0, 101.0));
     assert_eq!(far_out.hold.as_deref(), Some("stopped by a behaviour"));
-    let in_again = see(5.0, 79.0);
-    assert!(
-        (in_again.speed_m_s.expect("a speed") - 0.5).abs() < 0.05,
-        "inside only for a moment, it is still recovering"
-    );
-    let in_for_good = see(6.1, 60.0);
-    assert!(in_for_good.speed_m_s.expect("a speed") > 1.0, "{:?}", in_for_good.speed_m_s);
+    let (_, speed_m_s) = steered(&mut helm, &scene(5.0, 79.0));
+    assert!((speed_m_s - 0.5).abs() < 0.05, "inside only for a moment, it is still recovering");
+    let (_, speed_m_s) = steered(&mut helm, &scene(6.1, 60.0));
+    assert!(speed_m_s > 1.0, "inside for good: {speed_m_s}");
 }
 
 #[test]
@@ -223,16 +212,8 @@ fn a_point_within_the_turning_circle_does_not_hold_a_boat_in_an_orbit() {
     // point initially.
     let points =
         "kind = 'waypoint'\npoints = [[0, 0], [60, 0]]\nspeed_m_s = 1.5\ncapture_radius_m = 1\nslip_radius_m = 2";
-    let (mut helm, mut at, mut heading_rad) = (helm(&only(points)), (-5.0_f64, 0.0_f64), 0.0_f64);
-    let mut farthest_m = 0.0_f64;
-    for step in 0..600 {
-        let own = Boat::at(at.0, at.1).going(heading_rad.to_degrees(), 1.5);
-        let course_rad =
-            decided(&mut helm, &alone(f64::from(step) * 0.1, own)).course_deg.expect("a course").to_radians();
-        heading_rad += primitives::angle::wrap_pi(course_rad - heading_rad).clamp(-0.03, 0.03);
-        at = (at.0 + 0.15 * libm::sin(heading_rad), at.1 + 0.15 * libm::cos(heading_rad));
-        farthest_m = farthest_m.max(libm::hypot(at.0, at.1));
-    }
+    let track = driven(points, Boat::at(-5.0, 0.0).going(0.0, 1.5), 0.3, Boat::at(75.0, 35.0), 600);
+    let farthest_m = track.iter().map(|own| libm::hypot(own.x, own.y)).fold(0.0, f64::max);
     assert!(farthest_m > 25.0, "after a minute it is only {farthest_m} m from the first point");
 }
 
@@ -247,12 +228,8 @@ fn who_looks_inside_sees_the_utilities() {
         assert_eq!(function.utilities.len(), report.courses * report.speeds, "{}", function.behaviour);
     }
     let it = report.functions.iter().find(|f| f.behaviour == "it").expect("the waypoint has a function");
-    assert!(it.utility.expect("the utility was requested") > 99.0, "{:?}", it.utility);
-    let best = it.utilities.iter().copied().fold(0.0, f32::max);
-    assert!(
-        (best - it.utility.expect("the utility was requested")).abs() < 1e-3,
-        "the waypoint's preference wins: {best}"
-    );
+    let (utility, best) = (it.utility.expect("it was requested"), it.utilities.iter().copied().fold(0.0, f32::max));
+    assert!(utility > 99.0 && (best - utility).abs() < 1e-3, "the waypoint's preference wins: {utility}, {best}");
     let value: f64 = report.functions.iter().map(|f| f.weight * f64::from(f.utility.unwrap_or(0.0))).sum();
     assert!((value - report.value.expect("a value")).abs() < 0.1, "{value}, {:?}", report.value);
 }
@@ -278,8 +255,8 @@ fn safety_arbitrates_what_a_policy_proposes() {
     let advised = |picture: &Picture, (course_rad, speed_m_s): (f64, f64)| {
         let mut helm = helm(&scenario(program));
         helm.propose(agent::Proposal { at: SimTime::ZERO, course_rad, speed_m_s });
-        let report = decided(&mut helm, picture);
-        (report.course_deg.expect("a course").to_radians(), report.speed_m_s.expect("a speed"))
+        let (course_deg, speed_m_s) = steered(&mut helm, picture);
+        (course_deg.to_radians(), speed_m_s)
     };
     let east = (std::f64::consts::FRAC_PI_2, 3.0);
     let (course_rad, speed_m_s) = advised(&alone(0.0, Boat::at(0.0, 0.0).going(90.0, 2.0)), east);
@@ -318,9 +295,9 @@ fn a_boat_that_came_too_near_halts_until_it_is_released() {
     let behaviour = "kind = 'avoid_collision'\nhalt_m = 3\nrelease_m = 10\nrelease_s = 30";
     let mut helm = helm(&only(behaviour));
     let mut halts = |at_s: f64, contact_m: f64| {
-        let own = Boat::at(0.0, 0.0).going(0.0, 1.0);
-        let others = [Boat::at(contact_m, 0.0), Boat::at(75.0, -35.0)];
-        decided(&mut helm, &picture(at_s, [own, Boat::at(-70.0, -30.0)], others)).hold.is_some()
+        let mut scene = with_contact(Boat::at(0.0, 0.0).going(0.0, 1.0), Boat::at(contact_m, 0.0));
+        scene.stamp.valid_ns = SimTime::from_s(at_s);
+        decided(&mut helm, &scene).hold.is_some()
     };
     for (at_s, contact_m, want) in [
         (0.0, 3.1, false),

@@ -1,8 +1,9 @@
-//! Helm decisions: programs applied to pictures.
+//! Helm decisions, which apply programs to pictures; and observations of pictures.
 
 mod behaviour;
 mod knowledge;
 mod mode;
 mod place;
+mod pyquaticus;
 mod scene;
 mod symmetry;

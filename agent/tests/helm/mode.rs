@@ -1,6 +1,6 @@
 //! Modes, rules, variables, and the life cycle of behaviours.
 
-use crate::scene::{Boat, alone, decided, helm, picture, without_safety};
+use crate::scene::{Boat, alone, decided, helm, picture, steered, without_safety};
 use agent::{HelmMind, Mind};
 use messages::helm::{HelmReport, RunState};
 use messages::{EventRecord, Word};
@@ -115,23 +115,19 @@ fn a_collision_is_one_for_both_boats() {
 }
 
 #[test]
-fn what_a_behaviour_has_reached_is_a_point_or_its_time() {
-    let program = "[variables]\nreached = 0\n\
-        [behaviour.wait]\nkind = \"timer\"\nduration_s = 5\non_reach = { reached = \"reached + 1\" }\n\
-        [behaviour.stop]\nkind = \"full_stop\"\n";
-    let mut mind = helm(&without_safety(program));
-    for (at_s, want) in [(0.0, "0"), (4.9, "0"), (5.0, "1"), (9.0, "1")] {
-        assert_eq!(decided(&mut mind, &alone(at_s, Boat::at(0.0, 0.0))).variables[0].value, want, "{at_s} s");
-    }
-}
-
-#[test]
-fn time_is_counted_from_the_first_picture() {
-    let program = "[variables]\nwaited_s = 0\n\
-        [[rule]]\nwhen = \"true\"\nset = { waited_s = \"waited_s + step_s\" }\n[behaviour.stop]\nkind = \"full_stop\"\n";
-    let mut mind = helm(&without_safety(program));
-    for (at_s, want) in [(300.0, "0"), (300.5, "0.5"), (301.0, "1")] {
-        assert_eq!(decided(&mut mind, &alone(at_s, Boat::at(0.0, 0.0))).variables[0].value, want, "{at_s} s");
+fn a_behaviour_reaches_the_end_of_its_time_and_time_is_counted_from_the_first_picture() {
+    let reached = "[behaviour.wait]\nkind = \"timer\"\nduration_s = 5\non_reach = { it = \"it + 1\" }\n";
+    let waited_s = "[[rule]]\nwhen = \"true\"\nset = { it = \"it + step_s\" }\n";
+    for (program, steps) in [
+        (reached, [(0.0, "0"), (4.9, "0"), (5.0, "1"), (9.0, "1")].as_slice()),
+        (waited_s, &[(300.0, "0"), (300.5, "0.5"), (301.0, "1")]),
+    ] {
+        let stop = "[behaviour.stop]\nkind = \"full_stop\"\n";
+        let mut mind = helm(&without_safety(&format!("[variables]\nit = 0\n{program}{stop}")));
+        for (at_s, want) in steps {
+            let report = decided(&mut mind, &alone(*at_s, Boat::at(0.0, 0.0)));
+            assert_eq!(report.variables[0].value, *want, "{program} at {at_s} s");
+        }
     }
 }
 
@@ -146,7 +142,7 @@ fn of_two_ways_that_are_nearly_as_good_a_steady_helm_takes_the_one_it_is_on() {
         let mut helm = helm(&without_safety(&format!("helm = {{ hysteresis = {hysteresis} }}\n{TWO_WAYS}")));
         let mut course_deg = |i: u32| {
             let own = Boat::at(if i.is_multiple_of(2) { -1.0 } else { 1.0 }, 0.0);
-            decided(&mut helm, &alone(f64::from(i) * 0.1, own)).course_deg.expect("a course")
+            steered(&mut helm, &alone(f64::from(i) * 0.1, own)).0
         };
         let courses: Vec<f64> = (0..10).map(&mut course_deg).collect();
         let got = courses.windows(2).filter(|pair| (pair[0] - pair[1]).abs() > 90.0).count();
@@ -158,7 +154,7 @@ fn of_two_ways_that_are_nearly_as_good_a_steady_helm_takes_the_one_it_is_on() {
 fn a_steady_helm_follows_what_moves_and_turns_round_for_what_is_better() {
     let go = "[behaviour.go]\nkind = \"waypoint\"\npoints = [[60, 0]]\nspeed_m_s = 2\n";
     let mut mind = helm(&without_safety(&format!("helm = {{ hysteresis = 0.1 }}\n{go}")));
-    assert!((at(&mut mind, 0.0, 0.0).course_deg.expect("a course") - 90.0).abs() < 0.51);
+    assert!((steered(&mut mind, &alone(0.0, Boat::at(0.0, 0.0))).0 - 90.0).abs() < 0.51);
     // From here the point bears 100 degrees, and from behind it 270.
     let report = decided(&mut mind, &alone(0.1, Boat::at(0.0, 60.0 * 0.176_326_98)));
     assert!((report.course_deg.expect("a course") - 100.0).abs() < 0.51, "{report:?}");
@@ -166,8 +162,8 @@ fn a_steady_helm_follows_what_moves_and_turns_round_for_what_is_better() {
         (report.value.expect("a value") - 100.0 * 100.0).abs() < 50.0,
         "the report includes the steadiness bonus: {report:?}"
     );
-    let behind = decided(&mut mind, &alone(0.2, Boat::at(75.0, 0.0)));
-    assert!((behind.course_deg.expect("a course") - 270.0).abs() < 0.51, "{behind:?}");
+    let behind = steered(&mut mind, &alone(0.2, Boat::at(75.0, 0.0)));
+    assert!((behind.0 - 270.0).abs() < 0.51, "{behind:?}");
 }
 
 #[test]

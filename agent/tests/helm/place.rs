@@ -1,13 +1,12 @@
 //! Where boats steer to capture a flag and to be untagged: the nearest places that the referee
 //! accepts.
 
-use crate::scene::helm;
+use crate::scene::{helm, loaded, unsafely};
 use agent::Mind;
 use messages::picture::{FlagView, Nav, OwnBoat, Picture};
 use primitives::frame::Leg;
 use primitives::{Ned, TeamId, VehicleId};
 use scenario::Scenario;
-use std::path::Path;
 
 const BLUE: TeamId = TeamId(0);
 /// Rounding error of a variable's text, m.
@@ -15,18 +14,12 @@ const ROUNDING_M: f64 = 1e-3;
 
 /// A shipped game in which all boats compute their distance to these places.
 fn scenario(game: &str) -> Scenario {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let games = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games");
     let teams = ["blue", "red"].map(|team| format!("[[team]]\nname = \"{team}\"\nstrategy = \"strategy.toml\"\n"));
-    let game = format!("base = '{}'\n{}", games.join(format!("{game}.toml")).display(), teams.concat());
-    let strategy = "unsafe_i_know = true\nunsafe_because = \"tests a behaviour alone\"\n\
-                    [variables]\ncapture_m = 0\nown_flag_m = 0\nuntag_m = 0\n[[rule]]\nwhen = \"true\"\n\
-                    set = { capture_m = \"distance(capture_place)\", own_flag_m = \"distance(own_flag)\", \
-                    untag_m = \"distance(untag_place)\" }\n[behaviour.stop]\nkind = \"full_stop\"\n";
-    for (name, content) in [("game.toml", game.as_str()), ("strategy.toml", strategy)] {
-        std::fs::write(folder.path().join(name), content).expect("the file can be written");
-    }
-    scenario::load(&folder.path().join("game.toml")).unwrap_or_else(|e| panic!("{e}"))
+    let game = format!("base = 'SCENARIOS/games/{game}.toml'\n{}", teams.concat());
+    let program = "[variables]\ncapture_m = 0\nown_flag_m = 0\nuntag_m = 0\n[[rule]]\nwhen = \"true\"\n\
+                   set = { capture_m = \"distance(capture_place)\", own_flag_m = \"distance(own_flag)\", \
+                   untag_m = \"distance(untag_place)\" }\n[behaviour.stop]\nkind = \"full_stop\"\n";
+    loaded(&[("game.toml", &game), ("strategy.toml", &unsafely(program))])
 }
 
 /// The picture of a boat alone at this position.

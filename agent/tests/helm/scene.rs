@@ -11,19 +11,29 @@ use std::path::Path;
 /// The scenario in which all boats follow the program `strategy`: two against two on the test
 /// field.
 pub(crate) fn scenario(strategy: &str) -> Scenario {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios");
-    let text = |text: &str| text.replace("SCENARIOS", &scenarios.display().to_string());
     let (game, field) = (include_str!("game.toml"), include_str!("field.toml"));
-    for (name, content) in [("game.toml", game), ("field.toml", field), ("strategy.toml", strategy)] {
-        std::fs::write(folder.path().join(name), text(content)).expect("the file can be written");
+    loaded(&[("game.toml", game), ("field.toml", field), ("strategy.toml", strategy)])
+}
+
+/// The scenario of `game.toml` among these files. `SCENARIOS` in them is the folder of the shipped files.
+pub(crate) fn loaded(files: &[(&str, &str)]) -> Scenario {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios").display().to_string();
+    for (name, text) in files {
+        let text = text.replace("SCENARIOS", &scenarios);
+        std::fs::write(folder.path().join(name), text).expect("the file can be written");
     }
     scenario::load(&folder.path().join("game.toml")).unwrap_or_else(|e| panic!("{e}"))
 }
 
+/// `program` without the mandatory safety behaviours.
+pub(crate) fn unsafely(program: &str) -> String {
+    format!("unsafe_i_know = true\nunsafe_because = \"tests a behaviour alone\"\n{program}")
+}
+
 /// The scenario in which all boats follow a program without the mandatory safety behaviours.
 pub(crate) fn without_safety(program: &str) -> Scenario {
-    scenario(&format!("unsafe_i_know = true\nunsafe_because = \"tests a behaviour alone\"\n{program}"))
+    scenario(&unsafely(program))
 }
 
 /// A program with one behaviour and negligible other preferences.
@@ -124,6 +134,12 @@ pub(crate) fn decided(helm: &mut HelmMind, picture: &Picture) -> HelmReport {
         _ => panic!("{order:?}, but the report says {report:?}"),
     }
     report
+}
+
+/// The course, degrees, and the speed, m/s, that the helm decides on.
+pub(crate) fn steered(helm: &mut HelmMind, picture: &Picture) -> (f64, f64) {
+    let report = decided(helm, picture);
+    report.course_deg.zip(report.speed_m_s).expect("the helm steers")
 }
 
 fn wrap_180(angle_deg: f64) -> f64 {

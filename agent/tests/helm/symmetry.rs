@@ -1,12 +1,10 @@
 //! A game rotated by half a turn, or with teams exchanged, gives decisions rotated by half a turn.
 
-use crate::scene::{Boat, picture};
+use crate::scene::{Boat, picture, scenario};
 use agent::{HelmMind, Mind, roles};
 use messages::{Order, Picture};
 use primitives::stream::Stream;
 use primitives::{TeamId, VehicleId};
-use scenario::Scenario;
-use std::path::Path;
 
 /// The same scene with the other team in this one's place: rotated by half a turn about the datum,
 /// the centre of the field.
@@ -52,18 +50,11 @@ fn random(stream: &mut Stream) -> Picture {
     scene
 }
 
-fn shipped(strategy: &str) -> Scenario {
-    let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios");
-    let text = std::fs::read_to_string(scenarios.join(format!("strategies/{strategy}.toml"))).expect("a strategy");
-    assert!(!text.is_empty());
-    crate::scene::scenario(&format!("base = \"SCENARIOS/strategies/{strategy}.toml\"\n"))
-}
-
 #[test]
 fn a_scene_turned_by_half_a_turn_gives_a_decision_turned_by_half_a_turn() {
     let mut stream = Stream::new(4, "symmetry");
     for strategy in ["strategy_4", "medium_attacker", "medium_defender", "easy_defender"] {
-        let scenario = shipped(strategy);
+        let scenario = scenario(&format!("base = \"SCENARIOS/strategies/{strategy}.toml\"\n"));
         let decide = |vehicle: u16, picture: &Picture| {
             let vehicle = VehicleId(vehicle);
             HelmMind::new(&scenario, vehicle, roles::role_of(&scenario, vehicle)).decide(picture)

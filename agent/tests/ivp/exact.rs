@@ -1,8 +1,8 @@
 //! The solver compared with the whole grid.
 
-use crate::scene::{self, Table, decision, points, solved};
+use crate::scene::{self, random_table, solved};
 use agent::ivp::{Approach, Choice, Closest, Closing, Decision, FUNCTIONS_MAX, Grid, Objective, Peak};
-use agent::ivp::{Preference, Problem, QUANTUM, SpeedLimit, WEIGHT_MAX};
+use agent::ivp::{Preference, Problem, QUANTUM, Table, WEIGHT_MAX};
 use primitives::Ned;
 use primitives::angle::wrap_pi;
 use primitives::stream::Stream;
@@ -10,7 +10,11 @@ use primitives::stream::Stream;
 /// Every sum on the grid, in quanta, by course and speed.
 fn sums(grid: &Grid, functions: &[(f64, Objective)]) -> Vec<i64> {
     let at = |(k, j)| functions.iter().map(|(w, f)| i64::from(f.contribution(grid, *w, k, j))).sum();
-    points(grid).map(at).collect()
+    grid.points().map(at).collect()
+}
+
+fn decision(course: usize, speed: usize) -> Decision {
+    Decision { course, speed }
 }
 
 /// The best decision by exhaustive search, with the documented tie-break.
@@ -20,7 +24,7 @@ fn searched(grid: &Grid, sums: &[i64], preference: Preference) -> (Decision, f64
         let away = wrap_pi(grid.course_rad(k) - preference.course_rad);
         ((away.abs(), away < 0.0), (grid.speed_m_s(j) - preference.speed_m_s).abs(), j)
     };
-    let equal = points(grid).zip(sums).filter(|(_, sum)| **sum == largest).map(|(point, _)| point);
+    let equal = grid.points().zip(sums).filter(|(_, sum)| **sum == largest).map(|(point, _)| point);
     let (k, j) =
         equal.min_by(|a, b| key(*a).partial_cmp(&key(*b)).expect("values are not NaN")).expect("the grid has points");
     (decision(k, j), largest as f64 * QUANTUM)
@@ -33,7 +37,7 @@ fn the_solver_finds_what_a_search_of_the_whole_grid_finds_with_all_instructions(
     for seed in 0..4_000 {
         let mut stream = Stream::new(seed, "ivp/exact");
         let grid = scene::grid(&mut stream);
-        let table = Table::random(&mut stream, &grid);
+        let table = random_table(&mut stream, &grid);
         let functions = scene::functions(&mut stream, &grid, &table);
         let preference = scene::preference(&mut stream, &grid);
         let sums = sums(&grid, &functions);
@@ -41,7 +45,7 @@ fn the_solver_finds_what_a_search_of_the_whole_grid_finds_with_all_instructions(
         let got = solved(&grid, &functions, preference);
         assert_eq!((got.decision, got.value), (want, value), "seed {seed}: {functions:?} {preference:?}");
         ties += usize::from(sums.iter().filter(|&&sum| sum as f64 * QUANTUM == value).count() > 1);
-        passed_over += points(&grid).count().saturating_sub(got.evaluated);
+        passed_over += grid.points().count().saturating_sub(got.evaluated);
     }
     assert!(ties > 400, "only {ties} scenes with ties");
     assert!(passed_over > 400_000, "only {passed_over} points skipped");
@@ -74,7 +78,7 @@ fn the_order_of_functions_changes_nothing() {
     for seed in 0..1_000 {
         let mut stream = Stream::new(seed, "ivp/order");
         let grid = scene::grid(&mut stream);
-        let table = Table::random(&mut stream, &grid);
+        let table = random_table(&mut stream, &grid);
         let mut functions = scene::functions(&mut stream, &grid, &table);
         let preference = scene::preference(&mut stream, &grid);
         let first = solved(&grid, &functions, preference);
@@ -91,19 +95,17 @@ fn a_problem_that_was_cleared_is_as_new() {
     let mut old = Problem::new(grid.clone());
     for seed in 0..200 {
         let mut stream = Stream::new(seed, "ivp/again");
-        let table = Table::random(&mut stream, &grid);
+        let table = random_table(&mut stream, &grid);
         let functions = scene::functions(&mut stream, &grid, &table);
         let preference = scene::preference(&mut stream, &grid);
         old.clear();
-        assert!(old.is_empty() && !old.decides_course() && !old.decides_speed());
+        assert!(old.is_empty() && !old.decides_course && !old.decides_speed);
         functions.iter().for_each(|(weight, objective)| old.add(*weight, objective));
         assert_eq!(old.len(), functions.len());
         let got: Choice = old.solve(preference);
         let want = solved(&grid, &functions, preference);
         // The solver starts from its last result, so the number of evaluated points varies.
         assert_eq!(got, Choice { evaluated: got.evaluated, ..want }, "seed {seed}");
-        let Decision { course, speed } = got.decision;
-        assert_eq!(old.collective(course.into(), speed.into()), got.value, "seed {seed}");
     }
 }
 
@@ -118,8 +120,8 @@ fn without_functions_the_boat_goes_on_as_it_does() {
 #[test]
 fn of_equal_courses_the_one_to_starboard_and_of_equal_speeds_the_lower_is_taken() {
     let grid = Grid::new(4, 3, 2.0);
-    let courses = agent::ivp::Table::of(&grid, |k, _| [0.0, 70.0, 0.0, 70.0][k]);
-    let speeds = agent::ivp::Table::of(&grid, |_, j| [60.0, 0.0, 60.0][j]);
+    let courses = Table::of(&grid, |k, _| [0.0, 70.0, 0.0, 70.0][k]);
+    let speeds = Table::of(&grid, |_, j| [60.0, 0.0, 60.0][j]);
     for (course_rad, want) in [(0.0, 1), (std::f64::consts::PI, 3), (-0.1, 3), (0.1, 1)] {
         let preference = Preference { course_rad, speed_m_s: 1.0 };
         let got = solved(&grid, &[(1.0, Objective::Table(&courses)), (2.0, Objective::Table(&speeds))], preference);
@@ -182,20 +184,19 @@ fn a_problem_tells_what_is_decided() {
     let grid = Grid::new(8, 4, 2.0);
     let peak = Peak::tent(0.0, 1.0);
     let coupled = |course_share| Objective::Coupled { course: peak, speed: peak, course_share };
-    let table = agent::ivp::Table::of(&grid, |_, _| 1.0);
+    let table = Table::of(&grid, |_, _| 1.0);
     let cases = [
-        (1.0, Objective::Course(peak), (true, false)),
-        (1.0, Objective::Speed(peak), (false, true)),
+        (1.0, Objective::course(peak), (true, false)),
+        (1.0, Objective::speed(peak), (false, true)),
         (1.0, coupled(0.5), (true, true)),
         (1.0, coupled(1.0), (true, false)),
         (0.0, coupled(0.5), (false, false)),
-        (1.0, Objective::Limit(SpeedLimit { high_m_s: 1.0, base_m_s: 0.5 }), (false, true)),
         (1.0, Objective::Table(&table), (true, true)),
     ];
     for (weight, objective, want) in cases {
         let mut problem = Problem::new(grid.clone());
         problem.add(weight, &objective);
-        assert_eq!((problem.decides_course(), problem.decides_speed()), want, "{objective:?}");
+        assert_eq!((problem.decides_course, problem.decides_speed), want, "{objective:?}");
     }
 }
 
@@ -206,20 +207,20 @@ fn numbers_that_are_not_finite_count_nothing() {
     let mut stream = Stream::new(1, "ivp/nan");
     let closest = scene::closest(&mut stream, &grid);
     let peak = Peak::tent(1.0, 1.0);
-    let sound = [(10.0, Objective::Course(peak))];
+    let sound = [(10.0, Objective::course(peak))];
     let preference = Preference { course_rad: 1.0, speed_m_s: 1.0 };
     let want = solved(&grid, &sound, preference);
     let nan = f64::NAN;
-    let no_numbers = agent::ivp::Table::of(&grid, |_, _| f32::NAN);
+    let no_numbers = Table::of(&grid, |_, _| f32::NAN);
     let unsound = [
         (5.0, Objective::Closest(Closest { offset: Ned { north: nan, east: 0.0 }, ..closest })),
         (5.0, Objective::Closest(Closest { horizon_s: f64::INFINITY, ..closest })),
-        (5.0, Objective::Course(Peak { summit: nan, ..peak })),
-        (5.0, Objective::Speed(Peak { summit: f64::INFINITY, ..peak })),
-        (5.0, Objective::Limit(SpeedLimit { high_m_s: nan, base_m_s: 1.0 })),
+        (5.0, Objective::course(Peak { summit: nan, ..peak })),
+        (5.0, Objective::speed(Peak { summit: f64::INFINITY, ..peak })),
+        (5.0, Objective::speed(Peak { peak_width: nan, ..peak })),
         (5.0, Objective::Table(&no_numbers)),
-        (nan, Objective::Speed(peak)),
-        (-3.0, Objective::Speed(peak)),
+        (nan, Objective::speed(peak)),
+        (-3.0, Objective::speed(peak)),
     ];
     for bad in unsound {
         let got = solved(&grid, &[sound[0], bad], preference);

@@ -1,41 +1,18 @@
 //! Random decisions, with functions of every kind and many ties.
 
-use agent::ivp::{Approach, Choice, Closest, Closing, Decision, Grid, Lag, Objective, Peak};
-use agent::ivp::{Preference, Problem, Side, SpeedLimit};
+use agent::ivp::{Approach, Choice, Closest, Closing, Grid, Lag, Objective, Peak};
+use agent::ivp::{Preference, Problem, Side, Table};
 use primitives::Ned;
 use primitives::instructions::Instructions;
 use primitives::stream::Stream;
 
 /// A random table of utilities.
-pub(crate) struct Table(agent::ivp::Table);
-
-impl Table {
-    pub(crate) fn random(stream: &mut Stream, grid: &Grid) -> Table {
-        // Multiples of ten, for ties; every second course with full utility, or almost none.
-        let most = [2, 20][stream.below(2) as usize];
-        let is_full: Vec<bool> = (0..grid.courses()).map(|_| stream.below(most) == 0).collect();
-        let tens: Vec<u64> = (0..grid.courses() * grid.speeds()).map(|_| stream.below(11)).collect();
-        let utility = |k: usize, j| if is_full[k] { 100.0 } else { 10.0 * tens[k * grid.speeds() + j] as f32 };
-        Table(agent::ivp::Table::of(grid, utility))
-    }
-
-    /// The same table with course `k` taken from `from(k)`.
-    pub(crate) fn turned(&self, grid: &Grid, from: impl Fn(usize) -> usize) -> Table {
-        Table(agent::ivp::Table::of(grid, |k, j| self.0.utility(from(k), j)))
-    }
-
-    /// The same function, with its table replaced by this one.
-    pub(crate) fn of<'a>(&'a self, objective: &Objective) -> Objective<'a> {
-        match *objective {
-            Objective::Course(peak) => Objective::Course(peak),
-            Objective::Speed(peak) => Objective::Speed(peak),
-            Objective::Coupled { course, speed, course_share } => Objective::Coupled { course, speed, course_share },
-            Objective::Limit(limit) => Objective::Limit(limit),
-            Objective::Closest(closest) => Objective::Closest(closest),
-            Objective::Closing(closing) => Objective::Closing(closing),
-            Objective::Table(_) => Objective::Table(&self.0),
-        }
-    }
+pub(crate) fn random_table(stream: &mut Stream, grid: &Grid) -> Table {
+    // Multiples of ten, for ties; every second course with full utility, or almost none.
+    let most = [2, 20][stream.below(2) as usize];
+    let is_full: Vec<bool> = (0..grid.courses()).map(|_| stream.below(most) == 0).collect();
+    let tens: Vec<u64> = (0..grid.courses() * grid.speeds()).map(|_| stream.below(11)).collect();
+    Table::of(grid, |k, j| if is_full[k] { 100.0 } else { 10.0 * tens[k * grid.speeds() + j] as f32 })
 }
 
 /// A small grid, of any shape.
@@ -61,22 +38,22 @@ pub(crate) fn functions<'a>(stream: &mut Stream, grid: &Grid, table: &'a Table) 
 
 fn function<'a>(stream: &mut Stream, grid: &Grid, table: &'a Table) -> Objective<'a> {
     match stream.below(13) {
-        0 => Objective::Course(course_peak(stream)),
-        1 => Objective::Speed(speed_peak(stream, grid)),
+        0 => Objective::course(course_peak(stream)),
+        1 => Objective::speed(speed_peak(stream, grid)),
         2 | 3 => Objective::Coupled {
             course: course_peak(stream),
             speed: speed_peak(stream, grid),
             course_share: [0.0, 0.3, 0.5, 1.0][stream.below(4) as usize],
         },
         4 => {
-            let (high_m_s, base_m_s) =
-                (stream.between(0.0, 1.1), [0.0, stream.between(0.0, 1.1)][stream.below(2) as usize]);
+            // A limit.
+            let (high, base) = (stream.between(0.0, 1.1), [0.0, stream.between(0.0, 1.1)][stream.below(2) as usize]);
             let fastest_m_s = grid.speed_max_m_s();
-            Objective::Limit(SpeedLimit { high_m_s: high_m_s * fastest_m_s, base_m_s: base_m_s * fastest_m_s })
+            Objective::speed(Peak { peak_width: high * fastest_m_s, ..Peak::tent(0.0, base * fastest_m_s) })
         }
         5..=8 => Objective::Closest(closest(stream, grid)),
         9 | 10 => Objective::Closing(closing(stream)),
-        _ => Objective::Table(&table.0),
+        _ => Objective::Table(table),
     }
 }
 
@@ -164,14 +141,4 @@ pub(crate) fn solved(grid: &Grid, functions: &[(f64, Objective)], preference: Pr
         assert_eq!(with(*set), plainest, "{set:?}: {functions:?} {preference:?}");
     }
     plainest
-}
-
-pub(crate) fn points(grid: &Grid) -> impl Iterator<Item = (usize, usize)> + use<> {
-    let speeds = grid.speeds();
-    (0..grid.courses()).flat_map(move |k| (0..speeds).map(move |j| (k, j)))
-}
-
-/// A point of the grid.
-pub(crate) fn decision(k: usize, j: usize) -> Decision {
-    Decision { course: k as u16, speed: j as u16 }
 }

@@ -1,7 +1,7 @@
 //! The functions themselves, at points computed by hand or by another method.
 
 use crate::scene::within;
-use agent::ivp::{Approach, Closest, Closing, Grid, Lag, Objective, Peak, Side, SpeedLimit};
+use agent::ivp::{Approach, Closest, Closing, Grid, Lag, Objective, Peak, Side};
 use primitives::Ned;
 use primitives::stream::Stream;
 
@@ -19,29 +19,24 @@ fn a_peak_falls_to_its_edge_and_then_to_nothing() {
     let peak =
         Peak { summit: deg(350.0), peak_width: deg(10.0), base_width: deg(170.0), summit_delta: 25.0, height: 100.0 };
     for (k, want) in [(350, 100.0), (355, 87.5), (0, 75.0), (340, 75.0), (85, 37.5), (170, 0.0), (171, 75.0 / 170.0)] {
-        near(peak.of_course(&grid, k), want, &format!("course {k}"));
+        near(Objective::course(peak).utility(&grid, k, 0), want, &format!("course {k}"));
     }
     let low = Peak { height: 20.0, ..Peak::tent(deg(170.0), deg(40.0)) };
     for (k, want) in [(170, 20.0), (180, 15.0), (150, 10.0), (120, 0.0), (0, 0.0)] {
-        near(low.of_course(&grid, k), want, &format!("the low peak at {k}"));
+        near(Objective::course(low).utility(&grid, k, 0), want, &format!("the low peak at {k}"));
     }
     let speed = Peak { peak_width: 1.0, summit_delta: 20.0, ..Peak::tent(2.0, 0.5) };
     for (j, want) in [(20, 100.0), (25, 90.0), (30, 80.0), (32, 48.0), (35, 0.0), (5, 0.0), (10, 80.0)] {
-        near(speed.of_speed(&grid, j), want, &format!("speed {j}"));
+        near(Objective::speed(speed).utility(&grid, 0, j), want, &format!("speed {j}"));
     }
-}
-
-#[test]
-fn a_limit_is_flat_within_and_falls_beyond() {
-    let grid = Grid::new(4, 36, 3.5);
-    let cases = [
+    // A limit at 1 m/s: half of a peak around rest, with and without a tolerance.
+    for (base_m_s, points) in [
         (0.5, [(0, 100.0), (10, 100.0), (12, 60.0), (15, 0.0), (35, 0.0)]),
         (0.0, [(0, 100.0), (10, 100.0), (11, 0.0), (20, 0.0), (35, 0.0)]),
-    ];
-    for (base_m_s, points) in cases {
-        let limit = SpeedLimit { high_m_s: 1.0, base_m_s };
+    ] {
+        let limit = Peak { peak_width: 1.0, ..Peak::tent(0.0, base_m_s) };
         for (j, want) in points {
-            near(limit.of_speed(&grid, j), want, &format!("{limit:?}, speed {j}"));
+            near(Objective::speed(limit).utility(&grid, 0, j), want, &format!("{limit:?}, speed {j}"));
         }
     }
 }

@@ -1,59 +1,35 @@
 //! Tests how well the mandatory behaviours keep random strategies safe: how often boats leave the
 //! field, and how often hulls touch.
 //!
-//! Run `cargo run --release -p squall-arena --example safety -- [GAMES] [SEA] [DURATION_S] [BOAT] [TRACKED_SEED]`.
+//! Run `cargo run --release -p squall-arena --example safety -- [GAMES] [SEA] [DURATION_S] [BOAT] [SEED]`.
 //! The default is 10,000 games of 120 s in calm water between boats of the kind `surveyor_m1_8`. With
-//! the seed of a game, it plays only that game and prints the track of every boat before it leaves
-//! the field or touches another. Every boat has a random strategy over `safety.toml`: places on the
-//! field and up to 20 m beyond it, pursuits, stations, headings, at any speed. Equal seeds give equal
-//! games.
+//! the seed of a game, it only writes the files of that game, for `squall run`, which records and shows
+//! it. Every boat has a random strategy over `safety.toml`: places on the field and up to 20 m beyond
+//! it, pursuits, stations, headings, at any speed. Equal seeds give equal games.
 
-use agent::MindRunner;
 use analysis::HullRectangle;
-use messages::Order;
 use primitives::VehicleId;
-use primitives::angle::compass_deg_from_rad;
 use primitives::stream::Stream;
 use rules::Event;
 use rules::event::EventCursor;
 use scenario::Scenario;
-use scenario::outcome::Outcome;
-use sim::Contest;
-use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Counts over all games.
+/// Counts of one game.
 #[derive(Clone, Copy, Debug, Default)]
 struct Tally {
-    games: u64,
     boat_hours: f64,
     /// Times a boat left the field.
-    left: u64,
+    left: usize,
     /// Of those, within five seconds after hulls touched.
-    left_pushed: u64,
+    left_pushed: usize,
     /// Of those that were not pushed, by a boat within 15 m of another: it gave way, or chased.
-    left_crowded: u64,
-    games_left: u64,
+    left_crowded: usize,
     /// Times two hulls started to touch.
-    touched: u64,
-    games_touched: u64,
+    touched: usize,
     /// Times two boats came within the collision distance of the rules.
-    collided: u64,
-}
-
-impl Tally {
-    fn add(&mut self, other: Tally) {
-        self.games += other.games;
-        self.boat_hours += other.boat_hours;
-        self.left += other.left;
-        self.left_pushed += other.left_pushed;
-        self.left_crowded += other.left_crowded;
-        self.games_left += other.games_left;
-        self.touched += other.touched;
-        self.games_touched += other.games_touched;
-        self.collided += other.collided;
-    }
+    collided: usize,
 }
 
 /// A boat that leaves the field later than this after hulls touched was not pushed out, s.
@@ -68,58 +44,54 @@ fn main() {
     let sea = args.get(1).map_or("calm", String::as_str);
     let boat = args.get(3).map_or("surveyor_m1_8", String::as_str);
     if let Some(seed) = args.get(4).and_then(|arg| arg.parse().ok()) {
-        let folder = tempfile::tempdir().expect("a folder for strategies");
-        play(&scenario(folder.path(), (sea, boat), duration_s, seed), seed, &mut Tracks::shown());
+        let folder = PathBuf::from(format!("runs/safety/{seed}"));
+        std::fs::create_dir_all(&folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display()));
+        scenario(&folder, (sea, boat), duration_s, seed);
+        print(&format!("squall run {}/game.toml --seed {seed}", folder.display()));
         return;
     }
     let next = AtomicU64::new(1);
     let jobs = std::thread::available_parallelism().map_or(1, usize::from);
-    let mut total = Tally::default();
+    let mut tallies = Vec::new();
     std::thread::scope(|scope| {
         let work = || {
             let folder = tempfile::tempdir().expect("a folder for strategies");
-            let mut tally = Tally::default();
-            loop {
-                let seed = next.fetch_add(1, Ordering::Relaxed);
-                if seed > games {
-                    return tally;
-                }
-                tally.add(play(&scenario(folder.path(), (sea, boat), duration_s, seed), seed, &mut Tracks::default()));
-            }
+            let seeds = std::iter::from_fn(|| Some(next.fetch_add(1, Ordering::Relaxed)));
+            let seeds = seeds.take_while(|seed| *seed <= games);
+            seeds.map(|seed| play(&scenario(folder.path(), (sea, boat), duration_s, seed), seed)).collect::<Vec<_>>()
         };
         let workers: Vec<_> = (0..jobs).map(|_| scope.spawn(work)).collect();
         for worker in workers {
-            total.add(worker.join().expect("a worker ends"));
+            tallies.extend(worker.join().expect("a worker ends"));
         }
     });
-    print_summary(&total, (sea, boat), duration_s);
+    print(&summary(&tallies, (sea, boat), duration_s));
 }
 
 #[expect(clippy::print_stdout, reason = "this is a program")]
-fn print_summary(total: &Tally, (sea, boat): (&str, &str), duration_s: u64) {
-    let share = |n: u64| 100.0 * n as f64 / total.games as f64;
-    let hourly = |n: u64| n as f64 / total.boat_hours;
-    println!("{} games of {duration_s} s, sea {sea}, {boat}, {:.0} boat-hours", total.games, total.boat_hours);
-    println!(
-        "left the field: {} times, {:.3} a boat-hour, in {:.2} % of games",
-        total.left,
-        hourly(total.left),
-        share(total.games_left)
-    );
-    println!("  pushed (hulls touched within {PUSH_REMEMBERED_S} s): {}", total.left_pushed);
-    println!("  with another boat within {CROWD_M} m: {}", total.left_crowded);
-    println!("  neither: {}", total.left - total.left_pushed - total.left_crowded);
-    println!(
-        "hulls touched: {} times, {:.3} a boat-hour, in {:.2} % of games",
-        total.touched,
-        hourly(total.touched),
-        share(total.games_touched)
-    );
-    println!(
-        "nearer than the rules' collision distance: {} times, {:.3} a boat-hour",
-        total.collided,
-        hourly(total.collided)
-    );
+fn print(text: &str) {
+    println!("{text}");
+}
+
+fn summary(tallies: &[Tally], (sea, boat): (&str, &str), duration_s: u64) -> String {
+    let sum = |count: fn(&Tally) -> usize| tallies.iter().map(count).sum::<usize>();
+    let boat_hours: f64 = tallies.iter().map(|tally| tally.boat_hours).sum();
+    let often = |total: usize| format!("{total} times, {:.3} a boat-hour", total as f64 / boat_hours);
+    let in_games = |count: fn(&Tally) -> usize| {
+        let games = tallies.iter().filter(|tally| count(tally) > 0).count();
+        format!("in {:.2} % of games", 100.0 * games as f64 / tallies.len() as f64)
+    };
+    let (left, pushed, crowded) = (sum(|t| t.left), sum(|t| t.left_pushed), sum(|t| t.left_crowded));
+    [
+        format!("{} games of {duration_s} s, sea {sea}, {boat}, {boat_hours:.0} boat-hours", tallies.len()),
+        format!("left the field: {}, {}", often(left), in_games(|t| t.left)),
+        format!("  pushed (hulls touched within {PUSH_REMEMBERED_S} s): {pushed}"),
+        format!("  with another boat within {CROWD_M} m: {crowded}"),
+        format!("  neither: {}", left - pushed - crowded),
+        format!("hulls touched: {}, {}", often(sum(|t| t.touched)), in_games(|t| t.touched)),
+        format!("nearer than the rules' collision distance: {}", often(sum(|t| t.collided))),
+    ]
+    .join("\n")
 }
 
 /// A game between random strategies.
@@ -195,115 +167,30 @@ fn behaviour(stream: &mut Stream) -> String {
     }
 }
 
-/// The last seconds of every boat, to show why it left.
-#[derive(Default)]
-struct Tracks {
-    shown: bool,
-    /// Lines by boat, newest last.
-    lines: Vec<VecDeque<String>>,
-}
-
-impl Tracks {
-    /// Number of decisions kept.
-    const COUNT: usize = 120;
-    /// Every nth decision is printed.
-    const EVERY: usize = 5;
-
-    fn shown() -> Tracks {
-        Tracks { shown: true, ..Tracks::default() }
-    }
-
-    fn note(&mut self, contest: &Contest, runner: &MindRunner) {
-        if !self.shown {
-            return;
-        }
-        let scenario = contest.scenario();
-        self.lines.resize(scenario.vehicles.len(), VecDeque::new());
-        for (i, lines) in self.lines.iter_mut().enumerate() {
-            let vehicle = VehicleId::at(i);
-            let boat = &contest.world().state().boats[i];
-            let (x, y) = scenario.field.along_across(boat.pose.at);
-            let order = match contest.effective_command(vehicle) {
-                Order::Steer { heading_rad, speed_m_s } => {
-                    format!("{:4.0} deg {speed_m_s:4.2} m/s", compass_deg_from_rad(heading_rad))
-                }
-                other => format!("{other:?}"),
-            };
-            let report = runner.mind(vehicle).and_then(|mind| mind.report());
-            let functions = report.map(|report| report.functions).unwrap_or_default();
-            let weighed: Vec<String> = functions.iter().map(|f| format!("{} {:.0}", f.behaviour, f.weight)).collect();
-            let line = format!(
-                "{:6.1} s boat {i} at {x:6.1} {y:6.1} m, heads {:4.0} deg, {:5.2} ahead {:5.2} starboard {:5.2} rad/s; thrust {:4.0} {:4.0} N; ordered {order}; {}",
-                contest.now().as_s(),
-                compass_deg_from_rad(boat.pose.psi_rad),
-                boat.nu.surge,
-                boat.nu.sway,
-                boat.nu.yaw,
-                boat.port.newton,
-                boat.starboard.newton,
-                weighed.join(", ")
-            );
-            lines.push_back(line);
-            if lines.len() > Tracks::COUNT {
-                lines.pop_front();
-            }
-        }
-    }
-
-    #[expect(clippy::print_stdout, reason = "this is a program")]
-    fn print(&self, i: usize, what: &str) {
-        let Some(lines) = self.lines.get(i) else { return };
-        println!("boat {i} {what}");
-        lines
-            .iter()
-            .rev()
-            .step_by(Tracks::EVERY)
-            .collect::<Vec<_>>()
-            .into_iter()
-            .rev()
-            .for_each(|line| println!("{line}"));
-    }
-}
-
 /// Plays a game and counts its events.
-fn play(scenario: &Scenario, seed: u64, tracks: &mut Tracks) -> Tally {
-    let mut contest = Contest::new(scenario, seed).unwrap_or_else(|e| panic!("seed {seed}: {e}"));
-    let scenario = contest.scenario().clone();
-    let mut runner = arena::runner_of(agent::minds_of(&scenario));
+fn play(scenario: &Scenario, seed: u64) -> Tally {
     let count = scenario.vehicles.len();
     let (mut touching, mut touched_s) = (vec![false; count * count], vec![f64::NEG_INFINITY; count]);
-    let mut tally = Tally { games: 1, ..Tally::default() };
-    let mut cursor = EventCursor::default();
-    while !contest.is_over() {
-        arena::decide(&mut contest, &mut runner);
-        tracks.note(&contest, &runner);
-        contest.advance();
+    let (mut tally, mut cursor) = (Tally::default(), EventCursor::default());
+    let outcome = arena::play_watched(scenario, agent::minds_of(scenario), seed, |contest| {
         let now_s = contest.now().as_s();
         let pose = |i: usize| contest.world().state().boats[i].pose;
-        for a in 0..count {
-            for b in a + 1..count {
-                let (one, other) = (VehicleId::at(a), VehicleId::at(b));
-                let hull = |vehicle: VehicleId| {
-                    let boat = scenario.boat_of(vehicle);
-                    HullRectangle { pose: pose(vehicle.index()), length_m: boat.length_m, beam_m: boat.beam_m }
-                };
-                let touch = hull(one).overlaps(&hull(other));
-                if touch && !touching[a * count + b] {
-                    tally.touched += 1;
-                    tracks.print(a, "touches");
-                    tracks.print(b, "touches");
-                }
-                touching[a * count + b] = touch;
-                if touch {
-                    (touched_s[a], touched_s[b]) = (now_s, now_s);
-                }
+        let hull = |i: usize| {
+            let boat = scenario.boat_of(VehicleId::at(i));
+            HullRectangle { pose: pose(i), length_m: boat.length_m, beam_m: boat.beam_m }
+        };
+        for (a, b) in (0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b))) {
+            let touch = hull(a).overlaps(&hull(b));
+            tally.touched += usize::from(touch && !touching[a * count + b]);
+            touching[a * count + b] = touch;
+            if touch {
+                (touched_s[a], touched_s[b]) = (now_s, now_s);
             }
         }
         for logged in cursor.read(contest.events()) {
             if let Event::LeftField(vehicle) = logged.event {
                 let i = vehicle.index();
                 tally.left += 1;
-                tracks.print(i, "leaves the field");
                 let crowded = (0..count).any(|j| j != i && pose(i).at.distance(pose(j).at) < CROWD_M);
                 if now_s - touched_s[i] <= PUSH_REMEMBERED_S {
                     tally.left_pushed += 1;
@@ -312,11 +199,10 @@ fn play(scenario: &Scenario, seed: u64, tracks: &mut Tracks) -> Tally {
                 }
             }
         }
-    }
-    let outcome: Outcome = contest.outcome();
-    tally.collided = outcome.events.iter().filter(|event| event.event == "collided").count() as u64;
+        true
+    });
+    let outcome = outcome.unwrap_or_else(|e| panic!("seed {seed}: {e}"));
+    tally.collided = outcome.events.iter().filter(|event| event.event == "collided").count();
     tally.boat_hours = outcome.duration_s * count as f64 / 3600.0;
-    tally.games_left = u64::from(tally.left > 0);
-    tally.games_touched = u64::from(tally.touched > 0);
     tally
 }

@@ -1,13 +1,5 @@
 //! Transcendental functions with the same bits on every machine, in single precision.
 
-pub(super) fn exp(x: f32) -> f32 {
-    libm::expf(x)
-}
-
-pub(super) fn ln(x: f32) -> f32 {
-    libm::logf(x)
-}
-
 /// The hyperbolic tangent, accurate to about three units in the last place.
 ///
 /// The rational function of Eigen (`generic_fast_tanh_float`), which ONNX Runtime also uses. It has
@@ -34,12 +26,12 @@ pub fn tanh(x: f32) -> f32 {
 
 /// The logistic function, 1 / (1 + exp(-x)).
 pub(super) fn sigmoid(x: f32) -> f32 {
-    1.0 / (1.0 + exp(-x))
+    1.0 / (1.0 + libm::expf(-x))
 }
 
 /// ln(1 + exp(x)), which does not overflow.
 pub(super) fn softplus(x: f32) -> f32 {
-    if x > 0.0 { x + libm::log1pf(exp(-x)) } else { libm::log1pf(exp(x)) }
+    if x > 0.0 { x + libm::log1pf(libm::expf(-x)) } else { libm::log1pf(libm::expf(x)) }
 }
 
 /// The Gaussian error linear unit: x times the normal distribution function.

@@ -9,12 +9,8 @@ use super::limit::{PARAMETERS_MAX, RANK_MAX, VALUES_MAX, at_most};
 use super::node::Node;
 use super::plan::{Element, Planner, Row, Value};
 use super::proto::{self, data_type_name};
-use super::step::{Blocks, Step};
+use super::step::{Blocks, Step, Work};
 use super::tensor::{Numbers, Tensor, product};
-
-pub(super) fn identity(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
-    planner.value(node, 0)
-}
 
 pub(super) fn constant(_: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
     let [attribute] = node.proto.attribute.as_slice() else {
@@ -184,7 +180,7 @@ pub(super) fn concat(planner: &mut Planner, node: &Node) -> Result<Value, Networ
     for row in rows {
         let size = row.place.len() / count;
         let blocks = Blocks { count, size, from: (0, size), to: (at, whole) };
-        planner.steps.push(Step::Copy { blocks, input: row.place, output: output.place.clone() });
+        planner.steps.push(Step { work: Work::Copy(blocks), input: row.place, output: output.place.clone() });
         at += size;
     }
     Ok(Value::Computed(output))
@@ -204,13 +200,12 @@ fn joined_integers(planner: &Planner, node: &Node) -> Result<Option<Tensor>, Net
     Ok(Some(Tensor::new(vec![joined.len()], Numbers::Integers(joined))))
 }
 
-/// Plans `Slice`, one axis after the other. In old files its bounds are attributes.
+/// Plans `Slice`, one axis after the other.
 pub(super) fn slice(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
     let mut value = planner.value(node, 0)?;
-    let attribute = |name: &str| node.integers(name).map(|integers| integers.map(<[i64]>::to_vec));
-    let starts = planner.integers(node, 1)?.map_or_else(|| attribute("starts"), |numbers| Ok(Some(numbers)))?;
-    let ends = planner.integers(node, 2)?.map_or_else(|| attribute("ends"), |numbers| Ok(Some(numbers)))?;
-    let axes = planner.integers(node, 3)?.map_or_else(|| attribute("axes"), |numbers| Ok(Some(numbers)))?;
+    let starts = integers(planner, node, 1, "starts")?;
+    let ends = integers(planner, node, 2, "ends")?;
+    let axes = integers(planner, node, 3, "axes")?;
     let (Some(starts), Some(ends)) = (starts, ends) else { return Err(node.wrong("no bounds", "starts and ends")) };
     let axes = axes.unwrap_or_else(|| (0..).take(starts.len()).collect());
     let steps = planner.integers(node, 4)?.unwrap_or_else(|| vec![1; starts.len()]);
@@ -436,18 +431,23 @@ fn picked(
     shape: Vec<usize>,
     from: impl FnOnce() -> Vec<u32>,
 ) -> Result<Row, NetworkError> {
+    // The shape is checked first: `from` is as long.
     let output = Row { element: row.element, ..planner.new_row(shape)? };
-    planner.steps.push(Step::Pick { from: from(), input: row.place, output: output.place.clone() });
+    planner.steps.push(Step { work: Work::Pick(from()), input: row.place, output: output.place.clone() });
     Ok(output)
 }
 
-/// The axes of a `Squeeze`, `Unsqueeze` or `Reduce…`: an attribute in old files, an input in newer ones.
+/// Integers that are an attribute in old files and an input in newer ones.
+fn integers(planner: &Planner, node: &Node, input: usize, name: &str) -> Result<Option<Vec<i64>>, NetworkError> {
+    Ok(match planner.integers(node, input)? {
+        Some(integers) => Some(integers),
+        None => node.integers(name)?.map(<[i64]>::to_vec),
+    })
+}
+
+/// The axes of a `Squeeze`, `Unsqueeze` or `Reduce…`.
 pub(super) fn axes(planner: &Planner, node: &Node) -> Result<Option<Vec<i64>>, NetworkError> {
-    let axes = match planner.integers(node, 1)? {
-        Some(axes) => Some(axes),
-        None => node.integers("axes")?.map(<[i64]>::to_vec),
-    };
-    match axes {
+    match integers(planner, node, 1, "axes")? {
         Some(axes) if axes.len() > RANK_MAX => {
             Err(node.wrong(format!("{} axes", axes.len()), format!("at most {RANK_MAX}")))
         }
@@ -470,7 +470,7 @@ fn reshaped(node: &Node, value: Value, shape: Vec<usize>) -> Result<Value, Netwo
         return Err(node.wrong(format!("{found} of `{name}`"), format!("at most {RANK_MAX}")));
     }
     Ok(match value {
-        Value::Constant(tensor) => Value::Constant(tensor.reshaped(shape)),
+        Value::Constant(tensor) => Value::Constant(Tensor { shape, ..tensor }),
         Value::Computed(row) => Value::Computed(Row { shape, ..row }),
     })
 }

@@ -6,7 +6,7 @@ use super::arrangement;
 use super::error::{shape_text, shown};
 use super::node::Node;
 use super::plan::{Element, Planner, Row, Value};
-use super::step::Step;
+use super::step::Work;
 use super::tensor::{Numbers, Tensor};
 use std::ops::Range;
 
@@ -62,26 +62,26 @@ impl Function {
         match self {
             Function::Absolute => each(input, output, f32::abs),
             Function::Celu { alpha } => {
-                each(input, output, |x| if x < 0.0 { alpha * (activation::exp(x / alpha) - 1.0) } else { x });
+                each(input, output, |x| if x < 0.0 { alpha * (libm::expf(x / alpha) - 1.0) } else { x });
             }
             Function::Clip { min, max } => each(input, output, |x| clip_to(x, min, max)),
             Function::Elu { alpha } => {
-                each(input, output, |x| if x < 0.0 { alpha * (activation::exp(x) - 1.0) } else { x });
+                each(input, output, |x| if x < 0.0 { alpha * (libm::expf(x) - 1.0) } else { x });
             }
             Function::Erf => each(input, output, libm::erff),
-            Function::Exp => each(input, output, activation::exp),
+            Function::Exp => each(input, output, libm::expf),
             Function::Gelu => each(input, output, activation::gelu),
             Function::GeluByTanh => each(input, output, activation::gelu_by_tanh),
             Function::HardSigmoid { alpha, beta } => each(input, output, |x| clip_to(alpha * x + beta, 0.0, 1.0)),
             Function::HardSwish => each(input, output, |x| x * clip_to(x / 6.0 + 0.5, 0.0, 1.0)),
             Function::LeakyRelu { alpha } => each(input, output, |x| if x < 0.0 { alpha * x } else { x }),
-            Function::Logarithm => each(input, output, activation::ln),
+            Function::Logarithm => each(input, output, libm::logf),
             Function::Mish => each(input, output, |x| x * activation::tanh(activation::softplus(x))),
             Function::Negative => each(input, output, |x| -x),
             Function::Reciprocal => each(input, output, |x| 1.0 / x),
             Function::Relu => each(input, output, |x| if x < 0.0 { 0.0 } else { x }),
             Function::Selu { alpha, gamma } => {
-                each(input, output, |x| gamma * if x < 0.0 { alpha * (activation::exp(x) - 1.0) } else { x });
+                each(input, output, |x| gamma * if x < 0.0 { alpha * (libm::expf(x) - 1.0) } else { x });
             }
             Function::Sigmoid => each(input, output, activation::sigmoid),
             Function::Softplus => each(input, output, activation::softplus),
@@ -164,9 +164,7 @@ pub(super) fn function(planner: &mut Planner, node: &Node, function: Function) -
 }
 
 pub(super) fn apply(planner: &mut Planner, function: Function, input: Row) -> Result<Row, NetworkError> {
-    let output = planner.new_row(input.shape)?;
-    planner.steps.push(Step::Function { function, input: input.place, output: output.place.clone() });
-    Ok(output)
+    planner.add(Work::Function(function), input.place, input.shape)
 }
 
 pub(super) fn gelu(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
@@ -267,9 +265,7 @@ pub(super) fn combine(
     };
     let left = repeatable(planner, left, &shape)?;
     let right = repeatable(planner, right, &shape)?;
-    let output = planner.new_row(shape)?;
-    planner.steps.push(Step::Binary { operation, left, right, output: output.place.clone() });
-    Ok(output)
+    planner.add(Work::Binary { operation, right }, left, shape)
 }
 
 /// The place of a row that repeats to this shape: its own if, without leading ones, its shape is a

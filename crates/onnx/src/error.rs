@@ -5,20 +5,9 @@ use thiserror::Error;
 /// Maximum length of a name in a message, characters: names in files can be of any length.
 const NAME_MAX: usize = 80;
 
-/// Why a network cannot be read or written. Each message gives the place, the value found and the
-/// values allowed.
+/// Why a network cannot be read or written.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum NetworkError {
-    /// A quantity exceeds its limit.
-    #[error("{what}: found {found}, expected at most {max}")]
-    TooLarge {
-        /// The quantity.
-        what: String,
-        /// Its value.
-        found: usize,
-        /// Its limit.
-        max: usize,
-    },
     /// The bytes are not an ONNX file, or the file is truncated or damaged.
     #[error("not an ONNX file, or a damaged one: byte {byte}: {found}")]
     NotOnnx {
@@ -30,50 +19,11 @@ pub enum NetworkError {
     /// The bytes are a Git LFS pointer.
     #[error("a Git LFS pointer, expected the ONNX file that it stands for: run `git lfs pull`")]
     LfsPointer,
-    /// The model as a whole cannot be evaluated.
-    #[error("the model: found {found}, expected {expected}")]
-    Model {
-        /// The value found.
-        found: String,
-        /// The values allowed.
-        expected: String,
-    },
-    /// A tensor cannot be used.
-    #[error("tensor `{tensor}`: found {found}, expected {expected}")]
-    Tensor {
-        /// Its name.
-        tensor: String,
-        /// The value found.
-        found: String,
-        /// The values allowed.
-        expected: String,
-    },
-    /// A tensor's numbers are in a second file.
-    #[error(
-        "tensor `{tensor}`: found a reference to another file, expected its numbers: export the model with \
-         external_data=False"
-    )]
-    ExternalData {
-        /// Its name.
-        tensor: String,
-    },
-    /// An unsupported operator.
-    #[error("node `{node}`: found the operator {operator}, expected one of {allowed}: export the model without it")]
-    Operator {
-        /// The node's name.
-        node: String,
-        /// Its operator.
-        operator: String,
-        /// The supported operators.
-        allowed: String,
-    },
-    /// An unsupported form of a supported operator.
-    #[error("node `{node}` ({operator}): found {found}, expected {expected}")]
-    Node {
-        /// The node's name.
-        node: String,
-        /// Its operator.
-        operator: &'static str,
+    /// A part of the file cannot be used.
+    #[error("{place}: found {found}, expected {expected}")]
+    Refused {
+        /// The part: the model, a tensor, a node, or a limited quantity.
+        place: String,
         /// The value found.
         found: String,
         /// The values allowed.
@@ -82,12 +32,16 @@ pub enum NetworkError {
 }
 
 impl NetworkError {
+    pub(super) fn at(place: impl Into<String>, found: impl Into<String>, expected: impl Into<String>) -> NetworkError {
+        NetworkError::Refused { place: place.into(), found: found.into(), expected: expected.into() }
+    }
+
     pub(super) fn model(found: impl Into<String>, expected: impl Into<String>) -> NetworkError {
-        NetworkError::Model { found: found.into(), expected: expected.into() }
+        NetworkError::at("the model", found, expected)
     }
 
     pub(super) fn tensor(tensor: &str, found: impl Into<String>, expected: impl Into<String>) -> NetworkError {
-        NetworkError::Tensor { tensor: shown(tensor), found: found.into(), expected: expected.into() }
+        NetworkError::at(format!("tensor `{}`", shown(tensor)), found, expected)
     }
 }
 

@@ -28,7 +28,7 @@ mod tests;
 
 pub use activation::tanh;
 pub use error::NetworkError;
-pub use perceptron::{Activation, Head, Layer, Normalisation, Perceptron};
+pub use perceptron::{Head, Layer, Perceptron};
 
 use plan::Plan;
 use std::collections::BTreeMap;
@@ -121,19 +121,6 @@ impl Network {
     #[must_use]
     pub fn output(&self, index: usize) -> &[f32] {
         &self.values[self.plan.places[index].clone()]
-    }
-
-    /// The output with this name in the last evaluation, if any.
-    #[must_use]
-    pub fn output_named(&self, name: &str) -> Option<&[f32]> {
-        let index = self.plan.outputs.iter().position(|port| port.name == name)?;
-        Some(self.output(index))
-    }
-
-    /// Whether all outputs of the last evaluation are finite.
-    #[must_use]
-    pub fn is_finite(&self) -> bool {
-        (0..self.plan.places.len()).all(|index| self.output(index).iter().all(|number| number.is_finite()))
     }
 }
 

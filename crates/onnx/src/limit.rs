@@ -22,7 +22,7 @@ pub(super) const RANK_MAX: usize = 8;
 pub(super) fn at_most(what: &str, found: Option<usize>, max: usize) -> Result<usize, NetworkError> {
     let found = found.unwrap_or(usize::MAX);
     if found > max {
-        return Err(NetworkError::TooLarge { what: what.to_owned(), found, max });
+        return Err(NetworkError::at(what, found.to_string(), format!("at most {max}")));
     }
     Ok(found)
 }

@@ -5,7 +5,7 @@ use super::arrangement::transposed_row;
 use super::error::shape_text;
 use super::node::Node;
 use super::plan::{Planner, Row, Value, floats};
-use super::step::Step;
+use super::step::Work;
 
 /// Outputs summed in parallel, in registers.
 const LANES: usize = 16;
@@ -142,8 +142,6 @@ fn add(
     let mut shape = input.shape;
     shape.pop();
     shape.push(outputs);
-    let output = planner.new_row(shape)?;
     let linear = Linear::new(inputs, outputs, weight, &bias.unwrap_or_else(|| vec![0.0; outputs]));
-    planner.steps.push(Step::Linear { linear, input: input.place, output: output.place.clone() });
-    Ok(Value::Computed(output))
+    planner.add(Work::Linear(linear), input.place, shape).map(Value::Computed)
 }

@@ -22,8 +22,7 @@ pub(super) struct Node<'a> {
 
 impl<'a> Node<'a> {
     pub(super) fn wrong(&self, found: impl Into<String>, expected: impl Into<String>) -> NetworkError {
-        let (found, expected) = (found.into(), expected.into());
-        NetworkError::Node { node: name(self.proto), operator: self.operator, found, expected }
+        NetworkError::at(format!("node `{}` ({})", name(self.proto), self.operator), found, expected)
     }
 
     /// The name of input `index`, if any.

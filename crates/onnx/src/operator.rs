@@ -56,7 +56,7 @@ pub(super) const OPERATORS: &[Operator] = &[
         function(planner, node, Function::HardSigmoid { alpha, beta })
     }),
     operator("HardSwish", &[], 1..=1, |planner, node| function(planner, node, Function::HardSwish)),
-    operator("Identity", &[], 1..=1, arrangement::identity),
+    operator("Identity", &[], 1..=1, |planner, node| planner.value(node, 0)),
     operator("LayerNormalization", &["axis", "epsilon", "stash_type"], 2..=3, normalisation::layer),
     operator("LeakyRelu", &["alpha"], 1..=1, |planner, node| {
         function(planner, node, Function::LeakyRelu { alpha: node.float("alpha", 0.01)? })

@@ -12,32 +12,20 @@ use std::collections::BTreeMap;
 const IR_VERSION: i64 = 8;
 const OPERATORS_VERSION: i64 = 17;
 
-/// Dense layers with one activation between them and at least one output.
+/// The name of the input.
+const INPUT: &str = "observation";
+
+/// Dense layers with the hyperbolic tangent between them and at least one output.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Perceptron {
-    /// The input's name.
-    pub input: String,
-    /// Normalisation of the input, if any.
-    pub normalisation: Option<Normalisation>,
-    /// The hidden layers, each followed by the activation.
+    /// The hidden layers, each followed by the hyperbolic tangent.
     pub hidden: Vec<Layer>,
-    /// The activation after each hidden layer.
-    pub activation: Activation,
     /// The outputs, each a layer after the last hidden layer.
     pub heads: Vec<Head>,
-    /// The activation after each output, if any.
-    pub end: Option<Activation>,
+    /// Whether the hyperbolic tangent follows each output.
+    pub bounded: bool,
     /// The file's metadata.
     pub metadata: BTreeMap<String, String>,
-}
-
-/// Subtracts a mean from each input value and multiplies by a scale.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Normalisation {
-    /// One mean per input value.
-    pub mean: Vec<f32>,
-    /// One scale per input value: the reciprocal standard deviation.
-    pub scale: Vec<f32>,
 }
 
 /// A dense layer: each output is a bias plus a weighted sum of the inputs.
@@ -62,24 +50,6 @@ pub struct Head {
     pub layer: Layer,
 }
 
-/// The activation after a layer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Activation {
-    /// The hyperbolic tangent.
-    Tanh,
-    /// The maximum of the value and zero.
-    Relu,
-}
-
-impl Activation {
-    fn operator(self) -> &'static str {
-        match self {
-            Activation::Tanh => "Tanh",
-            Activation::Relu => "Relu",
-        }
-    }
-}
-
 impl Perceptron {
     /// This perceptron as an ONNX file; always the same bytes for the same perceptron.
     ///
@@ -90,25 +60,18 @@ impl Perceptron {
         let first = self.hidden.first().or_else(|| self.heads.first().map(|head| &head.layer));
         let inputs = first.map_or(0, |layer| layer.inputs);
         let mut graph = GraphProto { name: "policy".to_owned(), ..GraphProto::default() };
-        graph.input.push(port(&self.input, inputs));
-        let mut last = self.input.clone();
-        if let Some(Normalisation { mean, scale }) = &self.normalisation {
-            graph.initializer.push(tensor("input.mean", &[1, inputs], mean));
-            graph.initializer.push(tensor("input.scale", &[1, inputs], scale));
-            graph.node.push(node("Sub", [&last, "input.mean"], "input.centred"));
-            graph.node.push(node("Mul", ["input.centred", "input.scale"], "input.normalised"));
-            "input.normalised".clone_into(&mut last);
-        }
+        graph.input.push(port(INPUT, inputs));
+        let mut last = INPUT.to_owned();
         for (i, layer) in self.hidden.iter().enumerate() {
             let sums = format!("hidden.{i}.sums");
             dense(&mut graph, &format!("hidden.{i}"), layer, &last, &sums);
             last = format!("hidden.{i}.output");
-            graph.node.push(node(self.activation.operator(), [&sums], &last));
+            graph.node.push(node("Tanh", [&sums], &last));
         }
         for (i, head) in self.heads.iter().enumerate() {
-            let sums = self.end.map_or(head.name.clone(), |_| format!("head.{i}.sums"));
+            let sums = if self.bounded { format!("head.{i}.sums") } else { head.name.clone() };
             dense(&mut graph, &format!("head.{i}"), &head.layer, &last, &sums);
-            graph.node.extend(self.end.map(|end| node(end.operator(), [&sums], &head.name)));
+            graph.node.extend(self.bounded.then(|| node("Tanh", [&sums], &head.name)));
             graph.output.push(port(&head.name, head.layer.outputs));
         }
         let entry =

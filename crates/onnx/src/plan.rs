@@ -5,7 +5,7 @@ use super::Port;
 use super::error::{shape_text, shown};
 use super::limit::{PARAMETERS_MAX, PRODUCTS_MAX, RANK_MAX, VALUES_MAX, at_most};
 use super::node::Node;
-use super::step::Step;
+use super::step::{Step, Work};
 use super::tensor::{Numbers, Tensor, product};
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -200,6 +200,13 @@ impl Planner {
     pub(super) fn new_row(&mut self, shape: Vec<usize>) -> Result<Row, NetworkError> {
         let place = self.room(product(&shape))?;
         Ok(Row { place, shape, element: Element::Float })
+    }
+
+    /// Adds a step with an output of this shape. Returns the output.
+    pub(super) fn add(&mut self, work: Work, input: Range<usize>, shape: Vec<usize>) -> Result<Row, NetworkError> {
+        let output = self.new_row(shape)?;
+        self.steps.push(Step { work, input, output: output.place.clone() });
+        Ok(output)
     }
 
     fn room(&mut self, size: Option<usize>) -> Result<Range<usize>, NetworkError> {

@@ -170,11 +170,11 @@ fn add(planner: &mut Planner, proto: &NodeProto, version: i64, needed: &BTreeSet
     let Some(operator) = known else {
         let names: Vec<&str> = OPERATORS.iter().map(|operator| operator.name).collect();
         let of_domain = if is_own(&proto.domain) { String::new() } else { format!("{}.", shown(&proto.domain)) };
-        return Err(NetworkError::Operator {
-            node: node::name(proto),
-            operator: of_domain + &shown(&proto.op_type),
-            allowed: names.join(", "),
-        });
+        return Err(NetworkError::at(
+            format!("node `{}`", node::name(proto)),
+            format!("the operator {of_domain}{}", shown(&proto.op_type)),
+            format!("one of {}: export the model without it", names.join(", ")),
+        ));
     };
     let node = Node { proto, operator: operator.name, version };
     node.check_attributes(operator.attributes)?;

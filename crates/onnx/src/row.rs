@@ -1,12 +1,11 @@
 //! Operators along the last dimension: Softmax, LogSoftmax and ArgMax.
 
 use super::NetworkError;
-use super::activation::{exp, ln};
 use super::arrangement;
 use super::error::shape_text;
 use super::node::Node;
 use super::plan::{Element, Planner, Row, Value};
-use super::step::Step;
+use super::step::Work;
 use super::tensor::product;
 
 #[derive(Clone, Copy)]
@@ -32,9 +31,7 @@ pub(super) fn softmax(planner: &mut Planner, node: &Node, scale: Scale) -> Resul
         check_is_last(node, &input.shape, axis)?;
     }
     let row_size = product(&input.shape[axis..]).unwrap_or(0);
-    let output = planner.new_row(input.shape)?;
-    planner.steps.push(Step::Softmax { scale, row_size, input: input.place, output: output.place.clone() });
-    Ok(Value::Computed(output))
+    planner.add(Work::Softmax { scale, row_size }, input.place, input.shape).map(Value::Computed)
 }
 
 pub(super) fn arg_max(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
@@ -49,8 +46,7 @@ pub(super) fn arg_max(planner: &mut Planner, node: &Node) -> Result<Value, Netwo
     } else {
         shape[axis] = 1;
     }
-    let output = planner.new_row(shape)?;
-    planner.steps.push(Step::ArgMax { tie, row_size, input: input.place, output: output.place.clone() });
+    let output = planner.add(Work::ArgMax { tie, row_size }, input.place, shape)?;
     Ok(Value::Computed(Row { element: Element::Integer, ..output }))
 }
 
@@ -99,10 +95,8 @@ pub(super) fn reduced(
     input: Row,
     shape: Vec<usize>,
 ) -> Result<Row, NetworkError> {
-    let output = planner.new_row(shape)?;
-    let row_size = input.place.len() / output.place.len().max(1);
-    planner.steps.push(Step::Reduce { reduction, row_size, input: input.place, output: output.place.clone() });
-    Ok(output)
+    let row_size = input.place.len() / product(&shape).unwrap_or(1).max(1);
+    planner.add(Work::Reduce { reduction, row_size }, input.place, shape)
 }
 
 /// Plans `GatherElements` along the last axis, with computed indices.
@@ -120,10 +114,8 @@ pub(super) fn gather_elements(planner: &mut Planner, node: &Node) -> Result<Valu
         let found = format!("{} by {}", shape_text(&input.shape), shape_text(&indices.shape));
         return Err(node.wrong(found, "shapes that differ only in the last axis"));
     }
-    let output = planner.new_row(indices.shape)?;
-    let place = output.place.clone();
-    planner.steps.push(Step::Lookup { row_size, input: input.place, indices: indices.place, output: place });
-    Ok(Value::Computed(output))
+    let work = Work::Lookup { row_size, indices: indices.place };
+    planner.add(work, input.place, indices.shape).map(Value::Computed)
 }
 
 /// Rejects an axis whose elements are not adjacent.
@@ -156,7 +148,7 @@ impl Reduction {
             // The maximum is subtracted first to prevent overflow.
             Reduction::LogSumExp => {
                 let greatest = greatest();
-                greatest + ln(row.iter().fold(0.0, |sum, x| sum + exp(x - greatest)))
+                greatest + libm::logf(row.iter().fold(0.0, |sum, x| sum + libm::expf(x - greatest)))
             }
         }
     }
@@ -169,13 +161,13 @@ impl Scale {
             let greatest = from.iter().fold(f32::NEG_INFINITY, |greatest, x| if *x > greatest { *x } else { greatest });
             let mut sum = 0.0;
             for (to, from) in to.iter_mut().zip(from) {
-                *to = exp(from - greatest);
+                *to = libm::expf(from - greatest);
                 sum += *to;
             }
             match self {
                 Scale::Linear => to.iter_mut().for_each(|to| *to /= sum),
                 Scale::Logarithmic => {
-                    let of_sum = ln(sum);
+                    let of_sum = libm::logf(sum);
                     to.iter_mut().zip(from).for_each(|(to, from)| *to = from - greatest - of_sum);
                 }
             }

@@ -6,58 +6,38 @@ use super::row::{Reduction, Scale, Tie};
 use std::ops::Range;
 
 /// The output always comes after the inputs.
-pub(super) enum Step {
-    Function {
-        function: Function,
-        input: Range<usize>,
-        output: Range<usize>,
-    },
+pub(super) struct Step {
+    pub(super) work: Work,
+    pub(super) input: Range<usize>,
+    pub(super) output: Range<usize>,
+}
+
+pub(super) enum Work {
+    Function(Function),
     Binary {
         operation: Operation,
-        left: Range<usize>,
         right: Range<usize>,
-        output: Range<usize>,
     },
-    Linear {
-        linear: Linear,
-        input: Range<usize>,
-        output: Range<usize>,
-    },
+    Linear(Linear),
     Softmax {
         scale: Scale,
         row_size: usize,
-        input: Range<usize>,
-        output: Range<usize>,
     },
     ArgMax {
         tie: Tie,
         row_size: usize,
-        input: Range<usize>,
-        output: Range<usize>,
     },
     Reduce {
         reduction: Reduction,
         row_size: usize,
-        input: Range<usize>,
-        output: Range<usize>,
     },
-    Copy {
-        blocks: Blocks,
-        input: Range<usize>,
-        output: Range<usize>,
-    },
+    Copy(Blocks),
     /// Copies the numbers at these indices of the input.
-    Pick {
-        from: Vec<u32>,
-        input: Range<usize>,
-        output: Range<usize>,
-    },
+    Pick(Vec<u32>),
     /// Copies, from each row of the input, the numbers at computed indices.
     Lookup {
         row_size: usize,
-        input: Range<usize>,
         indices: Range<usize>,
-        output: Range<usize>,
     },
 }
 
@@ -73,44 +53,18 @@ pub(super) struct Blocks {
 
 impl Step {
     pub(super) fn take(&self, values: &mut [f32]) {
-        match self {
-            Step::Function { function, input, output } => {
-                let (before, to) = split(values, output);
-                function.apply(&before[input.clone()], to);
-            }
-            Step::Binary { operation, left, right, output } => {
-                let (before, to) = split(values, output);
-                operation.apply(&before[left.clone()], &before[right.clone()], to);
-            }
-            Step::Linear { linear, input, output } => {
-                let (before, to) = split(values, output);
-                linear.apply(&before[input.clone()], to);
-            }
-            Step::Softmax { scale, row_size, input, output } => {
-                let (before, to) = split(values, output);
-                scale.apply(*row_size, &before[input.clone()], to);
-            }
-            Step::ArgMax { tie, row_size, input, output } => {
-                let (before, to) = split(values, output);
-                tie.apply(*row_size, &before[input.clone()], to);
-            }
-            Step::Reduce { reduction, row_size, input, output } => {
-                let (before, to) = split(values, output);
-                reduction.apply(*row_size, &before[input.clone()], to);
-            }
-            Step::Copy { blocks, input, output } => {
-                let (before, to) = split(values, output);
-                blocks.copy(&before[input.clone()], to);
-            }
-            Step::Pick { from, input, output } => {
-                let (before, to) = split(values, output);
-                let before = &before[input.clone()];
-                to.iter_mut().zip(from).for_each(|(to, from)| *to = before[*from as usize]);
-            }
-            Step::Lookup { row_size, input, indices, output } => {
-                let (before, to) = split(values, output);
-                look_up(*row_size, &before[input.clone()], &before[indices.clone()], to);
-            }
+        let (before, after) = values.split_at_mut(self.output.start);
+        let (input, output) = (&before[self.input.clone()], &mut after[..self.output.len()]);
+        match &self.work {
+            Work::Function(function) => function.apply(input, output),
+            Work::Binary { operation, right } => operation.apply(input, &before[right.clone()], output),
+            Work::Linear(linear) => linear.apply(input, output),
+            Work::Softmax { scale, row_size } => scale.apply(*row_size, input, output),
+            Work::ArgMax { tie, row_size } => tie.apply(*row_size, input, output),
+            Work::Reduce { reduction, row_size } => reduction.apply(*row_size, input, output),
+            Work::Copy(blocks) => blocks.copy(input, output),
+            Work::Pick(from) => output.iter_mut().zip(from).for_each(|(to, from)| *to = input[*from as usize]),
+            Work::Lookup { row_size, indices } => look_up(*row_size, input, &before[indices.clone()], output),
         }
     }
 }
@@ -126,12 +80,6 @@ fn look_up(row_size: usize, input: &[f32], indices: &[f32], output: &mut [f32]) 
             *to = if from_start >= 0.0 { row.get(from_start as usize).copied().unwrap_or(f32::NAN) } else { f32::NAN };
         }
     }
-}
-
-/// Splits the values into those that a step may read and its output.
-fn split<'a>(values: &'a mut [f32], output: &Range<usize>) -> (&'a [f32], &'a mut [f32]) {
-    let (before, after) = values.split_at_mut(output.start);
-    (before, &mut after[..output.len()])
 }
 
 impl Blocks {

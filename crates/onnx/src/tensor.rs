@@ -1,10 +1,10 @@
 //! A constant of a network: weights, or integers such as a shape.
 
-use super::error::shape_text;
+use super::NetworkError;
+use super::error::{shape_text, shown};
 use super::limit::{PARAMETERS_MAX, RANK_MAX, at_most};
 use super::proto::{BFLOAT16, BOOL, DOUBLE, EXTERNAL, FLOAT, FLOAT16, INT32, INT64, TensorProto, data_type_name};
-use super::{NetworkError, error};
-use half::f16;
+use half::{bf16, f16};
 use std::rc::Rc;
 
 /// Numbers with a shape; the last dimension varies fastest.
@@ -29,7 +29,8 @@ impl Tensor {
     /// Reads a tensor. `name` appears in errors.
     pub(super) fn read(proto: &TensorProto, name: &str) -> Result<Tensor, NetworkError> {
         if proto.data_location == EXTERNAL || !proto.external_data.is_empty() {
-            return Err(NetworkError::ExternalData { tensor: error::shown(name) });
+            let expected = "its numbers: export the model with external_data=False";
+            return Err(NetworkError::tensor(name, "a reference to another file", expected));
         }
         if proto.dims.len() > RANK_MAX {
             let found = format!("{} dimensions", proto.dims.len());
@@ -39,13 +40,13 @@ impl Tensor {
         let Some(shape) = shape else {
             return Err(NetworkError::tensor(name, "a negative dimension", "dimensions of 0 or more"));
         };
-        let count = at_most(&format!("numbers of tensor `{}`", error::shown(name)), product(&shape), PARAMETERS_MAX)?;
+        let count = at_most(&format!("numbers of tensor `{}`", shown(name)), product(&shape), PARAMETERS_MAX)?;
         // Fields hold 16-bit floats and booleans as 32-bit integers.
         let bits = || listed(proto, &low_halves(&proto.int32_data), u16::from_le_bytes).into_iter();
         let numbers = match proto.data_type {
             FLOAT => Numbers::Floats(listed(proto, &proto.float_data, f32::from_le_bytes)),
             FLOAT16 => Numbers::Floats(bits().map(|bits| f16::from_bits(bits).to_f32()).collect()),
-            BFLOAT16 => Numbers::Floats(bits().map(|bits| f32::from_bits(u32::from(bits) << 16)).collect()),
+            BFLOAT16 => Numbers::Floats(bits().map(|bits| bf16::from_bits(bits).to_f32()).collect()),
             BOOL => Numbers::Integers(match &proto.raw_data {
                 Some(raw) => raw.iter().map(|byte| i64::from(*byte)).collect(),
                 None => proto.int32_data.iter().map(|number| i64::from(*number)).collect(),
@@ -85,11 +86,6 @@ impl Tensor {
             Numbers::Floats(floats) => floats.len(),
             Numbers::Integers(integers) => integers.len(),
         }
-    }
-
-    /// The same numbers in another shape of the same size.
-    pub(super) fn reshaped(&self, shape: Vec<usize>) -> Tensor {
-        Tensor { shape, numbers: Rc::clone(&self.numbers) }
     }
 }
 

@@ -60,8 +60,7 @@ fn sound() -> ModelProto {
 }
 
 /// Inserts a node between the first layer and the output.
-fn with_node(model: &mut ModelProto, node: NodeProto) {
-    let graph = graph(model);
+fn with_node(graph: &mut GraphProto, node: NodeProto) {
     graph.node[1].input[0].clone_from(&node.output[0]);
     graph.node.insert(1, node);
 }
@@ -73,16 +72,28 @@ fn the_sound_model_is_read() {
     assert_eq!(network.output(0), [0.0, 52.0, 163.0]);
 }
 
-type Change = fn(&mut ModelProto);
+type Change<T> = fn(&mut T);
 
-fn refuse(cases: &[(Change, &str)]) {
+fn refuse(cases: &[(Change<GraphProto>, &str)]) {
+    for (change, want) in cases {
+        let mut model = sound();
+        change(graph(&mut model));
+        refuse_model(&model, want);
+    }
+}
+
+fn refuse_models(cases: &[(Change<ModelProto>, &str)]) {
     for (change, want) in cases {
         let mut model = sound();
         change(&mut model);
-        match Network::read(&model.encode_to_vec()) {
-            Ok(_) => panic!("the file was read, expected {want:?}"),
-            Err(error) => assert!(error.to_string().contains(want), "{error}\nexpected {want:?}"),
-        }
+        refuse_model(&model, want);
+    }
+}
+
+fn refuse_model(model: &ModelProto, want: &str) {
+    match Network::read(&model.encode_to_vec()) {
+        Ok(_) => panic!("the file was read, expected {want:?}"),
+        Err(error) => assert!(error.to_string().contains(want), "{error}\nexpected {want:?}"),
     }
 }
 
@@ -112,73 +123,66 @@ fn bytes_that_are_no_model_are_refused() {
 
 #[test]
 fn models_that_cannot_be_evaluated_are_refused() {
-    refuse(&[
+    refuse_models(&[
         (
             |m| m.opset_import.clear(),
             "the model: found no version of the operators (opset_import), expected version 7 to",
         ),
         (|m| m.opset_import[0].version = 6, "the model: found version 6 of the operators, expected version 7 to"),
         (|m| m.opset_import[0].version = 99, "found version 99"),
-        (|m| graph(m).input.clear(), "the model: found no input, expected at least one"),
-        (|m| graph(m).output.clear(), "the model: found no output, expected at least one"),
-        (|m| graph(m).input[0] = port("x", &[4, 2]), "tensor `x`: found the shape 4 x 2, expected a first dimension"),
-        (|m| graph(m).input[0] = port("x", &[1, 0]), "tensor `x`: found dimension 1 without a size"),
-        (|m| graph(m).input[0] = port("x", &[1, -2]), "tensor `x`: found dimension 1 of -2"),
-        (|m| graph(m).input[0] = port("x", &[1; 9]), "tensor `x`: found 9 dimensions, expected at most 8"),
-        (|m| graph(m).input[0] = port("x", &[1, 1 << 40]), "numbers in an evaluation: found 1099511627776"),
-        (
-            |m| graph(m).input[0] = port("x", &[1, i64::MAX, i64::MAX]),
-            "numbers in an evaluation: found 18446744073709551615",
-        ),
-        (|m| graph(m).input[0].r#type = None, "tensor `x`: found something that is not a tensor"),
-        (|m| graph(m).output.push(port("z", &[0, 3])), "tensor `z`: found an output that no node computes"),
-        (|m| graph(m).output.push(port("y", &[0, 3])), "tensor `y`: found an output named twice"),
         (
             |m| m.metadata_props = vec![StringStringEntryProto { key: "a\nb".to_owned(), value: String::new() }; 2],
             "the model: found two metadata entries `a\\nb`",
         ),
+    ]);
+    refuse(&[
+        (|g| g.input.clear(), "the model: found no input, expected at least one"),
+        (|g| g.output.clear(), "the model: found no output, expected at least one"),
+        (|g| g.input[0] = port("x", &[4, 2]), "tensor `x`: found the shape 4 x 2, expected a first dimension"),
+        (|g| g.input[0] = port("x", &[1, 0]), "tensor `x`: found dimension 1 without a size"),
+        (|g| g.input[0] = port("x", &[1, -2]), "tensor `x`: found dimension 1 of -2"),
+        (|g| g.input[0] = port("x", &[1; 9]), "tensor `x`: found 9 dimensions, expected at most 8"),
+        (|g| g.input[0] = port("x", &[1, 1 << 40]), "numbers in an evaluation: found 1099511627776"),
+        (|g| g.input[0] = port("x", &[1, i64::MAX, i64::MAX]), "numbers in an evaluation: found 18446744073709551615"),
+        (|g| g.input[0].r#type = None, "tensor `x`: found something that is not a tensor"),
+        (|g| g.output.push(port("z", &[0, 3])), "tensor `z`: found an output that no node computes"),
+        (|g| g.output.push(port("y", &[0, 3])), "tensor `y`: found an output named twice"),
     ]);
 }
 
 #[test]
 fn tensors_that_cannot_be_used_are_refused() {
     refuse(&[
-        (|m| graph(m).initializer[0].float_data[2] = f32::NAN, "tensor `w`: found NaN, expected numbers"),
+        (|g| g.initializer[0].float_data[2] = f32::NAN, "tensor `w`: found NaN, expected numbers"),
         (
-            |m| graph(m).initializer[1].float_data[0] = f32::INFINITY,
+            |g| g.initializer[1].float_data[0] = f32::INFINITY,
             "(Gemm): found a number in input 2 that is infinite in single precision, expected finite numbers",
         ),
+        (|g| _ = g.initializer[0].float_data.pop(), "tensor `w`: found 5 numbers, expected 6 for the shape 2 x 3"),
+        (|g| g.initializer[0].raw_data = Some(vec![0; 25]), "tensor `w`: found 6 numbers, expected 6"),
+        (|g| g.initializer[0].dims[0] = -2, "tensor `w`: found a negative dimension"),
+        (|g| g.initializer[0].dims[0] = i64::MAX, "numbers of tensor `w`: found 18446744073709551615"),
+        (|g| g.initializer[0].dims = vec![1; 9], "tensor `w`: found 9 dimensions, expected at most 8"),
+        (|g| g.initializer[0].data_type = 8, "tensor `w`: found STRING numbers, expected FLOAT, FLOAT16, BFLOAT16"),
+        (|g| g.initializer[0].data_type = 10, "tensor `w`: found 0 numbers, expected 6 for the shape 2 x 3"),
+        (|g| g.initializer[0].data_type = 77, "tensor `w`: found element type 77"),
         (
-            |m| _ = graph(m).initializer[0].float_data.pop(),
-            "tensor `w`: found 5 numbers, expected 6 for the shape 2 x 3",
-        ),
-        (|m| graph(m).initializer[0].raw_data = Some(vec![0; 25]), "tensor `w`: found 6 numbers, expected 6"),
-        (|m| graph(m).initializer[0].dims[0] = -2, "tensor `w`: found a negative dimension"),
-        (|m| graph(m).initializer[0].dims[0] = i64::MAX, "numbers of tensor `w`: found 18446744073709551615"),
-        (|m| graph(m).initializer[0].dims = vec![1; 9], "tensor `w`: found 9 dimensions, expected at most 8"),
-        (
-            |m| graph(m).initializer[0].data_type = 8,
-            "tensor `w`: found STRING numbers, expected FLOAT, FLOAT16, BFLOAT16",
-        ),
-        (|m| graph(m).initializer[0].data_type = 10, "tensor `w`: found 0 numbers, expected 6 for the shape 2 x 3"),
-        (|m| graph(m).initializer[0].data_type = 77, "tensor `w`: found element type 77"),
-        (
-            |m| {
+            |g| {
                 let doubles = vec![1e39, 1.0, 1.0, 1.0, 1.0, 1.0];
                 let proto = TensorProto { data_type: DOUBLE, double_data: doubles, ..tensor("w", &[2, 3], &[]) };
-                graph(m).initializer[0] = proto;
+                g.initializer[0] = proto;
             },
             "(Gemm): found a number in input 1 that is infinite in single precision",
         ),
         (
-            |m| graph(m).initializer[0].data_location = EXTERNAL,
+            |g| g.initializer[0].data_location = EXTERNAL,
             "tensor `w`: found a reference to another file, expected its numbers: export the model with external_data=False",
         ),
-        (|m| graph(m).initializer[0].name = "x".repeat(300), "` (Gemm): found the undefined input `w`"),
+        (|g| g.initializer[0].name = "x".repeat(300), "` (Gemm): found the undefined input `w`"),
         (
-            |m| {
-                let again = graph(m).initializer[0].clone();
-                graph(m).initializer.push(again);
+            |g| {
+                let again = g.initializer[0].clone();
+                g.initializer.push(again);
             },
             "tensor `w`: found a second definition",
         ),
@@ -189,39 +193,39 @@ fn tensors_that_cannot_be_used_are_refused() {
 fn nodes_that_cannot_be_evaluated_are_refused_by_name() {
     refuse(&[
         (
-            |m| graph(m).node[1].op_type = "Conv".to_owned(),
+            |g| g.node[1].op_type = "Conv".to_owned(),
             "node `y node`: found the operator Conv, expected one of Abs, Add,",
         ),
-        (|m| graph(m).node[1].domain = "com.microsoft".to_owned(), "found the operator com.microsoft.Relu"),
-        (|m| graph(m).node.swap(0, 1), "node `y node` (Relu): found the undefined input `sums`"),
-        (|m| graph(m).node[0].input[0] = "y".to_owned(), "node `sums node` (Gemm): found the undefined input `y`"),
-        (|m| graph(m).initializer.push(tensor("sums", &[1], &[1.0])), "tensor `sums`: found a second definition"),
-        (|m| graph(m).node[0].output.push("z".to_owned()), "node `sums node` (Gemm): found 2 outputs, expected one"),
-        (|m| _ = graph(m).node[1].input.pop(), "node `y node` (Relu): found 0 inputs, expected 1"),
-        (|m| graph(m).node[1].attribute.push(integer("axis", 1)), "(Relu): found the attribute axis, expected none"),
+        (|g| g.node[1].domain = "com.microsoft".to_owned(), "found the operator com.microsoft.Relu"),
+        (|g| g.node.swap(0, 1), "node `y node` (Relu): found the undefined input `sums`"),
+        (|g| g.node[0].input[0] = "y".to_owned(), "node `sums node` (Gemm): found the undefined input `y`"),
+        (|g| g.initializer.push(tensor("sums", &[1], &[1.0])), "tensor `sums`: found a second definition"),
+        (|g| g.node[0].output.push("z".to_owned()), "node `sums node` (Gemm): found 2 outputs, expected one"),
+        (|g| _ = g.node[1].input.pop(), "node `y node` (Relu): found 0 inputs, expected 1"),
+        (|g| g.node[1].attribute.push(integer("axis", 1)), "(Relu): found the attribute axis, expected none"),
         (
-            |m| graph(m).node[0].attribute.push(integer("transA", 1)),
+            |g| g.node[0].attribute.push(integer("transA", 1)),
             "(Gemm): found the shape 2 x 1 with 2 x 3 weights, expected rows of 2 numbers",
         ),
-        (|m| graph(m).node[0].attribute.push(integer("transB", 1)), "found the shape 1 x 2 with 3 x 2 weights"),
+        (|g| g.node[0].attribute.push(integer("transB", 1)), "found the shape 1 x 2 with 3 x 2 weights"),
         (
-            |m| graph(m).node[0].attribute.push(AttributeProto { r#type: OF_FLOAT, ..integer("transB", 1) }),
+            |g| g.node[0].attribute.push(AttributeProto { r#type: OF_FLOAT, ..integer("transB", 1) }),
             "(Gemm): found the attribute transB of type 1, expected an integer",
         ),
         (
-            |m| graph(m).initializer[1] = tensor("b", &[2], &[1.0, 2.0]),
+            |g| g.initializer[1] = tensor("b", &[2], &[1.0, 2.0]),
             "found the shape 2 as input 2, expected one bias, or 3",
         ),
-        (|m| graph(m).node[0].input[1] = "x".to_owned(), "(Gemm): found a computed input 1"),
-        (|m| with_node(m, node("Add", &["sums", "x"], "z")), "(Add): found the shape 1 x 3 with the shape 1 x 2"),
-        (|m| with_node(m, node("Concat", &["sums", "x"], "z")), "(Concat): found no axis, expected an axis"),
-        (|m| with_node(m, node("Unsqueeze", &["sums"], "z")), "(Unsqueeze): found no axes"),
+        (|g| g.node[0].input[1] = "x".to_owned(), "(Gemm): found a computed input 1"),
+        (|g| with_node(g, node("Add", &["sums", "x"], "z")), "(Add): found the shape 1 x 3 with the shape 1 x 2"),
+        (|g| with_node(g, node("Concat", &["sums", "x"], "z")), "(Concat): found no axis, expected an axis"),
+        (|g| with_node(g, node("Unsqueeze", &["sums"], "z")), "(Unsqueeze): found no axes"),
         (
-            |m| with_node(m, node("ArgMax", &["sums"], "z")),
+            |g| with_node(g, node("ArgMax", &["sums"], "z")),
             "(ArgMax): found axis 0 of the shape 1 x 3, expected the last",
         ),
         (
-            |m| with_node(m, node("Clip", &["sums", "b"], "z")),
+            |g| with_node(g, node("Clip", &["sums", "b"], "z")),
             "(Clip): found 3 numbers as input 1, expected a single number",
         ),
     ]);
@@ -229,48 +233,48 @@ fn nodes_that_cannot_be_evaluated_are_refused_by_name() {
 
 #[test]
 fn arrangements_that_do_not_fit_are_refused() {
-    fn with_integers(model: &mut ModelProto, operator: &str, integers: &[&[i64]]) {
+    fn with_integers(graph: &mut GraphProto, operator: &str, integers: &[&[i64]]) {
         let names: Vec<String> = (0..integers.len()).map(|i| format!("integers {i}")).collect();
         for (name, integers) in names.iter().zip(integers) {
             let int64_data = integers.to_vec();
             let dims = &[int64_data.len() as i64];
             let proto = TensorProto { data_type: INT64, int64_data, ..tensor(name, dims, &[]) };
-            graph(model).initializer.push(proto);
+            graph.initializer.push(proto);
         }
         let inputs: Vec<&str> = ["sums"].into_iter().chain(names.iter().map(String::as_str)).collect();
-        with_node(model, node(operator, &inputs, "z"));
+        with_node(graph, node(operator, &inputs, "z"));
     }
     refuse(&[
         (
-            |m| with_integers(m, "Reshape", &[&[1, 4]]),
+            |g| with_integers(g, "Reshape", &[&[1, 4]]),
             "(Reshape): found the shape 1 x 3 reshaped to (1, 4), expected a shape",
         ),
-        (|m| with_integers(m, "Reshape", &[&[-1, -1]]), "reshaped to (-1, -1)"),
-        (|m| with_integers(m, "Reshape", &[&[-1, 2]]), "reshaped to (-1, 2)"),
-        (|m| with_integers(m, "Reshape", &[&[0, 0, 0]]), "reshaped to (0, 0, 0)"),
-        (|m| with_integers(m, "Reshape", &[&[i64::MAX, i64::MAX, 4]]), "reshaped to (9223372036854775807"),
-        (|m| with_integers(m, "Reshape", &[&[1; 9]]), "found 9 integers as input 1, expected at most 8"),
-        (|m| with_integers(m, "Squeeze", &[&[1]]), "(Squeeze): found axes of the shape 1 x 3 that are not 1"),
-        (|m| with_integers(m, "Squeeze", &[&[-3]]), "(Squeeze): found axis -3, expected an axis of 2 dimensions"),
-        (|m| with_integers(m, "Unsqueeze", &[&[1, 1]]), "(Unsqueeze): found axis 1 twice"),
-        (|m| with_integers(m, "Unsqueeze", &[&[0, 1, 2, 3, 4, 5, 6]]), "found 9 dimensions of `z`, expected at most 8"),
-        (|m| with_integers(m, "Slice", &[&[0], &[2], &[1], &[0]]), "(Slice): found step 0, expected another step"),
+        (|g| with_integers(g, "Reshape", &[&[-1, -1]]), "reshaped to (-1, -1)"),
+        (|g| with_integers(g, "Reshape", &[&[-1, 2]]), "reshaped to (-1, 2)"),
+        (|g| with_integers(g, "Reshape", &[&[0, 0, 0]]), "reshaped to (0, 0, 0)"),
+        (|g| with_integers(g, "Reshape", &[&[i64::MAX, i64::MAX, 4]]), "reshaped to (9223372036854775807"),
+        (|g| with_integers(g, "Reshape", &[&[1; 9]]), "found 9 integers as input 1, expected at most 8"),
+        (|g| with_integers(g, "Squeeze", &[&[1]]), "(Squeeze): found axes of the shape 1 x 3 that are not 1"),
+        (|g| with_integers(g, "Squeeze", &[&[-3]]), "(Squeeze): found axis -3, expected an axis of 2 dimensions"),
+        (|g| with_integers(g, "Unsqueeze", &[&[1, 1]]), "(Unsqueeze): found axis 1 twice"),
+        (|g| with_integers(g, "Unsqueeze", &[&[0, 1, 2, 3, 4, 5, 6]]), "found 9 dimensions of `z`, expected at most 8"),
+        (|g| with_integers(g, "Slice", &[&[0], &[2], &[1], &[0]]), "(Slice): found step 0, expected another step"),
         (
-            |m| with_integers(m, "Slice", &[&[0], &[2], &[1], &[-1]]),
+            |g| with_integers(g, "Slice", &[&[0], &[2], &[1], &[-1]]),
             "(Slice): found the empty range 0 to 2 of axis 1 of the shape 1 x 3",
         ),
         (
-            |m| with_integers(m, "Slice", &[&[2], &[1], &[1]]),
+            |g| with_integers(g, "Slice", &[&[2], &[1], &[1]]),
             "found the empty range 2 to 1 of axis 1 of the shape 1 x 3",
         ),
-        (|m| with_integers(m, "Slice", &[&[0], &[2, 3]]), "found 1 starts, 2 ends, 1 axes and 1 steps"),
-        (|m| with_integers(m, "Slice", &[&[i64::MIN], &[i64::MAX], &[i64::MIN]]), "found axis -9223372036854775808"),
-        (|m| with_integers(m, "Gather", &[&[1]]), "(Gather): found index 1, expected an index of 1 numbers"),
-        (|m| with_integers(m, "Expand", &[&[1, 2]]), "(Expand): found the shape 1 x 3 expanded to [1, 2]"),
-        (|m| with_integers(m, "Expand", &[&[-1, 3]]), "(Expand): found the shape 1 x 3 expanded to [-1, 3]"),
-        (|m| with_integers(m, "Expand", &[&[1 << 40, 3]]), "numbers in an evaluation: found 3298534883333"),
-        (|m| with_integers(m, "ReduceMean", &[&[2]]), "(ReduceMean): found axis 2, expected an axis of 2 dimensions"),
-        (|m| with_integers(m, "Add", &[&[1, 2, 3]]), "(Add): found integers as input 1, expected FLOAT numbers"),
+        (|g| with_integers(g, "Slice", &[&[0], &[2, 3]]), "found 1 starts, 2 ends, 1 axes and 1 steps"),
+        (|g| with_integers(g, "Slice", &[&[i64::MIN], &[i64::MAX], &[i64::MIN]]), "found axis -9223372036854775808"),
+        (|g| with_integers(g, "Gather", &[&[1]]), "(Gather): found index 1, expected an index of 1 numbers"),
+        (|g| with_integers(g, "Expand", &[&[1, 2]]), "(Expand): found the shape 1 x 3 expanded to [1, 2]"),
+        (|g| with_integers(g, "Expand", &[&[-1, 3]]), "(Expand): found the shape 1 x 3 expanded to [-1, 3]"),
+        (|g| with_integers(g, "Expand", &[&[1 << 40, 3]]), "numbers in an evaluation: found 3298534883333"),
+        (|g| with_integers(g, "ReduceMean", &[&[2]]), "(ReduceMean): found axis 2, expected an axis of 2 dimensions"),
+        (|g| with_integers(g, "Add", &[&[1, 2, 3]]), "(Add): found integers as input 1, expected FLOAT numbers"),
     ]);
 }
 
@@ -329,10 +333,12 @@ fn a_declared_output_that_deviates_is_a_warning() {
 #[test]
 fn only_the_first_output_of_a_normalisation_can_be_used() {
     let mut model = sound();
+    let graph = graph(&mut model);
     let dropout = node("Dropout", &["sums"], "kept");
-    with_node(&mut model, NodeProto { output: vec!["kept".to_owned(), "mask".to_owned()], ..dropout });
-    Network::read(&model.encode_to_vec()).expect("the mask is unused");
-    graph(&mut model).output.push(port("mask", &[0, 3]));
+    with_node(graph, NodeProto { output: vec!["kept".to_owned(), "mask".to_owned()], ..dropout });
+    graph.output.push(port("mask", &[0, 3]));
     let error = Network::read(&model.encode_to_vec()).expect_err("the mask is used").to_string();
     assert!(error.contains("found a use of the output `mask`"), "{error}");
+    model.graph.as_mut().expect("the model has a graph").output.pop();
+    Network::read(&model.encode_to_vec()).expect("the mask is unused");
 }

@@ -18,7 +18,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The content of a field file; [`Field::new`] derives the rest.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Plan {
     /// The field file's stem.
     #[schemars(skip)]
@@ -389,18 +389,8 @@ mod tests {
     }
 
     fn plan(corner: (f64, f64), along_deg: f64, width_m: f64, depth_m: f64, flag_inset_m: f64) -> Plan {
-        Plan {
-            name: "test".into(),
-            datum: LatLon::default(),
-            corner: Ned::from_xy(corner.0, corner.1),
-            along_deg,
-            width_m,
-            depth_m,
-            flag_inset_m,
-            extra_flags: vec![],
-            obstacles: vec![],
-            walls: Walls::None,
-        }
+        let corner = Ned::from_xy(corner.0, corner.1);
+        Plan { corner, along_deg, width_m, depth_m, flag_inset_m, ..Plan::default() }
     }
 
     fn assert_near(got: Ned, x: f64, y: f64) {

@@ -5,7 +5,6 @@
 //! a simulation, a replay and a game on real water.
 
 mod ability;
-mod ask;
 mod boundary;
 mod claim;
 mod collision;
@@ -25,11 +24,10 @@ mod standing;
 mod tag;
 
 pub use ability::{Ability, tag_wait_s};
-pub use ask::Asks;
 pub use directive::Directive;
 pub use event::Event;
 pub use field::Field;
-pub use referee::{Look, Notes, Referee};
+pub use referee::{Asks, Look, Notes, Referee};
 pub use sharing::Sharing;
 pub use standing::{FlagStanding, Standing, VehicleStanding};
 

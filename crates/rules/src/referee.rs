@@ -1,7 +1,7 @@
 //! The referee: looks at all boats once per tick and reports events.
 
 use super::claim::Claim;
-use super::{Asks, Resolution, Rules, Standing};
+use super::{Resolution, Rules, Standing};
 use crate::event::Event;
 use crate::field::Field;
 use primitives::frame::Leg;
@@ -13,9 +13,21 @@ use primitives::time::SimTime;
 /// The constant referee of a game. [`Standing`] changes.
 #[derive(Clone, Debug)]
 pub struct Referee {
-    pub(super) rules: Rules,
-    pub(super) field: Field,
-    pub(super) team_of: Vec<TeamId>,
+    /// The rules of the game.
+    pub rules: Rules,
+    /// The field of the game.
+    pub field: Field,
+    /// The team of each vehicle, by vehicle index.
+    pub team_of: Vec<TeamId>,
+}
+
+/// The requests of one boat, under rules that require them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Asks {
+    /// Requests a tag.
+    pub tag: bool,
+    /// Requests a flag.
+    pub grab: bool,
 }
 
 /// Scratch memory, reused at every look; it carries no state between looks.
@@ -40,30 +52,6 @@ pub struct Look<'a> {
 }
 
 impl Referee {
-    /// A referee with these rules on this field; `team_of` is indexed by vehicle.
-    #[must_use]
-    pub fn new(rules: Rules, field: Field, team_of: Vec<TeamId>) -> Referee {
-        Referee { rules, field, team_of }
-    }
-
-    /// The rules of the game.
-    #[must_use]
-    pub fn rules(&self) -> &Rules {
-        &self.rules
-    }
-
-    /// The field of the game.
-    #[must_use]
-    pub fn field(&self) -> &Field {
-        &self.field
-    }
-
-    /// The team of each vehicle, by vehicle index.
-    #[must_use]
-    pub fn team_of(&self) -> &[TeamId] {
-        &self.team_of
-    }
-
     /// The standing before the start. Only power plays draw from `stream`.
     pub fn start(&self, stream: &mut Stream) -> Standing {
         let mut standing = Standing::new(self.team_of.len(), self.field.flags.len(), self.teams());

@@ -1,6 +1,6 @@
 //! Models of policies: their metadata counts, and must not contradict other specifications.
 
-use onnx::{Activation, Head, Layer, Perceptron};
+use onnx::{Head, Layer, Perceptron};
 use scenario::action::ActionSpace;
 use scenario::observation::ObservationSpace;
 use scenario::policy::{PartialSpec, PolicyModel, PolicySpec};
@@ -22,12 +22,9 @@ fn file(metadata: &BTreeMap<String, String>, outputs: &[(&str, usize)]) -> Vec<u
     let inputs = SPEC.observation.size(1, 2);
     let head = |(name, size): &(&str, usize)| Head { name: (*name).to_owned(), layer: layer(inputs, *size) };
     let network = Perceptron {
-        input: "observation".to_owned(),
-        normalisation: None,
         hidden: vec![],
-        activation: Activation::Tanh,
         heads: outputs.iter().map(head).collect(),
-        end: None,
+        bounded: false,
         metadata: metadata.clone(),
     };
     network.onnx().expect("sizes that fit")

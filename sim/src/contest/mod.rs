@@ -77,7 +77,7 @@ impl Contest {
         let scenario = scenario.of_seed(seed)?;
         let world = World::of_game(&scenario, seed)?;
         let team_of = scenario.vehicles.iter().map(|vehicle| vehicle.team).collect();
-        let referee = Referee::new(scenario.rules.clone(), scenario.field.clone(), team_of);
+        let referee = Referee { rules: scenario.rules.clone(), field: scenario.field.clone(), team_of };
         let standing = referee.start(&mut Stream::new(seed, "power_play"));
         let count = scenario.vehicles.len();
         let scene = Scene { scenario: &scenario, world: &world, standing: &standing, decision: 0 };

@@ -2,7 +2,7 @@
 //! the same way.
 
 use super::{Target, binaries, check_shown};
-use onnx::{Activation, Head, Layer, Network, Perceptron};
+use onnx::{Head, Layer, Network, Perceptron};
 use scenario::action::ActionSpace;
 use scenario::observation::ObservationSpace;
 use scenario::policy::{PartialSpec, PolicyModel, PolicySpec};
@@ -47,12 +47,9 @@ fn own() -> Vec<u8> {
         biases: vec![0.1; outputs],
     };
     let network = Perceptron {
-        input: "observation".to_owned(),
-        normalisation: None,
         hidden: vec![layer(spec.observation.size(0, 1), 4)],
-        activation: Activation::Tanh,
         heads: vec![Head { name: "logits".to_owned(), layer: layer(4, spec.action.outputs()) }],
-        end: None,
+        bounded: false,
         metadata: BTreeMap::from(spec.metadata()),
     };
     network.onnx().expect("the sizes match")

@@ -1,7 +1,7 @@
 //! Perceptrons as files: written ones can be read, and inconsistent ones are not written.
 
 use crate::assert_close;
-use onnx::{Activation, Head, Layer, Network, Normalisation, Perceptron};
+use onnx::{Head, Layer, Network, Perceptron};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use serde_json::json;
@@ -17,21 +17,13 @@ fn layer(random: &mut ChaCha8Rng, inputs: usize, outputs: usize) -> Layer {
     Layer { inputs, outputs, weights: numbers(inputs * outputs), biases: numbers(outputs) }
 }
 
-fn perceptron(activation: Activation) -> Perceptron {
+fn perceptron() -> Perceptron {
     let mut random = ChaCha8Rng::seed_from_u64(5);
     let hidden = vec![layer(&mut random, 9, 20), layer(&mut random, 20, 13)];
     let heads = [("logits", 17), ("value", 1)];
     let heads = heads.map(|(name, outputs)| Head { name: name.to_owned(), layer: layer(&mut random, 13, outputs) });
-    let mut numbers = |least, most| (0..9).map(|_| between(&mut random, least, most)).collect();
-    Perceptron {
-        input: "observation".to_owned(),
-        normalisation: Some(Normalisation { mean: numbers(-2.0, 2.0), scale: numbers(0.1, 3.0) }),
-        hidden,
-        activation,
-        heads: heads.to_vec(),
-        end: None,
-        metadata: BTreeMap::from([("layout".to_owned(), "1".to_owned()), ("actions".to_owned(), "17".to_owned())]),
-    }
+    let metadata = [("layout", "1"), ("actions", "17")].map(|(key, value)| (key.to_owned(), value.to_owned()));
+    Perceptron { hidden, heads: heads.to_vec(), bounded: false, metadata: BTreeMap::from(metadata) }
 }
 
 fn rows() -> Vec<Vec<f32>> {
@@ -49,34 +41,24 @@ fn plain(layer: &Layer, input: &[f64]) -> Vec<f64> {
 }
 
 fn plain_outputs(policy: &Perceptron, row: &[f32]) -> Vec<Vec<f32>> {
-    let normalisation = policy.normalisation.as_ref().expect("the policy has a normalisation");
-    let factors = normalisation.mean.iter().zip(&normalisation.scale);
-    let normalised = row.iter().zip(factors).map(|(x, (mean, scale))| f64::from(x - mean) * f64::from(*scale));
-    let mut last: Vec<f64> = normalised.collect();
+    let mut last: Vec<f64> = row.iter().map(|x| f64::from(*x)).collect();
     for layer in &policy.hidden {
-        last = plain(layer, &last);
-        last.iter_mut().for_each(|x| {
-            *x = match policy.activation {
-                Activation::Tanh => libm::tanh(*x),
-                Activation::Relu => x.max(0.0),
-            };
-        });
+        last = plain(layer, &last).into_iter().map(libm::tanh).collect();
     }
     policy.heads.iter().map(|head| plain(&head.layer, &last).into_iter().map(|x| x as f32).collect()).collect()
 }
 
 #[test]
 fn what_is_written_is_read_again_with_the_same_outputs() {
-    for activation in [Activation::Tanh, Activation::Relu] {
-        let policy = perceptron(activation);
-        let mut network = Network::read(&policy.onnx().unwrap()).unwrap();
-        assert_eq!(network.metadata(), &policy.metadata);
-        assert_eq!(network.inputs()[0].name, "observation");
-        for row in rows() {
-            network.evaluate(&row);
-            for (head, want) in policy.heads.iter().zip(plain_outputs(&policy, &row)) {
-                assert_close(network.output_named(&head.name).unwrap(), &want, &head.name);
-            }
+    let policy = perceptron();
+    let mut network = Network::read(&policy.onnx().unwrap()).unwrap();
+    assert_eq!(network.metadata(), &policy.metadata);
+    assert_eq!(network.inputs()[0].name, "observation");
+    for row in rows() {
+        network.evaluate(&row);
+        for (i, want) in plain_outputs(&policy, &row).iter().enumerate() {
+            assert_eq!(network.outputs()[i].name, policy.heads[i].name);
+            assert_close(network.output(i), want, &policy.heads[i].name);
         }
     }
 }
@@ -87,25 +69,23 @@ fn what_is_written_is_read_again_with_the_same_outputs() {
 fn the_same_perceptron_is_written_as_the_same_bytes() {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("network");
     std::fs::create_dir_all(&folder).unwrap();
-    for (name, activation) in [("tanh", Activation::Tanh), ("relu", Activation::Relu)] {
-        let bytes = perceptron(activation).onnx().unwrap();
-        assert_eq!(bytes, perceptron(activation).onnx().unwrap());
-        let mut network = Network::read(&bytes).unwrap();
-        let case = |row: Vec<f32>| {
-            network.evaluate(&row);
-            json!({ "input": row, "logits": network.output(0), "value": network.output(1) })
-        };
-        let cases: Vec<serde_json::Value> = rows().into_iter().map(case).collect();
-        std::fs::write(folder.join(format!("{name}.onnx")), bytes).unwrap();
-        std::fs::write(folder.join(format!("{name}.json")), serde_json::to_vec(&cases).unwrap()).unwrap();
-    }
+    let bytes = perceptron().onnx().unwrap();
+    assert_eq!(bytes, perceptron().onnx().unwrap());
+    let mut network = Network::read(&bytes).unwrap();
+    let case = |row: Vec<f32>| {
+        network.evaluate(&row);
+        json!({ "input": row, "logits": network.output(0), "value": network.output(1) })
+    };
+    let cases: Vec<serde_json::Value> = rows().into_iter().map(case).collect();
+    std::fs::write(folder.join("tanh.onnx"), bytes).unwrap();
+    std::fs::write(folder.join("tanh.json"), serde_json::to_vec(&cases).unwrap()).unwrap();
 }
 
 #[test]
-fn a_perceptron_without_hidden_layers_and_normalisation_is_its_head() {
-    let Perceptron { mut heads, .. } = perceptron(Activation::Tanh);
+fn a_perceptron_without_hidden_layers_is_its_head() {
+    let Perceptron { mut heads, .. } = perceptron();
     heads.truncate(1);
-    let policy = Perceptron { hidden: vec![], normalisation: None, heads, ..perceptron(Activation::Tanh) };
+    let policy = Perceptron { hidden: vec![], heads, ..perceptron() };
     let mut network = Network::read(&policy.onnx().unwrap()).unwrap();
     network.evaluate(&[0.0; 13]);
     assert_eq!(network.output(0), policy.heads[0].layer.biases);
@@ -113,17 +93,15 @@ fn a_perceptron_without_hidden_layers_and_normalisation_is_its_head() {
 
 #[test]
 fn what_follows_an_output_is_applied_to_it_alone() {
-    let plain = perceptron(Activation::Relu);
+    let plain = perceptron();
     let mut network = Network::read(&plain.onnx().unwrap()).unwrap();
-    let bounded = Perceptron { end: Some(Activation::Tanh), ..plain };
-    let mut ended = Network::read(&bounded.onnx().unwrap()).unwrap();
+    let mut bounded = Network::read(&Perceptron { bounded: true, ..plain }.onnx().unwrap()).unwrap();
     for row in rows() {
         network.evaluate(&row);
-        ended.evaluate(&row);
-        for name in ["logits", "value"] {
-            let numbers = network.output_named(name).unwrap();
-            let want: Vec<f32> = numbers.iter().copied().map(onnx::tanh).collect();
-            assert_eq!(ended.output_named(name).unwrap(), want);
+        bounded.evaluate(&row);
+        for i in [0, 1] {
+            let want: Vec<f32> = network.output(i).iter().copied().map(onnx::tanh).collect();
+            assert_eq!(bounded.output(i), want);
         }
     }
 }
@@ -131,7 +109,7 @@ fn what_follows_an_output_is_applied_to_it_alone() {
 #[test]
 fn what_does_not_fit_together_is_not_written() {
     type Change = fn(&mut Perceptron);
-    let cases: [(Change, &str); 8] = [
+    let cases: [(Change, &str); 6] = [
         (
             |p| _ = p.hidden[1].weights.pop(),
             "tensor `hidden.1.weight`: found 259 numbers, expected 260 for the shape 13 x 20",
@@ -141,14 +119,9 @@ fn what_does_not_fit_together_is_not_written() {
         (|p| p.heads.clear(), "the model: found no output, expected at least one"),
         (|p| p.heads[1].name = "logits".to_owned(), "tensor `logits`: found a second definition"),
         (|p| p.heads[0].layer.weights[3] = f32::NAN, "tensor `head.0.weight`: found NaN, expected numbers"),
-        (
-            |p| p.normalisation = Some(Normalisation { mean: vec![0.0], scale: vec![1.0] }),
-            "tensor `input.mean`: found 1",
-        ),
-        (|p| p.input = "hidden.0.weight".to_owned(), "the model: found no input"),
     ];
     for (change, want) in cases {
-        let mut policy = perceptron(Activation::Tanh);
+        let mut policy = perceptron();
         change(&mut policy);
         let error = policy.onnx().unwrap_err().to_string();
         assert!(error.contains(want), "{error:?}, expected {want:?}");

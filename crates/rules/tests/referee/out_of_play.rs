@@ -1,7 +1,7 @@
-//! Out of play: retired boats, and all boats after the end.
+//! Out of play: retired boats.
 
 use crate::preset::aquaticus_2023;
-use crate::scene::{Scene, ended, grabbed, lost};
+use crate::scene::{Scene, grabbed, lost};
 use primitives::VehicleId;
 use rules::{Directive, Event, Rules};
 
@@ -27,13 +27,4 @@ fn boats_out_of_play_are_solid() {
         scene.put(0, 50.0, 60.0).put(1, 52.0, 60.0).look(),
         [Event::Collided { first: VehicleId(0), second: VehicleId(1) }]
     );
-}
-
-#[test]
-fn after_the_end_nothing_happens() {
-    let mut scene = Scene::new(aquaticus_2023(), 1);
-    assert_eq!(scene.wait(600.0).look(), [ended(None)]);
-    let standing = scene.standing.clone();
-    assert_eq!(scene.put(0, 140.0, 40.0).put(1, -5.0, 40.0).look(), []);
-    assert_eq!(scene.standing, standing);
 }

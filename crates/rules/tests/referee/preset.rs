@@ -30,16 +30,6 @@ pub(crate) fn aquaticus_2023() -> Rules {
     SHIPPED[0].clone()
 }
 
-/// Pyquaticus: captures only, at the scrimmage line; tag cooldown 60 s.
-pub(crate) fn pyquaticus() -> Rules {
-    SHIPPED[1].clone()
-}
-
-/// The 2025 competition: Pyquaticus with other boats.
-pub(crate) fn mctf_2025() -> Rules {
-    SHIPPED[2].clone()
-}
-
 /// The 2026 competition: corners instead of flags, no keep-out, power play.
 pub(crate) fn mctf_2026() -> Rules {
     SHIPPED[3].clone()
@@ -47,8 +37,8 @@ pub(crate) fn mctf_2026() -> Rules {
 
 #[test]
 fn only_pyquaticus_keeps_defenders_from_their_flag_and_only_2026_has_power_play() {
-    for (rules, keepout_m, power_plays) in
-        [(aquaticus_2023(), None, 0), (pyquaticus(), Some(5.0), 0), (mctf_2025(), Some(5.0), 0), (mctf_2026(), None, 2)]
+    for (rules, (keepout_m, power_plays)) in
+        all().into_iter().zip([(None, 0), (Some(5.0), 0), (Some(5.0), 0), (None, 2)])
     {
         let scene = Scene::new(rules, 2);
         let circle = scene.referee.keepout(&scene.standing, VehicleId(0), Ned::from_xy(50.0, 40.0));
@@ -62,6 +52,6 @@ fn only_pyquaticus_keeps_defenders_from_their_flag_and_only_2026_has_power_play(
 fn the_reach_covers_tags_and_collisions() {
     for (tag_radius_m, collision_distance_m, want_m) in [(10.0, 4.0, 10.0), (1.0, 4.0, 4.0)] {
         let scene = Scene::new(Rules { tag_radius_m, collision_distance_m, ..aquaticus_2023() }, 1);
-        assert_eq!(scene.referee.rules().reach_m(), want_m);
+        assert_eq!(scene.referee.rules.reach_m(), want_m);
     }
 }

@@ -2,9 +2,9 @@
 
 use primitives::near::Near;
 use primitives::stream::Stream;
-use primitives::{FlagId, LatLon, Leg, Ned, SimTime, TeamId, VehicleId};
+use primitives::{FlagId, Leg, Ned, SimTime, TeamId, VehicleId};
 use rules::event::{Event, TagCause};
-use rules::field::{Field, Flag, Plan, Walls};
+use rules::field::{Field, Flag, Plan};
 use rules::{Asks, Directive, Look, Notes, Referee, Rules, Standing};
 
 pub(crate) struct Scene {
@@ -27,18 +27,8 @@ pub(crate) fn field(extra_flags: Vec<Flag>) -> Field {
 }
 
 fn rectangle(x_m: f64, width_m: f64, extra_flags: Vec<Flag>) -> Field {
-    Field::new(Plan {
-        name: "test".into(),
-        datum: LatLon::default(),
-        corner: Ned::from_xy(x_m, 0.0),
-        along_deg: 90.0,
-        width_m,
-        depth_m: 80.0,
-        flag_inset_m: 20.0,
-        extra_flags,
-        obstacles: vec![],
-        walls: Walls::None,
-    })
+    let plan = Plan { along_deg: 90.0, depth_m: 80.0, flag_inset_m: 20.0, ..Plan::default() };
+    Field::new(Plan { corner: Ned::from_xy(x_m, 0.0), width_m, extra_flags, ..plan })
 }
 
 pub(crate) fn flag(team: u8, x: f64, y: f64) -> Flag {
@@ -68,19 +58,19 @@ impl Scene {
 
     /// Every boat waits on its own side, 12 m from its neighbours, out of reach of everything.
     pub(crate) fn on(rules: Rules, field: Field, team_of: Vec<TeamId>) -> Scene {
-        let referee = Referee::new(rules, field, team_of);
+        let referee = Referee { rules, field, team_of };
         let standing = referee.start(&mut Stream::new(1, "rules"));
         let start_position = |(i, team): (usize, &TeamId)| {
-            let before = referee.team_of()[..i].iter().filter(|other| *other == team).count();
+            let before = referee.team_of[..i].iter().filter(|other| *other == team).count();
             still(if team.0 == 0 { 45.0 } else { 115.0 }, 5.0 + 12.0 * before as f64)
         };
-        let fleet = referee.team_of().iter().enumerate().map(start_position).collect();
-        let asks = vec![Asks::default(); referee.team_of().len()];
+        let fleet = referee.team_of.iter().enumerate().map(start_position).collect();
+        let asks = vec![Asks::default(); referee.team_of.len()];
         Scene { standing, fleet, asks, referee, notes: Notes::default(), near: Near::default(), now: SimTime::ZERO }
     }
 
     pub(crate) fn name(&self) -> &str {
-        &self.referee.rules().name
+        &self.referee.rules.name
     }
 
     pub(crate) fn put(&mut self, vehicle: usize, x: f64, y: f64) -> &mut Scene {
@@ -103,7 +93,7 @@ impl Scene {
     /// Advances one tick and returns its events.
     pub(crate) fn look(&mut self) -> Vec<Event> {
         self.now = self.now + TICK;
-        let near = self.near.pairs(|i| self.fleet[i].to, self.fleet.len(), self.referee.rules().reach_m());
+        let near = self.near.pairs(|i| self.fleet[i].to, self.fleet.len(), self.referee.rules.reach_m());
         let mut events = vec![];
         let look = Look { legs: &self.fleet, asks: &self.asks, near, now: self.now };
         self.referee.advance(&mut self.standing, &mut self.notes, &look, &mut events);
@@ -136,8 +126,4 @@ pub(crate) fn grabbed(vehicle: u16, flag: u8) -> Event {
 
 pub(crate) fn lost(vehicle: u16, flag: u8) -> Event {
     Event::FlagReturned { vehicle: VehicleId(vehicle), flag: FlagId(flag) }
-}
-
-pub(crate) fn ended(winner: Option<u8>) -> Event {
-    Event::Ended { winner: winner.map(TeamId) }
 }

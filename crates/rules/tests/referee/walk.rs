@@ -27,21 +27,24 @@ fn walks(boats: impl Strategy<Value = usize>) -> impl Strategy<Value = Walk> {
     let variants = (0..4_usize, any::<bool>(), 0..3_u32, prop_oneof![Just(None), (1..30_u32).prop_map(Some)]);
     (variants, boats, any::<bool>(), any::<u64>()).prop_map(
         |((book, capture_needs_own_flag, tag_points, win_score), boats, extra_flags, seed)| {
-            let mut rules = preset::all()[book].clone();
+            let mut rules = hurried(preset::all()[book].clone());
             rules.points.tag = tag_points;
-            rules.time_limit = SimTime::from_s(35.0);
-            rules.power_play = SimTime(rules.power_play.0.min(8_000_000_000));
             rules.tag_cooldown = SimTime(rules.tag_cooldown.0 / 20);
-            rules.collision_distance_m = 4.0;
             Walk { rules: Rules { capture_needs_own_flag, win_score, ..rules }, boats, extra_flags, seed }
         },
     )
 }
 
+/// The rules of a short game.
+fn hurried(rules: Rules) -> Rules {
+    let power_play = SimTime(rules.power_play.0.min(8_000_000_000));
+    Rules { time_limit: SimTime::from_s(35.0), power_play, collision_distance_m: 4.0, ..rules }
+}
+
 impl Walk {
     fn referee(&self) -> Referee {
         let extra = if self.extra_flags { vec![flag(0, 62.0, 70.0), flag(1, 98.0, 10.0)] } else { vec![] };
-        Referee::new(self.rules.clone(), field(extra), teams_of(self.boats, 2))
+        Referee { rules: self.rules.clone(), field: field(extra), team_of: teams_of(self.boats, 2) }
     }
 
     /// The motion of every boat, look by look, from one interesting place to the next.
@@ -109,7 +112,7 @@ fn play(walk: &Walk, mut each: impl FnMut(&Referee, &Standing, &Standing, &[Leg]
     let (mut notes, mut near, mut now) = (Notes::default(), Near::default(), SimTime::ZERO);
     for fleet in walk.fleets() {
         let (before, mut events) = (standing.clone(), vec![]);
-        let pairs = near.pairs(|i| fleet[i].to, fleet.len(), referee.rules().reach_m());
+        let pairs = near.pairs(|i| fleet[i].to, fleet.len(), referee.rules.reach_m());
         referee.advance(&mut standing, &mut notes, &look(&fleet, pairs, now), &mut events);
         each(&referee, &before, &standing, &fleet, &events);
         now = now + TICK;
@@ -120,7 +123,7 @@ fn assert_consistent(referee: &Referee, before: &Standing, after: &Standing) {
     for (i, boat) in after.vehicles.iter().enumerate() {
         if let Some(flag) = boat.carrying {
             assert_eq!(after.flags[flag.index()].carrier, Some(VehicleId::at(i)));
-            assert_ne!(referee.field().flags[flag.index()].team, referee.team_of()[i]);
+            assert_ne!(referee.field.flags[flag.index()].team, referee.team_of[i]);
             assert!(!boat.tagged && !boat.outside, "vehicle {i} carries a flag: {boat:?}");
         }
         assert!(!boat.outside || boat.tagged, "vehicle {i} is outside and not tagged");
@@ -139,8 +142,8 @@ fn assert_consistent(referee: &Referee, before: &Standing, after: &Standing) {
 }
 
 fn assert_lawful(referee: &Referee, before: &Standing, after: &Standing, fleet: &[Leg], event: Event) {
-    let (rules, field) = (referee.rules(), referee.field());
-    let team = |vehicle: VehicleId| referee.team_of()[vehicle.index()];
+    let (rules, field) = (&referee.rules, &referee.field);
+    let team = |vehicle: VehicleId| referee.team_of[vehicle.index()];
     let at = |vehicle: VehicleId| fleet[vehicle.index()].to;
     let on_own_side = |vehicle: VehicleId| {
         let Leg { from, to } = fleet[vehicle.index()];
@@ -182,7 +185,7 @@ fn assert_lawful(referee: &Referee, before: &Standing, after: &Standing, fleet: 
 }
 
 fn points(referee: &Referee, events: &[Event], team: TeamId) -> u32 {
-    let points = referee.rules().points;
+    let points = referee.rules.points;
     let worth = |event: &Event| match event {
         Event::Grabbed { vehicle, .. } => Some((*vehicle, points.grab)),
         Event::Captured { vehicle, .. } => Some((*vehicle, points.capture)),
@@ -190,7 +193,7 @@ fn points(referee: &Referee, events: &[Event], team: TeamId) -> u32 {
         _ => None,
     };
     let scored = events.iter().filter_map(worth);
-    scored.filter(|(vehicle, _)| referee.team_of()[vehicle.index()] == team).map(|(_, points)| points).sum()
+    scored.filter(|(vehicle, _)| referee.team_of[vehicle.index()] == team).map(|(_, points)| points).sum()
 }
 
 /// Events of one look, independent of the order of teams.
@@ -226,7 +229,7 @@ proptest! {
         play(&walk, |referee, before, after, fleet, events| {
             let other = reflected.get_or_insert_with(|| mirror.standing(before));
             let fleet = mirror.fleet(fleet);
-            let pairs = near.pairs(|i| fleet[i].to, fleet.len(), referee.rules().reach_m());
+            let pairs = near.pairs(|i| fleet[i].to, fleet.len(), referee.rules.reach_m());
             let mut got = vec![];
             referee.advance(other, &mut notes, &look(&fleet, pairs, after.now), &mut got);
             let want = sorted(events.iter().map(|event| mirror.event(*event)));
@@ -240,7 +243,7 @@ proptest! {
         let mut other: Option<Standing> = None;
         play(&walk, |referee, before, after, fleet, events| {
             let other = other.get_or_insert_with(|| before.clone());
-            let pairs = generous(fleet, referee.rules().reach_m());
+            let pairs = generous(fleet, referee.rules.reach_m());
             let mut got = vec![];
             referee.advance(other, &mut Notes::default(), &look(fleet, &pairs, after.now), &mut got);
             assert_eq!(got, events);
@@ -253,12 +256,7 @@ proptest! {
 fn the_walks_lead_to_everything_that_can_happen() {
     let mut counts = std::collections::BTreeMap::<String, u32>::new();
     for (book, rules) in preset::all().into_iter().enumerate() {
-        let rules = Rules {
-            time_limit: SimTime::from_s(35.0),
-            power_play: SimTime(rules.power_play.0.min(8_000_000_000)),
-            collision_distance_m: 4.0,
-            ..rules
-        };
+        let rules = hurried(rules);
         for seed in 0..16 {
             let walk = Walk { rules: rules.clone(), boats: 4, extra_flags: seed % 2 == 0, seed };
             play(&walk, |_, _, _, _, events| {

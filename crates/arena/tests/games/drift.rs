@@ -1,11 +1,10 @@
 //! Boats in current and wind: the drift that their helms estimate, and where they go in spite of
 //! it.
 
-use agent::MindRunner;
+use crate::files::{loaded, watch};
 use primitives::{Ned, VehicleId};
 use scenario::{Scenario, StartPosition};
 use sim::Contest;
-use std::path::Path;
 
 /// Speed of the point boat of these tests, through the water, m/s.
 const SPEED_M_S: f64 = 2.0;
@@ -18,8 +17,6 @@ const QUICK_BOAT: &str = "base = \"SCENARIOS/boats/surveyor_kinematic.toml\"\n\
 
 /// Blue has one boat in open water at (300, 200) m; red one is far away.
 fn scenario(boat: &str, sea: &str, strategy: &str, heading_deg: f64) -> Scenario {
-    let folder = tempfile::tempdir().expect("a folder for files");
-    let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
     let game = format!(
         "base = \"SCENARIOS/games/attack_1v1.toml\"\nfield = \"SCENARIOS/fields/open_800x400.toml\"\n\
          sea = \"sea.toml\"\ntick_s = 0.05\nduration_s = 600\n\
@@ -28,30 +25,12 @@ fn scenario(boat: &str, sea: &str, strategy: &str, heading_deg: f64) -> Scenario
          [[vehicle]]\nname = \"blue_one\"\nteam = \"blue\"\nboat = \"boat.toml\"\nat = [300, 200]\nheading_deg = {heading_deg}\n\
          [[vehicle]]\nname = \"red_one\"\nteam = \"red\"\nat = [790, 390]\n"
     );
-    let files = [("game.toml", game.as_str()), ("sea.toml", sea), ("boat.toml", boat), ("strategy.toml", strategy)];
-    for (name, text) in files {
-        let text = text.replace("SCENARIOS", &scenarios.display().to_string());
-        std::fs::write(folder.path().join(name), text).expect("a file in it");
-    }
-    scenario::load(&folder.path().join("game.toml")).unwrap_or_else(|e| panic!("{e}"))
+    loaded(&[("game.toml", game.as_str()), ("sea.toml", sea), ("boat.toml", boat), ("strategy.toml", strategy)])
 }
 
 /// Calm water with this current.
 fn current(speed_m_s: f64, toward_deg: f64) -> String {
     format!("base = \"SCENARIOS/seas/calm.toml\"\n[current]\nspeed_m_s = {speed_m_s}\ntoward_deg = {toward_deg}\n")
-}
-
-/// Plays, and shows the contest after every decision until `shown` returns `false`.
-fn watch(scenario: &Scenario, mut shown: impl FnMut(&Contest, &MindRunner) -> bool) {
-    let mut contest = Contest::new(scenario, 1).unwrap_or_else(|e| panic!("{e}"));
-    let mut runner = arena::runner_of(agent::minds_of(scenario));
-    loop {
-        arena::decide(&mut contest, &mut runner);
-        contest.advance();
-        if !shown(&contest, &runner) || contest.is_over() {
-            return;
-        }
-    }
 }
 
 fn blue_at(contest: &Contest) -> Ned {

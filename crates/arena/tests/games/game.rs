@@ -1,15 +1,14 @@
 //! Whole games of the shipped strategies.
 
+use crate::files;
 use primitives::{SimTime, VehicleId};
 use rules::count::Counts;
 use scenario::{Outcome, Scenario};
 use std::collections::BTreeMap;
-use std::path::Path;
 use std::sync::{Arc, Mutex, OnceLock};
 
 fn shipped(name: &str) -> Scenario {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games").join(name);
-    scenario::load(&path).unwrap_or_else(|e| panic!("{e}"))
+    scenario::load(&files::shipped("games").join(name)).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// Games played once, by name and seed, and shared between tests.
@@ -23,8 +22,7 @@ fn played(game: &'static str, seed: u64) -> Outcome {
 }
 
 fn play(scenario: &Scenario, seed: u64) -> Outcome {
-    let scenario = Scenario { seed, ..scenario.clone() };
-    arena::play(&scenario, agent::minds_of(&scenario), seed).unwrap_or_else(|e| panic!("{e}"))
+    files::played(&Scenario { seed, ..scenario.clone() })
 }
 
 fn all(outcome: &Outcome, count: impl Fn(&Counts) -> u32) -> u32 {
@@ -121,19 +119,12 @@ fn a_game_with_real_boats_does_not_start_here() {
 
 #[test]
 fn an_agent_that_is_killed_begins_anew_when_it_is_back() {
-    let dir = tempfile::tempdir().expect("a directory");
-    let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").canonicalize().expect("it is there");
     let counts = "unsafe_i_know = true\nunsafe_because = \"it lies still\"\n[variables]\ndecisions = 0\n[[rule]]\nwhen = \"true\"\n\
                   set = { decisions = \"decisions + 1\" }\n[behaviour.stop]\nkind = \"full_stop\"\n";
-    let game = format!(
-        "base = \"{}/games/pav01_vs_pav01.toml\"\n\
-         team = [{{ name = \"blue\", strategy = \"counts.toml\" }}, {{ name = \"red\", strategy = \"counts.toml\" }}]\n\
-         [fault.killed]\nkind = \"agent_lost\"\nboats = [\"blue_two\"]\nat_s = 10\nfor_s = 5\n",
-        scenarios.display()
-    );
-    std::fs::write(dir.path().join("counts.toml"), counts).expect("it is written");
-    std::fs::write(dir.path().join("game.toml"), game).expect("it is written");
-    let mut scenario = scenario::load(&dir.path().join("game.toml")).unwrap_or_else(|e| panic!("{e}"));
+    let game = "base = \"SCENARIOS/games/pav01_vs_pav01.toml\"\n\
+                team = [{ name = \"blue\", strategy = \"counts.toml\" }, { name = \"red\", strategy = \"counts.toml\" }]\n\
+                [fault.killed]\nkind = \"agent_lost\"\nboats = [\"blue_two\"]\nat_s = 10\nfor_s = 5\n";
+    let mut scenario = files::loaded(&[("counts.toml", counts), ("game.toml", game)]);
     scenario.rules.time_limit = SimTime::from_s(20.0);
     let mut decisions = vec![];
     arena::play_observed(&scenario, agent::minds_of(&scenario), 1, |_, runner| {

@@ -2,9 +2,10 @@
 //! Surveyors, including boats that carry, are tagged, or have recently tagged. The files state the
 //! commit and the names of the values.
 
+use crate::scene::{self, loaded};
 use agent::{ActionSpace, ObservationSpace, Pilot, Spaces};
 use messages::Picture;
-use messages::picture::{Contact, FlagView, Nav, OwnBoat};
+use messages::picture::{Contact, FlagView, OwnBoat};
 use primitives::{SimTime, TeamId, VehicleId};
 use rules::Event;
 use rules::event::{EventRecord, Logged, TagCause};
@@ -44,25 +45,14 @@ struct Boat {
     observation: Vec<f32>,
 }
 
-impl Boat {
-    fn nav(&self) -> Nav {
-        let psi_rad = self.heading_deg.to_radians();
-        Nav { north_m: self.y, east_m: self.x, psi_rad, surge_m_s: self.speed_m_s, ..Nav::default() }
-    }
-}
-
 fn scenario(team_size: usize) -> Scenario {
-    let base = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games/pyquaticus_2v2.toml");
     let fleet = |team: &str| {
         format!(
             "[[fleet]]\nteam = \"{team}\"\ncount = {team_size}\nspawn = {{ along_m = [5, 75], across_m = [5, 75], gap_m = 4 }}\n"
         )
     };
-    let text = format!("base = \"{}\"\nvehicle = []\n{}{}", base.display(), fleet("blue"), fleet("red"));
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("game.toml");
-    std::fs::write(&path, text).expect("a file");
-    scenario::load(&path).unwrap_or_else(|problems| panic!("{problems}"))
+    let base = "base = \"SCENARIOS/games/pyquaticus_2v2.toml\"\nvehicle = []\n";
+    loaded(&[("game.toml", &format!("{base}{}{}", fleet("blue"), fleet("red")))])
 }
 
 /// The knowledge of a boat's team in a state.
@@ -73,33 +63,19 @@ fn picture(state: &State, team: usize) -> Picture {
     picture.stamp.valid_ns = now;
     picture.flags = vec![FlagView { carrier: -1 }; 2];
     for (i, boat) in state.boats.iter().enumerate() {
-        let (vehicle, nav, of) = (VehicleId::at(i), boat.nav(), i / team_size);
+        let (vehicle, of, tagged) = (i as u16, i / team_size, boat.tagged == 1);
+        let here = scene::Boat::at(boat.x, boat.y).going(boat.heading_deg, boat.speed_m_s);
         let carrying = if boat.has_flag == 1 { 1 - of as i16 } else { -1 };
         if of == team {
             let tag_ready_ns = SimTime::from_s(NOW_S + COOLDOWN_S - boat.since_tag_s);
-            picture.own.push(OwnBoat {
-                tagged: boat.tagged == 1,
-                carrying,
-                tag_ready_ns,
-                ..OwnBoat::new(vehicle, nav)
-            });
+            picture.own.push(OwnBoat { tagged, carrying, tag_ready_ns, ..here.own(vehicle) });
             continue;
         }
-        let velocity = nav.velocity_m_s();
-        picture.contacts.push(Contact {
-            vehicle,
-            team: TeamId(of as u8),
-            seen_ns: now,
-            north_m: nav.north_m,
-            east_m: nav.east_m,
-            psi_rad: nav.psi_rad,
-            velocity_north_m_s: velocity.north,
-            velocity_east_m_s: velocity.east,
-            tagged: boat.tagged == 1,
-            carrying,
-        });
+        let team_of = TeamId(of as u8);
+        picture.contacts.push(Contact { team: team_of, tagged, carrying, ..here.contact(vehicle, now) });
         if boat.since_tag_s < COOLDOWN_S {
-            let tagged = Event::Tagged { vehicle: VehicleId::at(team * team_size), cause: TagCause::Opponent(vehicle) };
+            let cause = TagCause::Opponent(VehicleId(vehicle));
+            let tagged = Event::Tagged { vehicle: VehicleId::at(team * team_size), cause };
             let at = SimTime::from_s(NOW_S - boat.since_tag_s);
             picture.events.push(EventRecord::from(Logged { tick: 0, at, event: tagged }));
         }
@@ -111,7 +87,7 @@ fn picture(state: &State, team: usize) -> Picture {
 fn observations_are_those_of_the_program() {
     let spaces = Spaces { observation: ObservationSpace::Pyquaticus, action: ActionSpace::Pyquaticus };
     for file in ["1v1", "3v3"] {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/pyquaticus/{file}.json"));
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/helm/pyquaticus/{file}.json"));
         let reference: Reference = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
         let team_size = reference.states[0].boats.len() / 2;
         let scenario = scenario(team_size);

@@ -1,27 +1,26 @@
 //! A scenario knows whether its seed matters: games of two seeds differ exactly if it says so.
 
+use crate::files::{played, shipped};
 use primitives::reseed::Reseed;
 use primitives::time::SimTime;
 use scenario::{Overrides, Scenario, load_with};
 use sim::Contest;
-use std::path::Path;
 
 /// The digest of a game after its first minute.
 fn digest(scenario: &Scenario, seed: u64) -> String {
     let mut game = scenario.of_seed(seed).unwrap_or_else(|problems| panic!("{problems}"));
     game.rules.time_limit = SimTime::from_s(60.0);
-    arena::play(&game, agent::minds_of(&game), seed).unwrap_or_else(|why| panic!("{why}")).digest
+    played(&game).digest
 }
 
 /// The shipped games of few boats: larger ones have the same sources of randomness, and take long.
 fn small_games() -> Vec<Scenario> {
-    let games = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games");
     let scenario = |entry: std::io::Result<std::fs::DirEntry>| {
         let path = entry.expect("it can be read").path();
         let rehearsal = Overrides { simulate_all: true, ..Overrides::default() };
         load_with(&path, &rehearsal).unwrap_or_else(|problems| panic!("{problems}"))
     };
-    let all = std::fs::read_dir(games).expect("the folder is there").map(scenario);
+    let all = std::fs::read_dir(shipped("games")).expect("the folder is there").map(scenario);
     all.filter(|scenario| scenario.vehicles.len() <= 8).collect()
 }
 

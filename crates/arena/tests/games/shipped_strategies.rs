@@ -1,32 +1,23 @@
 //! Shipped strategies: their documented behaviour.
 
+use crate::files::{loaded, played, shipped};
 use agent::Mind;
 use messages::helm::HelmReport;
 use primitives::VehicleId;
 use rules::count::Counts;
-use scenario::{Outcome, Overrides, Scenario, load_with};
-use std::path::{Path, PathBuf};
-
-fn shipped(path: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(path)
-}
+use scenario::{Outcome, Scenario};
 
 /// The game with this seed and this many boats per side.
 fn game(boats: u32, blue: &str, red: &str, seed: u64) -> Scenario {
-    let folder = tempfile::tempdir().expect("a folder for the game");
-    let path = folder.path().join("game.toml");
-    let base = shipped("games/surveyor_2v2.toml").canonicalize().expect("the shipped game");
     let spawn = "spawn = { along_m = [10, 70], across_m = [10, 70], gap_m = 10 }";
-    let fleet = |team: &str| format!("[[fleet]]\nteam = \"{team}\"\ncount = {boats}\n{spawn}\n");
-    std::fs::write(&path, format!("base = {base:?}\n{}{}", fleet("blue"), fleet("red"))).expect("the game's file");
-    let strategy = |name: &str| shipped(&format!("strategies/{name}.toml"));
-    let strategies = [("blue".to_owned(), strategy(blue)), ("red".to_owned(), strategy(red))].into();
-    let overrides = Overrides { strategies, ..Overrides::default() };
-    load_with(&path, &overrides).and_then(|game| game.of_seed(seed)).unwrap_or_else(|e| panic!("{e}"))
-}
-
-fn played(scenario: &Scenario) -> Outcome {
-    arena::play(scenario, agent::minds_of(scenario), scenario.seed).unwrap_or_else(|e| panic!("{e}"))
+    let team = |team: &str, strategy: &str| {
+        format!(
+            "[[team]]\nname = \"{team}\"\nstrategy = \"SCENARIOS/strategies/{strategy}.toml\"\n\
+             [[fleet]]\nteam = \"{team}\"\ncount = {boats}\n{spawn}\n"
+        )
+    };
+    let game = format!("base = \"SCENARIOS/games/surveyor_2v2.toml\"\n{}{}", team("blue", blue), team("red", red));
+    loaded(&[("game.toml", game)]).of_seed(seed).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// The final report of the first boat's helm, and the modes it was in.
@@ -104,9 +95,8 @@ fn strategy_5_beats_strategy_4_from_either_side() {
 
 #[test]
 fn twenty_boats_a_side_grab_and_capture() {
-    let scenario = load_with(&shipped("games/fleet_20v20.toml"), &Overrides::default())
-        .and_then(|game| game.of_seed(1))
-        .unwrap_or_else(|e| panic!("{e}"));
+    let fleet = scenario::load(&shipped("games/fleet_20v20.toml")).and_then(|game| game.of_seed(1));
+    let scenario = fleet.unwrap_or_else(|e| panic!("{e}"));
     let counts = played(&scenario).counts;
     let all = |count: fn(&Counts) -> u32| counts.teams.values().map(count).sum::<u32>();
     assert!(counts.teams.values().all(|team| team.grabs > 0) && all(|team| team.captures) > 0, "{counts:?}");

@@ -1,11 +1,10 @@
 //! Boats on crossing paths: they keep clear of each other, and do not both turn to the same side.
 
+use crate::files::{loaded, watch};
 use analysis::HullRectangle;
 use primitives::stream::Stream;
 use primitives::{Ned, VehicleId};
 use scenario::Scenario;
-use sim::Contest;
-use std::path::Path;
 
 /// Where their paths cross, along and across the field, m.
 const MIDDLE_M: (f64, f64) = (400.0, 200.0);
@@ -14,8 +13,6 @@ const START_M: f64 = 45.0;
 
 /// Two mates in calm water, each heading through the middle to the other side.
 fn encounter(stream: &mut Stream) -> Scenario {
-    let folder = tempfile::tempdir().expect("a folder for files");
-    let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
     let mut game = "base = \"SCENARIOS/games/attack_1v1.toml\"\nfield = \"SCENARIOS/fields/open_800x400.toml\"\n\
          boat = \"SCENARIOS/boats/surveyor_m1_8.toml\"\nsea = \"SCENARIOS/seas/calm.toml\"\nduration_s = 60\n\
          [[team]]\nname = \"blue\"\nstrategy = \"team.toml\"\n\
@@ -44,25 +41,17 @@ fn encounter(stream: &mut Stream) -> Scenario {
         files.push((file, strategy));
     }
     files.push(("game.toml", game));
-    for (name, text) in files {
-        let text = text.replace("SCENARIOS", &scenarios.display().to_string());
-        std::fs::write(folder.path().join(name), text).expect("a file in it");
-    }
-    scenario::load(&folder.path().join("game.toml")).unwrap_or_else(|e| panic!("{e}"))
+    loaded(&files)
 }
 
 /// The closest distance of the two, m, and whether their hulls touch.
 fn nearest(scenario: &Scenario) -> (f64, bool) {
-    let mut contest = Contest::new(scenario, 1).unwrap_or_else(|e| panic!("{e}"));
-    let mut runner = arena::runner_of(agent::minds_of(scenario));
     let boats: Vec<VehicleId> = (0..scenario.vehicles.len())
         .map(VehicleId::at)
         .filter(|boat| scenario.vehicles[boat.index()].name.starts_with("blue"))
         .collect();
     let (mut nearest_m, mut touch) = (f64::INFINITY, false);
-    while !contest.is_over() {
-        arena::decide(&mut contest, &mut runner);
-        contest.advance();
+    watch(scenario, |contest, _| {
         let hull = |vehicle: VehicleId| {
             let boat = scenario.boat_of(vehicle);
             let pose = contest.world().state().boats[vehicle.index()].pose;
@@ -71,7 +60,8 @@ fn nearest(scenario: &Scenario) -> (f64, bool) {
         let (one, other) = (hull(boats[0]), hull(boats[1]));
         nearest_m = nearest_m.min(Ned::distance(one.pose.at, other.pose.at));
         touch |= one.overlaps(&other);
-    }
+        true
+    });
     (nearest_m, touch)
 }
 
