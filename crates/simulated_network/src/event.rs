@@ -1,6 +1,6 @@
 //! The events of a simulation, in the order of virtual time.
 
-use crate::fault::{Fault, FaultEnd};
+use crate::conditions::Fault;
 use crate::packet::Local;
 use std::cmp::Ordering;
 use std::time::Duration;
@@ -18,10 +18,11 @@ pub(crate) enum Event {
         node: usize,
     },
     Fault(Fault),
-    /// A fault ends.
-    FaultEnd {
+    CutEnd {
         node: usize,
-        what: FaultEnd,
+    },
+    SuspensionEnd {
+        node: usize,
     },
     /// A packet arrives at one end of a link.
     Arrive {
