@@ -90,10 +90,8 @@ impl Model {
         // for nothing.
         let is_sensed = plan.vehicles.iter().map(|v| !v.is_external && *sensors(v.kind) != Sensors::default());
         let sensed = numbered(is_sensed).into_iter().zip(&plan.vehicles).map(|(place, vehicle)| {
-            let model = || {
-                let model = SensorModel::new(sensors(vehicle.kind), plan.sensor_period, &plan.seeds, vehicle.name);
-                model.with_faults(&vehicle.faults)
-            };
+            let (sensors, faults) = (sensors(vehicle.kind), &vehicle.faults);
+            let model = || SensorModel::new(sensors, plan.sensor_period, &plan.seeds, vehicle.name, faults);
             place.map(|place| (place, model()))
         });
         Model {

@@ -61,7 +61,7 @@ fn sailing(now: SimTime) -> Truth {
 
 /// The readings of one boat, tick by tick.
 fn record(sensors: &Sensors, seed: u64, ticks: i64, truth: impl Fn(SimTime) -> Truth) -> Vec<(SimTime, Reading)> {
-    let model = SensorModel::new(sensors, TICK, &seed.into(), "blue_one");
+    let model = SensorModel::new(sensors, TICK, &seed.into(), "blue_one", &[]);
     let mut state = SensorState::default();
     (0..ticks).map(|i| (TICK * i, model.read(&mut state, &truth(TICK * i), TICK * i))).collect()
 }
@@ -110,7 +110,7 @@ fn perfect_sensors_tell_the_truth_bit_for_bit() {
             ..Truth::default()
         };
         let now = TICK * i64::from(i);
-        let model = SensorModel::new(&Sensors::default(), TICK, &1.into(), "blue_one");
+        let model = SensorModel::new(&Sensors::default(), TICK, &1.into(), "blue_one", &[]);
         let mut state = SensorState::default();
         let Reading { nav, fix_at, imu } = model.read(&mut state, &truth, now);
         for (got, want) in [
@@ -151,7 +151,7 @@ fn the_longest_latency_that_a_file_may_state_comes_out_as_stated_whatever_the_pe
         for period_s in [0.02, 0.029, 0.05, 0.074, 0.1, 0.13, 0.149, 0.149_999, 0.15, 0.2, 1.0, 1.49, 10.0] {
             let gps = Gps { period_s, latency_s: (12.0 * period_s).min(2.0), ..exact_gps() };
             let latency = SimTime::from_s(gps.latency_s);
-            let model = SensorModel::new(&with_gps(gps), decision, &1.into(), "blue_one");
+            let model = SensorModel::new(&with_gps(gps), decision, &1.into(), "blue_one", &[]);
             let period = decision * ((period_s / decision.as_s()).round() as i64).max(1);
             let mut state = SensorState::default();
             for now in (0..1_000).map(|i| decision * i) {
@@ -445,7 +445,8 @@ fn a_gyro_feels_the_turning_of_its_attitude() {
 #[test]
 fn the_same_seed_reads_the_same_and_another_boat_or_seed_otherwise() {
     let read = |seed: u64, vehicle: &str| -> Vec<Reading> {
-        let (model, mut state) = (SensorModel::new(&faulty(), TICK, &seed.into(), vehicle), SensorState::default());
+        let (model, mut state) =
+            (SensorModel::new(&faulty(), TICK, &seed.into(), vehicle, &[]), SensorState::default());
         (0..600).map(|i| model.read(&mut state, &sailing(TICK * i), TICK * i)).collect()
     };
     let one = read(1, "blue_one");
@@ -460,7 +461,7 @@ fn the_same_seed_reads_the_same_and_another_boat_or_seed_otherwise() {
 
 #[test]
 fn sensors_go_on_from_a_snapshot_to_the_bit() {
-    let model = SensorModel::new(&faulty(), TICK, &1.into(), "blue_one");
+    let model = SensorModel::new(&faulty(), TICK, &1.into(), "blue_one", &[]);
     let mut state = SensorState::default();
     for i in 0..4_000 {
         if i % 37 == 0 {
