@@ -23,39 +23,6 @@ fn run(world: &mut World, orders: &[Order], seconds: f64) {
     }
 }
 
-#[test]
-fn without_thrust_a_boat_ends_up_going_with_the_current_whatever_its_heading() {
-    for heading_deg in [0.0, 37.0, 90.0, 200.0] {
-        let scenario = surveyor_on(|sea| sea.current.mean_m_s = Ned { north: 0.3, east: 0.4 });
-        let mut world = afloat(&scenario, 1, (300.0, 200.0, heading_deg), (0.0, 0.0, 0.0));
-        run(&mut world, &DRIFTING, 240.0);
-        let before = world.state().boats[0].pose.at;
-        world.step(&DRIFTING);
-        let velocity = (world.state().boats[0].pose.at - before).scaled(20.0);
-        assert!(velocity.distance(Ned { north: 0.3, east: 0.4 }) < 1e-6, "{heading_deg}: {velocity:?}");
-    }
-}
-
-#[test]
-fn energy_does_not_grow_without_input_in_a_moving_water_seen_from_it() {
-    let scenario = surveyor_on(|sea| sea.current.mean_m_s = Ned { north: 0.3, east: 0.1 });
-    let hull = &common::hulls(&scenario)[0];
-    let mut world = afloat(&scenario, 1, (200.0, 200.0, 70.0), (2.0, -0.5, 0.6));
-    let relative = |world: &World| {
-        let boat = world.state().boats[0];
-        let rotation = boat.pose.rotation();
-        let water = primitives::frame::body_from_ned(rotation, Ned { north: 0.3, east: 0.1 });
-        sim::hull::Planar { surge: boat.nu.surge - water.ahead, sway: boat.nu.sway - water.starboard, yaw: boat.nu.yaw }
-    };
-    let mut before = hull.energy_joule(relative(&world));
-    for tick in 0..2_000 {
-        world.step(&DRIFTING);
-        let now = hull.energy_joule(relative(&world));
-        assert!(now <= before, "tick {tick}: {before} -> {now}");
-        before = now;
-    }
-}
-
 /// A drifter's mean velocity over ten minutes and the root mean square of its velocity, m/s, in
 /// waves of this height without drift force.
 fn adrift(hs_m: f64, seed: u64) -> (Ned, f64) {
