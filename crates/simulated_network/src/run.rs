@@ -8,7 +8,7 @@ use crate::state::{Node, State};
 use crate::verdict::{NodeEnd, Published, Verdict};
 use bus::clock;
 use primitives::stream::Stream;
-use std::collections::{BTreeMap, BinaryHeap};
+use std::collections::BTreeMap;
 use std::hash::{DefaultHasher, Hasher};
 use std::sync::Arc;
 use std::time::Duration;
@@ -45,7 +45,7 @@ impl SimulatedNetwork {
             now_ns: 0,
             limit_ns: 0,
             order: 0,
-            events: BinaryHeap::new(),
+            events: BTreeMap::new(),
             starts_due: 0,
             nodes: vec![],
             threads: vec![],

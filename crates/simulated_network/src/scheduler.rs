@@ -1,7 +1,7 @@
 //! Chooses which thread runs: exactly one at a time. A thread yields when it waits; when all wait,
 //! the next event happens.
 
-use crate::event::Event;
+use crate::event::{Event, nanos};
 use crate::state::{Node, State, Status, Thread};
 use crate::verdict::Verdict;
 use parking_lot::Mutex;
@@ -121,7 +121,7 @@ impl World {
     }
 
     fn ns_at(&self, moment: Instant) -> u64 {
-        u64::try_from(moment.saturating_duration_since(self.start).as_nanos()).unwrap_or(u64::MAX)
+        nanos(moment.saturating_duration_since(self.start))
     }
 
     /// Adds a thread to a node; it runs when scheduled.
@@ -222,12 +222,14 @@ fn text_of(payload: &(dyn Any + Send)) -> String {
 impl State {
     /// Handles the next event.
     pub(crate) fn step(&mut self, world: &Arc<World>) {
-        let Some(queued) = self.events.pop() else { return self.give_up(Verdict::Deadlock(self.waiting())) };
-        if queued.at_ns > self.limit_ns {
+        let Some(((at_ns, _), event)) = self.events.pop_first() else {
+            return self.give_up(Verdict::Deadlock(self.waiting()));
+        };
+        if at_ns > self.limit_ns {
             return self.give_up(Verdict::OutOfTime(self.waiting()));
         }
-        self.now_ns = queued.at_ns;
-        match queued.event {
+        self.now_ns = at_ns;
+        match event {
             Event::Wake { thread, wait } => {
                 if matches!(self.threads[thread].status, Status::Waits { wait: now, .. } if now == wait) {
                     self.threads[thread].status = Status::Ready;

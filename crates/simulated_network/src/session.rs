@@ -3,7 +3,7 @@
 use crate::declared::{Asked, Declared, PendingQuery, RoutedQuery, What};
 use crate::packet::{Kind, Packet};
 use crate::scheduler::{World, current, is_in_callback, wait_until};
-use crate::state::{SessionState, State};
+use crate::state::SessionState;
 use bus::{
     BusError, Declaration, Delivery, Encoding, Net, OnBytes, OnLinkLost, OnQuery, OnToken, Parcel, Priority, Sender,
     Session, Watched, clock,
@@ -275,7 +275,15 @@ impl Drop for Undeclare {
 impl SimulatedQuery {
     fn send(&self, answer: Option<Parcel>) {
         let RoutedQuery { session, query, .. } = self.routed;
-        self.world.visit(|state| state.answer_from(session, query, answer));
+        self.world.visit(|state| {
+            let SessionState { is_open, is_hub, link, .. } = state.sessions[session];
+            match link {
+                _ if !is_open => {}
+                _ if is_hub => state.answer_at_hub(session, query, answer),
+                Some(link) => state.send(link, true, Packet::Answer { query, answer }),
+                None => {}
+            }
+        });
     }
 }
 
@@ -292,17 +300,5 @@ impl bus::PendingQuery for SimulatedQuery {
 impl Drop for SimulatedQuery {
     fn drop(&mut self) {
         self.send(None);
-    }
-}
-
-impl State {
-    fn answer_from(&mut self, session: usize, query: u64, answer: Option<Parcel>) {
-        let SessionState { is_open, is_hub, link, .. } = self.sessions[session];
-        match link {
-            _ if !is_open => {}
-            _ if is_hub => self.answer_at_hub(session, query, answer),
-            Some(link) => self.send(link, true, Packet::Answer { query, answer }),
-            None => {}
-        }
     }
 }

@@ -2,11 +2,11 @@
 
 use crate::conditions::{Conditions, Fault};
 use crate::declared::{Call, Declared, PendingQuery};
-use crate::event::{Event, Queued, nanos};
+use crate::event::{Event, nanos};
 use crate::packet::Link;
 use crate::verdict::{NodeEnd, Published, Verdict};
 use primitives::stream::Stream;
-use std::collections::{BTreeMap, BinaryHeap};
+use std::collections::BTreeMap;
 use std::hash::{DefaultHasher, Hash};
 use std::sync::Arc;
 use std::thread::JoinHandle;
@@ -79,8 +79,10 @@ pub(crate) struct State {
     pub(crate) stream: Stream,
     pub(crate) now_ns: u64,
     pub(crate) limit_ns: u64,
+    /// The number of the last event scheduled.
     pub(crate) order: u64,
-    pub(crate) events: BinaryHeap<Queued>,
+    /// By time and number: by time alone, one seed could give two traces.
+    pub(crate) events: BTreeMap<(u64, u64), Event>,
     pub(crate) starts_due: usize,
     pub(crate) nodes: Vec<Node>,
     pub(crate) threads: Vec<Thread>,
@@ -125,7 +127,7 @@ impl State {
     pub(crate) fn at(&mut self, at_ns: u64, event: Event) {
         self.order += 1;
         // A deadline that has already passed must not turn the clock back.
-        self.events.push(Queued { at_ns: at_ns.max(self.now_ns), order: self.order, event });
+        self.events.insert((at_ns.max(self.now_ns), self.order), event);
     }
 
     pub(crate) fn after(&mut self, wait: Duration, event: Event) {
