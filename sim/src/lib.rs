@@ -36,7 +36,7 @@ mod view;
 pub mod world;
 
 pub use afloat::{NotAfloat, afloat};
-pub use contest::{Contest, HoldCause, RestoreError};
+pub use contest::{Contest, RestoreError};
 pub use external::BadReport;
 #[cfg(feature = "record")]
 pub use progress::{Progress, ProgressMessage, Reporter};
