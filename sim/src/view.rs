@@ -56,7 +56,7 @@ impl Scene<'_> {
 
     fn truth(&self, i: usize) -> VehicleTruth {
         let (boat, standing) = (&self.world.state().boats[i], &self.standing.vehicles[i]);
-        let attitude = self.world.attitude(VehicleId::at(i));
+        let attitude = self.world.truth(VehicleId::at(i)).attitude;
         VehicleTruth {
             nav: self.nav(i),
             heave_m: attitude.heave_up_m,

@@ -73,7 +73,7 @@ fn boats_in_waves_heave_at_the_frequency_of_encounter() {
         let start = world.state().boats[0].pose.at;
         let step = |_| {
             world.step(&orders);
-            world.attitude(primitives::VehicleId(0)).heave_up_m
+            world.truth(primitives::VehicleId(0)).attitude.heave_up_m
         };
         let spectrum = common::amplitudes(&(0..samples).map(step).collect::<Vec<_>>());
         let gone = world.state().boats[0].pose.at - start;
