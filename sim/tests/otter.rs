@@ -166,9 +166,7 @@ fn it_drifts_with_the_current_and_turns_as_it_is_caught() {
         let boat = world.state().boats[0];
         let off = (boat.pose.at - start).distance(row.at);
         assert!(off < 0.005 * row.at.length().max(1.0), "t {}: {off} m off", row.t_s);
-        (0..2).for_each(|_| {
-            world.step(&[Order::Hold; 2]);
-        });
+        common::sail(&mut world, &[Order::Hold; 2], 2);
     }
     let boat = world.state().boats[0];
     let speed = (boat.nu.surge * boat.nu.surge + boat.nu.sway * boat.nu.sway).sqrt();

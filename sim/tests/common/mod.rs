@@ -99,6 +99,13 @@ pub(crate) fn set_in(contest: &mut Contest, change: impl FnOnce(&mut State)) {
     contest.restore(&[head, &checksum, &body].concat()).expect("the snapshot is valid");
 }
 
+/// Advances a world under constant orders.
+pub(crate) fn sail(world: &mut World, orders: &[Order], ticks: u32) {
+    for _ in 0..ticks {
+        world.step(orders);
+    }
+}
+
 /// A 128-bit hash of a world's state.
 pub(crate) fn digest(world: &World) -> u128 {
     xxhash_rust::xxh3::xxh3_128(&postcard::to_stdvec(world.state()).expect("plain numbers can be encoded"))
