@@ -54,16 +54,12 @@ mod tests {
     use super::*;
     use scenario::sea::Waves;
 
-    fn waves(gamma: f64, components: u32) -> Waves {
-        Waves { gamma, ..waves_from(1.0, 0.5, 3.0, components) }
-    }
-
     #[test]
     fn many_components_hold_in_each_band_what_was_asked_for() {
         /// Tolerance for strata at the edges of a band, as a share of the highest density.
         const TOLERANCE: f64 = 0.03;
         for gamma in [1.0, 3.3] {
-            let waves = waves(gamma, 4000);
+            let waves = Waves { gamma, ..waves_from(1.0, 0.5, 3.0, 4000) };
             let bands = WaveField::new(&waves, None, 5).bands(range_hz(3.0), 30);
             let highest = bands.iter().map(Band::density_m2_hz).fold(0.0, f64::max);
             for band in bands {
