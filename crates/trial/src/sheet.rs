@@ -114,15 +114,9 @@ impl Sheet {
             Ok(number) if (low - slack..=high + slack).contains(&number) => Ok(number.clamp(low, high)),
             _ => {
                 let expected = format!("expected {} to {}", short(low), short(high));
-                Err(self.row_mistake(row, format!("{} is {found}, {expected}", self.heads[column])))
+                Err(self.mistake(Some(self.rows[row].0), format!("{} is {found}, {expected}", self.heads[column])))
             }
         }
-    }
-
-    /// A fault of a row.
-    #[must_use]
-    pub fn row_mistake(&self, row: usize, message: String) -> Mistake {
-        self.mistake(Some(self.rows[row].0), message)
     }
 
     /// A fault of the file, or of one of its lines.
@@ -143,7 +137,7 @@ impl Sheet {
             let t_s = self.number(row, column, (0.0, high_s))?;
             if let Some(before_s) = times_s.last().filter(|before_s| t_s <= **before_s) {
                 let message = format!("t_s is {t_s}, expected more than {before_s}, its value in the row before");
-                return Err(self.row_mistake(row, message));
+                return Err(self.mistake(Some(self.rows[row].0), message));
             }
             times_s.push(t_s);
         }
