@@ -18,9 +18,8 @@ mod subscriptions;
 mod throttle;
 mod working_time;
 
-pub use crate::progress::{Progress, ProgressMessage, Reporter};
+pub use crate::progress::{Progress, ProgressMessage, Report, Reporter, Run};
 pub use crate::recorder::GameRecorder;
-pub use crate::report::{Report, Run};
 pub use settings::{NodeError, Pace, Settings};
 
 use crate::contest::Contest;

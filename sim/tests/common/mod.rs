@@ -81,12 +81,6 @@ pub(crate) fn hamper(scenario: &mut Scenario) {
     };
 }
 
-pub(crate) fn set(world: &mut World, change: impl FnOnce(&mut State)) {
-    let mut state = world.state().clone();
-    change(&mut state);
-    world.set_state(state);
-}
-
 /// Changes the state of a contest's world directly.
 pub(crate) fn set_in(contest: &mut Contest, change: impl FnOnce(&mut State)) {
     // Name and version, mark of the scenario, checksum; then the world comes first.
@@ -128,11 +122,8 @@ pub(crate) fn order(contest: &mut Contest, vehicle: VehicleId, order: Order) {
 
 /// Places a boat (x east, y north) with a heading and a velocity.
 pub(crate) fn place_boat(world: &mut World, boat: usize, (x, y, heading_deg): (f64, f64, f64), nu: (f64, f64, f64)) {
-    set(world, |state| {
-        let boat = &mut state.boats[boat];
-        boat.pose = Pose { at: Ned::from_xy(x, y), psi_rad: primitives::angle::rad_from_compass_deg(heading_deg) };
-        boat.nu = Planar { surge: nu.0, sway: nu.1, yaw: nu.2 };
-    });
+    let pose = Pose { at: Ned::from_xy(x, y), psi_rad: primitives::angle::rad_from_compass_deg(heading_deg) };
+    world.set_under_way(VehicleId::at(boat), pose, Planar { surge: nu.0, sway: nu.1, yaw: nu.2 });
 }
 
 /// The hulls of a scenario, by vehicle index.
