@@ -48,14 +48,6 @@ impl fmt::Debug for Declared {
     }
 }
 
-/// The subject of a query.
-#[derive(Clone, Debug)]
-pub(crate) enum Asked {
-    Payload(Parcel),
-    /// The tokens present, as a JSON list.
-    Tokens,
-}
-
 /// A query that has reached a session with a matching queryable.
 pub(crate) struct RoutedQuery {
     pub(crate) session: usize,

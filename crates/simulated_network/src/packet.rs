@@ -1,6 +1,5 @@
 //! Packets, and the links over which they travel.
 
-use crate::declared::Asked;
 use bus::Parcel;
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
@@ -43,6 +42,14 @@ pub(crate) enum Packet {
         is_there: bool,
     },
     Close,
+}
+
+/// The subject of a query.
+#[derive(Clone, Debug)]
+pub(crate) enum Asked {
+    Payload(Parcel),
+    /// The tokens present, as a JSON list.
+    Tokens,
 }
 
 /// The kinds of declarations, as the hub distinguishes them.

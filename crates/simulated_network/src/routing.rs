@@ -1,8 +1,8 @@
 //! Routing at the hub.
 
-use crate::declared::{Asked, Call, Declared, RoutedQuery, TakeQuery, What};
+use crate::declared::{Call, Declared, RoutedQuery, TakeQuery, What};
 use crate::event::Event;
-use crate::packet::{Kind, Local, Packet};
+use crate::packet::{Asked, Kind, Local, Packet};
 use crate::state::State;
 use crate::verdict::Published;
 use bus::{Parcel, keys_meet};

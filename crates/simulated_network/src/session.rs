@@ -1,7 +1,7 @@
 //! A session on the simulated network, behind [`bus::Bus`].
 
-use crate::declared::{Asked, Declared, PendingQuery, RoutedQuery, What};
-use crate::packet::{Kind, Packet};
+use crate::declared::{Declared, PendingQuery, RoutedQuery, What};
+use crate::packet::{Asked, Kind, Packet};
 use crate::scheduler::{World, current, is_in_callback, wait_until};
 use crate::state::SessionState;
 use bus::{
