@@ -77,12 +77,4 @@ mod tests {
         }
         assert_eq!(charge_after([1.0, 1.0], 100), 0.0, "empty is empty");
     }
-
-    #[test]
-    fn thrust_falls_in_step_with_the_charge() {
-        let model = BatteryModel::new(&BATTERY, 0.05);
-        for (charge, want) in [(1.0, 1.0), (0.5, 0.925), (0.0, 0.85)] {
-            assert!((model.thrust_factor(charge) - want).abs() < 1e-15);
-        }
-    }
 }

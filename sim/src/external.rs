@@ -149,25 +149,6 @@ mod tests {
     }
 
     #[test]
-    fn a_boat_goes_on_for_a_second_and_is_lost_after_a_second_and_a_half() {
-        let (mut track, vehicle) = (Track::default(), VehicleId(3));
-        assert!(track.is_lost(SimTime::ZERO) && track.estimate(SimTime::ZERO).is_none());
-        assert_eq!(track.event(vehicle, SimTime::ZERO), Some(Event::NavLost(vehicle)));
-        assert_eq!(track.event(vehicle, SimTime::ZERO), None);
-        track.update(Nav { surge_m_s: 2.0, ..Nav::default() }, SimTime::from_s(10.0));
-        for (now_s, want_m, want_m_s, is_lost) in
-            [(9.95, -0.1, 2.0, false), (10.5, 1.0, 2.0, false), (11.0, 2.0, 0.0, false), (20.0, 2.0, 0.0, true)]
-        {
-            let now = SimTime::from_s(now_s);
-            let (pose, nu) = track.estimate(now).expect("there is a fix");
-            assert!((pose.at.north - want_m).abs() < 1e-12, "{now_s}: {pose:?}");
-            assert_eq!((nu.surge, track.is_lost(now)), (want_m_s, is_lost), "{now_s}");
-        }
-        assert_eq!(track.event(vehicle, SimTime::from_s(11.0)), Some(Event::NavBack(vehicle)));
-        assert!(!track.is_lost(SimTime::from_s(11.5)) && track.is_lost(SimTime(11_500_000_001)));
-    }
-
-    #[test]
     fn numbers_that_no_boat_has_are_refused() {
         let good = Nav { north_m: 5.0, psi_rad: 7.0, surge_m_s: -1.0, ..Nav::default() };
         assert_eq!(sound(good), Ok(Nav { psi_rad: wrap_pi(7.0), ..good }));

@@ -130,13 +130,4 @@ mod tests {
             }
         }
     }
-
-    #[test]
-    fn the_state_survives_being_written_and_read() {
-        let flaws = Flaws { latency_s: 0.15, ..Flaws::default() };
-        let mut state = FlawModel::new(&flaws, 0.05).unwrap().start();
-        state.pass([0.3, -0.2]);
-        let bytes = postcard::to_stdvec(&state).unwrap();
-        assert_eq!(postcard::from_bytes::<FlawState>(&bytes).unwrap(), state);
-    }
 }

@@ -18,13 +18,13 @@ use scenario::boat::Hull;
 
 /// Surge, sway and yaw: velocities (m/s, m/s, rad/s), accelerations, or forces (N, N, N m).
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Planar {
+pub struct Planar<T = f64> {
     /// Surge, ahead.
-    pub surge: f64,
+    pub surge: T,
     /// Sway, to starboard.
-    pub sway: f64,
+    pub sway: T,
     /// Yaw, clockwise.
-    pub yaw: f64,
+    pub yaw: T,
 }
 
 impl Planar {

@@ -267,26 +267,6 @@ mod tests {
     }
 
     #[test]
-    fn the_speed_kept_is_the_mean_of_old_and_new() {
-        let mut state = KinematicState::default();
-        let motion = step(&plain(), &mut state, ahead(1.0));
-        assert_eq!((state.speed_m_s, motion.travel_m), (0.5, Ned { north: 0.05, east: 0.0 }));
-        step(&plain(), &mut state, ahead(1.0));
-        assert_eq!(state.speed_m_s, 0.75);
-    }
-
-    #[test]
-    fn acceleration_and_deceleration_do_half_of_what_is_configured() {
-        let mut boat = plain();
-        (boat.acceleration_max_m_s2, boat.deceleration_max_m_s2) = (0.2, 0.4);
-        let mut state = KinematicState { speed_m_s: 0.5, ..KinematicState::default() };
-        step(&boat, &mut state, ahead(1.0));
-        assert!((state.speed_m_s - 0.51).abs() < 1e-15, "{}", state.speed_m_s);
-        step(&boat, &mut state, Order::Hold);
-        assert!((state.speed_m_s - 0.49).abs() < 1e-15, "{}", state.speed_m_s);
-    }
-
-    #[test]
     fn it_asks_no_more_than_its_highest_speed() {
         let mut state = KinematicState::default();
         step(&plain(), &mut state, ahead(f64::INFINITY));

@@ -23,8 +23,6 @@ mod progress;
 mod radio;
 #[cfg(feature = "record")]
 mod recorder;
-#[cfg(feature = "record")]
-mod report;
 pub mod sea;
 pub mod sensor;
 mod sighting;
@@ -36,14 +34,12 @@ mod view;
 pub mod world;
 
 pub use afloat::{NotAfloat, afloat};
-pub use contest::{Contest, HoldCause, RestoreError};
+pub use contest::{Contest, RestoreError};
 pub use external::BadReport;
 #[cfg(feature = "record")]
-pub use progress::{Progress, ProgressMessage, Reporter};
+pub use progress::{Progress, ProgressMessage, Report, Reporter, Run};
 #[cfg(feature = "record")]
 pub use recorder::GameRecorder;
-#[cfg(feature = "record")]
-pub use report::{Report, Run};
 pub use spawn::NoStart;
 pub use state::{BoatState, State};
 pub use world::{VehiclePlan, World, WorldPlan};

@@ -1,8 +1,7 @@
 //! The constants of a world: the boats, the sea, and the solid shapes.
 
 use crate::autopilot::AutopilotModel;
-use crate::contact::{ContactModel, ContactRole, Displacement};
-use crate::external;
+use crate::contact::{ContactModel, ContactRole};
 use crate::flaw::FlawState;
 use crate::hull::{HullModel, Planar};
 use crate::kinematic::{KinematicModel, KinematicState};
@@ -90,10 +89,8 @@ impl Model {
         // for nothing.
         let is_sensed = plan.vehicles.iter().map(|v| !v.is_external && *sensors(v.kind) != Sensors::default());
         let sensed = numbered(is_sensed).into_iter().zip(&plan.vehicles).map(|(place, vehicle)| {
-            let model = || {
-                let model = SensorModel::new(sensors(vehicle.kind), plan.sensor_period, &plan.seeds, vehicle.name);
-                model.with_faults(&vehicle.faults)
-            };
+            let (sensors, faults) = (sensors(vehicle.kind), &vehicle.faults);
+            let model = || SensorModel::new(sensors, plan.sensor_period, &plan.seeds, vehicle.name, faults);
             place.map(|place| (place, model()))
         });
         Model {
@@ -214,23 +211,17 @@ impl Model {
         (forcing, from_sea.current_m_s)
     }
 
-    /// A boat's displacement over a tick without contact, and its velocity over the ground
-    /// afterwards.
+    /// A hull's pose after a tick without contact, with the rotation of its heading, and its velocity
+    /// over the ground.
     #[inline]
-    pub(crate) fn displacement(
+    pub(crate) fn hull_moved(
         &self,
-        vehicle: usize,
-        boat: &BoatState,
+        from: Pose,
         rotation: Rotation,
         forcing: &Forcing,
         motion: &Motion,
         current_m_s: Ned,
-    ) -> (Displacement, Planar) {
-        let from = boat.pose;
-        let still = self.still(vehicle, boat, rotation);
-        if boat.quarantined {
-            return (still, Planar::default());
-        }
+    ) -> (Pose, Rotation, Planar) {
         // Wrapped every tick: an angle that accumulated turns would lose digits in a long game.
         let psi_rad = wrap_pi(from.psi_rad + motion.turn_rad);
         let rotation_half = rotation.turned(small_rotation(motion.turn_half_rad));
@@ -242,56 +233,31 @@ impl Model {
         let end = motion.nu_r.in_ned(rotation_to);
         let mean_m_s = (start + middle.scaled(4.0) + end).scaled(1.0 / 6.0) + current_m_s;
         let to = Pose { at: from.at + mean_m_s.scaled(self.dt_s), psi_rad };
-        (Displacement { to, rotation_to, ..still }, through_water(motion.nu_r, rotation_to, current_m_s, 1.0))
+        (to, rotation_to, through_water(motion.nu_r, rotation_to, current_m_s, 1.0))
     }
 
-    /// A point boat's displacement over a tick, and its velocity over the ground afterwards.
-    pub(crate) fn point_displacement(
+    /// The same for a point boat.
+    pub(crate) fn point_moved(
         &self,
-        vehicle: usize,
-        boat: &BoatState,
+        from: Pose,
         (point, state): (&KinematicModel, &mut KinematicState),
         command: Order,
         drift_m_s: Ned,
-    ) -> (Displacement, Planar) {
+    ) -> (Pose, Rotation, Planar) {
         let motion = point.step(state, command, drift_m_s, self.dt_s);
-        let to = Pose { at: boat.pose.at + motion.travel_m, psi_rad: state.psi_rad() };
+        let to = Pose { at: from.at + motion.travel_m, psi_rad: state.psi_rad() };
         let rotation_to = to.rotation();
         let nu = Planar { surge: state.speed_m_s, sway: 0.0, yaw: motion.turn_rad / self.dt_s };
-        let still = self.still(vehicle, boat, boat.pose.rotation());
-        (Displacement { to, rotation_to, ..still }, through_water(nu, rotation_to, drift_m_s, 1.0))
+        (to, rotation_to, through_water(nu, rotation_to, drift_m_s, 1.0))
     }
 
-    /// A real boat's dead-reckoned displacement over a tick, and its velocity over the ground.
-    pub(crate) fn dead_reckoned_displacement(
-        &self,
-        vehicle: usize,
-        boat: &BoatState,
-        rotation: Rotation,
-    ) -> (Displacement, Planar) {
-        let to = external::dead_reckoned(boat.pose, boat.nu, self.dt_s);
-        let still = self.still(vehicle, boat, rotation);
-        (Displacement { to, rotation_to: to.rotation(), ..still }, boat.nu)
-    }
-
-    fn still(&self, vehicle: usize, boat: &BoatState, rotation: Rotation) -> Displacement {
-        let from = boat.pose;
-        let kind = self.kinds[vehicle];
-        let role = match (self.external[vehicle], boat.quarantined) {
+    /// A boat's role in contact.
+    #[inline]
+    pub(crate) fn role(&self, vehicle: usize, boat: &BoatState) -> ContactRole {
+        match (self.external[vehicle], boat.quarantined) {
             (true, _) => ContactRole::Kinematic,
             (false, true) => ContactRole::Fixed,
             (false, false) => ContactRole::Dynamic,
-        };
-        Displacement { kind, from, to: from, rotation, rotation_to: rotation, role, velocity_change: Planar::default() }
-    }
-
-    /// A boat's attitude in the waves. Zero for a point boat, and for a real boat, whose attitude
-    /// is unknown.
-    pub(crate) fn attitude(&self, vehicle: usize, boat: &BoatState, rotation: Rotation, sea: &SeaNow<'_>) -> Attitude {
-        let kind = self.kinds[vehicle];
-        match self.drives[kind] {
-            Drive::Thrusters(..) if !self.external[vehicle] => sea.attitude(kind, boat.pose, rotation, boat.nu),
-            _ => Attitude::default(),
         }
     }
 
@@ -303,11 +269,16 @@ impl Model {
             }
             Drive::Point(_) => 0.0,
         };
+        // A real boat's attitude is unknown, and a point boat has none.
+        let attitude = match self.drives[kind] {
+            Drive::Thrusters(..) if !self.external[vehicle] => sea.attitude(kind, boat.pose, rotation, boat.nu),
+            _ => Attitude::default(),
+        };
         Truth {
             pose: boat.pose,
             nu: boat.nu,
             nu_dot: Planar::default().plus(1.0 / self.dt_s, boat.nu_change),
-            attitude: self.attitude(vehicle, boat, rotation, sea),
+            attitude,
             thrust_share,
         }
     }

@@ -72,17 +72,6 @@ mod tests {
     use primitives::math::interpolate;
     use proptest::prelude::*;
 
-    #[test]
-    fn it_goes_through_its_points_and_ends_level() {
-        let points = [(-1.0, -30.0), (0.0, 0.0), (0.3, 7.0), (1.0, 60.0)];
-        let line = PiecewiseLinear::new(&points);
-        for (x, y) in points {
-            assert_eq!(line.at(x), y);
-        }
-        assert_eq!((line.at(-9.0), line.at(9.0)), (-30.0, 60.0));
-        assert_eq!(line.at(0.5), 7.0 + 53.0 / (1.0 - 0.3) * (0.5 - 0.3));
-    }
-
     proptest! {
         #[test]
         fn it_agrees_with_a_search(

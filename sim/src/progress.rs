@@ -1,8 +1,8 @@
 //! Progress messages of a running game: shown on the terminal, and printed by a sim as one JSON
-//! line each for `squall run`.
+//! line each for `squall run`. The last one is the report of the game.
 
 use crate::contest::Contest;
-use crate::report::Report;
+use messages::refusal::Refusals;
 use rules::event::EventCursor;
 use scenario::Outcome;
 use scenario::outcome::EventOutcome;
@@ -34,6 +34,33 @@ pub enum ProgressMessage {
     Progress(Progress),
     /// The final report.
     Done(Box<Report>),
+}
+
+/// The report of a game.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Report {
+    /// The result of the game.
+    pub outcome: Outcome,
+    /// How the game was run.
+    pub run: Run,
+}
+
+/// Results that depend on the machines and the network rather than on the game.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Run {
+    /// The pace of the game.
+    pub pace: String,
+    /// Wall-clock duration, s.
+    pub wall_s: f64,
+    /// Refused messages from agents and gateways.
+    pub refused: Refusals,
+    /// Decisions that began late (real time only).
+    pub overruns: u64,
+    /// Whether it was stopped early.
+    pub cut_short: bool,
+    /// The fault in the recording, if any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub recording_problem: Option<String>,
 }
 
 /// The state of a running game.

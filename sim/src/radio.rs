@@ -23,7 +23,7 @@ const DRAWS: u64 = 5;
 #[derive(Clone)]
 pub(crate) struct Radio {
     model: RadioModel,
-    state: RadioState,
+    pub(crate) state: RadioState,
 }
 
 #[derive(Clone)]
@@ -116,15 +116,6 @@ impl Radio {
         Radio { model: RadioModel { bursts: bursts(&link, decision), noises, decision, most, link }, state }
     }
 
-    pub(crate) fn state(&self) -> &RadioState {
-        &self.state
-    }
-
-    /// Replaces the changing state.
-    pub(crate) fn set_state(&mut self, state: RadioState) {
-        self.state = state;
-    }
-
     /// Opens the next decision: each link may change between good and bad.
     pub(crate) fn open_next(&mut self) {
         let Radio { model, state } = self;
@@ -202,23 +193,18 @@ fn bursts(link: &Link, decision: SimTime) -> TwoStateChain {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use messages::picture::Nav;
+    use primitives::math;
     use primitives::reseed::Seeds;
-    use primitives::{VehicleId, math};
     use scenario::link::Loss;
 
     const TENTH: SimTime = SimTime(100_000_000);
-
-    fn boat(north_m: f64) -> OwnBoat {
-        OwnBoat::new(VehicleId(0), Nav { north_m, ..Nav::default() })
-    }
 
     fn radio(link: Link) -> Radio {
         Radio::over(link, TENTH, std::iter::once(Seeds::from(3).noise("link/test")))
     }
 
     fn link() -> Link {
-        Link { delay_s: 0.25, jitter_s: 0.0, loss: Loss::default(), range_m: None, station: Ned::default() }
+        Link { delay_s: 0.0, jitter_s: 0.0, loss: Loss::default(), range_m: None, station: Ned::default() }
     }
 
     fn course(speed_m_s: f64) -> Order {
@@ -226,39 +212,9 @@ mod tests {
     }
 
     #[test]
-    fn what_is_sent_arrives_after_the_delay_and_not_before() {
-        let mut radio = radio(link());
-        for k in 0..50_i64 {
-            let now = TENTH * k;
-            radio.send_report(0, boat(k as f64), Ned::default(), now);
-            let mut of = None;
-            let known = radio.report(0, now, |decision| of = Some(decision));
-            // Sent at (k - 3) tenths, arrived 0.05 s ago.
-            let sent = (k >= 3).then_some(k - 3);
-            assert_eq!(known.map(|report| report.nav.north_m), sent.map(|k| k as f64), "at {k}");
-            assert_eq!(of, sent.map(|k| k as u64), "at {k}");
-            assert_eq!(radio.oldest_report(), (k - 2).max(0) as u64);
-            radio.send_order(0, course(k as f64), Ned::default(), now);
-            assert_eq!(radio.order(0, now), sent.map(|k| course(k as f64)), "at {k}");
-            radio.open_next();
-        }
-    }
-
-    #[test]
-    fn nothing_passes_out_of_range() {
-        let mut radio = radio(Link { range_m: Some(100.0), delay_s: 0.0, ..link() });
-        for k in 1..200_i64 {
-            let at = Ned { north: k as f64, east: 0.0 };
-            radio.send_report(0, boat(k as f64), at, TENTH * k);
-            assert_eq!(radio.report(0, TENTH * k, |_| {}).is_some(), k <= 100, "at {k}");
-            radio.open_next();
-        }
-    }
-
-    #[test]
     fn losses_come_in_bursts_of_the_stated_share_and_length() {
         let loss = Loss { good: 0.01, bad: 0.6, good_time_s: 8.0, bad_time_s: 2.0 };
-        let mut radio = radio(Link { delay_s: 0.0, loss, ..link() });
+        let mut radio = radio(Link { loss, ..link() });
         let n = 400_000_i64;
         let (mut lost, mut bad, mut turns) = ([0.0; 2], 0.0, 0.0);
         let mut was_bad = false;
@@ -285,7 +241,7 @@ mod tests {
 
     #[test]
     fn an_order_that_is_overtaken_never_arrives() {
-        let mut radio = radio(Link { delay_s: 0.0, jitter_s: 0.5, ..link() });
+        let mut radio = radio(Link { jitter_s: 0.5, ..link() });
         let (mut last, mut overtaken) = (-1.0, 0);
         for k in 0..2_000_i64 {
             let now = TENTH * k;
@@ -303,7 +259,7 @@ mod tests {
     #[test]
     fn orders_of_one_decision_share_their_fate_and_the_last_one_counts() {
         let loss = Loss { good: 0.5, ..Loss::default() };
-        let mut radio = radio(Link { delay_s: 0.0, loss, ..link() });
+        let mut radio = radio(Link { loss, ..link() });
         let mut lost = 0;
         for k in 0..1_000_i64 {
             (0..3).for_each(|n| radio.send_order(0, course(f64::from(n)), Ned::default(), TENTH * k));

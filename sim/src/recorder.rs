@@ -1,7 +1,7 @@
 //! Records a running game from its first decision, on the network or in this process.
 
 use crate::contest::Contest;
-use crate::report::Report;
+use crate::progress::Report;
 use messages::input::Input;
 use messages::run_state::RecordingState;
 use messages::{Frame, GameInfo};

@@ -25,7 +25,7 @@ pub(crate) struct Sightings {
     noises: Vec<TimedNoise>,
     /// The time between two decisions.
     decision: SimTime,
-    state: SightingState,
+    pub(crate) state: SightingState,
     /// Reused buffers.
     spare: Vec<Vec<Contact>>,
 }
@@ -65,15 +65,6 @@ impl Sightings {
             noises: scenario.vehicles.iter().map(|vehicle| noise(&vehicle.name)).collect(),
             sharing,
         })
-    }
-
-    pub(crate) fn state(&self) -> &SightingState {
-        &self.state
-    }
-
-    /// Replaces the changing state.
-    pub(crate) fn set_state(&mut self, state: SightingState) {
-        self.state = state;
     }
 
     /// Records every boat's true state at a decision. Reports of decisions before `oldest` can no

@@ -1,10 +1,9 @@
 //! Starting positions: given by the scenario, or drawn from the game's `spawn` stream.
 
-use primitives::TeamId;
 use primitives::angle::wrap_pi;
 use primitives::frame::{Ned, Pose};
 use primitives::stream::Stream;
-use rules::Field;
+use rules::field::Obstacle;
 use scenario::{Problems, RealBoats, Scenario, StartPosition};
 use thiserror::Error;
 
@@ -50,9 +49,14 @@ pub fn start_positions(scenario: &Scenario, seed: u64) -> Result<Vec<Pose>, Spaw
         if let StartPosition::Somewhere { along_m, across_m, gap_m } = vehicle.start_position {
             let free = |at: Ned| {
                 let apart = |other: &(usize, Pose)| other.1.at.distance(at) >= gap_m;
-                taken.iter().all(apart) && clear_of_obstacles(&scenario.field, at, gap_m)
+                let clear = |obstacle: &Obstacle| !obstacle.contains(at) && obstacle.distance(at) >= gap_m;
+                taken.iter().all(apart) && scenario.field.plan.obstacles.iter().all(clear)
             };
-            let mut draw = || seen_from(&scenario.field, vehicle.team, (along_m, across_m), &mut stream);
+            let mut draw = || {
+                let along_m = stream.between(along_m.0, along_m.1);
+                let from_port_m = stream.between(across_m.0, across_m.1);
+                scenario.field.seen_from(vehicle.team, along_m, from_port_m)
+            };
             // Drawn by rejection, not placed on a grid: every free place is equally likely, and a
             // full field is an error.
             let at = (0..TRIES).map(|_| draw()).find(|at| free(*at));
@@ -63,16 +67,4 @@ pub fn start_positions(scenario: &Scenario, seed: u64) -> Result<Vec<Pose>, Spaw
     }
     taken.sort_by_key(|(i, _)| *i);
     Ok(taken.into_iter().map(|(_, pose)| pose).collect())
-}
-
-/// A random place in a rectangle as seen from the team's own end, port side first.
-fn seen_from(field: &Field, team: TeamId, area: ((f64, f64), (f64, f64)), stream: &mut Stream) -> Ned {
-    let ((near_m, far_m), (port_m, starboard_m)) = area;
-    let along_m = stream.between(near_m, far_m);
-    let from_port_m = stream.between(port_m, starboard_m);
-    field.seen_from(team, along_m, from_port_m)
-}
-
-fn clear_of_obstacles(field: &Field, at: Ned, gap_m: f64) -> bool {
-    field.plan.obstacles.iter().all(|obstacle| !obstacle.contains(at) && obstacle.distance(at) >= gap_m)
 }

@@ -3,7 +3,7 @@
 use crate::sensor::imu::ImuReading;
 use crate::sighting::Sightings;
 use crate::world::World;
-use messages::picture::{Contact, FlagView, Imu, Nav, OwnBoat, Picture, number_of_flag};
+use messages::picture::{Contact, FlagView, Nav, OwnBoat, Picture, number_of_flag};
 use messages::{Frame, Message, SeaView, Stamp, VehicleTruth};
 use primitives::{TeamId, VehicleId};
 use rules::Standing;
@@ -56,7 +56,7 @@ impl Scene<'_> {
 
     fn truth(&self, i: usize) -> VehicleTruth {
         let (boat, standing) = (&self.world.state().boats[i], &self.standing.vehicles[i]);
-        let attitude = self.world.attitude(VehicleId::at(i));
+        let attitude = self.world.truth(VehicleId::at(i)).attitude;
         VehicleTruth {
             nav: self.nav(i),
             heave_m: attitude.heave_up_m,
@@ -132,14 +132,7 @@ impl Scene<'_> {
             vehicle,
             nav,
             fix_ns,
-            imu: Imu {
-                roll_rate_rad_s: imu.gyro_rad_s[0],
-                pitch_rate_rad_s: imu.gyro_rad_s[1],
-                yaw_rate_rad_s: imu.gyro_rad_s[2],
-                ahead_m_s2: imu.accelerometer_m_s2[0],
-                starboard_m_s2: imu.accelerometer_m_s2[1],
-                down_m_s2: imu.accelerometer_m_s2[2],
-            },
+            imu: imu.into(),
             tagged: standing.tagged,
             carrying: number_of_flag(standing.carrying),
             disabled: standing.disabled,

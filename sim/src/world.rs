@@ -1,10 +1,11 @@
 //! The world: boats in water and their contacts, tick by tick, independent of the game.
 
 use crate::contact::Displacement;
+use crate::external;
 use crate::hull::Planar;
 use crate::model::Model;
 use crate::motion::{Forcing, Motion};
-use crate::sea::{Attitude, SeaNow};
+use crate::sea::SeaNow;
 use crate::sensor::{Reading, Truth};
 use crate::spawn::{self, NoStart};
 use crate::state::{BoatState, State};
@@ -288,13 +289,6 @@ impl World {
         self.model.truth(i, &self.state.boats[i], self.work.rotations[i], &self.sea())
     }
 
-    /// A vehicle's attitude in the waves.
-    #[must_use]
-    pub fn attitude(&self, vehicle: VehicleId) -> Attitude {
-        let i = vehicle.index();
-        self.model.attitude(i, &self.state.boats[i], self.work.rotations[i], &self.sea())
-    }
-
     /// Passes boats within `close_m` of anything to rapier. Slower, with the same bytes.
     #[doc(hidden)]
     pub fn widen_contact(&mut self, close_m: f64) {
@@ -347,22 +341,21 @@ impl World {
         work.displacements.clear();
         work.velocities.clear();
         for (i, boat) in state.boats.iter().enumerate() {
-            let (displacement, nu) = match model.point(i) {
-                _ if model.is_external(i) => model.dead_reckoned_displacement(i, boat, work.rotations[i]),
-                Some((place, point)) if !boat.quarantined => {
-                    let drift_m_s = sea.current_at(boat.pose.at);
-                    model.point_displacement(i, boat, (point, &mut state.points[place]), commands[i], drift_m_s)
+            let (from, rotation) = (boat.pose, work.rotations[i]);
+            let (to, rotation_to, nu) = match model.point(i) {
+                _ if model.is_external(i) => {
+                    let to = external::dead_reckoned(from, boat.nu, model.dt_s);
+                    (to, to.rotation(), boat.nu)
                 }
-                _ => model.displacement(
-                    i,
-                    boat,
-                    work.rotations[i],
-                    &work.forcings[i],
-                    &work.motions[i],
-                    work.currents_m_s[i],
-                ),
+                _ if boat.quarantined => (from, rotation, Planar::default()),
+                Some((place, point)) => {
+                    model.point_moved(from, (point, &mut state.points[place]), commands[i], sea.current_at(from.at))
+                }
+                None => model.hull_moved(from, rotation, &work.forcings[i], &work.motions[i], work.currents_m_s[i]),
             };
-            work.displacements.push(displacement);
+            let (kind, role) = (model.kinds[i], model.role(i, boat));
+            let velocity_change = Planar::default();
+            work.displacements.push(Displacement { kind, from, to, rotation, rotation_to, role, velocity_change });
             work.velocities.push(nu);
         }
     }

@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{afloat, alone, scenarios, waves};
+use common::{afloat, alone, sail, scenarios, waves};
 use messages::Order;
 use primitives::{Ned, Pose, SimTime};
 use scenario::sea::{Gusts, Sea, Wind};
@@ -15,9 +15,8 @@ fn pose_after(tick_s: f64, change: impl Fn(&mut Sea)) -> Pose {
     change(&mut scenario.sea);
     scenario.tick = SimTime::from_s(tick_s);
     let mut world = afloat(&scenario, 2, (300.0, 100.0, 11.0), (0.6, 0.05, 0.03));
-    for _ in 0..(20.0 / tick_s).round() as u64 {
-        world.step(&[Order::Thrust { port: 0.5, starboard: 0.4 }, Order::Hold]);
-    }
+    let orders = [Order::Thrust { port: 0.5, starboard: 0.4 }, Order::Hold];
+    sail(&mut world, &orders, (20.0 / tick_s).round() as u32);
     world.state().boats[0].pose
 }
 

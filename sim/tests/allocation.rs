@@ -1,13 +1,14 @@
-//! Heap allocations of a step: none unless hulls are close, and then none that persist.
+//! Heap allocations of a step: none unless hulls are close, and then none that persist. And of a
+//! decision with radio links and limits on sharing: none once queues have grown.
 //!
 //! `stats_alloc` counts: it has a hundred lines, is safe to use, and avoids an `unsafe` allocator of
 //! our own. It counts the whole process, so this file has one test.
 
 mod common;
 
-use common::{came_together, shipped};
+use common::{came_together, order, shipped, started};
 use messages::Order;
-use primitives::Ned;
+use primitives::{Ned, VehicleId};
 use sim::World;
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 use std::alloc::System;
@@ -34,10 +35,15 @@ fn crowded(world: &World, reach_m: f64) -> bool {
 }
 
 #[test]
+fn steps_and_decisions_take_nothing_from_the_heap_unless_hulls_are_close_or_something_happens() {
+    a_step_leaves_nothing_on_the_heap_and_takes_nothing_unless_hulls_are_close();
+    a_decision_over_the_air_takes_nothing_unless_hulls_are_close_or_something_happens();
+}
+
 fn a_step_leaves_nothing_on_the_heap_and_takes_nothing_unless_hulls_are_close() {
     for game in ["pav01_vs_pav01.toml", "pav01_4v4.toml", "pav01_afloat.toml"] {
         let scenario = shipped(game);
-        let mut world = World::of_game(&scenario, 1).unwrap();
+        let mut world = World::of_game(&scenario, 1).expect("the boats fit");
         let mut plan = vec![Order::Hold; scenario.vehicles.len()];
         let (mut free, mut busy, mut collisions, mut touching) = (0, 0, 0, Vec::new());
         for tick in 0..6_000 {
@@ -67,4 +73,37 @@ fn a_step_leaves_nothing_on_the_heap_and_takes_nothing_unless_hulls_are_close() 
             "{game}: {free} free, {busy} busy, {collisions} met"
         );
     }
+}
+
+/// Decisions until queues, pictures and the list of past true states have grown.
+const WARM_UP_DECISIONS: u64 = 1_500;
+
+fn a_decision_over_the_air_takes_nothing_unless_hulls_are_close_or_something_happens() {
+    let mut scenario = shipped("pav01_4v4.toml");
+    common::hamper(&mut scenario);
+    let mut contest = started(&scenario);
+    let middle = scenario.field.middle();
+    let (mut free, mut busy, mut contacts) = (0, 0, 0);
+    while !contest.is_over() && contest.decision() < 6_000 {
+        let crowded = crowded(contest.world(), 1.83 + 1.0);
+        let (events, decision) = (contest.events().len(), contest.decision());
+        let heap = Region::new(HEAP);
+        contacts += contest.pictures().iter().map(|picture| picture.contacts.len()).sum::<usize>();
+        for i in 0..scenario.vehicles.len() {
+            let round_rad = decision as f64 * 0.01 + i as f64;
+            let at = contest.world().state().boats[i].pose.at;
+            let heading_rad = if at.distance(middle) > 30.0 { at.bearing_rad(middle) } else { round_rad };
+            order(&mut contest, VehicleId::at(i), Order::Steer { heading_rad, speed_m_s: 1.5 });
+        }
+        contest.advance();
+        let used = heap.change();
+        // The event log grows from time to time.
+        if crowded || contest.events().len() > events || decision < WARM_UP_DECISIONS {
+            busy += 1;
+        } else {
+            free += 1;
+            assert_eq!(used.allocations + used.reallocations, 0, "decision {decision}: {used:?}");
+        }
+    }
+    assert!(free > 1_000 && contacts > 1_000, "{free} decisions without, {busy} with, {contacts} contacts");
 }

@@ -34,9 +34,7 @@ fn left_to_the_wind(kind: &str, wind_m_s: f64, heading_deg: f64, minutes: u32) -
     let mut scenario = alone(kind, "calm");
     scenario.sea.wind = Some(blowing(wind_m_s));
     let mut world = afloat(&scenario, 1, (400.0, 200.0, heading_deg), (0.0, 0.0, 0.0));
-    for _ in 0..minutes * 1_200 {
-        world.step(&[Order::Hold; 2]);
-    }
+    common::sail(&mut world, &[Order::Hold; 2], minutes * 1_200);
     let boat = world.state().boats[0];
     (boat.pose.psi_rad.to_degrees(), boat.nu)
 }

@@ -11,7 +11,7 @@ use primitives::{FlagId, Ned, SimTime, VehicleId};
 use rules::event::{EventCursor, TagCause};
 use rules::{Event, TaggedBoat};
 use scenario::Scenario;
-use sim::{BadReport, Contest, HoldCause};
+use sim::{BadReport, Contest};
 
 /// A real boat, and a simulated one of the other team.
 const REAL: VehicleId = VehicleId(0);
@@ -101,27 +101,26 @@ fn a_real_boat_is_tagged_and_its_effective_command_is_what_the_rules_make_of_its
 }
 
 #[test]
-fn the_cause_for_which_a_boat_holds_is_known_and_the_first_of_several_counts() {
+fn a_boat_holds_without_position_order_or_agent_and_while_people_stop_it() {
     let mut contest = started(&game("at = [150, 5]", ""));
-    let shows = |contest: &Contest, want: [Option<HoldCause>; 2]| {
-        assert_eq!([REAL, OTHER].map(|vehicle| contest.hold_cause(vehicle)), want);
-        for (vehicle, want) in [REAL, OTHER].into_iter().zip(want) {
-            assert_eq!(contest.effective_command(vehicle) == Order::Hold, want.is_some(), "{want:?}");
-        }
+    let hold = |contest: &Contest, want: bool| {
+        let holds = [REAL, OTHER].map(|vehicle| contest.effective_command(vehicle) == Order::Hold);
+        assert_eq!(holds, [want; 2]);
     };
     // The real boat has had no report, and the other no order.
-    shows(&contest, [Some(HoldCause::NavLost), Some(HoldCause::Ordered)]);
+    order(&mut contest, REAL, Order::Steer { heading_rad: 1.0, speed_m_s: 1.0 });
+    hold(&contest, true);
     report(&mut contest, nav(50.0, 40.0, 90.0, 0.0));
-    for vehicle in [REAL, OTHER] {
-        order(&mut contest, vehicle, Order::Steer { heading_rad: 1.0, speed_m_s: 1.0 });
+    order(&mut contest, OTHER, Order::Steer { heading_rad: 1.0, speed_m_s: 1.0 });
+    hold(&contest, false);
+    for stop in [Contest::halt, Contest::e_stop] {
+        stop(&mut contest, true);
+        hold(&contest, true);
+        stop(&mut contest, false);
+        hold(&contest, false);
     }
-    shows(&contest, [None, None]);
     [REAL, OTHER].into_iter().for_each(|vehicle| contest.lose_agent(vehicle));
-    shows(&contest, [Some(HoldCause::AgentLost), Some(HoldCause::Ordered)]);
-    contest.halt(true);
-    shows(&contest, [Some(HoldCause::Halted); 2]);
-    contest.e_stop(true);
-    shows(&contest, [Some(HoldCause::EStopped); 2]);
+    hold(&contest, true);
 }
 
 #[test]
@@ -244,15 +243,4 @@ fn a_real_boat_has_no_physics_and_no_sensors_of_ours() {
     let unknown = [truth.heave_m, truth.roll_rad, truth.pitch_rad, truth.port_newton, truth.starboard_newton];
     assert_eq!(unknown, [0.0; 5]);
     assert!(events(&contest).contains(&Event::EnteredKeepout(REAL)), "the referee noticed the entry");
-}
-
-#[test]
-fn the_same_reports_make_the_same_game() {
-    let play = |speed_m_s: f64| {
-        let mut contest = started(&game("at = [100, 40]", "sea = \"../seas/gale.toml\""));
-        sail(&mut contest, 50.0, 110.0, speed_m_s);
-        (contest.digest(), contest.snapshot())
-    };
-    assert_eq!(play(2.0), play(2.0));
-    assert_ne!(play(2.0).0, play(2.5).0);
 }

@@ -1,11 +1,13 @@
 //! Faults during a game: they affect the right boat at the right time, and end.
 
+mod common;
+
+use common::scenarios;
 use messages::Order;
 use primitives::{SimTime, VehicleId};
 use rules::event::Event;
 use scenario::{Overrides, Scenario, Setting, load_with};
 use sim::Contest;
-use std::path::Path;
 
 const HIT: VehicleId = VehicleId(0);
 const SPARED: VehicleId = VehicleId(1);
@@ -15,8 +17,10 @@ fn scenario(kind: &str, more: &str) -> Scenario {
     let fault = format!("fault.tried={{ kind = \"{kind}\", boats = [\"blue_1\"], at_s = 20, for_s = 20{more} }}");
     let overrides =
         Overrides { settings: vec![Setting::parse(&fault).expect("the fault is valid")], ..Overrides::default() };
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games/surveyor_2v2.toml");
-    load_with(&file, &overrides).unwrap_or_else(|problems| panic!("{problems}")).of_seed(3).expect("the fault is valid")
+    load_with(&scenarios().join("games/surveyor_2v2.toml"), &overrides)
+        .unwrap_or_else(|problems| panic!("{problems}"))
+        .of_seed(3)
+        .expect("the fault is valid")
 }
 
 /// Plays until a time; all boats steer a slow circle.
@@ -146,7 +150,6 @@ fn a_thruster_stands_still_or_goes_on_as_it_went() {
 
 #[test]
 fn a_fault_that_cannot_be_is_refused_with_its_place() {
-    let file = |game: &str| Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games").join(game);
     for (game, fault, want) in [
         ("surveyor_2v2", "{ kind = \"link_lost\" }", "has neither at_s nor every_s"),
         ("surveyor_2v2", "{ kind = \"link_lost\", at_s = 1, every_s = 2 }", "has both at_s and every_s"),
@@ -159,7 +162,7 @@ fn a_fault_that_cannot_be_is_refused_with_its_place() {
     ] {
         let setting = Setting::parse(&format!("fault.tried={fault}")).unwrap();
         let overrides = Overrides { settings: vec![setting], ..Overrides::default() };
-        let said = load_with(&file(&format!("{game}.toml")), &overrides).expect_err(fault).to_string();
+        let said = load_with(&scenarios().join(format!("games/{game}.toml")), &overrides).expect_err(fault).to_string();
         assert!(said.contains(want), "{fault}: {said}");
     }
 }

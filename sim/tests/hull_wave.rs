@@ -48,25 +48,6 @@ fn mean_square(hull: &HullWaves, psi_rad: f64, part: impl Fn(Planar) -> f64) -> 
 }
 
 #[test]
-fn a_cork_moves_as_the_water_at_the_surface() {
-    for depth_m in [None, Some(0.8), Some(5.0)] {
-        let (toward_rad, length_m) = (0.5, 12.0);
-        let field = regular(length_m, toward_rad, depth_m);
-        let wave = *field.components().next().unwrap();
-        let hull = HullWaves::new(&field, &cork(), DENSITY_KG_M3);
-        let k = TAU / length_m;
-        let speed_m_s = wave.amplitude_m * wave.omega_rad_s / depth_m.map_or(1.0, |h| libm::tanh(k * h));
-        for t in [0.0, 0.4, 3.3] {
-            let phase = k * (3.0 * libm::cos(toward_rad) + 2.0 * libm::sin(toward_rad)) - wave.omega_rad_s * t + 0.3;
-            let got = hull.at(pose(3.0, 2.0, 0.0), t);
-            let want = speed_m_s * libm::cos(phase);
-            assert!((got.velocity.surge - want * libm::cos(toward_rad)).abs() < 1e-5, "{depth_m:?}: {got:?} {want}");
-            assert!((got.velocity.sway - want * libm::sin(toward_rad)).abs() < 1e-5, "{depth_m:?}: {got:?} {want}");
-        }
-    }
-}
-
-#[test]
 fn the_acceleration_at_the_surface_is_minus_g_times_its_gradient() {
     let waves = Waves { gamma: 2.0, ..waves(0.5, 3.0, 2.0) };
     for depth_m in [None, Some(1.5)] {
@@ -110,22 +91,6 @@ fn a_hull_feels_the_mean_and_the_first_moment_over_its_length_and_beam() {
             assert!(off.iter().all(|off| off.abs() < 2e-3), "{psi_deg} deg: {got:?}, by strips {want:?}");
         }
     }
-}
-
-#[test]
-fn a_hull_does_not_feel_waves_that_fit_into_it() {
-    let boat = surveyor();
-    let head_on = |length_m: f64| {
-        let hull = HullWaves::new(&regular(length_m, PI, None), &boat, DENSITY_KG_M3);
-        let bare = HullWaves::new(&regular(length_m, PI, None), &cork(), DENSITY_KG_M3);
-        (mean_square(&hull, 0.0, |v| v.surge) / mean_square(&bare, 0.0, |v| v.surge)).sqrt()
-    };
-    for whole in [1.0, 2.0, 3.0] {
-        let left = head_on(boat.length_m / whole);
-        assert!(left < 1e-12, "with {whole} waves under the hull, {left} of the surge remains");
-    }
-    assert!(head_on(boat.length_m / 3.5) < 0.06, "short waves are filtered");
-    assert!(head_on(100.0 * boat.length_m) > 0.99, "long waves are not");
 }
 
 /// Interpolation errors between the headings of the table, in surge, sway and yaw velocity and
@@ -327,30 +292,3 @@ fn the_rates_of_the_attitude_are_its_changes_along_a_turning_track() {
     let got = straight(0.0).heave_up_m_s2;
     assert!((got - want).abs() < 1e-4, "{got}, by differences {want}");
 }
-
-#[test]
-fn a_sample_is_the_same_bits_everywhere() {
-    let field = sea(0.5, 3.0, Spreading::Cosine2s { s: 8.0 });
-    let sample = HullWaves::new(&field, &surveyor(), DENSITY_KG_M3).at(pose(12.5, -40.25, 0.6), 1234.55);
-    let attitude = WaveResponse::new(&field, &surveyor()).at(pose(12.5, -40.25, 0.6), Ned::default(), 0.0, 1234.55);
-    let got = [
-        sample.velocity.surge,
-        sample.velocity.yaw,
-        sample.acceleration.sway,
-        sample.drift_newton.sway,
-        attitude.heave_up_m,
-        attitude.roll_rad_s,
-    ]
-    .map(f64::to_bits);
-    assert_eq!(got, PINNED, "{got:#018x?}");
-}
-
-/// Recorded once; a different value on any machine is a bug.
-const PINNED: [u64; 6] = [
-    0xbfdf_e89c_1000_0000,
-    0x3fc0_ed5a_c000_0000,
-    0x3fd9_a394_5c00_0000,
-    0xbffe_05d1_0799_b60c,
-    0x3fd1_3588_dc00_0000,
-    0x3fd1_3072_a6c0_0000,
-];

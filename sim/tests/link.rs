@@ -73,15 +73,6 @@ fn every_order_of_the_longest_delay_and_a_short_decision_arrives() {
 }
 
 #[test]
-fn the_longest_jitter_does_not_fill_the_queues() {
-    let mut scenario = over(Link { delay_s: 10.0, jitter_s: 10.0, ..link() });
-    (scenario.tick, scenario.ticks_per_decision) = (SimTime(10_000_000), 1);
-    let mut contest = started(&scenario);
-    (0..10_000).for_each(|_| play(&mut contest));
-    assert_ne!(contest.order_in_force(BLUE), Order::Hold);
-}
-
-#[test]
 fn orders_sent_beyond_the_range_do_not_arrive() {
     let station = Ned::from_xy(150.0, 200.0);
     let mut contest = started(&over(Link { range_m: Some(30.0), station, ..link() }));
@@ -101,21 +92,6 @@ fn orders_sent_beyond_the_range_do_not_arrive() {
         assert_eq!(contest.order_in_force(BLUE), want, "decision {k}");
     }
     assert!(inside > 100 && outside > 100, "{inside} {outside}");
-}
-
-#[test]
-fn the_stated_share_of_orders_is_lost() {
-    const ORDERS: u64 = 20_000;
-    let loss = Loss { good: 0.3, ..Loss::default() };
-    let mut contest = started(&over(Link { loss, ..link() }));
-    let mut lost = 0.0;
-    for k in 0..ORDERS {
-        play(&mut contest);
-        lost += f64::from(u8::from(contest.order_in_force(BLUE) != labelled(k)));
-    }
-    // Five standard errors.
-    let share = lost / ORDERS as f64;
-    assert!((share - 0.3).abs() < 5.0 * (0.21 / ORDERS as f64).sqrt(), "{share}");
 }
 
 #[test]

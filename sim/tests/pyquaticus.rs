@@ -155,56 +155,29 @@ fn boats_pass_through_each_other_where_the_rules_say_so() {
 #[test]
 fn half_a_turn_is_an_order_of_its_own_to_either_side() {
     // Actions 0 and 8 of Pyquaticus, half a turn at full and at half speed, held from rest: x, y,
-    // speed and heading after 3 s, 12 s and 30 s. To port it is the mirror image.
-    let cases: [(&str, f64, [[f64; 4]; 3]); 4] = [
-        (
-            "heron",
-            2.0,
-            [
-                [50.21517, 40.155718, 0.188223, 108.030393],
-                [50.081557, 40.114398, 0.3, 48.49927],
-                [50.081557, 40.114398, 0.3, 48.49927],
-            ],
-        ),
-        (
-            "heron",
-            1.0,
-            [
-                [50.070658, 40.135417, 0.103561, 54.001006],
-                [50.08282, 40.095825, 0.297411, 45.493965],
-                [50.082599, 40.095712, 0.3, 45.493965],
-            ],
-        ),
-        (
-            "surveyor",
-            3.0,
-            [
-                [50.041019, 40.339859, 0.223125, 13.621031],
-                [52.593356, 40.306473, 0.45, 170.444517],
-                [52.593356, 40.306473, 0.45, 170.444517],
-            ],
-        ),
-        (
-            "surveyor",
-            1.5,
-            [
-                [50.014211, 40.236562, 0.15205, 6.750141],
-                [51.623766, 41.601201, 0.362435, 97.475],
-                [51.441386, 41.600823, 0.45, 88.349223],
-            ],
-        ),
-    ];
-    for (boat, speed_m_s, want) in cases {
+    // speed and heading after some seconds. To port it is the mirror image.
+    for (boat, speed_m_s, at_s, [x, y, speed, heading_deg]) in [
+        ("heron", 2.0, 3.0, [50.21517, 40.155718, 0.188223, 108.030393]),
+        ("heron", 2.0, 12.0, [50.081557, 40.114398, 0.3, 48.49927]),
+        ("heron", 2.0, 30.0, [50.081557, 40.114398, 0.3, 48.49927]),
+        ("heron", 1.0, 3.0, [50.070658, 40.135417, 0.103561, 54.001006]),
+        ("heron", 1.0, 12.0, [50.08282, 40.095825, 0.297411, 45.493965]),
+        ("heron", 1.0, 30.0, [50.082599, 40.095712, 0.3, 45.493965]),
+        ("surveyor", 3.0, 3.0, [50.041019, 40.339859, 0.223125, 13.621031]),
+        ("surveyor", 3.0, 12.0, [52.593356, 40.306473, 0.45, 170.444517]),
+        ("surveyor", 3.0, 30.0, [52.593356, 40.306473, 0.45, 170.444517]),
+        ("surveyor", 1.5, 3.0, [50.014211, 40.236562, 0.15205, 6.750141]),
+        ("surveyor", 1.5, 12.0, [51.623766, 41.601201, 0.362435, 97.475]),
+        ("surveyor", 1.5, 30.0, [51.441386, 41.600823, 0.45, 88.349223]),
+    ] {
         for side in [1.0, -1.0] {
             let mut contest = started(&game("pyquaticus", boat, (50.0, 40.0, 0.0)));
-            for (at_s, [x, y, speed, heading_deg]) in [3.0, 12.0, 30.0].into_iter().zip(want) {
-                while contest.now().as_s() < at_s - 0.05 {
-                    step(&mut contest, Order::Turn { by_rad: side * PI, speed_m_s });
-                }
-                let want = [50.0 + side * (x - 50.0), y, speed, side * heading_deg];
-                let what = format!("{boat} at {speed_m_s} m/s, side {side}, after {at_s} s");
-                assert_near(&what, state(&contest, BLUE), want, 1e-5);
+            while contest.now().as_s() < at_s - 0.05 {
+                step(&mut contest, Order::Turn { by_rad: side * PI, speed_m_s });
             }
+            let want = [50.0 + side * (x - 50.0), y, speed, side * heading_deg];
+            let what = format!("{boat} at {speed_m_s} m/s, side {side}, after {at_s} s");
+            assert_near(&what, state(&contest, BLUE), want, 1e-5);
         }
     }
 }

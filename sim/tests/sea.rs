@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{afloat, alone, on_sea, place_boat, scenarios, surveyor_on};
+use common::{afloat, alone, on_sea, place_boat, sail, scenarios, surveyor_on};
 use messages::Order;
 use primitives::Ned;
 use scenario::sea::{GRAVITY_M_S2, Spreading, Waves};
@@ -17,51 +17,12 @@ fn waves(hs_m: f64, tp_s: f64) -> Waves {
     common::waves(hs_m, tp_s, 0.0)
 }
 
-fn run(world: &mut World, orders: &[Order], seconds: f64) {
-    for _ in 0..(seconds / 0.05).round() as u64 {
-        world.step(orders);
-    }
-}
-
-#[test]
-fn without_thrust_a_boat_ends_up_going_with_the_current_whatever_its_heading() {
-    for heading_deg in [0.0, 37.0, 90.0, 200.0] {
-        let scenario = surveyor_on(|sea| sea.current.mean_m_s = Ned { north: 0.3, east: 0.4 });
-        let mut world = afloat(&scenario, 1, (300.0, 200.0, heading_deg), (0.0, 0.0, 0.0));
-        run(&mut world, &DRIFTING, 240.0);
-        let before = world.state().boats[0].pose.at;
-        world.step(&DRIFTING);
-        let velocity = (world.state().boats[0].pose.at - before).scaled(20.0);
-        assert!(velocity.distance(Ned { north: 0.3, east: 0.4 }) < 1e-6, "{heading_deg}: {velocity:?}");
-    }
-}
-
-#[test]
-fn energy_does_not_grow_without_input_in_a_moving_water_seen_from_it() {
-    let scenario = surveyor_on(|sea| sea.current.mean_m_s = Ned { north: 0.3, east: 0.1 });
-    let hull = &common::hulls(&scenario)[0];
-    let mut world = afloat(&scenario, 1, (200.0, 200.0, 70.0), (2.0, -0.5, 0.6));
-    let relative = |world: &World| {
-        let boat = world.state().boats[0];
-        let rotation = boat.pose.rotation();
-        let water = primitives::frame::body_from_ned(rotation, Ned { north: 0.3, east: 0.1 });
-        sim::hull::Planar { surge: boat.nu.surge - water.ahead, sway: boat.nu.sway - water.starboard, yaw: boat.nu.yaw }
-    };
-    let mut before = hull.energy_joule(relative(&world));
-    for tick in 0..2_000 {
-        world.step(&DRIFTING);
-        let now = hull.energy_joule(relative(&world));
-        assert!(now <= before, "tick {tick}: {before} -> {now}");
-        before = now;
-    }
-}
-
 /// A drifter's mean velocity over ten minutes and the root mean square of its velocity, m/s, in
 /// waves of this height without drift force.
 fn adrift(hs_m: f64, seed: u64) -> (Ned, f64) {
     let scenario = surveyor_on(|sea| sea.waves = Some(Waves { drift_factor: 0.0, ..waves(hs_m, 2.5) }));
     let mut world = afloat(&scenario, seed, (300.0, 200.0, 20.0), (0.0, 0.0, 0.0));
-    run(&mut world, &DRIFTING, 60.0);
+    sail(&mut world, &DRIFTING, 1_200);
     let start = world.state().boats[0].pose.at;
     let (mut sum, n) = (0.0, 12_000);
     for _ in 0..n {
@@ -102,11 +63,11 @@ fn boats_in_waves_heave_at_the_frequency_of_encounter() {
         let mut world = afloat(&scenario, 1, (300.0, 50.0, 0.0), (speed_m_s, 0.0, 0.0));
         let wave = *world.sea().waves().unwrap().components().next().unwrap();
         let orders = [Order::Steer { heading_rad: 0.0, speed_m_s }, Order::Hold];
-        run(&mut world, &orders, 20.0);
+        sail(&mut world, &orders, 400);
         let start = world.state().boats[0].pose.at;
         let step = |_| {
             world.step(&orders);
-            world.attitude(primitives::VehicleId(0)).heave_up_m
+            world.truth(primitives::VehicleId(0)).attitude.heave_up_m
         };
         let spectrum = common::amplitudes(&(0..samples).map(step).collect::<Vec<_>>());
         let gone = world.state().boats[0].pose.at - start;
@@ -130,9 +91,7 @@ fn every_shipped_sea_can_be_sailed_for_a_whole_game() {
     assert!(files.len() >= 14, "{files:?}");
     for file in files {
         let mut world = World::of_game(&on_sea("pav01_afloat.toml", &file), 1).unwrap();
-        for _ in 0..12_000 {
-            world.step(&[Order::Steer { heading_rad: 1.0, speed_m_s: 2.0 }; 4]);
-        }
+        sail(&mut world, &[Order::Steer { heading_rad: 1.0, speed_m_s: 2.0 }; 4], 12_000);
         assert!(world.state().boats.iter().all(|boat| !boat.quarantined), "{}", file.display());
         let speed = world
             .state()
@@ -154,7 +113,7 @@ fn a_free_boat_in_a_long_swell_goes_with_stokes_drift() {
         let mut world = afloat(&scenario, 4, (300.0, 200.0, 20.0), (0.0, 0.0, 0.0));
         let start = world.state().boats[0].pose.at;
         let minutes = 40;
-        run(&mut world, &DRIFTING, 60.0 * f64::from(minutes));
+        sail(&mut world, &DRIFTING, 1_200 * minutes);
         let gone = (world.state().boats[0].pose.at - start).scaled(1.0 / f64::from(60 * minutes));
         assert!(gone.distance(want) < 0.15 * want.length(), "{hs_m} m, {tp_s} s: {gone:?} m/s, not {want:?}");
     }
@@ -170,7 +129,7 @@ fn point_boats_collide_in_a_current_as_they_do_in_still_water() {
         let mut world = afloat(&scenario, 1, (300.0, 200.0, 90.0), (0.0, 0.0, 0.0));
         place_boat(&mut world, 1, (308.0, 200.2, 0.0), (0.0, 0.0, 0.0));
         let ahead = Order::Steer { heading_rad: std::f64::consts::FRAC_PI_2, speed_m_s: 1.5 };
-        run(&mut world, &[ahead, Order::Hold], 30.0);
+        sail(&mut world, &[ahead, Order::Hold], 600);
         [0, 1].map(|i| world.state().boats[i].pose.at - mean_m_s.scaled(30.0))
     };
     let (still, drifting) = (after(Ned::default()), after(current));

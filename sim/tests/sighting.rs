@@ -116,7 +116,7 @@ fn reports_err_by_the_stated_noise_and_anew_each_time() {
         errors[3].push(velocity.1 / velocity_noise_m_s);
         contest.advance();
     }
-    let mean = |f: &dyn Fn(usize) -> f64| (0..REPORTS - 1).map(f).sum::<f64>() / (REPORTS - 1) as f64;
+    let mean = |f: &dyn Fn(usize) -> f64| common::mean_of(REPORTS - 1, f);
     // Five standard errors each.
     let within = 5.0 / (REPORTS as f64).sqrt();
     for (axis, error) in errors.iter().enumerate() {

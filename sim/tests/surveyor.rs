@@ -16,9 +16,7 @@ fn afloat(nu: (f64, f64, f64)) -> World {
 
 /// The boat after this time under an order.
 fn sail(world: &mut World, order: Order, seconds: u32) -> BoatState {
-    for _ in 0..20 * seconds {
-        world.step(&[order, Order::Hold]);
-    }
+    common::sail(world, &[order, Order::Hold], 20 * seconds);
     world.state().boats[0]
 }
 

@@ -6,7 +6,7 @@ use common::square;
 use primitives::frame::Ned;
 use primitives::stream::Stream;
 use scenario::sea::{GRAVITY_M_S2, Spreading, Waves};
-use sim::sea::spectrum::{BAND, jonswap_m2_s};
+use sim::sea::spectrum::jonswap_m2_s;
 use sim::sea::wave::wavenumber_rad_m;
 use sim::sea::{Component, Surface, WaveField};
 use std::f64::consts::{PI, TAU};
@@ -94,43 +94,6 @@ fn half_an_hour_at_a_place_has_the_stated_variance() {
     assert!((mean - 1.0).abs() < 0.03, "{mean} of the variance");
 }
 
-#[test]
-fn four_hours_at_a_place_have_the_stated_spectrum() {
-    let waves = sea(256);
-    let field = WaveField::new(&waves, None, 3);
-    let (dt_s, peak, segment, segments) = (0.25, TAU / waves.tp_s, 1600, 36);
-    let series: Vec<f64> = (0..segment * segments)
-        .map(|i| field.surface(Ned { north: 5.0, east: 80.0 }, dt_s * f64::from(i)).elevation_m)
-        .collect();
-    let whole = integral(&waves, BAND.0 * peak, BAND.1 * peak, |_| 1.0);
-    for (from, to) in [(0.5, 0.8), (0.8, 0.93), (0.93, 1.0), (1.0, 1.1), (1.1, 1.3), (1.3, 1.7), (1.7, 2.5), (2.5, 5.0)]
-    {
-        let got = series
-            .chunks(segment as usize)
-            .map(|part| variance_between(part, dt_s, from * peak, to * peak) / (square(waves.hs_m) / 16.0))
-            .sum::<f64>()
-            / f64::from(segments);
-        let want = integral(&waves, from * peak, to * peak, |_| 1.0) / whole;
-        assert!((got - want).abs() < 0.015, "{from} to {to} peak frequencies: {got} of the variance, not {want}");
-    }
-}
-
-/// The variance of the harmonics of a series in a band, by the discrete Fourier transform.
-fn variance_between(series: &[f64], dt_s: f64, from_rad_s: f64, to_rad_s: f64) -> f64 {
-    let per_harmonic = TAU / (series.len() as f64 * dt_s);
-    let (first, last) = ((from_rad_s / per_harmonic) as u32 + 1, (to_rad_s / per_harmonic) as u32);
-    let variance = |harmonic: u32| {
-        let (sin, cos) = libm::sincos(f64::from(harmonic) * per_harmonic * dt_s);
-        let (mut turn, mut sum) = ((0.0, 1.0), (0.0, 0.0));
-        for x in series {
-            sum = (sum.0 + x * turn.0, sum.1 + x * turn.1);
-            turn = (turn.0 * cos + turn.1 * sin, turn.1 * cos - turn.0 * sin);
-        }
-        2.0 * (sum.0 * sum.0 + sum.1 * sum.1) / square(series.len() as f64)
-    };
-    (first..=last).map(variance).sum()
-}
-
 /// Energy-weighted mean vector of the components' directions, relative to the expected direction.
 fn mean_vector(components: &[Component], from_rad: f64) -> (f64, f64) {
     let energy: f64 = components.iter().map(|c| square(c.amplitude_m)).sum();
@@ -163,17 +126,6 @@ fn directions_have_the_mean_and_the_spread_of_their_distribution_at_all_frequenc
             }
         }
     }
-}
-
-#[test]
-fn waves_from_the_north_go_south() {
-    let waves = Waves { from_rad: 0.0, spreading: Spreading::None, ..sea(1) };
-    let field = WaveField::new(&waves, None, 1);
-    let omega = field.components().map(|c| c.omega_rad_s).sum::<f64>();
-    let metres = 0.1 * omega / wavenumber_rad_m(omega, f64::INFINITY);
-    let at = Ned { north: 40.0, east: 3.0 };
-    let (here, there) = (field.surface(at, 10.0), field.surface(Ned { north: 40.0 - metres, east: 9.0 }, 10.1));
-    assert!((here.elevation_m - there.elevation_m).abs() < 1e-9, "{here:?} {there:?}");
 }
 
 #[test]
@@ -231,50 +183,6 @@ fn dispersion_holds_from_very_shallow_to_very_deep() {
             assert!(residue.abs() < 1e-14, "{omega} rad/s, {depth_m} m: {residue}");
         }
     }
-}
-
-#[test]
-fn who_moves_meets_every_wave_at_its_frequency_of_encounter() {
-    // Nine waves of one sea, met head-on, across, following and obliquely. Each is a peak of the
-    // spectrum of its own height at ω − k V cos, within the resolution of fourteen minutes. None of
-    // this is put in: the surface is evaluated along the track.
-    let (samples, dt_s) = (8192, 0.1);
-    let field = WaveField::new(&Waves { gamma: 1.0, ..sea(9) }, None, 2);
-    let resolution = TAU / (f64::from(samples) * dt_s);
-    for speed_m_s in [0.0, 0.7, 1.5] {
-        for course_off_rad in [PI, 0.5 * PI, 0.0, 0.25 * PI] {
-            // Waves come from 0.7 rad.
-            let (sin, cos) = libm::sincos(0.7 + PI + course_off_rad);
-            let velocity = Ned { north: speed_m_s * cos, east: speed_m_s * sin };
-            let height = |i: i32| field.surface(velocity.scaled(dt_s * f64::from(i)), dt_s * f64::from(i)).elevation_m;
-            let spectrum = common::amplitudes(&(0..samples).map(height).collect::<Vec<_>>());
-            let met_at: Vec<f64> = field.components().map(|c| encounter_rad_s(c, velocity) / resolution).collect();
-            let mut apart = 0;
-            for (i, c) in field.components().enumerate() {
-                let others = met_at.iter().enumerate().filter(|(j, _)| *j != i);
-                let room = others.map(|(_, at)| (at - met_at[i]).abs()).fold(met_at[i], f64::min);
-                // Two waves with nearly the same frequency of encounter form one peak.
-                if room < 6.0 {
-                    continue;
-                }
-                apart += 1;
-                let around = (met_at[i] - 0.5 * room) as usize..(met_at[i] + 0.5 * room) as usize;
-                let peak = around.fold(0, |best, bin| if spectrum[bin] > spectrum[best] { bin } else { best });
-                let what = format!("{speed_m_s} m/s, {course_off_rad} rad off, {c:?}: {peak}, not {}", met_at[i]);
-                assert!((peak as f64 - met_at[i]).abs() <= 1.0, "{what}");
-                assert!((0.8..1.1).contains(&(spectrum[peak] / c.amplitude_m)), "{what}: {} m", spectrum[peak]);
-            }
-
-            assert!(apart >= 3, "only {apart} waves are distinguishable");
-        }
-    }
-}
-
-/// |ω − k·V| in deep water.
-fn encounter_rad_s(c: &Component, velocity: Ned) -> f64 {
-    let (sin, cos) = libm::sincos(c.toward_rad);
-    let k = c.omega_rad_s * c.omega_rad_s / GRAVITY_M_S2;
-    (c.omega_rad_s - k * (velocity.north * cos + velocity.east * sin)).abs()
 }
 
 #[test]

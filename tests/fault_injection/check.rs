@@ -102,7 +102,7 @@ fn unjust_losses(plan: &Plan, played: &Played, outcome: &Outcome) -> Vec<String>
     let enough = plan.patience().saturating_sub(margin);
     // A suspended sim must not report its agents as lost; a cut of the sim cuts off all the others.
     let is_excused = |node: usize| {
-        let absent = if node == SIM { plan.longest_cut(node) } else { plan.longest_absence(node) };
+        let absent = plan.longest_absence(node, node == SIM);
         absent > Duration::ZERO && absent >= enough
     };
     let lost = outcome.events.iter().filter(|event| event.event == "agent_lost");
@@ -121,7 +121,7 @@ fn unjust_losses(plan: &Plan, played: &Played, outcome: &Outcome) -> Vec<String>
 fn check_presence(plan: &Plan, played: &Played) -> Vec<String> {
     let mut wrong = Vec::new();
     let Some((first_frame, last_frame)) = played.monitor.frames else { return wrong };
-    let sim_is_well = plan.longest_absence(SIM).is_zero();
+    let sim_is_well = plan.longest_absence(SIM, false).is_zero();
     let all_are_back = plan.faults_end().max(first_frame) + plan.conditions.lease + plan.patience() + BACK;
     for (boat, lost) in played.monitor.lost.iter().enumerate() {
         let node = plan.agent_of(boat);

@@ -2,7 +2,7 @@
 //! command takes effect.
 
 use crate::plan::{Plan, SIM};
-use crate::play::{WAIT, net};
+use crate::play::{AtExit, WAIT, net};
 use crate::real_boat::{WAITED_S, Wire};
 use crate::stranger;
 use bus::game_search::GameSearch;
@@ -45,18 +45,9 @@ pub(crate) struct Operator<'a> {
     unanswered: u32,
 }
 
-/// Stops the gateway and its boat when the operator's node exits for any reason.
-struct EndsGateway<'a>(&'a AtomicBool);
-
-impl Drop for EndsGateway<'_> {
-    fn drop(&mut self) {
-        self.0.store(true, Ordering::Relaxed);
-    }
-}
-
 /// Acts as operator until the game is over, then stops the gateway and its boat.
 pub(crate) fn operate(plan: &Plan, wire: &Wire, vehicle: &str, over: &Arc<Watched<bool>>, stop: &AtomicBool) {
-    let _ends_gateway = EndsGateway(stop);
+    let _ends_gateway = AtExit(|| stop.store(true, Ordering::Relaxed));
     let began = clock::now();
     let search_stop = AtomicBool::new(false);
     let found = GameSearch::new(WAIT, &search_stop).game(&mut |_| {}, &net(false).into(), None);

@@ -190,25 +190,15 @@ impl Plan {
         ends.chain(self.wire_cuts.iter().map(|(_, end)| *end)).max().unwrap_or_default()
     }
 
-    /// The longest continuous period in which `node` was cut off or suspended; unlimited if it was
-    /// killed.
-    pub(crate) fn longest_absence(&self, node: usize) -> Duration {
-        self.longest(node, |fault| !matches!(fault, Fault::Kill { .. }))
-    }
-
-    /// The longest continuous cut of `node`.
-    pub(crate) fn longest_cut(&self, node: usize) -> Duration {
-        self.longest(node, |fault| matches!(fault, Fault::Cut { .. }))
-    }
-
-    fn longest(&self, node: usize, counts: impl Fn(&Fault) -> bool) -> Duration {
+    /// The longest continuous period in which `node` was cut off or, unless only cuts count, suspended;
+    /// unlimited if it was killed.
+    pub(crate) fn longest_absence(&self, node: usize, only_cuts: bool) -> Duration {
         let mut spans: Vec<(Duration, Duration)> = Vec::new();
         for (at, fault) in &self.faults {
             match fault {
                 Fault::Kill { node: who, .. } if *who == node => return Duration::MAX,
-                Fault::Cut { node: who, time } | Fault::Suspend { node: who, time }
-                    if *who == node && counts(fault) =>
-                {
+                Fault::Suspend { .. } if only_cuts => {}
+                Fault::Cut { node: who, time } | Fault::Suspend { node: who, time } if *who == node => {
                     spans.push((*at, *at + *time));
                 }
                 _ => {}

@@ -108,12 +108,12 @@ pub(crate) fn play(plan: &Plan, keeps_lines: bool) -> Played {
     Played { scenario, run, sim, agents, refused, monitor }
 }
 
-/// Signals the end of the game when dropped.
-struct SaysOver(Arc<Watched<bool>>);
+/// Does this when its node exits for any reason.
+pub(crate) struct AtExit<F: FnMut()>(pub(crate) F);
 
-impl Drop for SaysOver {
+impl<F: FnMut()> Drop for AtExit<F> {
     fn drop(&mut self) {
-        self.0.visit(|over| *over = true);
+        (self.0)();
     }
 }
 
@@ -156,7 +156,7 @@ fn add_sim(
     let (scenario, results, over) = (scenario.clone(), Arc::clone(results), Arc::clone(over));
     let (pace, speed, game_seed) = (plan.pace, plan.speed, plan.game_seed);
     network.node(Duration::ZERO, "sim", move || {
-        let _says_over = SaysOver(Arc::clone(&over));
+        let _says_over = AtExit(|| over.visit(|over| *over = true));
         let stop = Arc::new(AtomicBool::new(false));
         let settings = Settings { game: name(), net: net(true), pace, join_limit: JOIN, speed, stop };
         let served = sim::node::serve(&scenario, game_seed, &settings, None, &mut |_| {});

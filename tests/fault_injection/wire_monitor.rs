@@ -2,7 +2,7 @@
 
 use crate::plan::Plan;
 use messages::external::ExternalOrder;
-use messages::{Frame, Order, Orders, VehicleTruth};
+use messages::{Frame, Order, Orders};
 use primitives::{SimTime, codec};
 use scenario::Scenario;
 use sim::node::Pace;
@@ -110,18 +110,15 @@ impl WireMonitor {
             if truth.tagged || truth.disabled || truth.outside {
                 boat.driven = now;
             }
+            let thrust = truth.port_newton.abs() + truth.starboard_newton.abs();
+            let rests = thrust <= RESTS_NEWTON;
             if let Some(reason) = self.boats[i].must_rest(now, self.order_ttl_s, self.expires)
-                && !rests(truth)
+                && !rests
             {
-                let thrust = truth.port_newton.abs() + truth.starboard_newton.abs();
                 self.wrong.push(format!("at {now} boat {i} has {thrust:.1} N although {reason}"));
             }
         }
     }
-}
-
-fn rests(truth: &VehicleTruth) -> bool {
-    truth.port_newton.abs() + truth.starboard_newton.abs() <= RESTS_NEWTON
 }
 
 impl Boat {

@@ -12,7 +12,7 @@ use gateway::emulator::{self, Emulator, Port};
 use gateway::nmea::{Date, TimeOfDay};
 use messages::Order;
 use messages::external::OperatorCommand;
-use messages::picture::{Imu, OwnBoat};
+use messages::picture::OwnBoat;
 use primitives::angle::wrap_pi;
 use primitives::frame::{Ned, Rotation, body_from_ned};
 use primitives::stream::Stream;
@@ -199,15 +199,6 @@ impl Voyage {
 /// A boat's sensor readings, as its front seat receives them.
 fn own_boat(world: &World, vehicle: VehicleId, fault: Fault) -> OwnBoat {
     let reading = world.reading(vehicle).expect("the boat has sensors");
-    let ([roll, pitch, yaw], [ahead, starboard, down]) = (reading.imu.gyro_rad_s, reading.imu.accelerometer_m_s2);
-    let imu = Imu {
-        roll_rate_rad_s: roll,
-        pitch_rate_rad_s: pitch,
-        yaw_rate_rad_s: yaw,
-        ahead_m_s2: ahead,
-        starboard_m_s2: starboard,
-        down_m_s2: down,
-    };
     let mut nav = reading.nav;
     let shown_rad = match fault {
         Fault::CompassOff(off_rad) => wrap_pi(nav.psi_rad - off_rad),
@@ -221,7 +212,7 @@ fn own_boat(world: &World, vehicle: VehicleId, fault: Fault) -> OwnBoat {
         let body = body_from_ned(Rotation::from_heading(nav.psi_rad), velocity);
         (nav.surge_m_s, nav.sway_m_s) = (body.ahead, body.starboard);
     }
-    OwnBoat { fix_ns: reading.fix_at, imu, ..OwnBoat::new(vehicle, nav) }
+    OwnBoat { fix_ns: reading.fix_at, imu: reading.imu.into(), ..OwnBoat::new(vehicle, nav) }
 }
 
 /// The part of an order that the thrusters carry out.

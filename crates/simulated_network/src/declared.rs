@@ -1,11 +1,13 @@
-//! The declarations of sessions.
+//! The declarations of sessions, their queries, and the callbacks of both.
 
 use crate::packet::{Kind, Packet};
-use crate::query::RoutedQuery;
+use bus::Parcel;
 use std::collections::BTreeSet;
 use std::fmt;
 use std::sync::Arc;
 
+/// A callback for an event, called with no lock held.
+pub(crate) type Call = Box<dyn FnOnce() + Send>;
 /// Callbacks for the bytes of a message, for a query, and for a token that has appeared or gone.
 pub(crate) type TakeBytes = Arc<dyn Fn(&[u8]) + Send + Sync>;
 pub(crate) type TakeQuery = Arc<dyn Fn(RoutedQuery) + Send + Sync>;
@@ -44,4 +46,21 @@ impl fmt::Debug for Declared {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.key)
     }
+}
+
+/// A query that has reached a session with a matching queryable.
+pub(crate) struct RoutedQuery {
+    pub(crate) session: usize,
+    pub(crate) query: u64,
+    pub(crate) key: String,
+    pub(crate) payload: Parcel,
+}
+
+/// A query whose answers are not complete.
+pub(crate) struct PendingQuery {
+    pub(crate) asker: usize,
+    /// How many sessions may still answer.
+    pub(crate) open: usize,
+    /// Called with each answer, and with `None` after the last one.
+    pub(crate) take: Arc<dyn Fn(Option<Parcel>) + Send + Sync>,
 }

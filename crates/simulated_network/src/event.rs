@@ -1,8 +1,7 @@
 //! The events of a simulation, in the order of virtual time.
 
-use crate::fault::{Fault, FaultEnd};
+use crate::conditions::Fault;
 use crate::packet::Local;
-use std::cmp::Ordering;
 use std::time::Duration;
 
 /// An event at a virtual time.
@@ -18,10 +17,11 @@ pub(crate) enum Event {
         node: usize,
     },
     Fault(Fault),
-    /// A fault ends.
-    FaultEnd {
+    CutEnd {
         node: usize,
-        what: FaultEnd,
+    },
+    SuspensionEnd {
+        node: usize,
     },
     /// A packet arrives at one end of a link.
     Arrive {
@@ -44,35 +44,6 @@ pub(crate) enum Event {
         session: usize,
         local: Local,
     },
-}
-
-/// An event in the queue. Events at the same time keep their order of insertion.
-pub(crate) struct Queued {
-    pub(crate) at_ns: u64,
-    pub(crate) order: u64,
-    pub(crate) event: Event,
-}
-
-impl PartialEq for Queued {
-    fn eq(&self, other: &Queued) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl Eq for Queued {}
-
-impl PartialOrd for Queued {
-    fn partial_cmp(&self, other: &Queued) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Queued {
-    fn cmp(&self, other: &Queued) -> Ordering {
-        // The earliest is the greatest: the queue is a max-heap. Insertion order breaks ties: by
-        // time alone, one seed could give two traces.
-        (other.at_ns, other.order).cmp(&(self.at_ns, self.order))
-    }
 }
 
 /// A time in ns, limited to about five centuries.

@@ -7,27 +7,19 @@
 //! trace. Tests start with [`SimulatedNetwork`]. Inside a node, [`bus::Bus`], [`bus::clock`] and
 //! everything that waits run on it, because it replaces the process's [`bus::Runtime`].
 
-mod call;
 mod conditions;
 mod declared;
 mod event;
-mod fault;
 mod link;
-mod link_state;
 mod packet;
-mod published;
-mod query;
 mod routing;
 mod run;
 mod runtime;
 mod scheduler;
 mod session;
 mod state;
-mod step;
 mod verdict;
 
-pub use conditions::{Conditions, Damage};
-pub use fault::Fault;
-pub use published::Published;
+pub use conditions::{Conditions, Damage, Fault};
 pub use run::{Run, SimulatedNetwork};
-pub use verdict::{NodeEnd, Verdict};
+pub use verdict::{NodeEnd, Published, Verdict};

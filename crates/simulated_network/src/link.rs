@@ -1,13 +1,10 @@
 //! The link of a leaf to its hub: it delays messages, keeps their order, and closes when either
 //! side is silent for the lease.
 
-use crate::call::Call;
 use crate::conditions::{Conditions, Damage};
 use crate::event::{Event, nanos};
-use crate::link_state::{Direction, Link};
-use crate::packet::Packet;
+use crate::packet::{Link, Packet};
 use crate::state::{SessionState, State};
-use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -20,17 +17,7 @@ impl State {
     /// Opens a link, and gives the hub the leaf's declarations.
     pub(crate) fn connect(&mut self, leaf: usize, hub: usize) {
         let link = self.links.len();
-        let (down, up, known) = (Direction::default(), Direction::default(), BTreeMap::new());
-        self.links.push(Link {
-            leaf,
-            hub,
-            leaf_open: true,
-            hub_open: true,
-            known,
-            down,
-            up,
-            silent_since_ns: [None; 2],
-        });
+        self.links.push(Link { leaf, hub, leaf_open: true, hub_open: true, ..Link::default() });
         self.sessions[leaf].link = Some(link);
         self.note("connects", self.sessions[leaf].node, "", &[]);
         let declared = &self.sessions[leaf].declared;
@@ -38,14 +25,18 @@ impl State {
         declares.into_iter().for_each(|packet| self.send(link, true, packet));
     }
 
+    /// The first hub that listens at one of these endpoints.
+    pub(crate) fn hub_at(&self, endpoints: &[String]) -> Option<usize> {
+        let listens = |session: &SessionState| session.endpoints.iter().any(|endpoint| endpoints.contains(endpoint));
+        self.sessions.iter().position(|session| session.is_hub && session.is_open && listens(session))
+    }
+
     /// The hub that a leaf can currently reach.
     pub(crate) fn reachable_hub(&self, leaf: usize) -> Option<usize> {
-        let (node, endpoints) = (self.sessions[leaf].node, &self.sessions[leaf].endpoints);
-        let hub = self.sessions.iter().position(|other| {
-            other.is_hub && other.is_open && other.endpoints.iter().any(|endpoint| endpoints.contains(endpoint))
-        })?;
+        let node = self.sessions[leaf].node;
+        let hub = self.hub_at(&self.sessions[leaf].endpoints)?;
         let there = &self.nodes[self.sessions[hub].node];
-        (!self.nodes[node].is_cut && !there.is_cut && !there.is_suspended).then_some(hub)
+        (!self.nodes[node].is_cut() && !there.is_cut() && !there.is_suspended()).then_some(hub)
     }
 
     pub(crate) fn send(&mut self, link: usize, up: bool, packet: Packet) {
@@ -111,21 +102,21 @@ impl State {
     fn is_stopped(&self, link: usize, up: bool) -> bool {
         let [leaf, hub] = [self.links[link].leaf, self.links[link].hub].map(|end| &self.nodes[self.sessions[end].node]);
         let receiver = if up { hub } else { leaf };
-        leaf.is_cut || hub.is_cut || receiver.is_suspended
+        leaf.is_cut() || hub.is_cut() || receiver.is_suspended()
     }
 
     /// Delivers the packets that are due.
-    pub(crate) fn arrive(&mut self, link: usize, up: bool, arrival: u64) -> Vec<Call> {
+    pub(crate) fn arrive(&mut self, link: usize, up: bool, arrival: u64) {
         let is_stopped = self.is_stopped(link, up);
         let direction = self.links[link].direction(up);
         if direction.arrival != arrival {
-            return vec![];
+            return;
         }
         direction.is_due = false;
         if is_stopped {
-            return vec![];
+            return;
         }
-        let Some((_, packet)) = direction.queue.pop_front() else { return vec![] };
+        let Some((_, packet)) = direction.queue.pop_front() else { return };
         if self.links[link].silent_since_ns[usize::from(up)].is_some() {
             // Packets in flight count as a sign of life too.
             self.begin_lease(link, up, self.conditions.lease);
@@ -166,13 +157,12 @@ impl State {
         self.after(wait, Event::LeaseOver { link, at_hub, since_ns });
     }
 
-    pub(crate) fn lease_over(&mut self, link: usize, at_hub: bool, since_ns: u64) -> Vec<Call> {
+    pub(crate) fn lease_over(&mut self, link: usize, at_hub: bool, since_ns: u64) {
         let Link { leaf, hub, silent_since_ns, .. } = self.links[link];
         let own = self.sessions[if at_hub { hub } else { leaf }].node;
-        if silent_since_ns[usize::from(at_hub)] != Some(since_ns) || self.nodes[own].is_suspended {
-            return vec![];
+        if silent_since_ns[usize::from(at_hub)] == Some(since_ns) && !self.nodes[own].is_suspended() {
+            self.close_end(link, at_hub);
         }
-        self.close_end(link, at_hub)
     }
 
     /// Both sides hear each other again: packets in flight continue, and a closed end notifies the
@@ -182,7 +172,7 @@ impl State {
             let Link { leaf, hub, leaf_open, hub_open, .. } = self.links[link];
             let is_silent = [leaf, hub].iter().any(|end| {
                 let node = &self.nodes[self.sessions[*end].node];
-                node.is_cut || node.is_suspended
+                node.is_cut() || node.is_suspended()
             });
             if !is_silent {
                 self.links[link].silent_since_ns = [None; 2];
@@ -203,26 +193,21 @@ impl State {
     }
 
     /// Closes one end of a link, and discards what it learnt over the link.
-    pub(crate) fn close_end(&mut self, link: usize, at_hub: bool) -> Vec<Call> {
-        let Link { leaf, leaf_open, hub_open, .. } = self.links[link];
+    pub(crate) fn close_end(&mut self, link: usize, at_hub: bool) {
+        let leaf = self.links[link].leaf;
         if at_hub {
-            if !hub_open {
-                return vec![];
+            if std::mem::replace(&mut self.links[link].hub_open, false) {
+                self.note("is closed by the hub", self.sessions[leaf].node, "", &[]);
+                self.forget(link);
             }
-            self.links[link].hub_open = false;
-            self.note("is closed by the hub", self.sessions[leaf].node, "", &[]);
-            return self.forget(link);
+        } else if std::mem::replace(&mut self.links[link].leaf_open, false) {
+            self.note("loses its link", self.sessions[leaf].node, "", &[]);
+            self.sessions[leaf].link = None;
+            if self.sessions[leaf].is_open {
+                self.try_again(leaf);
+            }
+            self.forget_tokens(leaf);
         }
-        if !leaf_open {
-            return vec![];
-        }
-        self.links[link].leaf_open = false;
-        self.note("loses its link", self.sessions[leaf].node, "", &[]);
-        self.sessions[leaf].link = None;
-        if self.sessions[leaf].is_open {
-            self.try_again(leaf);
-        }
-        self.forget_tokens(leaf)
     }
 
     fn try_again(&mut self, session: usize) {
@@ -230,16 +215,14 @@ impl State {
         self.after(wait, Event::Reconnect { session });
     }
 
-    pub(crate) fn reconnect(&mut self, session: usize) -> Vec<Call> {
+    pub(crate) fn reconnect(&mut self, session: usize) {
         let SessionState { is_open, link, node, .. } = self.sessions[session];
         if is_open && link.is_none() {
-            let hub = self.reachable_hub(session).filter(|_| !self.nodes[node].is_suspended);
-            match hub {
+            match self.reachable_hub(session).filter(|_| !self.nodes[node].is_suspended()) {
                 Some(hub) => self.connect(session, hub),
                 None => self.try_again(session),
             }
         }
-        vec![]
     }
 
     /// Closes a session, or ends its process. The others learn of it after the packets sent before.

@@ -1,12 +1,10 @@
 //! Routing at the hub.
 
-use crate::call::Call;
-use crate::declared::{Declared, TakeQuery, What};
+use crate::declared::{Call, Declared, RoutedQuery, TakeQuery, What};
 use crate::event::Event;
-use crate::packet::{Kind, Local, Packet};
-use crate::published::Published;
-use crate::query::{Asked, RoutedQuery};
+use crate::packet::{Asked, Kind, Local, Packet};
 use crate::state::State;
+use crate::verdict::Published;
 use bus::{Parcel, keys_meet};
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -26,19 +24,17 @@ impl State {
         found
     }
 
-    /// The calls of this session's subscribers.
-    fn calls_of_subscribers(&self, session: usize, key: &str, bytes: &Arc<[u8]>, is_own: bool) -> Vec<Call> {
-        let mut calls: Vec<Call> = Vec::new();
+    /// Calls this session's subscribers.
+    fn call_subscribers(&mut self, session: usize, key: &str, bytes: &Arc<[u8]>, is_own: bool) {
         for declared in self.sessions[session].declared.values() {
             if let What::Subscriber { take, hears_own } = &declared.what
                 && (!is_own || *hears_own)
                 && keys_meet(&declared.key, key)
             {
                 let (take, bytes) = (Arc::clone(take), Arc::clone(bytes));
-                calls.push(Box::new(move || take(&bytes)));
+                self.calls.push(Box::new(move || take(&bytes)));
             }
         }
-        calls
     }
 
     /// Publishes a message from a session.
@@ -86,16 +82,16 @@ impl State {
     }
 
     /// Handles a packet at the hub.
-    pub(crate) fn take_at_hub(&mut self, link: usize, packet: Packet) -> Vec<Call> {
+    pub(crate) fn take_at_hub(&mut self, link: usize, packet: Packet) {
         if !self.links[link].hub_open {
-            return vec![];
+            return;
         }
         let (leaf, hub) = (self.links[link].leaf, self.links[link].hub);
         match packet {
             Packet::Publish { key, bytes } => {
                 self.report_published(leaf, &key, &bytes);
                 self.forward(hub, &key, &bytes, Some(link));
-                self.calls_of_subscribers(hub, &key, &bytes, false)
+                self.call_subscribers(hub, &key, &bytes, false);
             }
             Packet::Declare { id, kind, key } => {
                 self.links[link].known.insert(id, (kind, key.clone()));
@@ -104,26 +100,26 @@ impl State {
                     Kind::Watch => {
                         let there = self.tokens(hub, &key, Some(link));
                         there.into_iter().for_each(|key| self.send(link, false, Packet::Token { key, is_there: true }));
-                        vec![]
                     }
-                    Kind::Subscriber | Kind::Queryable => vec![],
+                    Kind::Subscriber | Kind::Queryable => {}
                 }
             }
-            Packet::Undeclare { id } => match self.links[link].known.remove(&id) {
-                Some((Kind::Token, key)) => self.announce(hub, &key, false, Some(link)),
-                _ => vec![],
-            },
+            Packet::Undeclare { id } => {
+                if let Some((Kind::Token, key)) = self.links[link].known.remove(&id) {
+                    self.announce(hub, &key, false, Some(link));
+                }
+            }
             Packet::Ask { query, key, asked } => self.route(hub, query, &key, asked, Some(link)),
             Packet::Answer { query, answer } => self.answer_at_hub(hub, query, answer),
             Packet::Close => self.close_end(link, true),
-            Packet::Query { .. } | Packet::Token { .. } => vec![],
+            Packet::Query { .. } | Packet::Token { .. } => {}
         }
     }
 
     /// Handles a packet at a leaf.
-    pub(crate) fn take_at_leaf(&mut self, link: usize, packet: Packet) -> Vec<Call> {
+    pub(crate) fn take_at_leaf(&mut self, link: usize, packet: Packet) {
         if !self.links[link].leaf_open {
-            return vec![];
+            return;
         }
         let leaf = self.links[link].leaf;
         match packet {
@@ -134,19 +130,18 @@ impl State {
                     let at = Duration::from_nanos(self.now_ns);
                     on_take(Published { at, node: &self.nodes[node].name, key: &key, bytes: &bytes });
                 }
-                self.calls_of_subscribers(leaf, &key, &bytes, false)
+                self.call_subscribers(leaf, &key, &bytes, false);
             }
             Packet::Query { query, id, key, payload } => match self.sessions[leaf].declared.get(&id) {
-                Some(Declared { what: What::Queryable(take), .. }) => vec![asking(take, leaf, query, key, payload)],
-                _ => {
-                    self.send(link, true, Packet::Answer { query, answer: None });
-                    vec![]
+                Some(Declared { what: What::Queryable(take), .. }) => {
+                    self.calls.push(asking(take, leaf, query, key, payload));
                 }
+                _ => self.send(link, true, Packet::Answer { query, answer: None }),
             },
             Packet::Answer { query, answer } => self.answered(query, answer),
             Packet::Token { key, is_there } => self.take_token(leaf, &key, is_there),
             Packet::Close => self.close_end(link, false),
-            Packet::Declare { .. } | Packet::Undeclare { .. } | Packet::Ask { .. } => vec![],
+            Packet::Declare { .. } | Packet::Undeclare { .. } | Packet::Ask { .. } => {}
         }
     }
 
@@ -160,65 +155,65 @@ impl State {
     }
 
     /// Notifies all watchers that a token has appeared at the hub or gone.
-    pub(crate) fn announce(&mut self, hub: usize, key: &str, is_there: bool, from: Option<usize>) -> Vec<Call> {
+    pub(crate) fn announce(&mut self, hub: usize, key: &str, is_there: bool, from: Option<usize>) {
         // A leaf that came back may still be known by its old link.
         if !is_there && self.tokens(hub, key, None).iter().any(|there| there == key) {
-            return vec![];
+            return;
         }
         let mut to = self.declared_beyond(hub, Kind::Watch, key, from);
         to.dedup_by_key(|(link, _)| *link);
         for (link, _) in to {
             self.send(link, false, Packet::Token { key: key.to_owned(), is_there });
         }
-        if from.is_some() { self.take_token(hub, key, is_there) } else { vec![] }
+        if from.is_some() {
+            self.take_token(hub, key, is_there);
+        }
     }
 
     /// Notifies a session of a token.
-    fn take_token(&mut self, session: usize, key: &str, is_there: bool) -> Vec<Call> {
+    fn take_token(&mut self, session: usize, key: &str, is_there: bool) {
         let node = self.sessions[session].node;
         self.note(if is_there { "sees" } else { "misses" }, node, key, &[]);
-        let mut calls: Vec<Call> = Vec::new();
         for declared in self.sessions[session].declared.values_mut() {
             if let What::Watch(take, known) = &mut declared.what
                 && keys_meet(&declared.key, key)
                 && (if is_there { known.insert(key.to_owned()) } else { known.remove(key) })
             {
                 let (take, key) = (Arc::clone(take), key.to_owned());
-                calls.push(Box::new(move || take(&key, is_there)));
+                self.calls.push(Box::new(move || take(&key, is_there)));
             }
         }
-        calls
     }
 
     /// Discards all tokens that a leaf knows, after it has lost its link.
-    pub(crate) fn forget_tokens(&mut self, leaf: usize) -> Vec<Call> {
+    pub(crate) fn forget_tokens(&mut self, leaf: usize) {
         let watches = self.sessions[leaf].declared.values().filter_map(|declared| match &declared.what {
             What::Watch(_, known) => Some(known),
             _ => None,
         });
         let known: BTreeSet<String> = watches.flatten().cloned().collect();
-        known.iter().flat_map(|key| self.take_token(leaf, key, false)).collect()
+        known.iter().for_each(|key| self.take_token(leaf, key, false));
     }
 
     /// Discards all that the hub learnt over a link.
-    pub(crate) fn forget(&mut self, link: usize) -> Vec<Call> {
+    pub(crate) fn forget(&mut self, link: usize) {
         let hub = self.links[link].hub;
         let known = std::mem::take(&mut self.links[link].known);
         let tokens = known.into_values().filter(|(kind, _)| *kind == Kind::Token);
-        tokens.flat_map(|(_, key)| self.announce(hub, &key, false, Some(link))).collect()
+        tokens.for_each(|(_, key)| self.announce(hub, &key, false, Some(link)));
     }
 
-    pub(crate) fn take_local(&mut self, session: usize, local: &Local) -> Vec<Call> {
+    pub(crate) fn take_local(&mut self, session: usize, local: &Local) {
         match local {
-            Local::Publish { key, bytes } => self.calls_of_subscribers(session, key, bytes, true),
+            Local::Publish { key, bytes } => self.call_subscribers(session, key, bytes, true),
             Local::Token { watch, key } => {
                 let declared = self.sessions[session].declared.get_mut(watch);
-                let Some(Declared { what: What::Watch(take, known), .. }) = declared else { return vec![] };
-                if !known.insert(key.clone()) {
-                    return vec![];
+                if let Some(Declared { what: What::Watch(take, known), .. }) = declared
+                    && known.insert(key.clone())
+                {
+                    let (take, key) = (Arc::clone(take), key.clone());
+                    self.calls.push(Box::new(move || take(&key, true)));
                 }
-                let (take, key) = (Arc::clone(take), key.clone());
-                vec![Box::new(move || take(&key, true))]
             }
         }
     }
@@ -231,7 +226,7 @@ impl State {
     }
 
     /// Forwards a query from a hub to all matching queryables.
-    pub(crate) fn route(&mut self, hub: usize, query: u64, key: &str, asked: Asked, from: Option<usize>) -> Vec<Call> {
+    pub(crate) fn route(&mut self, hub: usize, query: u64, key: &str, asked: Asked, from: Option<usize>) {
         let payload = match asked {
             Asked::Payload(payload) => payload,
             Asked::Tokens => {
@@ -240,15 +235,15 @@ impl State {
             }
         };
         let beyond = self.declared_beyond(hub, Kind::Queryable, key, from);
-        let mut calls: Vec<Call> = Vec::new();
+        let mut open = beyond.len();
         for declared in self.sessions[hub].declared.values() {
             if let What::Queryable(take) = &declared.what
                 && keys_meet(&declared.key, key)
             {
-                calls.push(asking(take, hub, query, key.to_owned(), payload.clone()));
+                self.calls.push(asking(take, hub, query, key.to_owned(), payload.clone()));
+                open += 1;
             }
         }
-        let open = calls.len() + beyond.len();
         if let Some(pending) = self.queries.get_mut(&query) {
             pending.open = open;
         }
@@ -258,37 +253,36 @@ impl State {
         for (link, id) in beyond {
             self.send(link, false, Packet::Query { query, id, key: key.to_owned(), payload: payload.clone() });
         }
-        calls
     }
 
     /// Handles an answer at the hub, or the end of a session's answers.
-    pub(crate) fn answer_at_hub(&mut self, hub: usize, query: u64, answer: Option<Parcel>) -> Vec<Call> {
-        let Some(pending) = self.queries.get_mut(&query) else { return vec![] };
+    pub(crate) fn answer_at_hub(&mut self, hub: usize, query: u64, answer: Option<Parcel>) {
+        let Some(pending) = self.queries.get_mut(&query) else { return };
         if answer.is_none() {
             pending.open = pending.open.saturating_sub(1);
             if pending.open > 0 {
-                return vec![];
+                return;
             }
         }
-        self.answer_back(hub, query, answer)
+        self.answer_back(hub, query, answer);
     }
 
-    fn answer_back(&mut self, hub: usize, query: u64, answer: Option<Parcel>) -> Vec<Call> {
-        let Some(asker) = self.queries.get(&query).map(|pending| pending.asker) else { return vec![] };
+    fn answer_back(&mut self, hub: usize, query: u64, answer: Option<Parcel>) {
+        let Some(asker) = self.queries.get(&query).map(|pending| pending.asker) else { return };
         if asker == hub {
             return self.answered(query, answer);
         }
         if let Some(link) = self.links.iter().rposition(|link| link.leaf == asker && link.hub == hub && link.hub_open) {
             self.send(link, false, Packet::Answer { query, answer });
         }
-        vec![]
     }
 
     /// Passes an answer to the querying session.
-    fn answered(&mut self, query: u64, answer: Option<Parcel>) -> Vec<Call> {
-        let Some(pending) = self.queries.get(&query) else { return vec![] };
-        let take = Arc::clone(&pending.take);
-        vec![Box::new(move || take(answer))]
+    fn answered(&mut self, query: u64, answer: Option<Parcel>) {
+        if let Some(pending) = self.queries.get(&query) {
+            let take = Arc::clone(&pending.take);
+            self.calls.push(Box::new(move || take(answer)));
+        }
     }
 }
 

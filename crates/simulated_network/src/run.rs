@@ -1,16 +1,14 @@
 //! Setting up and running a simulation.
 
-use crate::conditions::Conditions;
+use crate::conditions::{Conditions, Fault};
 use crate::event::{Event, nanos};
-use crate::fault::Fault;
-use crate::published::Published;
 use crate::runtime::SimulatedRuntime;
 use crate::scheduler::World;
 use crate::state::{Node, State};
-use crate::verdict::{NodeEnd, Verdict};
+use crate::verdict::{NodeEnd, Published, Verdict};
 use bus::clock;
 use primitives::stream::Stream;
-use std::collections::{BTreeMap, BinaryHeap};
+use std::collections::BTreeMap;
 use std::hash::{DefaultHasher, Hasher};
 use std::sync::Arc;
 use std::time::Duration;
@@ -47,7 +45,7 @@ impl SimulatedNetwork {
             now_ns: 0,
             limit_ns: 0,
             order: 0,
-            events: BinaryHeap::new(),
+            events: BTreeMap::new(),
             starts_due: 0,
             nodes: vec![],
             threads: vec![],
@@ -55,6 +53,7 @@ impl SimulatedNetwork {
             sessions: vec![],
             links: vec![],
             queries: BTreeMap::new(),
+            calls: vec![],
             to_drop: vec![],
             number: 0,
             on_publish: None,
@@ -78,8 +77,6 @@ impl SimulatedNetwork {
             name: name.to_owned(),
             body: Arc::new(body),
             is_running: false,
-            is_suspended: false,
-            is_cut: false,
             cuts: 0,
             suspensions: 0,
             main_thread: None,

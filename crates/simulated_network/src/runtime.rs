@@ -43,7 +43,7 @@ impl Runtime for SimulatedRuntime {
 
     fn spawn(&self, name: &str, body: Box<dyn FnOnce() + Send>) -> io::Result<Option<JoinHandle<()>>> {
         let Some(current) = current() else { return System.spawn(name, body) };
-        current.spawn(body);
+        current.world.spawn(current.node, body);
         Ok(None)
     }
 

@@ -1,8 +1,9 @@
 //! Chooses which thread runs: exactly one at a time. A thread yields when it waits; when all wait,
 //! the next event happens.
 
-use crate::event::Event;
+use crate::event::{Event, nanos};
 use crate::state::{Node, State, Status, Thread};
+use crate::verdict::Verdict;
 use parking_lot::Mutex;
 use std::any::Any;
 use std::cell::{Cell, RefCell};
@@ -109,8 +110,18 @@ impl World {
         self.start + Duration::from_nanos(self.now_ns.load(Ordering::Relaxed))
     }
 
+    /// Reads or changes the state, then makes the calls that follow.
+    pub(crate) fn visit<R>(&self, visit: impl FnOnce(&mut State) -> R) -> R {
+        let mut state = self.state.lock();
+        let result = visit(&mut state);
+        let calls = std::mem::take(&mut state.calls);
+        drop(state);
+        calls.into_iter().for_each(|call| call());
+        result
+    }
+
     fn ns_at(&self, moment: Instant) -> u64 {
-        u64::try_from(moment.saturating_duration_since(self.start).as_nanos()).unwrap_or(u64::MAX)
+        nanos(moment.saturating_duration_since(self.start))
     }
 
     /// Adds a thread to a node; it runs when scheduled.
@@ -163,9 +174,9 @@ impl World {
             if state.is_over() {
                 return MAIN;
             }
-            let calls = state.step(self);
+            state.step(self);
             self.now_ns.store(state.now_ns, Ordering::Relaxed);
-            let to_drop = std::mem::take(&mut state.to_drop);
+            let (calls, to_drop) = (std::mem::take(&mut state.calls), std::mem::take(&mut state.to_drop));
             drop(state);
             // Dropping these may send, which would deadlock with the state locked.
             drop(to_drop);
@@ -188,11 +199,6 @@ impl World {
 }
 
 impl Current {
-    /// Starts another thread of the same node.
-    pub(crate) fn spawn(&self, body: Box<dyn FnOnce() + Send>) {
-        self.world.spawn(self.node, body);
-    }
-
     /// Runs a thread of a node from start to end.
     fn run(self, body: Box<dyn FnOnce() + Send>) {
         let (world, node, thread) = (Arc::clone(&self.world), self.node, self.thread);
@@ -214,10 +220,71 @@ fn text_of(payload: &(dyn Any + Send)) -> String {
 }
 
 impl State {
+    /// Handles the next event.
+    pub(crate) fn step(&mut self, world: &Arc<World>) {
+        let Some(((at_ns, _), event)) = self.events.pop_first() else {
+            return self.give_up(Verdict::Deadlock(self.waiting()));
+        };
+        if at_ns > self.limit_ns {
+            return self.give_up(Verdict::OutOfTime(self.waiting()));
+        }
+        self.now_ns = at_ns;
+        match event {
+            Event::Wake { thread, wait } => {
+                if matches!(self.threads[thread].status, Status::Waits { wait: now, .. } if now == wait) {
+                    self.threads[thread].status = Status::Ready;
+                }
+            }
+            Event::Start { node } => self.start(world, node),
+            Event::Fault(fault) => self.begin_fault(fault),
+            Event::CutEnd { node } => {
+                self.nodes[node].cuts -= 1;
+                self.recover(node);
+            }
+            Event::SuspensionEnd { node } => {
+                self.nodes[node].suspensions -= 1;
+                self.recover(node);
+            }
+            Event::Arrive { link, up, arrival } => self.arrive(link, up, arrival),
+            Event::LeaseOver { link, at_hub, since_ns } => self.lease_over(link, at_hub, since_ns),
+            Event::Reconnect { session } => self.reconnect(session),
+            Event::Local { session, local } => self.take_local(session, &local),
+        }
+    }
+
+    /// The names of the nodes that still run.
+    fn waiting(&self) -> Vec<String> {
+        let is_there = |thread: &&Thread| thread.status != Status::Done;
+        self.threads.iter().filter(is_there).map(|thread| self.nodes[thread.node].name.clone()).collect()
+    }
+
+    /// Ends the simulation: kills every node and clears all events.
+    fn give_up(&mut self, verdict: Verdict) {
+        self.verdict = verdict;
+        // Kills all nodes instead of leaving them waiting, so that their threads end and the test
+        // can report what they waited for.
+        self.events.clear();
+        self.starts_due = 0;
+        (0..self.nodes.len()).for_each(|node| self.nodes[node].starts_again = None);
+        (0..self.nodes.len()).for_each(|node| self.kill(node));
+    }
+
+    fn start(&mut self, world: &Arc<World>, node: usize) {
+        self.starts_due -= 1;
+        self.note("starts", node, "", &[]);
+        let started = &mut self.nodes[node];
+        started.is_running = true;
+        let (body, world) = (Arc::clone(&started.body), Arc::clone(world));
+        self.calls.push(Box::new(move || {
+            let thread = world.spawn(node, Box::new(move || body()));
+            world.state.lock().nodes[node].main_thread = Some(thread);
+        }));
+    }
+
     /// Draws the next thread from the ready ones.
     fn draw_ready(&mut self) -> Option<usize> {
         let is_ready = |thread: &Thread, nodes: &[Node]| {
-            thread.status == Status::Ready && (thread.is_killed || !nodes[thread.node].is_suspended)
+            thread.status == Status::Ready && (thread.is_killed || !nodes[thread.node].is_suspended())
         };
         let nodes = &self.nodes;
         let mut ready = std::mem::take(&mut self.ready);

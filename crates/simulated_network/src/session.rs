@@ -1,11 +1,9 @@
 //! A session on the simulated network, behind [`bus::Bus`].
 
-use crate::call::Call;
-use crate::declared::{Declared, What};
-use crate::packet::{Kind, Packet};
-use crate::query::{Asked, PendingQuery, RoutedQuery};
+use crate::declared::{Declared, PendingQuery, RoutedQuery, What};
+use crate::packet::{Asked, Kind, Packet};
 use crate::scheduler::{World, current, is_in_callback, wait_until};
-use crate::state::{SessionState, State};
+use crate::state::SessionState;
 use bus::{
     BusError, Declaration, Delivery, Encoding, Net, OnBytes, OnLinkLost, OnQuery, OnToken, Parcel, Priority, Sender,
     Session, Watched, clock,
@@ -52,24 +50,14 @@ pub(crate) struct Undeclare {
 /// A query to be answered once.
 pub(crate) struct SimulatedQuery {
     world: Arc<World>,
-    session: usize,
-    query: u64,
-    key: String,
+    routed: RoutedQuery,
 }
 
 impl SimulatedSession {
     /// Opens a hub inside a simulation. Fails if another one listens at its endpoint.
     pub(crate) fn hub(net: &Net) -> Result<SimulatedSession, String> {
         let session = SimulatedSession::new(&net.listen, true)?;
-        let state = session.world.state.lock();
-        let listens = |(i, other): (usize, &SessionState)| {
-            i != session.session
-                && other.is_hub
-                && other.is_open
-                && other.endpoints.iter().any(|at| net.listen.contains(at))
-        };
-        let is_taken = state.sessions.iter().enumerate().any(listens);
-        drop(state);
+        let is_taken = session.world.visit(|state| state.hub_at(&net.listen) != Some(session.session));
         if is_taken {
             session.close();
             return Err("the address is in use".to_owned());
@@ -84,12 +72,10 @@ impl SimulatedSession {
         // A handshake is one round trip; zenoh needs more, but the effect is the same.
         wait_until(0, session.world.now().checked_add(2 * delay));
         session.insert(format!("{LINKS}{}", session.id), What::Token);
-        let mut state = session.world.state.lock();
-        let hub = state.reachable_hub(session.session);
-        if let Some(hub) = hub {
-            state.connect(session.session, hub);
-        }
-        drop(state);
+        let hub = session.world.visit(|state| {
+            let hub = state.reachable_hub(session.session);
+            hub.inspect(|hub| state.connect(session.session, *hub))
+        });
         if hub.is_none() {
             session.close();
             wait_until(0, session.world.now().checked_add(CONNECT));
@@ -104,15 +90,8 @@ impl SimulatedSession {
         let mut state = world.state.lock();
         let id = format!("{:016x}", state.stream.bits());
         let session = state.sessions.len();
-        let (endpoints, declared) = (endpoints.to_vec(), BTreeMap::new());
-        state.sessions.push(SessionState {
-            node: current.node,
-            is_open: true,
-            endpoints,
-            link: None,
-            is_hub,
-            declared,
-        });
+        let (node, endpoints, declared) = (current.node, endpoints.to_vec(), BTreeMap::new());
+        state.sessions.push(SessionState { node, is_open: true, endpoints, link: None, is_hub, declared });
         drop(state);
         Ok(SimulatedSession { world, session, id })
     }
@@ -123,26 +102,22 @@ impl SimulatedSession {
 
     /// Adds a declaration that lasts as long as the session. Returns its number.
     fn insert(&self, key: String, what: What) -> u64 {
-        let mut state = self.world.state.lock();
-        state.number += 1;
-        let id = state.number;
-        let declared = Declared { key: key.clone(), what };
-        let packet = declared.packet(id);
-        let own = &mut state.sessions[self.session];
-        let (is_hub, link) = (own.is_hub, own.link);
-        let mut calls = vec![];
-        if own.is_open {
-            own.declared.insert(id, declared);
-        }
-        match packet {
-            Packet::Declare { kind: Kind::Watch, .. } if is_hub => state.begin_watch(self.session, id, &key),
-            Packet::Declare { kind: Kind::Token, .. } if is_hub => {
-                calls = state.announce(self.session, &key, true, None);
+        // A closed session takes no declaration; dropping one may use the network.
+        let (id, _refused) = self.world.visit(|state| {
+            state.number += 1;
+            let id = state.number;
+            let declared = Declared { key: key.clone(), what };
+            let packet = declared.packet(id);
+            let own = &mut state.sessions[self.session];
+            let (is_hub, link) = (own.is_hub, own.link);
+            let refused = if own.is_open { own.declared.insert(id, declared) } else { Some(declared) };
+            match packet {
+                Packet::Declare { kind: Kind::Watch, .. } if is_hub => state.begin_watch(self.session, id, &key),
+                Packet::Declare { kind: Kind::Token, .. } if is_hub => state.announce(self.session, &key, true, None),
+                packet => link.into_iter().for_each(|link| state.send(link, true, packet.clone())),
             }
-            packet => link.into_iter().for_each(|link| state.send(link, true, packet.clone())),
-        }
-        drop(state);
-        calls.into_iter().for_each(|call| call());
+            (id, refused)
+        });
         id
     }
 
@@ -154,10 +129,6 @@ impl SimulatedSession {
         accept: &mut dyn FnMut(&Parcel) -> bool,
     ) -> Option<Parcel> {
         let answers = Arc::new(Watched::new(Answers::default()));
-        let mut state = self.world.state.lock();
-        state.number += 1;
-        let query = state.number;
-        let SessionState { is_hub, link, .. } = state.sessions[self.session];
         let taken = Arc::clone(&answers);
         let take = Arc::new(move |answer| {
             taken.visit(|answers| match answer {
@@ -165,19 +136,19 @@ impl SimulatedSession {
                 None => answers.is_complete = true,
             });
         });
-        let pending = PendingQuery { asker: self.session, open: 0, take };
-        state.queries.insert(query, pending);
-        let mut calls: Vec<Call> = vec![];
-        match (is_hub, link) {
-            (true, _) => calls = state.route(self.session, query, key, asked, None),
-            (false, Some(link)) => state.send(link, true, Packet::Ask { query, key: key.to_owned(), asked }),
-            (false, None) => {
-                state.queries.remove(&query);
-                return None;
+        let query = self.world.visit(|state| {
+            let SessionState { is_hub, link, .. } = state.sessions[self.session];
+            state.number += 1;
+            let query = state.number;
+            if is_hub || link.is_some() {
+                state.queries.insert(query, PendingQuery { asker: self.session, open: 0, take });
             }
-        }
-        drop(state);
-        calls.into_iter().for_each(|call| call());
+            match link {
+                _ if is_hub => state.route(self.session, query, key, asked, None),
+                link => state.send(link?, true, Packet::Ask { query, key: key.to_owned(), asked }),
+            }
+            Some(query)
+        })?;
         let start = clock::now();
         let accepted = loop {
             let left = limit.saturating_sub(clock::since(start));
@@ -208,8 +179,9 @@ impl Session for SimulatedSession {
 
     fn answer(&self, key: String, receive: OnQuery) -> Result<Declaration, BusError> {
         let take = move |mut routed: RoutedQuery| {
+            let world = current().expect("events happen in threads of the simulation").world;
             let question = std::mem::take(&mut routed.payload);
-            receive(question, Box::new(SimulatedQuery::new(routed)));
+            receive(question, Box::new(SimulatedQuery { world, routed }));
         };
         Ok(self.declare(key, What::Queryable(Arc::new(take))))
     }
@@ -284,42 +256,40 @@ impl SimulatedSender {
 
 impl Drop for Undeclare {
     fn drop(&mut self) {
-        let mut state = self.session.world.state.lock();
-        let SessionState { is_hub, link, .. } = state.sessions[self.session.session];
-        let removed = state.sessions[self.session.session].declared.remove(&self.id);
-        let mut calls: Vec<Call> = vec![];
-        match (&removed, link) {
-            (Some(Declared { key, what: What::Token }), _) if is_hub => {
-                calls = state.announce(self.session.session, key, false, None);
+        let Undeclare { session: SimulatedSession { world, session, .. }, id } = self;
+        let removed = world.visit(|state| {
+            let SessionState { is_hub, link, .. } = state.sessions[*session];
+            let removed = state.sessions[*session].declared.remove(id);
+            match (&removed, link) {
+                (Some(Declared { key, what: What::Token }), _) if is_hub => state.announce(*session, key, false, None),
+                (Some(_), Some(link)) => state.send(link, true, Packet::Undeclare { id: *id }),
+                _ => {}
             }
-            (Some(_), Some(link)) => state.send(link, true, Packet::Undeclare { id: self.id }),
-            _ => {}
-        }
-        drop(state);
-        calls.into_iter().for_each(|call| call());
+            removed
+        });
         // Dropping a subscriber's state may use the network.
         drop(removed);
     }
 }
 
 impl SimulatedQuery {
-    fn new(routed: RoutedQuery) -> SimulatedQuery {
-        let world = current().expect("events happen in threads of the simulation").world;
-        let RoutedQuery { session, query, key, .. } = routed;
-        SimulatedQuery { world, session, query, key }
-    }
-
     fn send(&self, answer: Option<Parcel>) {
-        let mut state = self.world.state.lock();
-        let calls = state.answer_from(self.session, self.query, answer);
-        drop(state);
-        calls.into_iter().for_each(|call| call());
+        let RoutedQuery { session, query, .. } = self.routed;
+        self.world.visit(|state| {
+            let SessionState { is_open, is_hub, link, .. } = state.sessions[session];
+            match link {
+                _ if !is_open => {}
+                _ if is_hub => state.answer_at_hub(session, query, answer),
+                Some(link) => state.send(link, true, Packet::Answer { query, answer }),
+                None => {}
+            }
+        });
     }
 }
 
 impl bus::PendingQuery for SimulatedQuery {
     fn key(&self) -> &str {
-        &self.key
+        &self.routed.key
     }
 
     fn answer(self: Box<Self>, answer: Parcel) {
@@ -330,20 +300,5 @@ impl bus::PendingQuery for SimulatedQuery {
 impl Drop for SimulatedQuery {
     fn drop(&mut self) {
         self.send(None);
-    }
-}
-
-impl State {
-    fn answer_from(&mut self, session: usize, query: u64, answer: Option<Parcel>) -> Vec<Call> {
-        let SessionState { is_open, is_hub, link, .. } = self.sessions[session];
-        match link {
-            _ if !is_open => vec![],
-            _ if is_hub => self.answer_at_hub(session, query, answer),
-            Some(link) => {
-                self.send(link, true, Packet::Answer { query, answer });
-                vec![]
-            }
-            None => vec![],
-        }
     }
 }

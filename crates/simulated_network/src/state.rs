@@ -1,16 +1,12 @@
 //! The mutable state of a simulation.
 
-use crate::call::Call;
-use crate::conditions::Conditions;
-use crate::declared::Declared;
-use crate::event::{Event, Queued, nanos};
-use crate::fault::{Fault, FaultEnd};
-use crate::link_state::Link;
-use crate::published::Published;
-use crate::query::PendingQuery;
-use crate::verdict::{NodeEnd, Verdict};
+use crate::conditions::{Conditions, Fault};
+use crate::declared::{Call, Declared, PendingQuery};
+use crate::event::{Event, nanos};
+use crate::packet::Link;
+use crate::verdict::{NodeEnd, Published, Verdict};
 use primitives::stream::Stream;
-use std::collections::{BTreeMap, BinaryHeap};
+use std::collections::BTreeMap;
 use std::hash::{DefaultHasher, Hash};
 use std::sync::Arc;
 use std::thread::JoinHandle;
@@ -21,14 +17,22 @@ pub(crate) struct Node {
     pub(crate) name: String,
     pub(crate) body: Arc<dyn Fn() + Send + Sync>,
     pub(crate) is_running: bool,
-    pub(crate) is_suspended: bool,
-    pub(crate) is_cut: bool,
     /// The number of cuts and suspensions in force; they may overlap.
     pub(crate) cuts: u32,
     pub(crate) suspensions: u32,
     pub(crate) main_thread: Option<usize>,
     /// The time after which a killed node restarts.
     pub(crate) starts_again: Option<Duration>,
+}
+
+impl Node {
+    pub(crate) fn is_cut(&self) -> bool {
+        self.cuts > 0
+    }
+
+    pub(crate) fn is_suspended(&self) -> bool {
+        self.suspensions > 0
+    }
 }
 
 /// A thread of a node.
@@ -75,8 +79,10 @@ pub(crate) struct State {
     pub(crate) stream: Stream,
     pub(crate) now_ns: u64,
     pub(crate) limit_ns: u64,
+    /// The number of the last event scheduled.
     pub(crate) order: u64,
-    pub(crate) events: BinaryHeap<Queued>,
+    /// By time and number: by time alone, one seed could give two traces.
+    pub(crate) events: BTreeMap<(u64, u64), Event>,
     pub(crate) starts_due: usize,
     pub(crate) nodes: Vec<Node>,
     pub(crate) threads: Vec<Thread>,
@@ -85,6 +91,8 @@ pub(crate) struct State {
     pub(crate) sessions: Vec<SessionState>,
     pub(crate) links: Vec<Link>,
     pub(crate) queries: BTreeMap<u64, PendingQuery>,
+    /// Callbacks that are due, to be called while the state is unlocked.
+    pub(crate) calls: Vec<Call>,
     /// To be dropped while the state is unlocked: data held by callbacks may use the network on
     /// drop.
     pub(crate) to_drop: Vec<Declared>,
@@ -119,7 +127,7 @@ impl State {
     pub(crate) fn at(&mut self, at_ns: u64, event: Event) {
         self.order += 1;
         // A deadline that has already passed must not turn the clock back.
-        self.events.push(Queued { at_ns: at_ns.max(self.now_ns), order: self.order, event });
+        self.events.insert((at_ns.max(self.now_ns), self.order), event);
     }
 
     pub(crate) fn after(&mut self, wait: Duration, event: Event) {
@@ -132,26 +140,24 @@ impl State {
     }
 
     /// Starts a fault.
-    pub(crate) fn begin_fault(&mut self, fault: Fault) -> Vec<Call> {
+    pub(crate) fn begin_fault(&mut self, fault: Fault) {
         match fault {
             Fault::Cut { node, time } => {
                 self.note("is cut off", node, "", &[]);
                 self.nodes[node].cuts += 1;
                 // Random faults overlap: a node recovers when the last one ends.
                 if self.nodes[node].cuts == 1 {
-                    self.nodes[node].is_cut = true;
                     self.begin_silence(node);
                 }
-                self.after(time, Event::FaultEnd { node, what: FaultEnd::Cut });
+                self.after(time, Event::CutEnd { node });
             }
             Fault::Suspend { node, time } => {
                 self.note("is suspended", node, "", &[]);
                 self.nodes[node].suspensions += 1;
                 if self.nodes[node].suspensions == 1 {
-                    self.nodes[node].is_suspended = true;
                     self.begin_silence(node);
                 }
-                self.after(time, Event::FaultEnd { node, what: FaultEnd::Suspension });
+                self.after(time, Event::SuspensionEnd { node });
             }
             Fault::Kill { node, restart } => {
                 if self.nodes[node].is_running {
@@ -161,19 +167,12 @@ impl State {
                 }
             }
         }
-        vec![]
     }
 
-    pub(crate) fn end_fault(&mut self, node: usize, what: FaultEnd) -> Vec<Call> {
-        let node_state = &mut self.nodes[node];
-        match what {
-            FaultEnd::Cut => node_state.cuts -= 1,
-            FaultEnd::Suspension => node_state.suspensions -= 1,
-        }
-        (node_state.is_cut, node_state.is_suspended) = (node_state.cuts > 0, node_state.suspensions > 0);
+    /// Ends the effects of a fault that is over.
+    pub(crate) fn recover(&mut self, node: usize) {
         self.note("is well again", node, "", &[]);
         self.end_silence(node);
-        vec![]
     }
 
     /// Kills a node: its threads unwind when they continue, and its links close.

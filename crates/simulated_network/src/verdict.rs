@@ -1,4 +1,4 @@
-//! The verdict on a simulation: how it ended, and its nodes.
+//! What a simulation shows: its published messages, how it ended, and its nodes.
 
 use std::time::Duration;
 
@@ -24,4 +24,17 @@ pub struct NodeEnd {
     pub at: Duration,
     /// Whether a fault ended it.
     pub was_killed: bool,
+}
+
+/// A published message at the hub: sent by it, or received.
+#[derive(Clone, Copy, Debug)]
+pub struct Published<'a> {
+    /// Virtual time since the start.
+    pub at: Duration,
+    /// The node that publishes it, or receives it.
+    pub node: &'a str,
+    /// Its key.
+    pub key: &'a str,
+    /// Its content.
+    pub bytes: &'a [u8],
 }

@@ -179,15 +179,9 @@ impl Sheet {
             Some(number) if (low - slack..=high + slack).contains(&number) => Ok(number.clamp(low, high)),
             _ => {
                 let expected = format!("expected {} to {}", short(low), short(high));
-                Err(self.row_mistake(row, format!("{} is {found}, {expected}", self.heads[column])))
+                Err(self.mistake(Some(self.rows[row].0), format!("{} is {found}, {expected}", self.heads[column])))
             }
         }
-    }
-
-    /// A fault of a row.
-    #[must_use]
-    pub fn row_mistake(&self, row: usize, message: String) -> Mistake {
-        self.mistake(Some(self.rows[row].0), message)
     }
 
     /// A fault of the file, or of one of its lines.
@@ -224,7 +218,7 @@ impl Sheet {
             if let Some(before_s) = times_s.last().filter(|before_s| since_s <= **before_s) {
                 let before_s = before_s + start_s;
                 let message = format!("t_s is {t_s}, expected more than {before_s}, its value in the row before");
-                return Err(self.row_mistake(row, message));
+                return Err(self.mistake(Some(self.rows[row].0), message));
             }
             times_s.push(since_s);
         }

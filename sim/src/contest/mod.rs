@@ -7,12 +7,10 @@
 
 mod ask;
 mod faults;
-mod hold_cause;
 mod order;
 mod snapshot;
 mod state;
 
-pub use hold_cause::HoldCause;
 pub use snapshot::RestoreError;
 
 use crate::external::{self, BadReport, Track};

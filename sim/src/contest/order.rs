@@ -2,6 +2,7 @@
 
 use super::Contest;
 use super::state::OrderInForce;
+use crate::external::Track;
 use messages::Order;
 use messages::input::Input;
 use messages::order::BadOrder;
@@ -64,7 +65,7 @@ impl Contest {
     #[must_use]
     pub fn effective_command(&self, vehicle: VehicleId) -> Order {
         let i = vehicle.index();
-        if self.stop_cause(i).is_some() {
+        if self.is_stopped(i) {
             return Order::Hold;
         }
         let at = self.world.state().boats[i].pose.at;
@@ -73,6 +74,15 @@ impl Contest {
             (Order::Hold, Some(station)) => keeping_station(at, station, speed_max_m_s),
             (command, _) => command,
         }
+    }
+
+    /// Whether a vehicle holds whatever its order and the rules.
+    fn is_stopped(&self, i: usize) -> bool {
+        // A real boat moves only under supervision.
+        let is_unsupervised = |track: &Track| {
+            track.is_lost(self.now()) || self.state.agent_lost[i] || self.is_over() || self.is_expired(i)
+        };
+        self.state.e_stopped || self.state.halted || self.state.tracks[i].as_ref().is_some_and(is_unsupervised)
     }
 
     /// A vehicle's order in force, as modified by the rules.
@@ -141,7 +151,7 @@ impl Contest {
         }
     }
 
-    pub(super) fn is_expired(&self, i: usize) -> bool {
+    fn is_expired(&self, i: usize) -> bool {
         (self.now() - self.state.orders[i].given_at).as_s() > self.scenario.order_ttl_s
     }
 

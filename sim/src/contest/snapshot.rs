@@ -2,8 +2,8 @@
 
 use super::Contest;
 use super::state::ContestState;
-use crate::radio::{Radio, RadioState};
-use crate::sighting::{SightingState, Sightings};
+use crate::radio::RadioState;
+use crate::sighting::SightingState;
 use crate::state::State;
 use scenario::Scenario;
 use thiserror::Error;
@@ -35,15 +35,20 @@ impl Contest {
     /// included.
     #[must_use]
     pub fn snapshot(&self) -> Vec<u8> {
-        let (radio, sightings) = (self.radio.as_ref().map(Radio::state), self.sightings.as_ref().map(Sightings::state));
         // Sea, faults and contact engine are omitted on purpose: they are functions of scenario,
         // seed and time.
+        let (radio, sightings) = self.messages();
         let body = bytes(&(self.world.state(), &self.state, radio, sightings));
         let mut snapshot = MAGIC.to_vec();
         snapshot.extend(self.scenario_mark.to_le_bytes());
         snapshot.extend(xxh3::xxh3_64(&body).to_le_bytes());
         snapshot.extend(body);
         snapshot
+    }
+
+    /// The messages in transit, and the sightings.
+    fn messages(&self) -> (Option<&RadioState>, Option<&SightingState>) {
+        (self.radio.as_ref().map(|radio| &radio.state), self.sightings.as_ref().map(|sightings| &sightings.state))
     }
 
     /// Restores the state from a snapshot of the same game, earlier or later.
@@ -64,8 +69,8 @@ impl Contest {
         let (world, state, radio, sightings): Parts = postcard::from_bytes(body).map_err(|_| RestoreError::Damaged)?;
         self.world.set_state(world);
         self.state = state;
-        self.radio.iter_mut().zip(radio).for_each(|(radio, state)| radio.set_state(state));
-        self.sightings.iter_mut().zip(sightings).for_each(|(sightings, state)| sightings.set_state(state));
+        self.radio.iter_mut().zip(radio).for_each(|(radio, state)| radio.state = state);
+        self.sightings.iter_mut().zip(sightings).for_each(|(sightings, state)| sightings.state = state);
         Ok(())
     }
 
@@ -91,8 +96,7 @@ impl Contest {
         if self.radio.is_some() || self.sightings.is_some() || self.watchdogs.iter().any(Option::is_some) {
             let in_force: Vec<_> = orders.iter().map(|held| held.order).collect();
             let arrived_at: Vec<_> = orders.iter().map(|held| held.arrived_at).collect();
-            let messages = (self.radio.as_ref().map(Radio::state), self.sightings.as_ref().map(Sightings::state));
-            hash.update(&bytes(&(in_force, arrived_at, known, messages)));
+            hash.update(&bytes(&(in_force, arrived_at, known, self.messages())));
         }
         let tracks: Vec<_> = tracks.iter().flatten().collect();
         if !tracks.is_empty() {

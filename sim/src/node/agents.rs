@@ -1,18 +1,10 @@
 //! Accepts or refuses agents' orders, without network and clock.
 
 use super::membership::Membership;
+use super::settings::Pace;
 use messages::refusal::{Refusal, Refusals};
 use messages::{Order, Orders};
 use primitives::VehicleId;
-
-/// Which orders arrive in time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Timing {
-    /// Those for the open decision.
-    Lockstep,
-    /// Those for the open or an earlier decision, if none newer has arrived.
-    Realtime,
-}
 
 /// The accepted part of an agent's orders.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -23,11 +15,12 @@ pub struct Accepted {
     pub back: Vec<VehicleId>,
 }
 
-/// Handles an agent's orders while `tick` is open.
+/// Handles an agent's orders while `tick` is open. Lockstep accepts those for the open decision; real
+/// time also those for an earlier one, if none newer has arrived.
 pub fn accept(
     agents: &mut Membership,
     message: &Orders,
-    (tick, timing): (u64, Timing),
+    (tick, pace): (u64, Pace),
     refusals: &mut Refusals,
 ) -> Accepted {
     let mut accepted = Accepted::default();
@@ -46,7 +39,7 @@ pub fn accept(
     }
     // In real time an agent that is a tick late is still useful: its order counts until its time to
     // live is over.
-    if seq > tick || (seq < tick && timing == Timing::Lockstep) {
+    if seq > tick || (seq < tick && pace == Pace::Lockstep) {
         refusals.count(Refusal::WrongTick);
         return accepted;
     }
@@ -84,6 +77,7 @@ mod tests {
     use crate::node::membership::tests::{NOW, granted, membership, request};
     use messages::{Message, Role, Stamp, VehicleOrder};
 
+    const REALTIME: Pace = Pace::Realtime { factor: 1.0 };
     const PUSH: Order = Order::Thrust { port: 1.0, starboard: 1.0 };
 
     /// Agents of a game with their vehicles, and tickets from 1 on.
@@ -106,7 +100,7 @@ mod tests {
         let mut agents = agents(&[&["blue_one", "blue_two"], &["red_one"]]);
         let mut refusals = Refusals::default();
         let mut take = |agents: &mut Membership, message: &Orders| {
-            accept(agents, message, (0, Timing::Lockstep), &mut refusals).orders.len()
+            accept(agents, message, (0, Pace::Lockstep), &mut refusals).orders.len()
         };
         assert!(!agents.all_answered(0));
         assert_eq!(take(&mut agents, &orders(1, 0, &[0, 1])), 2);
@@ -119,17 +113,17 @@ mod tests {
 
     #[test]
     fn old_orders_are_for_real_time_only_and_orders_to_come_for_nobody() {
-        for (timing, seq, accepted, refused) in [
-            (Timing::Lockstep, 4, 0, 1),
-            (Timing::Realtime, 4, 1, 0),
-            (Timing::Lockstep, 6, 0, 1),
-            (Timing::Realtime, 6, 0, 1),
-            (Timing::Lockstep, 5, 1, 0),
+        for (pace, seq, accepted, refused) in [
+            (Pace::Lockstep, 4, 0, 1),
+            (REALTIME, 4, 1, 0),
+            (Pace::Lockstep, 6, 0, 1),
+            (REALTIME, 6, 0, 1),
+            (Pace::Lockstep, 5, 1, 0),
         ] {
             let (mut agents, mut refusals) = (agents(&[&["blue_one"]]), Refusals::default());
-            let taken = accept(&mut agents, &orders(1, seq, &[0]), (5, timing), &mut refusals);
-            assert_eq!(taken.orders.len(), accepted, "{timing:?} {seq}");
-            assert_eq!(refusals, Refusals::from([(Refusal::WrongTick, refused)]), "{timing:?} {seq}");
+            let taken = accept(&mut agents, &orders(1, seq, &[0]), (5, pace), &mut refusals);
+            assert_eq!(taken.orders.len(), accepted, "{pace} {seq}");
+            assert_eq!(refusals, Refusals::from([(Refusal::WrongTick, refused)]), "{pace} {seq}");
         }
     }
 
@@ -145,7 +139,7 @@ mod tests {
             (orders(1, 0, &[999, 0]), Some(Refusal::NotYours), PUSH),
         ] {
             let (mut agents, mut refusals) = (agents(&[&["blue_one"], &["blue_two"]]), Refusals::default());
-            let taken = accept(&mut agents, &message, (0, Timing::Lockstep), &mut refusals);
+            let taken = accept(&mut agents, &message, (0, Pace::Lockstep), &mut refusals);
             assert_eq!(taken.orders, [(VehicleId(0), order)], "{message:?}");
             let want: Vec<(Refusal, u64)> = refusal.map(|refusal| (refusal, 1)).into_iter().collect();
             assert_eq!(refusals, want.into_iter().collect::<std::collections::BTreeMap<_, _>>().into());
@@ -156,7 +150,7 @@ mod tests {
     fn who_was_lost_and_speaks_again_is_back_unless_another_has_its_vehicle() {
         let (mut agents, mut refusals) = (agents(&[&["blue_one"]]), Refusals::default());
         let mut take = |agents: &mut Membership, message: &Orders, tick| {
-            accept(agents, message, (tick, Timing::Lockstep), &mut refusals)
+            accept(agents, message, (tick, Pace::Lockstep), &mut refusals)
         };
         assert_eq!(agents.gone("agent 0"), [VehicleId(0)]);
         assert!(agents.all_answered(9), "no agent is awaited");

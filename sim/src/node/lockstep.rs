@@ -1,7 +1,8 @@
 //! Lockstep: every decision waits for every agent, with a time limit.
 
 use super::server::GameServer;
-use super::{NodeError, ProgressMessage};
+use super::settings::NodeError;
+use crate::progress::ProgressMessage;
 use bus::clock;
 use std::time::{Duration, Instant};
 
@@ -44,14 +45,13 @@ fn keep_speed(
     due: Instant,
     tell: &mut dyn FnMut(ProgressMessage),
 ) -> Result<Instant, NodeError> {
-    let Some(speed) = server.pacing.speed() else { return Ok(due) };
+    let Some(speed) = server.pacing.speed else { return Ok(due) };
     let decision_s = server.contest.scenario().decision().as_s();
     let now = clock::now();
     // Lost time is not made up.
     let due = (due + Duration::from_secs_f64(decision_s / speed)).max(now);
     // The speed may change, and the game may be paused, during the wait.
-    while clock::now() < due && server.pacing.speed() == Some(speed) && !server.pacing.is_held() && !server.is_stopped()
-    {
+    while clock::now() < due && server.pacing.speed == Some(speed) && !server.pacing.is_held() && !server.is_stopped() {
         server.listen(due.saturating_duration_since(clock::now()).min(Duration::from_millis(50)));
         server.report_progress(tell)?;
     }
@@ -64,11 +64,11 @@ fn gather(server: &mut GameServer<'_>, tell: &mut dyn FnMut(ProgressMessage)) ->
     let tick = server.contest.decision();
     let patience = Duration::from_secs_f64(server.contest.scenario().patience_s);
     // Patience is measured in working time.
-    let since = server.time.worked();
+    let since = server.time.worked;
     let mut sent = clock::now();
     while !server.agents.all_answered(tick) && !server.is_stopped() {
         server.listen(Duration::from_millis(50));
-        if server.time.worked().saturating_sub(since) >= patience {
+        if server.time.worked.saturating_sub(since) >= patience {
             // All that have not replied, at once: the next decision waits for none of them.
             server.give_up(tick);
         } else if clock::since(sent) >= SEND_AGAIN {

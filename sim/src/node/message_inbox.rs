@@ -1,17 +1,53 @@
 //! Messages from other nodes to the game. Every sender has a share of the space that no other
 //! sender can use up.
 
-use super::subscriptions::Incoming;
-use bus::Watched;
-use messages::Message;
+use bus::{Query, Watched};
+use messages::external::{NavReport, Reported};
 use messages::refusal::{Refusal, Refusals};
+use messages::{Message, Orders};
+use primitives::VehicleId;
 use serde::de::DeserializeOwned;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::time::Duration;
 
+/// An incoming message.
+pub(super) enum Incoming {
+    Orders(Orders),
+    /// A report, with its bytes for the recorder.
+    Nav(NavReport, Vec<u8>),
+    /// A gateway report for other nodes: its ticket, the boat and the message.
+    Report {
+        ticket: u64,
+        vehicle: VehicleId,
+        what: Reported,
+        message: Vec<u8>,
+    },
+    Join(Query),
+    /// Only for the recorder: the topic's index in the list, and the message.
+    RecordedMessage(usize, Vec<u8>),
+    /// The link to this node is lost.
+    Gone(String),
+    /// Makes the sim read the inboxes for commands and questions.
+    Look,
+}
+
+impl Incoming {
+    fn sender(&self) -> Sender {
+        match self {
+            Incoming::Orders(orders) => Sender::Member(orders.ticket),
+            Incoming::Nav(report, _) => Sender::Member(report.ticket),
+            Incoming::Report { ticket, .. } => Sender::Reporting(*ticket),
+            Incoming::Join(_) => Sender::Joining,
+            Incoming::RecordedMessage(topic, _) => Sender::Recorded(*topic),
+            Incoming::Gone(..) => Sender::Network,
+            Incoming::Look => Sender::Inboxes,
+        }
+    }
+}
+
 /// The sender of a message, for sharing the space.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Sender {
+enum Sender {
     /// The node with this ticket.
     Member(u64),
     /// The gateway with this ticket, with reports for other nodes.
@@ -132,7 +168,6 @@ impl MessageInbox {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use messages::Orders;
 
     fn inbox(tickets: &[u64]) -> MessageInbox {
         let inbox = MessageInbox::default();

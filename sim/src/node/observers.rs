@@ -26,23 +26,22 @@ pub(super) fn events_json(contest: &Contest) -> Vec<u8> {
 /// A topic that is subscribed to only for the recorder.
 pub(super) struct RecordedTopic {
     pub(super) topic: String,
-    /// The schema of CDR messages; `None` for JSON.
-    pub(super) schema: Option<&'static str>,
+    pub(super) schema: &'static str,
     /// Validates messages, so that every recorded one can be read.
     pub(super) is_sound: fn(&[u8]) -> bool,
 }
 
 impl RecordedTopic {
-    fn cdr<M: Message + DeserializeOwned>(topic: String) -> RecordedTopic {
+    fn of<M: Message + DeserializeOwned>(topic: String) -> RecordedTopic {
         // Checked before recording: a reader must not fail on a stranger's message.
-        RecordedTopic { topic, schema: Some(M::SCHEMA), is_sound: |bytes| codec::decode::<M>(bytes).is_ok() }
+        RecordedTopic { topic, schema: M::SCHEMA, is_sound: |bytes| codec::decode::<M>(bytes).is_ok() }
     }
 }
 
 /// The topics of team messages and proposals.
 pub(super) fn recorded_topics(scenario: &Scenario) -> Vec<RecordedTopic> {
     let boats = scenario.vehicles.iter().map(|vehicle| &vehicle.name);
-    let says = scenario.teams.iter().map(|team| RecordedTopic::cdr::<Say>(format!("say/{}", team.name)));
-    let proposals = boats.map(|name| RecordedTopic::cdr::<PolicyProposal>(format!("policy/{name}")));
+    let says = scenario.teams.iter().map(|team| RecordedTopic::of::<Say>(format!("say/{}", team.name)));
+    let proposals = boats.map(|name| RecordedTopic::of::<PolicyProposal>(format!("policy/{name}")));
     says.chain(proposals).collect()
 }

@@ -4,11 +4,12 @@ use messages::Control;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pacing {
-    is_paused: bool,
+    /// Whether an operator has paused it.
+    pub(super) is_paused: bool,
     /// Decisions still to play while paused.
     steps: u32,
     /// Simulated seconds per second: a target in real time, a limit in lockstep. `None`: unlimited.
-    speed: Option<f64>,
+    pub(super) speed: Option<f64>,
     is_lockstep: bool,
     /// Whether there are real boats, whose speed cannot change.
     is_real: bool,
@@ -23,16 +24,6 @@ impl Pacing {
     /// Whether the game must not advance now.
     pub(super) fn is_held(&self) -> bool {
         self.is_paused && self.steps == 0
-    }
-
-    /// Whether an operator has paused it.
-    pub(super) fn is_paused(&self) -> bool {
-        self.is_paused
-    }
-
-    /// Simulated seconds per second. `None`: unlimited.
-    pub(super) fn speed(&self) -> Option<f64> {
-        self.speed
     }
 
     /// Counts a played decision.
@@ -67,27 +58,25 @@ mod tests {
         let mut pacing = Pacing::new(None, true, false);
         assert!(!pacing.is_held() && !pacing.change(Control::Step), "a running game needs no step");
         assert!(pacing.change(Control::Pause) && pacing.is_held());
-        assert!(
-            pacing.change(Control::Step) && pacing.change(Control::Step) && !pacing.is_held() && pacing.is_paused()
-        );
+        assert!(pacing.change(Control::Step) && pacing.change(Control::Step) && !pacing.is_held() && pacing.is_paused);
         pacing.played();
         assert!(!pacing.is_held());
         pacing.played();
         assert!(pacing.is_held());
-        assert!(pacing.change(Control::Resume) && !pacing.is_held() && !pacing.is_paused());
+        assert!(pacing.change(Control::Resume) && !pacing.is_held() && !pacing.is_paused);
     }
 
     #[test]
     fn only_speeds_that_can_be_are_taken() {
         let mut lockstep = Pacing::new(None, true, false);
-        assert!(lockstep.change(Control::Speed(Some(4.0))) && lockstep.speed() == Some(4.0));
+        assert!(lockstep.change(Control::Speed(Some(4.0))) && lockstep.speed == Some(4.0));
         for bad in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e4] {
             assert!(!lockstep.change(Control::Speed(Some(bad))), "{bad}");
         }
-        assert!(lockstep.change(Control::Speed(None)) && lockstep.speed().is_none());
+        assert!(lockstep.change(Control::Speed(None)) && lockstep.speed.is_none());
         let mut clock = Pacing::new(Some(1.0), false, false);
         assert!(!clock.change(Control::Speed(None)) && clock.change(Control::Speed(Some(2.0))));
         let mut real = Pacing::new(Some(1.0), false, true);
-        assert!(!real.change(Control::Speed(Some(2.0))) && real.speed() == Some(1.0));
+        assert!(!real.change(Control::Speed(Some(2.0))) && real.speed == Some(1.0));
     }
 }

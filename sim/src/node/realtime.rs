@@ -1,7 +1,8 @@
 //! Real time or a multiple of it: the clock sets the pace, and the game waits for no node.
 
 use super::server::GameServer;
-use super::{NodeError, ProgressMessage};
+use super::settings::NodeError;
+use crate::progress::ProgressMessage;
 use bus::clock;
 use std::time::Duration;
 
@@ -44,5 +45,5 @@ pub(super) fn play(server: &mut GameServer<'_>, tell: &mut dyn FnMut(ProgressMes
 /// The wall-clock time between two decisions.
 fn period(server: &GameServer<'_>) -> Duration {
     let decision_s = server.contest.scenario().decision().as_s();
-    Duration::from_secs_f64(decision_s / server.pacing.speed().unwrap_or(1.0))
+    Duration::from_secs_f64(decision_s / server.pacing.speed.unwrap_or(1.0))
 }

@@ -2,17 +2,18 @@
 
 mod incoming;
 
-use super::agents::Timing;
 use super::control_inbox::ControlInbox;
 use super::membership::Membership;
 use super::message_inbox::MessageInbox;
 use super::observers::{self, RecordedTopic};
 use super::pacing::Pacing;
+use super::settings::{NodeError, Pace, Settings};
 use super::subscriptions::{self, Inboxes, Question};
 use super::throttle::Throttle;
 use super::working_time::WorkingTime;
-use super::{GameRecorder, NodeError, Pace, ProgressMessage, Reporter, Settings};
 use crate::contest::Contest;
+use crate::progress::{ProgressMessage, Reporter};
+use crate::recorder::GameRecorder;
 use bus::stop::HubStopPort;
 use bus::token::Guard;
 use bus::{Bus, Declaration, Delivery, Inbox, Priority, Publisher, Query, clock, inbox};
@@ -44,7 +45,6 @@ pub(super) struct GameServer<'w> {
     recorder: Option<&'w mut GameRecorder>,
     pub(super) agents: Membership,
     gateways: Membership,
-    timing: Timing,
     controls: Arc<ControlInbox<Query>>,
     questions: Inbox<(Question, Query)>,
     inbox: Arc<MessageInbox>,
@@ -116,7 +116,6 @@ impl<'w> GameServer<'w> {
         let declarations = subscriptions::open(&bus, game, scenario, &inboxes, &recorded_topics)?;
         let is_lockstep = settings.pace == Pace::Lockstep;
         let speed = if let Pace::Realtime { factor } = settings.pace { Some(factor) } else { settings.speed };
-        let timing = if is_lockstep { Timing::Lockstep } else { Timing::Realtime };
         let delivery = Delivery::per_decision(is_lockstep);
         let teams = (0..scenario.teams.len()).map(|team| topic::picture(game, scenario, TeamId(team as u8)));
         let pictures =
@@ -136,7 +135,6 @@ impl<'w> GameServer<'w> {
         Ok(GameServer {
             agents: Membership::new(scenario, Role::Agent),
             gateways: Membership::new(scenario, Role::Gateway),
-            timing,
             controls,
             questions,
             inbox: messages,
@@ -205,7 +203,7 @@ impl<'w> GameServer<'w> {
         }
         self.last_report = (clock::now(), SimTime::ZERO);
         // The first agents have waited for the last, so their silence so far does not count.
-        self.heard.fill(self.time.worked());
+        self.heard.fill(self.time.worked);
         Ok(())
     }
 
@@ -314,7 +312,7 @@ impl<'w> GameServer<'w> {
         // during that time.
         let patience = Duration::from_secs_f64(self.contest.scenario().patience_s);
         for i in 0..self.heard.len() {
-            if self.time.worked().saturating_sub(self.heard[i]) > patience {
+            if self.time.worked.saturating_sub(self.heard[i]) > patience {
                 let vehicles = self.agents.lose_holder_of(VehicleId::at(i));
                 self.lose_agents(vehicles);
             }
@@ -350,7 +348,7 @@ impl<'w> GameServer<'w> {
         let rate = (self.contest.now() - then_sim).as_s() / passed.as_secs_f64().max(1e-3);
         self.last_report = (clock::now(), self.contest.now());
         self.reporter.progress(&self.contest, (rate, self.refusals().total()), tell);
-        self.send_run(if self.pacing.is_paused() { Phase::Paused } else { Phase::Playing }, rate)
+        self.send_run(if self.pacing.is_paused { Phase::Paused } else { Phase::Playing }, rate)
     }
 
     /// Subscribes to the bytes of a boat's link while they are recorded or observed. A gateway
@@ -384,7 +382,7 @@ impl<'w> GameServer<'w> {
             phase,
             now_s: self.contest.now().as_s(),
             pace: self.pace.to_string(),
-            speed: self.pacing.speed(),
+            speed: self.pacing.speed,
             rate,
             minds: self.names_of(self.agents.vacant().filter(|_| is_waiting)),
             gateways: self.names_of(self.silent_boats().filter(|_| is_waiting)),
@@ -440,9 +438,6 @@ impl<'w> GameServer<'w> {
     pub(super) fn stay_paused(&mut self, tell: &mut dyn FnMut(ProgressMessage)) -> Result<(), NodeError> {
         /// Agents that receive nothing for too long leave.
         const SEND_AGAIN: Duration = Duration::from_secs(1);
-        if !self.pacing.is_held() {
-            return Ok(());
-        }
         let mut sent = clock::now();
         while self.pacing.is_held() && !self.is_stopped() {
             self.listen(Duration::from_millis(50));
@@ -453,7 +448,7 @@ impl<'w> GameServer<'w> {
             }
         }
         // Agents had nothing to answer meanwhile.
-        self.heard.fill(self.time.worked());
+        self.heard.fill(self.time.worked);
         Ok(())
     }
 }

@@ -2,53 +2,18 @@
 //! messages.
 
 use super::control_inbox::ControlInbox;
-use super::message_inbox::{MessageInbox, Sender};
+use super::message_inbox::{Incoming, MessageInbox};
 use super::observers::RecordedTopic;
 use bus::{Bus, BusError, Declaration, InboxSender, Priority, Publisher, Query};
-use messages::external::{NavReport, Reported};
+use messages::Message;
+use messages::external::Reported;
 use messages::refusal::Refusal;
 use messages::topic::{self, GameName};
-use messages::{Message, Orders};
 use primitives::VehicleId;
 use scenario::Scenario;
 use serde::de::DeserializeOwned;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-
-/// An incoming message.
-pub(super) enum Incoming {
-    Orders(Orders),
-    /// A report, with its bytes for the recorder.
-    Nav(NavReport, Vec<u8>),
-    /// A gateway report for other nodes: its ticket, the boat and the message.
-    Report {
-        ticket: u64,
-        vehicle: VehicleId,
-        what: Reported,
-        message: Vec<u8>,
-    },
-    Join(Query),
-    /// Only for the recorder: the topic's index in the list, and the message.
-    RecordedMessage(usize, Vec<u8>),
-    /// The link to this node is lost.
-    Gone(String),
-    /// Makes the sim read the inboxes for commands and questions.
-    Look,
-}
-
-impl Incoming {
-    pub(super) fn sender(&self) -> Sender {
-        match self {
-            Incoming::Orders(orders) => Sender::Member(orders.ticket),
-            Incoming::Nav(report, _) => Sender::Member(report.ticket),
-            Incoming::Report { ticket, .. } => Sender::Reporting(*ticket),
-            Incoming::Join(_) => Sender::Joining,
-            Incoming::RecordedMessage(topic, _) => Sender::Recorded(*topic),
-            Incoming::Gone(..) => Sender::Network,
-            Incoming::Look => Sender::Inboxes,
-        }
-    }
-}
 
 /// A question of an observer.
 pub(super) enum Question {
@@ -111,8 +76,8 @@ pub(super) fn report_publishers(
     let mut publishers = BTreeMap::new();
     for vehicle in scenario.externals() {
         let name = &scenario.vehicles[vehicle.index()].name;
-        for (what, key) in [(Reported::Status, topic::status(game, name)), (Reported::Link, topic::link(game, name))] {
-            publishers.insert((vehicle, what), bus.publisher(key, Priority::Normal)?);
+        for what in Reported::ALL {
+            publishers.insert((vehicle, what), bus.publisher(topic::report(game, what, name), Priority::Normal)?);
         }
     }
     Ok(publishers)

@@ -12,7 +12,8 @@ const RECOVERY: Duration = Duration::from_secs(10);
 /// A clock that stops while its sim is interrupted.
 pub(super) struct WorkingTime {
     looked: Instant,
-    worked: Duration,
+    /// Working time without interruptions and recovery.
+    pub(super) worked: Duration,
     /// Remaining time for which the clock stands still after an interruption.
     recovery: Duration,
 }
@@ -37,11 +38,6 @@ impl WorkingTime {
         let recovered = passed.min(self.recovery);
         self.recovery -= recovered;
         self.worked += passed - recovered;
-    }
-
-    /// Working time without interruptions and recovery.
-    pub(super) fn worked(&self) -> Duration {
-        self.worked
     }
 
     /// Whether the sim is recovering from an interruption.
@@ -69,7 +65,7 @@ mod tests {
             (52.0, 3.0, 8.4, false, "it is back"),
         ] {
             time.pass(start + Duration::from_secs_f64(at_s), Duration::from_secs_f64(waited_s));
-            let worked = time.worked().as_secs_f64();
+            let worked = time.worked.as_secs_f64();
             assert!((worked - worked_s).abs() < 1e-6, "{at_s} s, {what}: {worked}");
             assert_eq!(time.is_recovering(), is_recovering, "{at_s} s, {what}");
         }

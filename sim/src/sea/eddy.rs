@@ -42,25 +42,17 @@ impl Vortex {
     #[inline]
     pub(super) fn over(&self, place: Ned, ahead: Ned) -> (Ned, f64) {
         let from_centre = place - self.centre;
-        let (rate, share) = self.rate_and_share(from_centre);
         let squared = from_centre.dot(from_centre);
+        let s = squared * self.per_radius_squared;
+        // The share of the circulation inside this radius. `expm1` instead of `1 - exp`: in the core
+        // all digits would cancel.
+        let share = if s > FAR { 1.0 } else { -libm::expm1(-s) };
+        // The water's angular rate around the centre, rad/s.
+        let rate = if s == 0.0 { self.core_rad_s } else { self.core_rad_s * share / s };
         let along = from_centre.dot(ahead);
         let fade = if squared == 0.0 { 0.0 } else { 2.0 * (self.core_rad_s * (1.0 - share) - rate) / squared };
         let velocity = Ned { north: -rate * from_centre.east, east: rate * from_centre.north };
         (velocity, rate + fade * along * along)
-    }
-
-    /// The water's angular rate around the centre, rad/s, and the share of the circulation inside
-    /// the place's radius.
-    #[inline]
-    fn rate_and_share(&self, from_centre: Ned) -> (f64, f64) {
-        let s = from_centre.dot(from_centre) * self.per_radius_squared;
-        if s == 0.0 {
-            return (self.core_rad_s, 0.0);
-        }
-        // `expm1` instead of `1 - exp`: in the core all digits would cancel.
-        let share = if s > FAR { 1.0 } else { -libm::expm1(-s) };
-        (self.core_rad_s * share / s, share)
     }
 }
 

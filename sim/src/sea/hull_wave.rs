@@ -11,9 +11,9 @@
 use super::heading::{HeadingTable, Segment};
 use super::patch::{Patch, Patches};
 use super::submergence::{self, Submergence};
-use super::wave::{Phases, PlaneWave, WaveField, row_count, row_of, waves_of_row};
+use super::wave::{Block, PlaneWave, WaveField, blocks, row_count, row_of};
 use crate::hull::Planar;
-use crate::lanes::{FOLD, LANES, Lanes, ROW};
+use crate::lanes::{FOLD, Lanes, ROW};
 use primitives::frame::Pose;
 use primitives::instructions::{Instructions, Kernel};
 use scenario::boat::Boat;
@@ -44,19 +44,12 @@ pub struct WaveSample {
 #[derive(Clone, Debug)]
 pub struct HullWaves {
     instructions: Instructions,
-    blocks: Vec<Block>,
+    blocks: Vec<Block<Row>>,
     /// For each component: velocity in surge and sway per cosine of the phase and in yaw per sine,
     /// and a R, which does not depend on the heading.
     lines: HeadingTable,
     /// The mean drift force divided by the sum of c²: surge, sway, and two zeros.
     drift: HeadingTable,
-}
-
-/// Sixteen components side by side: everything independent of the heading.
-#[derive(Clone, Copy, Debug)]
-struct Block {
-    phases: Phases,
-    rows: [Row; FOLD],
 }
 
 /// Factors on the cosine and on the sine of the phase, of four components, for each of the four
@@ -88,10 +81,6 @@ impl HullWaves {
 
     /// The same, with averaged waves that are already known.
     pub(super) fn of(field: &WaveField, boat: &Boat, water_density_kg_m3: f64, patches: &Patches) -> HullWaves {
-        let block = |waves: &[PlaneWave]| Block {
-            phases: Phases::new(waves),
-            rows: std::array::from_fn(|row| Row::new(waves_of_row(waves, row))),
-        };
         let speeds_m_s: Vec<f64> = field.waves.iter().map(|wave| orbital_speed_m_s(wave, boat)).collect();
         let reflected_m = field.reflected_m(boat);
         let lines = HeadingTable::new(row_count(&field.waves), |bin, wave| {
@@ -110,7 +99,7 @@ impl HullWaves {
             let mean = field.drift_of(boat, water_density_kg_m3, reflected_m.iter().copied().zip(travels));
             [per_m2 * mean.surge, per_m2 * mean.sway, 0.0, 0.0]
         });
-        let blocks = field.waves.chunks(LANES).map(block).collect();
+        let blocks = blocks(&field.waves, Row::new);
         HullWaves { instructions: field.instructions, blocks, lines, drift }
     }
 

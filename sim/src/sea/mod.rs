@@ -230,7 +230,7 @@ impl SeaNow<'_> {
             // At the start of the tick: gusts last for seconds, a tick for hundredths.
             let air_m_s = wind.at(pose.at, boat.wind_mean_m_s, self.now);
             let past = windage::wind_past_boat(rotation, air_m_s, nu);
-            forcing.force = windage::wind_force(&boat.windage, boat.length_m, windage::AIR_DENSITY_KG_M3, past);
+            forcing.force = windage::wind_force(&boat.windage, boat.length_m, past);
         }
         if self.model.waves.is_some() {
             self.add_waves(boat, hull, pose, rotation, nu, &mut forcing);

@@ -2,7 +2,7 @@
 
 use super::hull_wave::{orbital_speed_m_s, orbital_velocity};
 use super::patch::Patch;
-use super::windage::{AIR_DENSITY_KG_M3, wind_force};
+use super::windage::wind_force;
 use super::{CurrentField, WaveField};
 use crate::hull::HullModel;
 use crate::motion::cross_flow_newton;
@@ -108,7 +108,7 @@ fn wind_summary(wind: &Wind, boat: &Boat, hull: &HullModel) -> WindSummary {
         Gusts::None => 0.0,
         Gusts::OrnsteinUhlenbeck { intensity, .. } => intensity,
     };
-    let force = |past: Body| wind_force(&boat.windage, boat.length_m, AIR_DENSITY_KG_M3, past);
+    let force = |past: Body| wind_force(&boat.windage, boat.length_m, past);
     let abeam = |past_m_s: f64| force(Body { ahead: 0.0, starboard: past_m_s }).sway;
     WindSummary {
         mean_m_s: [wind.speed_10m_m_s, mean_m_s],

@@ -133,7 +133,7 @@ pub(super) struct Phases {
 }
 
 impl Phases {
-    pub(super) fn new(waves: &[PlaneWave]) -> Phases {
+    fn new(waves: &[PlaneWave]) -> Phases {
         Phases {
             start: Lanes(side_by_side(waves, |w| w.component.phase_rad / TAU)),
             per_s: Lanes(side_by_side(waves, |w| w.component.omega_rad_s / TAU)),
@@ -176,16 +176,20 @@ pub(super) fn row_count(waves: &[PlaneWave]) -> usize {
     FOLD * waves.len().div_ceil(LANES)
 }
 
-/// The waves of a row; fewer or none beyond the last wave.
-pub(super) fn waves_of_row(waves: &[PlaneWave], row: usize) -> &[PlaneWave] {
-    waves.chunks(ROW).nth(row).unwrap_or_default()
+/// Sixteen components side by side: everything independent of the heading.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Block<R> {
+    pub(super) phases: Phases,
+    pub(super) rows: [R; FOLD],
 }
 
-/// Sixteen components of the surface side by side.
-#[derive(Clone, Copy, Debug)]
-struct SurfaceBlock {
-    phases: Phases,
-    rows: [SurfaceRow; FOLD],
+/// These waves in blocks, with rows made by `row`; the last rows have fewer waves or none.
+pub(super) fn blocks<R>(waves: &[PlaneWave], row: impl Fn(&[PlaneWave]) -> R) -> Vec<Block<R>> {
+    let block = |waves: &[PlaneWave]| Block {
+        phases: Phases::new(waves),
+        rows: std::array::from_fn(|i| row(waves.chunks(ROW).nth(i).unwrap_or_default())),
+    };
+    waves.chunks(LANES).map(block).collect()
 }
 
 /// Four components of the surface: elevation, slope to the north, slope to the east, and zero.
@@ -222,7 +226,7 @@ pub struct WaveField {
     pub(super) waves: Vec<PlaneWave>,
     pub(super) drift_factor: f64,
     pub(super) instructions: Instructions,
-    blocks: Vec<SurfaceBlock>,
+    blocks: Vec<Block<SurfaceRow>>,
 }
 
 impl WaveField {
@@ -240,11 +244,7 @@ impl WaveField {
         // special case.
         let depth_m = depth_m.unwrap_or(f64::INFINITY);
         let waves: Vec<PlaneWave> = components.iter().map(|c| PlaneWave::new(*c, depth_m)).collect();
-        let block = |waves: &[PlaneWave]| SurfaceBlock {
-            phases: Phases::new(waves),
-            rows: std::array::from_fn(|row| SurfaceRow::new(waves_of_row(waves, row))),
-        };
-        let blocks = waves.chunks(LANES).map(block).collect();
+        let blocks = blocks(&waves, SurfaceRow::new);
         WaveField { waves, drift_factor, instructions: Instructions::best(), blocks }
     }
 
@@ -384,7 +384,7 @@ impl WaveField {
 
 /// Sums over the rows: elevation and slopes at a place and time.
 struct SurfaceAt<'a> {
-    blocks: &'a [SurfaceBlock],
+    blocks: &'a [Block<SurfaceRow>],
     at: Ned,
     time_s: f64,
 }

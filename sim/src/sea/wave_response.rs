@@ -5,8 +5,8 @@
 
 use super::heading::HeadingTable;
 use super::patch::{Patch, Patches};
-use super::wave::{Phases, PlaneWave, WaveField, row_count, row_of, waves_of_row};
-use crate::lanes::{FOLD, LANES, Lanes, ROW};
+use super::wave::{Block, PlaneWave, WaveField, blocks, row_count, row_of};
+use crate::lanes::{FOLD, Lanes, ROW};
 use primitives::frame::{Ned, Pose};
 use primitives::instructions::{Instructions, Kernel};
 use scenario::boat::Boat;
@@ -45,17 +45,10 @@ pub struct Attitude {
 #[derive(Clone, Debug)]
 pub struct WaveResponse {
     instructions: Instructions,
-    blocks: Vec<Block>,
+    blocks: Vec<Block<Row>>,
     /// Heave per cosine, and roll and pitch per sine of the phase, before the springs respond; and
     /// zero.
     quasi_static: HeadingTable,
-}
-
-/// Sixteen components side by side: everything independent of the heading.
-#[derive(Clone, Copy, Debug)]
-struct Block {
-    phases: Phases,
-    rows: [Row; FOLD],
 }
 
 /// The responses in heave, roll and pitch to four components, and zero, as factors on the sine and
@@ -123,10 +116,6 @@ impl WaveResponse {
 
     /// The same, with averaged waves that are already known.
     pub(super) fn of(field: &WaveField, boat: &Boat, patches: &Patches) -> WaveResponse {
-        let block = |waves: &[PlaneWave]| Block {
-            phases: Phases::new(waves),
-            rows: std::array::from_fn(|row| Row::new(waves_of_row(waves, row))),
-        };
         // Waves that are short compared with the draught have little effect: the hull follows the
         // pressure at its keel, not the surface.
         let pressed_m: Vec<f64> = field.waves.iter().map(|wave| pressed_m(wave, boat)).collect();
@@ -137,7 +126,7 @@ impl WaveResponse {
             let [heave, roll, pitch] = quasi_static(pressed_m[wave], patch);
             [heave, roll, pitch, 0.0]
         });
-        let blocks = field.waves.chunks(LANES).map(block).collect();
+        let blocks = blocks(&field.waves, Row::new);
         WaveResponse { instructions: field.instructions, blocks, quasi_static }
     }
 

@@ -17,7 +17,7 @@ use primitives::frame::{Body, Ned, Rotation, body_from_ned};
 use scenario::boat::Windage;
 
 /// Density of air at 15 °C and sea level, kg/m³.
-pub const AIR_DENSITY_KG_M3: f64 = 1.225;
+const AIR_DENSITY_KG_M3: f64 = 1.225;
 
 /// The air's velocity past a boat in body axes, m/s, from the wind over the ground.
 #[inline]
@@ -30,9 +30,9 @@ pub fn wind_past_boat(rotation: Rotation, wind_m_s: Ned, nu: Planar) -> Body {
 /// The force on a hull of `length_m`, N and N m, for this air velocity in body axes, m/s.
 #[inline]
 #[must_use]
-pub fn wind_force(windage: &Windage, length_m: f64, air_density_kg_m3: f64, past: Body) -> Planar {
+pub fn wind_force(windage: &Windage, length_m: f64, past: Body) -> Planar {
     let Body { ahead: a, starboard: s } = past;
-    let half_rho = 0.5 * air_density_kg_m3;
+    let half_rho = 0.5 * AIR_DENSITY_KG_M3;
     // Relative to the boat and in its axes. VRX applies the wind component by component in world
     // axes, which makes the force depend on the compass heading.
     let speed_m_s = (a * a + s * s).sqrt();

@@ -8,7 +8,7 @@
 //! of its true direction and the compass reads too low (Bowditch, The American Practical Navigator,
 //! ch. on compasses). The thrust error is that of the reading at full thrust of both thrusters.
 
-use super::{Truth, whole_ticks};
+use super::truth::{Truth, whole_ticks};
 use primitives::angle::wrap_pi;
 use primitives::reseed::{Seeds, TimedNoise};
 use primitives::{SimTime, math};
@@ -35,14 +35,14 @@ pub struct CompassState {
 }
 
 impl CompassModel {
-    /// The compass of the boat named `vehicle`.
+    /// The compass of the boat named `vehicle`, with these faults.
     #[must_use]
-    pub fn new(compass: &Compass, tick: SimTime, seeds: &Seeds, vehicle: &str) -> CompassModel {
+    pub fn new(compass: &Compass, tick: SimTime, seeds: &Seeds, vehicle: &str, faults: &[FaultSpan]) -> CompassModel {
         CompassModel {
             compass: compass.clone(),
             noise: seeds.noise(&format!("compass/{vehicle}")),
             period: whole_ticks(compass.period_s, tick),
-            faults: vec![],
+            faults: faults.iter().filter(|span| span.kind == FaultKind::CompassOffset).copied().collect(),
         }
     }
 
@@ -53,11 +53,6 @@ impl CompassModel {
         let (sin, cos) = math::sin_cos(psi_rad);
         // sin 2ψ and cos 2ψ by the double angle.
         a + b * sin + c * cos + d * (2.0 * sin * cos) + e * (cos * cos - sin * sin)
-    }
-
-    /// Sets its faults during the game.
-    pub fn set_faults(&mut self, faults: &[FaultSpan]) {
-        self.faults = faults.iter().filter(|span| span.kind == FaultKind::CompassOffset).copied().collect();
     }
 
     /// The present error due to faults, rad.

@@ -4,7 +4,7 @@
 //! (Gauss-Markov), white noise and the last jump. Its velocity, measured by Doppler shift, has only
 //! white noise. Two-state Markov chains, sampled at the fixes, cause drop-outs and freezes.
 
-use super::{GaussMarkovStep, Truth, whole_ticks};
+use super::truth::{GaussMarkovStep, Truth, whole_ticks};
 use crate::two_state::TwoStateChain;
 use primitives::frame::Ned;
 use primitives::reseed::{Seeds, TimedNoise};
@@ -77,15 +77,16 @@ fn chain(outage: Outage, period: SimTime) -> TwoStateChain {
 }
 
 impl GpsModel {
-    /// The receiver of the boat named `vehicle`, read once per `tick`. Its period is a whole number
-    /// of ticks.
+    /// The receiver of the boat named `vehicle`, read once per `tick`, with these faults. Its period
+    /// is a whole number of ticks.
     ///
     /// # Panics
     /// If its latency exceeds [`UNDER_WAY_MAX`] periods.
     #[must_use]
-    pub fn new(gps: &Gps, tick: SimTime, seeds: &Seeds, vehicle: &str) -> GpsModel {
+    pub fn new(gps: &Gps, tick: SimTime, seeds: &Seeds, vehicle: &str, faults: &[FaultSpan]) -> GpsModel {
         let period = whole_ticks(gps.period_s, tick);
         let latency = SimTime::from_s(gps.latency_s);
+        let is_of_gps = |kind| matches!(kind, FaultKind::GpsFrozen | FaultKind::GpsLost | FaultKind::GpsOffset);
         assert!(latency <= period * UNDER_WAY_MAX as i64, "the latency exceeds {UNDER_WAY_MAX} periods");
         GpsModel {
             normals: seeds.noise(&format!("gps/{vehicle}")),
@@ -100,14 +101,8 @@ impl GpsModel {
             freeze: chain(gps.freeze, period),
             jump_chance: -libm::expm1(-gps.jump.rate_per_s * period.as_s()),
             jump_m: gps.jump.sigma_m,
-            faults: vec![],
+            faults: faults.iter().filter(|span| is_of_gps(span.kind)).copied().collect(),
         }
-    }
-
-    /// Sets its faults during the game.
-    pub fn set_faults(&mut self, faults: &[FaultSpan]) {
-        let is_of_gps = |kind| matches!(kind, FaultKind::GpsFrozen | FaultKind::GpsLost | FaultKind::GpsOffset);
-        self.faults = faults.iter().filter(|span| is_of_gps(span.kind)).copied().collect();
     }
 
     fn fault(&self, kind: FaultKind, now: SimTime) -> Option<&FaultSpan> {

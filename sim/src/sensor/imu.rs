@@ -10,7 +10,8 @@
 //!
 //! each with white noise and a wandering bias (Gauss-Markov). The accelerometers are midships.
 
-use super::{GaussMarkovStep, Truth};
+use super::truth::{GaussMarkovStep, Truth};
+use messages::picture;
 use primitives::reseed::{Seeds, TimedNoise};
 use primitives::{SimTime, math};
 use scenario::sea::GRAVITY_M_S2;
@@ -69,6 +70,14 @@ impl ImuReading {
                 -sin_roll * starboard + cos_roll * pitched,
             ],
         }
+    }
+}
+
+impl From<ImuReading> for picture::Imu {
+    fn from(reading: ImuReading) -> picture::Imu {
+        let [roll_rate_rad_s, pitch_rate_rad_s, yaw_rate_rad_s] = reading.gyro_rad_s;
+        let [ahead_m_s2, starboard_m_s2, down_m_s2] = reading.accelerometer_m_s2;
+        picture::Imu { roll_rate_rad_s, pitch_rate_rad_s, yaw_rate_rad_s, ahead_m_s2, starboard_m_s2, down_m_s2 }
     }
 }
 

@@ -8,43 +8,20 @@
 pub mod compass;
 pub mod gps;
 pub mod imu;
+mod truth;
 
-use crate::hull::Planar;
-use crate::sea::Attitude;
+pub use truth::Truth;
+
 use compass::{CompassModel, CompassState};
 use gps::{GpsModel, GpsState};
 use imu::{ImuModel, ImuReading, ImuState};
 use messages::picture::Nav;
-use primitives::frame::{Body, Ned, Pose, Rotation, body_from_ned};
+use primitives::SimTime;
+use primitives::frame::{Body, Rotation, body_from_ned};
 use primitives::reseed::Seeds;
-use primitives::{SimTime, math};
 use scenario::fault::FaultSpan;
 use scenario::sensor::Sensors;
 use serde::{Deserialize, Serialize};
-
-/// A boat's true state at one tick, as far as sensors measure it.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Truth {
-    /// Position and heading.
-    pub pose: Pose,
-    /// Velocity over the ground in body axes.
-    pub nu: Planar,
-    /// The rate of change of the components of `nu`; the accelerometers add the rotation of the
-    /// axes.
-    pub nu_dot: Planar,
-    /// Attitude in the waves.
-    pub attitude: Attitude,
-    /// The thrusters' current as a share of that at full thrust of both.
-    pub thrust_share: f64,
-}
-
-impl Truth {
-    /// Velocity over the ground, m/s.
-    #[must_use]
-    pub fn velocity_m_s(&self) -> Ned {
-        self.nu.in_ned(self.pose.rotation())
-    }
-}
 
 /// The measurements of a boat.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -83,26 +60,15 @@ impl SensorState {
 }
 
 impl SensorModel {
-    /// The sensors of the boat named `vehicle`, read once per tick.
+    /// The sensors of the boat named `vehicle`, read once per tick, with these faults.
     #[must_use]
-    pub fn new(sensors: &Sensors, tick: SimTime, seeds: &Seeds, vehicle: &str) -> SensorModel {
+    pub fn new(sensors: &Sensors, tick: SimTime, seeds: &Seeds, vehicle: &str, faults: &[FaultSpan]) -> SensorModel {
+        let compass = |compass| CompassModel::new(compass, tick, seeds, vehicle, faults);
         SensorModel {
-            gps: sensors.gps.as_ref().map(|gps| GpsModel::new(gps, tick, seeds, vehicle)),
-            compass: sensors.compass.as_ref().map(|compass| CompassModel::new(compass, tick, seeds, vehicle)),
+            gps: sensors.gps.as_ref().map(|gps| GpsModel::new(gps, tick, seeds, vehicle, faults)),
+            compass: sensors.compass.as_ref().map(compass),
             imu: sensors.imu.as_ref().map(|imu| ImuModel::new(imu, tick, seeds, vehicle)),
         }
-    }
-
-    /// These sensors with these faults.
-    #[must_use]
-    pub fn with_faults(mut self, faults: &[FaultSpan]) -> SensorModel {
-        if let Some(gps) = &mut self.gps {
-            gps.set_faults(faults);
-        }
-        if let Some(compass) = &mut self.compass {
-            compass.set_faults(faults);
-        }
-        self
     }
 
     /// The measurements at `now`. Must be called for every tick from 0, in order.
@@ -136,31 +102,5 @@ impl SensorModel {
             yaw_rate_rad_s,
         };
         Reading { nav, fix_at, imu }
-    }
-}
-
-/// `period_s` as a whole number of ticks, at least one, because sensors are read at ticks.
-fn whole_ticks(period_s: f64, tick: SimTime) -> SimTime {
-    let ticks = (period_s / tick.as_s()).round() as i64;
-    tick * ticks.max(1)
-}
-
-/// One step of a Gauss-Markov process of variance 1.
-#[derive(Clone, Copy, Debug)]
-struct GaussMarkovStep {
-    /// The correlation over the step.
-    kept: f64,
-    /// The standard deviation of the innovation.
-    fresh: f64,
-}
-
-impl GaussMarkovStep {
-    /// The very first step, without memory.
-    const FIRST: GaussMarkovStep = GaussMarkovStep { kept: 0.0, fresh: 1.0 };
-
-    /// A step of `span` for a process with this correlation time.
-    fn new(span: SimTime, time_s: f64) -> GaussMarkovStep {
-        let spans = span.as_s() / time_s;
-        GaussMarkovStep { kept: math::exp(-spans), fresh: (-libm::expm1(-2.0 * spans)).sqrt() }
     }
 }

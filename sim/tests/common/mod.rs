@@ -81,12 +81,6 @@ pub(crate) fn hamper(scenario: &mut Scenario) {
     };
 }
 
-pub(crate) fn set(world: &mut World, change: impl FnOnce(&mut State)) {
-    let mut state = world.state().clone();
-    change(&mut state);
-    world.set_state(state);
-}
-
 /// Changes the state of a contest's world directly.
 pub(crate) fn set_in(contest: &mut Contest, change: impl FnOnce(&mut State)) {
     // Name and version, mark of the scenario, checksum; then the world comes first.
@@ -97,6 +91,13 @@ pub(crate) fn set_in(contest: &mut Contest, change: impl FnOnce(&mut State)) {
     let body = [&postcard::to_stdvec(&state).expect("plain numbers can be encoded"), rest].concat();
     let checksum = xxhash_rust::xxh3::xxh3_64(&body).to_le_bytes();
     contest.restore(&[head, &checksum, &body].concat()).expect("the snapshot is valid");
+}
+
+/// Advances a world under constant orders.
+pub(crate) fn sail(world: &mut World, orders: &[Order], ticks: u32) {
+    for _ in 0..ticks {
+        world.step(orders);
+    }
 }
 
 /// A 128-bit hash of a world's state.
@@ -121,11 +122,8 @@ pub(crate) fn order(contest: &mut Contest, vehicle: VehicleId, order: Order) {
 
 /// Places a boat (x east, y north) with a heading and a velocity.
 pub(crate) fn place_boat(world: &mut World, boat: usize, (x, y, heading_deg): (f64, f64, f64), nu: (f64, f64, f64)) {
-    set(world, |state| {
-        let boat = &mut state.boats[boat];
-        boat.pose = Pose { at: Ned::from_xy(x, y), psi_rad: primitives::angle::rad_from_compass_deg(heading_deg) };
-        boat.nu = Planar { surge: nu.0, sway: nu.1, yaw: nu.2 };
-    });
+    let pose = Pose { at: Ned::from_xy(x, y), psi_rad: primitives::angle::rad_from_compass_deg(heading_deg) };
+    world.set_under_way(VehicleId::at(boat), pose, Planar { surge: nu.0, sway: nu.1, yaw: nu.2 });
 }
 
 /// The hulls of a scenario, by vehicle index.

@@ -17,9 +17,8 @@ use scenario::outcome::EventOutcome;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use sim::Contest;
-use sim::node::agents::{self, Timing};
-use sim::node::gateways;
 use sim::node::membership::Membership;
+use sim::node::{Pace, agents, gateways};
 use std::cell::RefCell;
 
 pub(super) const TARGET: Target =
@@ -100,7 +99,7 @@ fn check(bytes: &[u8]) {
     READERS.with_borrow_mut(|readers| {
         if let Some(orders) = read::<Orders>(bytes) {
             let mut refusals = Refusals::default();
-            let open = (readers.contest.decision(), Timing::Realtime);
+            let open = (readers.contest.decision(), Pace::Realtime { factor: 1.0 });
             for (vehicle, order) in agents::accept(&mut readers.agents.clone(), &orders, open, &mut refusals).orders {
                 // Non-finite numbers make the boat hold.
                 readers.contest.order(vehicle, order, orders.stamp.valid_ns).unwrap_or_default();

@@ -170,7 +170,7 @@ pub fn fit(
 
 /// Reports the fitted parameters and their uncertainty.
 fn report(problem: &Problem<'_>) -> Result<Fit, NoFit> {
-    let at = problem.place();
+    let at = &problem.at;
     let lost = || NoFit::Search("the boat's state becomes non-finite near the best fit".to_owned());
     let jacobian = problem.jacobian().ok_or_else(lost)?;
     let residuals = problem.residuals().ok_or_else(lost)?;

@@ -37,7 +37,8 @@ pub(super) struct Problem<'a> {
     borders: Vec<usize>,
     /// The fitted channels of a start: the measured ones.
     fitted: Vec<usize>,
-    at: DVector<f64>,
+    /// The search coordinate.
+    pub(super) at: DVector<f64>,
     starts: Vec<Point>,
     /// Whitened residuals at `at`; none if the model cannot be simulated.
     residuals: Option<DVector<f64>>,
@@ -96,10 +97,6 @@ impl<'a> Problem<'a> {
         let mut boat = self.boat.clone();
         self.knobs.iter().zip(at.iter()).for_each(|(knob, at)| knob.turn(&mut boat, *at));
         boat
-    }
-
-    pub(super) fn place(&self) -> &DVector<f64> {
-        &self.at
     }
 
     /// The numbers of measured values and of fitted values, including starts.

@@ -3,9 +3,11 @@
 use super::GameServer;
 use crate::node::agents::{self, Accepted};
 use crate::node::control_inbox::Command;
+use crate::node::gateways;
+use crate::node::message_inbox::Incoming;
 use crate::node::observers::{self, RecordedTopic};
-use crate::node::subscriptions::{Incoming, Question};
-use crate::node::{Pace, gateways};
+use crate::node::settings::Pace;
+use crate::node::subscriptions::Question;
 use bus::token::{self, Checked};
 use bus::{Query, clock, random_number};
 use messages::external::{LinkBytes, NavReport, Reported};
@@ -74,7 +76,7 @@ impl GameServer<'_> {
             Incoming::RecordedMessage(i, bytes) => {
                 let RecordedTopic { topic, schema, is_sound } = &self.recorded_topics[i];
                 if is_sound(&bytes) {
-                    self.record_message(topic.clone(), *schema, bytes);
+                    self.record_message(topic.clone(), Some(schema), bytes);
                 } else {
                     self.refusals.count(Refusal::Garbage);
                 }
@@ -95,7 +97,7 @@ impl GameServer<'_> {
     }
 
     fn take_orders(&mut self, message: &Orders) {
-        let open = (self.contest.decision(), self.timing);
+        let open = (self.contest.decision(), self.pace);
         let Accepted { orders, back } = agents::accept(&mut self.agents, message, open, &mut self.refusals);
         back.into_iter().for_each(|vehicle| self.contest.regain_agent(vehicle));
         if let Some((vehicle, _)) = orders.first() {
@@ -104,7 +106,7 @@ impl GameServer<'_> {
         for (vehicle, order) in orders {
             let taken = self.contest.order(vehicle, order, message.stamp.valid_ns);
             self.refusals.add(Refusal::BadNumber, u64::from(taken.is_err()));
-            self.heard[vehicle.index()] = self.time.worked();
+            self.heard[vehicle.index()] = self.time.worked;
             // At once, not with the next pictures, which may be a decision later.
             self.pass_on_now(vehicle);
         }
@@ -115,7 +117,7 @@ impl GameServer<'_> {
         let team = self.contest.scenario().team_of(vehicle);
         let Some(throttle) = self.throttles.get_mut(team.index()) else { return };
         let now = clock::now();
-        let decision_s = self.contest.scenario().decision().as_s() / self.pacing.speed().unwrap_or(1.0);
+        let decision_s = self.contest.scenario().decision().as_s() / self.pacing.speed.unwrap_or(1.0);
         let decisions = self.contest.decision().saturating_sub(seq) as f64;
         let since_open = self.opened.map_or(Duration::ZERO, |opened| now.saturating_duration_since(opened));
         throttle.note(now, since_open + Duration::from_secs_f64(decision_s * decisions));
@@ -157,7 +159,7 @@ impl GameServer<'_> {
     /// Simulated time by the clock: the open decision's time plus the time since. Only for fixes,
     /// which would otherwise seem up to a decision older than they are.
     fn moment(&self) -> SimTime {
-        let factor = if self.pace == Pace::Lockstep { 0.0 } else { self.pacing.speed().unwrap_or(0.0) };
+        let factor = if self.pace == Pace::Lockstep { 0.0 } else { self.pacing.speed.unwrap_or(0.0) };
         let passed = self.opened.map_or(0.0, |opened| clock::since(opened).as_secs_f64() * factor);
         self.contest.now() + SimTime::from_s(passed).min(self.contest.scenario().decision())
     }
@@ -192,7 +194,7 @@ impl GameServer<'_> {
                 // The order in force came from another agent.
                 self.contest.hold(*vehicle);
                 self.contest.regain_agent(*vehicle);
-                self.heard[vehicle.index()] = self.time.worked();
+                self.heard[vehicle.index()] = self.time.worked;
             }
         }
         reply
