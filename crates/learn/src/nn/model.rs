@@ -5,23 +5,17 @@ use onnx::{Head, Layer, NetworkError};
 use std::collections::BTreeMap;
 
 impl Perceptron {
-    /// This network as an ONNX file, from `observation` to `output`.
+    /// This network as an ONNX file, from `observation` to `output`; if `bounded`, the hyperbolic
+    /// tangent is applied to every output.
     ///
     /// # Errors
     /// [`NetworkError`] if a weight is not finite.
-    pub fn onnx(&self, output: &str, metadata: BTreeMap<String, String>) -> Result<Vec<u8>, NetworkError> {
-        self.file(output, false, metadata)
-    }
-
-    /// Like [`Perceptron::onnx`], with the hyperbolic tangent applied to every output.
-    ///
-    /// # Errors
-    /// [`NetworkError`] if a weight is not finite.
-    pub fn onnx_bounded(&self, output: &str, metadata: BTreeMap<String, String>) -> Result<Vec<u8>, NetworkError> {
-        self.file(output, true, metadata)
-    }
-
-    fn file(&self, output: &str, bounded: bool, metadata: BTreeMap<String, String>) -> Result<Vec<u8>, NetworkError> {
+    pub fn onnx(
+        &self,
+        output: &str,
+        bounded: bool,
+        metadata: BTreeMap<String, String>,
+    ) -> Result<Vec<u8>, NetworkError> {
         let layers = self.sizes().len() - 1;
         let mut layers: Vec<Layer> = (0..layers).map(|i| self.onnx_layer(i)).collect();
         let last = layers.pop().map(|layer| Head { name: output.to_owned(), layer });

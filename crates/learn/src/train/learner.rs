@@ -9,7 +9,7 @@ use crate::off_policy::td3::{Numbers, Td3Learner, action};
 use crate::ppo::ActorCritic;
 use crate::training::{Algorithm, Dqn, Td3, Training};
 use agent::Action;
-use onnx::{Activation, NetworkError};
+use onnx::NetworkError;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -57,9 +57,9 @@ impl Learner {
 
     pub(super) fn onnx(&self, metadata: BTreeMap<String, String>) -> Result<Vec<u8>, NetworkError> {
         match self {
-            Learner::Ppo(learner) => learner.actor.onnx("logits", None, metadata),
-            Learner::Td3(of) => of.learner.actor.onnx("action", Some(Activation::Tanh), metadata),
-            Learner::Dqn(of) => of.learner.network.onnx("values", None, metadata),
+            Learner::Ppo(learner) => learner.actor.onnx("logits", false, metadata),
+            Learner::Td3(of) => of.learner.actor.onnx("action", true, metadata),
+            Learner::Dqn(of) => of.learner.network.onnx("values", false, metadata),
         }
     }
 

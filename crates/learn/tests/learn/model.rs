@@ -25,7 +25,7 @@ fn model(spec: PolicySpec) -> PolicyModel {
 }
 
 fn model_of(network: &Perceptron, spec: PolicySpec) -> PolicyModel {
-    let bytes = network.onnx("logits", None, BTreeMap::from(spec.metadata()));
+    let bytes = network.onnx("logits", false, BTreeMap::from(spec.metadata()));
     let bytes = bytes.unwrap();
     PolicyModel::read("test.onnx", &bytes, PartialSpec::default()).unwrap()
 }
