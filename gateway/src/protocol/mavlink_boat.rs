@@ -1,6 +1,5 @@
 //! The state of an ArduPilot boat, from its messages.
 
-use super::mavlink::Asked;
 use super::report::{ControlReport, Fix, Heading, North, Power, Report, Shown};
 use super::status_text::StatusTexts;
 use crate::mavlink::dialect::{
@@ -27,6 +26,23 @@ const STATIONS_MAX: usize = 8;
 pub(super) struct ShownMode {
     pub(super) mode: RoverMode,
     pub(super) is_armed: bool,
+}
+
+/// A mode requested from the boat.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Asked {
+    pub(super) mode: RoverMode,
+    pub(super) is_armed: bool,
+    pub(super) at: SimTime,
+    /// Whether the boat has shown it.
+    pub(super) is_shown: bool,
+}
+
+/// The system and component that a message is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Target {
+    pub(super) system: u8,
+    pub(super) component: u8,
 }
 
 /// The contents of its messages.
@@ -71,6 +87,13 @@ impl Boat {
 
     pub(super) fn forget(&mut self, system: u8) {
         *self = Boat { others: self.others, ..Boat::new(system) };
+    }
+
+    /// The target of messages for it.
+    pub(super) fn target(&self) -> Target {
+        // No target means everybody: a set-point of zero may be for all.
+        let system = self.system.unwrap_or(0);
+        Target { system, component: if system == 0 { 0 } else { AUTOPILOT } }
     }
 
     /// Whether a message is from this boat. Without a system number, the first boat's autopilot is
