@@ -99,7 +99,7 @@ fn wild() -> BoxedStrategy<Sentence> {
     let texts = prop_oneof!["\\PC{0,100}", "[ -~\\x00-\\x1f]{0,100}", "[A-Z]{60,90}"].boxed();
     let place = (number.clone(), number.clone()).prop_map(|(lat_deg, lon_deg)| LatLon { lat_deg, lon_deg });
     let places = prop_oneof![place, on_the_globe()].boxed();
-    sentences(&Domain { places, ..domain(number, texts) })
+    sentences(&Domain { places, day_ms: 0..u32::MAX, ..domain(number, texts) })
 }
 
 proptest! {
