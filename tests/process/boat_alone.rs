@@ -4,7 +4,7 @@
 use crate::support::{LIMIT, Process, Sim, newest, run, squall, stderr, stdout, wait_until, wait_within};
 use bus::token::TOKEN_VARIABLE;
 use bus::{Bus, Declaration, Watched};
-use gateway::link::{Link, LinkAddress, LinkEvent, LinkSettings};
+use gateway::link::{BoatLink, Link, LinkAddress, LinkEvent, LinkSettings};
 use messages::{Frame, topic};
 use primitives::codec;
 use std::io::Write;

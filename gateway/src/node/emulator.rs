@@ -7,7 +7,7 @@ use super::node_event::NodeEvent;
 use crate::bridge::Event;
 use crate::config::BoatProtocol;
 use crate::emulator::{ArduPilot, Emulator, Extra, FrontSeat, Plan, Port};
-use crate::link::{Link, LinkAddress, LinkEvent, LinkSettings};
+use crate::link::{BoatLink, Link, LinkAddress, LinkEvent, LinkSettings};
 use crate::nmea::Operator;
 use crate::nmea::date_and_time;
 use agent::{Mind, MindRunner};

@@ -5,7 +5,7 @@ use super::forward::{is_pause, prepare};
 use super::limit::{ANSWER_PAUSE, CONNECT_MAX};
 use super::passed_payload::Payload;
 use super::tap::Tap;
-use crate::link::{Link, LinkAddress, LinkError, LinkEvent, LinkSettings};
+use crate::link::{BoatLink, Link, LinkAddress, LinkError, LinkEvent, LinkSettings};
 use bus::{Slot, Watched, clock};
 use parking_lot::Mutex;
 use std::io::{self, Read, Write};
