@@ -2,7 +2,7 @@
 
 use super::{Target, binaries};
 use gateway::config::{BoatProtocol, Gateway};
-use gateway::emulator::ArduPilot;
+use gateway::emulator::{ArduPilot, FrontSeat};
 use gateway::mavlink::{Counts, FRAME_MAX, Framer, Received, Writer};
 use gateway::protocol::Protocol;
 use primitives::SimTime;
