@@ -119,9 +119,8 @@ impl Sentence {
     /// [`ParseError::Unknown`] for an unsupported sentence, other errors for a malformed one.
     pub fn parse(body: &str) -> Result<Sentence, ParseError> {
         let reader = Reader::of(body);
-        let address = reader.address();
-        let blank = Sentence::blank(address);
-        let mut sentence = blank.ok_or_else(|| ParseError::Unknown { address: address.to_owned() })?;
+        let blank = Sentence::blank(reader.address);
+        let mut sentence = blank.ok_or_else(|| ParseError::Unknown { address: reader.address.to_owned() })?;
         reader.read(sentence.layout())?;
         Ok(sentence)
     }

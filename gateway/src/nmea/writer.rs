@@ -38,7 +38,7 @@ impl Writer {
         match field {
             Field::Address(address) => self.body.push_str(address),
             Field::Standard(talker, kind) => {
-                self.body.extend(talker.characters().map(char::from));
+                self.body.extend(talker.0.map(char::from));
                 self.body.push_str(kind);
             }
             Field::Constant(text) | Field::Unit(text) => self.fixed(text),
