@@ -112,15 +112,13 @@ impl Mavlink {
                 self.upload.iter_mut().for_each(|upload| upload.take_ack(ack.mavtype, now));
             }
             other => match item_request(other) {
-                Some((seq, from)) if from == ours => self.answer(seq, now),
+                Some((seq, from)) if from == ours => {
+                    let item = self.upload.as_mut().and_then(|upload| upload.take_request(seq, now));
+                    self.answers.extend(item);
+                }
                 _ => self.boat.report(now, other, take),
             },
         }
-    }
-
-    fn answer(&mut self, seq: u16, now: SimTime) {
-        let item = self.upload.as_mut().and_then(|upload| upload.take_request(seq, now));
-        self.answers.extend(item);
     }
 
     /// Requests a mode, armed, until the boat shows it.
