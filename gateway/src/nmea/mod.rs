@@ -125,11 +125,17 @@ impl Sentence {
         Ok(sentence)
     }
 
-    /// Appends `$body*HH\r\n`, at most [`EMITTED_MAX`] bytes.
+    /// Appends [`Sentence::line`].
+    pub fn write(&self, out: &mut Vec<u8>) {
+        out.extend_from_slice(self.line().as_bytes());
+    }
+
+    /// The sentence as sent: `$body*HH\r\n`, at most [`EMITTED_MAX`] bytes, all ASCII.
     ///
     /// A non-finite number becomes an empty field, as does any field that would make the sentence
     /// too long.
-    pub fn write(&self, out: &mut Vec<u8>) {
+    #[must_use]
+    pub fn line(&self) -> String {
         // Rounded before writing, so that thrust and difference together still stay within 100 %.
         let mut rounded = match self.clone() {
             Sentence::Command(command) => Sentence::Command(command.rounded()),
@@ -137,7 +143,7 @@ impl Sentence {
             Sentence::MissionSettings(settings) => Sentence::MissionSettings(settings.rounded()),
             other => other,
         };
-        Writer::write(rounded.layout(), out);
+        Writer::line(rounded.layout())
     }
 
     /// An empty sentence with this address: a Surveyor's own, or a standard one with a

@@ -80,9 +80,7 @@ impl Codec for Surveyor {
     }
 
     fn text(&self, command: Command) -> String {
-        let mut bytes = Vec::new();
-        write(command, &mut bytes);
-        String::from_utf8_lossy(&bytes).trim_end().to_owned()
+        Sentence::Command(sentence(command)).line().trim_end().to_owned()
     }
 
     fn stop_message(&self) -> Vec<u8> {

@@ -1,6 +1,6 @@
 //! NMEA sentences from boats.
 
-use super::{Target, texts};
+use super::{Target, in_pieces, texts};
 use gateway::nmea::{ACCEPTED_MAX, Counts, EMITTED_MAX, Framer, Sentence, checksum};
 
 /// Sentence addresses that the codec reads; random fields would rarely match one.
@@ -40,11 +40,7 @@ fn check(bytes: &[u8]) {
 
 /// A byte stream gives the same sentences however it is split, and every `$` is counted.
 fn stream(bytes: &[u8]) {
-    let (whole, counts) = framed([bytes]);
-    let step = 1 + usize::from(bytes.first().copied().unwrap_or_default()) % 97;
-    for size in [1, step] {
-        assert_eq!(framed(bytes.chunks(size)), (whole.clone(), counts), "in pieces of {size}");
-    }
+    let (whole, counts) = in_pieces(bytes, |size| framed(bytes.chunks(size)));
     let begun = bytes.iter().filter(|byte| **byte == b'$').count() as u64;
     let ended = counts.sentences + counts.bad_checksum + counts.overlong + counts.broken;
     assert!(begun == ended || begun == ended + 1, "{begun} begun, {counts:?}");
@@ -72,12 +68,12 @@ fn read(body: &str) {
     let Ok(sentence) = Sentence::parse(body) else { return };
     let Some(again) = reread(&sentence) else { return };
     let settled = reread(&again).expect("a written sentence is short");
-    assert_eq!(written(&settled), written(&again), "{body}");
+    assert_eq!(settled.line(), again.line(), "{body}");
 }
 
 /// The sentence after writing and reading. `None` if a required field stayed empty.
 fn reread(sentence: &Sentence) -> Option<Sentence> {
-    let wire = written(sentence);
+    let wire = sentence.line();
     assert!(wire.len() <= EMITTED_MAX, "{} bytes: {wire}", wire.len());
     let (found, counts) = framed([wire.as_bytes()]);
     assert_eq!(counts, Counts { sentences: 1, ..Counts::default() }, "{wire}");
@@ -86,12 +82,6 @@ fn reread(sentence: &Sentence) -> Option<Sentence> {
         Err(_) if matches!(sentence, Sentence::MissionSettings(_) | Sentence::Waypoint(_)) => None,
         Err(error) => panic!("cannot read {wire} from {sentence:?}: {error}"),
     }
-}
-
-fn written(sentence: &Sentence) -> String {
-    let mut out = Vec::new();
-    sentence.write(&mut out);
-    String::from_utf8(out).expect("a sentence is ASCII")
 }
 
 fn framed<'a>(pieces: impl IntoIterator<Item = &'a [u8]>) -> (Vec<String>, Counts) {
