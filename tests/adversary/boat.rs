@@ -1,7 +1,7 @@
 //! A boat at the other end of a gateway's link: it reports no faults, follows commands, and records
 //! their times.
 
-use gateway::emulator::{Emulator, Plan, Port};
+use gateway::emulator::{Emulator, FrontSeat, Plan, Port};
 use gateway::nmea::{Framer, Mode, Sentence, date_and_time};
 use messages::picture::{Nav, OwnBoat};
 use primitives::frame::LatLon;

@@ -4,7 +4,7 @@
 use crate::boat::{Boat, STEP_S, emulated};
 use crate::oracle::Oracle;
 use bus::{Watched, clock};
-use gateway::emulator::{self, Emulator, Port};
+use gateway::emulator::{self, Emulator, FrontSeat, Port};
 use parking_lot::Mutex;
 use primitives::SimTime;
 use primitives::frame::{LatLon, Ned};

@@ -8,7 +8,7 @@
 #![expect(clippy::print_stdout, reason = "measurements are shown when it is run by hand")]
 
 use gateway::bridge::{Bridge, Event, Input, Output, Plan, Site};
-use gateway::emulator::{self, Emulator, Port};
+use gateway::emulator::{self, Emulator, FrontSeat, Port};
 use gateway::nmea::{Date, TimeOfDay};
 use messages::Order;
 use messages::external::OperatorCommand;

@@ -5,7 +5,7 @@ use crate::gateway::Water;
 use crate::support::{LIMIT, Process, run, squall, stderr, stdout, wait_until, wait_within};
 use bus::Watched;
 use bus::token::TOKEN_VARIABLE;
-use gateway::link::{Link, LinkAddress, LinkEvent, LinkSettings};
+use gateway::link::{BoatLink, Link, LinkAddress, LinkEvent, LinkSettings};
 use std::io::Write;
 use std::net::TcpStream;
 use std::process::{Child, Command, Stdio};

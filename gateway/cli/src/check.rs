@@ -10,7 +10,7 @@ use command_line::stop;
 use command_line::terminal;
 use gateway::config::{BoatProtocol, Gateway};
 use gateway::geofence::GeofenceArea;
-use gateway::link::{Link, LinkAddress, LinkEvent, LinkSettings};
+use gateway::link::{BoatLink, Link, LinkAddress, LinkEvent, LinkSettings};
 use gateway::node::machine_checks;
 use gateway::preflight::{Report, Water, boat_checks};
 use gateway::sensor_check::{HostTime, SensorCheck};

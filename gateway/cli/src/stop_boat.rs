@@ -7,7 +7,7 @@ use command_line::number::seconds;
 use command_line::terminal;
 use gateway::config::Gateway;
 use gateway::config::default_gateway;
-use gateway::link::{Link, LinkAddress, LinkEvent, LinkSettings};
+use gateway::link::{BoatLink, Link, LinkAddress, LinkEvent, LinkSettings};
 use gateway::nmea::{Mode, Operator};
 use gateway::protocol::{ControlReport, Protocol, Report};
 use messages::external::{GatewayCommand, OperatorCommand};

@@ -3,7 +3,7 @@
 #![allow(clippy::disallowed_methods, reason = "processes are waited for by the clock, with a limit")]
 
 use bus::Token;
-use gateway::link::{Link, LinkAddress, LinkEvent, LinkSettings};
+use gateway::link::{BoatLink, Link, LinkAddress, LinkEvent, LinkSettings};
 use gateway::nmea::{Gga, Sentence, date_and_time};
 use primitives::LatLon;
 use std::process::{Child, Command, Output, Stdio};

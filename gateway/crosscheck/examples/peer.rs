@@ -40,10 +40,7 @@ fn write() {
     let mut out = std::io::stdout().lock();
     for _ in 0..COUNT {
         let sentence = sentences.new_tree(&mut runner).expect("most are no download").current();
-        let mut wire = Vec::new();
-        sentence.write(&mut wire);
-        let wire = String::from_utf8(wire).expect("a sentence is ASCII");
-        writeln!(out, "{}\t{}", wire.trim_end(), values(&sentence)).expect("standard output is open");
+        writeln!(out, "{}\t{}", sentence.line().trim_end(), values(&sentence)).expect("standard output is open");
     }
 }
 

@@ -26,12 +26,13 @@ pub(super) struct Autopilot {
     places: BTreeMap<u16, Ned>,
     throttle_pct: Option<f64>,
     /// Speed of a mission that specifies one, m/s.
-    speed_m_s: Option<f64>,
+    pub(super) speed_m_s: Option<f64>,
     /// The mission that is being uploaded, if any.
     upload: Option<Upload>,
-    station: Option<Ned>,
-    /// The next waypoint.
-    next: u16,
+    /// Where it stays without a destination.
+    pub(super) station: Option<Ned>,
+    /// The next waypoint, counted from 1.
+    pub(super) next: u16,
 }
 
 /// A mission that is being uploaded.
@@ -90,25 +91,6 @@ impl Autopilot {
         self.places.retain(|index, _| *index == 0);
         self.places.extend((1..).zip(waypoints));
         (self.speed_m_s, self.next) = (speed_m_s, 1);
-    }
-
-    /// Sets the speed of the mission from here on, m/s.
-    pub(super) fn set_speed(&mut self, speed_m_s: f64) {
-        self.speed_m_s = Some(speed_m_s);
-    }
-
-    /// The next waypoint, counted from 1.
-    pub(super) fn next(&self) -> u16 {
-        self.next
-    }
-
-    pub(super) fn set_next(&mut self, waypoint: u16) {
-        self.next = waypoint;
-    }
-
-    /// Where it stays without a destination.
-    pub(super) fn station(&self) -> Option<Ned> {
-        self.station
     }
 
     /// Starts an upload, which deletes the previous mission.

@@ -29,7 +29,7 @@ pub(super) struct Pack {
     /// Internal resistance, ohm.
     resistance_ohm: f64,
     /// Current of the electronics, A.
-    system_a: f64,
+    pub(super) system_a: f64,
     /// Power of a thruster at full thrust ahead, W.
     thruster_w: f64,
 }
@@ -48,18 +48,18 @@ impl Pack {
 /// A battery with its charge.
 #[derive(Clone, Debug)]
 pub(super) struct Battery {
-    pack: Pack,
+    pub(super) pack: Pack,
     /// Charge left, as a fraction.
-    left: f64,
+    pub(super) left: f64,
     /// Whether it drains.
     drains: bool,
     /// Charge used since the start, Ah.
     used_ah: f64,
     /// Current of the thrusters, port first, A.
-    thruster_a: [f64; 2],
+    pub(super) thruster_a: [f64; 2],
     at: Option<SimTime>,
-    /// A voltage that it shows regardless of its charge.
-    shown_v: Option<f64>,
+    /// A voltage that it shows regardless of its charge, V.
+    pub(super) shown_v: Option<f64>,
 }
 
 impl Battery {
@@ -100,29 +100,9 @@ impl Battery {
         self.pack.system_a + self.thruster_a[0] + self.thruster_a[1]
     }
 
-    /// The current of the electronics, A.
-    pub(super) fn system_a(&self) -> f64 {
-        self.pack.system_a
-    }
-
-    /// The current of the thrusters, port first, A.
-    pub(super) fn thruster_a(&self) -> [f64; 2] {
-        self.thruster_a
-    }
-
     /// Its voltage under load, V.
     pub(super) fn volts(&self) -> f64 {
         self.shown_v.unwrap_or_else(|| self.rest_v() - self.amps() * self.pack.resistance_ohm)
-    }
-
-    /// Makes it show this voltage from now on, V.
-    pub(super) fn show_volts(&mut self, volts: f64) {
-        self.shown_v = Some(volts);
-    }
-
-    /// Charge left, as a fraction.
-    pub(super) fn left(&self) -> f64 {
-        self.left
     }
 
     /// Charge left, mAh.
@@ -185,10 +165,10 @@ mod tests {
     fn it_holds_as_much_energy_as_the_specification_says_and_then_turns_no_thruster() {
         let (mut battery, mut joules, mut s) = (Battery::new(Pack::SURVEYOR, Some(1.0)), 0.0, 0.0);
         let first_v = battery.volts();
-        while battery.left() > 0.0 {
+        while battery.left > 0.0 {
             s += 1.0;
             assert!(s < 86_400.0, "it lasts for ever");
-            assert!(battery.carry_out(SimTime::from_s(s), HALF) == HALF || battery.left() == 0.0);
+            assert!(battery.carry_out(SimTime::from_s(s), HALF) == HALF || battery.left == 0.0);
             joules += battery.volts() * battery.amps();
         }
         let (wh, hours) = (joules / 3600.0, s / 3600.0);
@@ -197,14 +177,14 @@ mod tests {
         assert!((hours - 1500.0 / 283.0).abs() < 0.5, "{hours} h");
         assert!(first_v > 29.0 && battery.volts() < 21.5, "{first_v} V, {} V", battery.volts());
         let (battery, carried_out) = after(battery, 0.1, HALF);
-        assert_eq!((carried_out, battery.thruster_a()), (Order::Hold, [0.0; 2]));
+        assert_eq!((carried_out, battery.thruster_a), (Order::Hold, [0.0; 2]));
         assert!((battery.used_mah() - 57_741.0).abs() < 300.0, "{} mAh", battery.used_mah());
     }
 
     #[test]
     fn each_thruster_draws_for_itself_and_full_thrust_draws_all() {
         let thrust = |port, starboard| Order::Thrust { port, starboard };
-        let drawn = |order| after(Battery::new(Pack::SURVEYOR, Some(0.5)), 0.0, order).0.thruster_a();
+        let drawn = |order| after(Battery::new(Pack::SURVEYOR, Some(0.5)), 0.0, order).0.thruster_a;
         let [port_a, starboard_a] = drawn(thrust(1.0, 0.0));
         assert!((port_a - 1000.0 / (7.0 * 3.7)).abs() < 1e-9 && starboard_a == 0.0, "{port_a} A, {starboard_a} A");
         let [ahead, astern] = drawn(thrust(0.4, -0.4));

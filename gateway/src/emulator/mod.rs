@@ -17,7 +17,7 @@ pub use front_seat::FrontSeat;
 pub use telemetry::Extra;
 
 use crate::geodesy::LocalFrame;
-use crate::nmea::{Command, Date, Framer, M_S_PER_KN, Mode, Operator, Sentence, TimeOfDay};
+use crate::nmea::{Command, Date, Framer, M_S_PER_KN, Mode, Operator, Sentence, TimeOfDay, date_and_time};
 use autopilot::Autopilot;
 use battery::{Battery, Pack};
 use messages::Order;
@@ -59,8 +59,8 @@ pub enum Port {
 pub struct Emulator {
     plan: Plan,
     frame: LocalFrame,
-    primary: Framer,
-    secondary: Framer,
+    /// Of each port.
+    framers: [Framer; 2],
     /// The operator in control.
     operator: Operator,
     /// The last command that it followed, and when.
@@ -86,8 +86,7 @@ impl Emulator {
             frame: LocalFrame::new(plan.datum),
             battery: Battery::new(Pack::SURVEYOR, plan.charge),
             plan,
-            primary: Framer::new(),
-            secondary: Framer::new(),
+            framers: [Framer::new(), Framer::new()],
             operator: Operator::Secondary,
             command: Command::default(),
             commanded_at: SimTime::ZERO,
@@ -109,57 +108,9 @@ impl Emulator {
         }
     }
 
-    /// Receives bytes from a port.
-    pub fn receive(&mut self, now: SimTime, port: Port, bytes: &[u8]) {
-        // Taken out during use: sentences change the rest of the emulator.
-        let mut framer = std::mem::take(self.framer(port));
-        framer.push(bytes, &mut |body| {
-            // Unknown sentences are ignored.
-            if let Ok(sentence) = Sentence::parse(body) {
-                self.apply(now, port, sentence);
-            }
-        });
-        *self.framer(port) = framer;
-    }
-
-    fn framer(&mut self, port: Port) -> &mut Framer {
-        match port {
-            Port::Primary => &mut self.primary,
-            Port::Secondary => &mut self.secondary,
-        }
-    }
-
-    /// Sets the receiver's clock, UTC.
-    pub fn set_clock(&mut self, now: SimTime, (date, time): (Date, TimeOfDay)) {
-        self.plan.began = (date, time.later(SimTime::ZERO - now));
-    }
-
-    /// The next log message, if any.
-    pub fn take_remark(&mut self) -> Option<String> {
-        self.remark.take()
-    }
-
     /// Makes the battery show this voltage from now on, V.
     pub fn set_volts(&mut self, volts: f64) {
-        self.battery.show_volts(volts);
-    }
-
-    /// Updates the sensor measurements.
-    pub fn observe(&mut self, now: SimTime, own: &OwnBoat) {
-        self.sensed.observe(now, own);
-    }
-
-    /// The boat's order to its thrusters now.
-    pub fn order(&mut self, now: SimTime) -> Order {
-        let watchdog = self.plan.watchdog_s.map(SimTime::from_s);
-        let silent = watchdog.is_some_and(|limit| now - self.commanded_at > limit);
-        // Only if a file enables it: whether Surveyors have a watchdog is not published, and a
-        // gateway that is safe without one is safe with it.
-        if silent && self.command.mode != Mode::Standby {
-            self.command = Command::default();
-        }
-        let order = self.commanded();
-        self.battery.carry_out(now, order)
+        self.battery.shown_v = Some(volts);
     }
 
     /// The thrusters' order from its command.
@@ -190,12 +141,6 @@ impl Emulator {
     #[must_use]
     pub fn command(&self) -> &Command {
         &self.command
-    }
-
-    /// The operator in control.
-    #[must_use]
-    pub fn operator(&self) -> Operator {
-        self.operator
     }
 
     /// Commands followed, and commands ignored because another operator was in control.
@@ -265,5 +210,52 @@ impl Emulator {
             }
         }
         self.command = command;
+    }
+}
+
+impl FrontSeat for Emulator {
+    fn set_clock(&mut self, now: SimTime, utc_ns: u64) {
+        let (date, time) = date_and_time(utc_ns);
+        self.plan.began = (date, time.later(SimTime::ZERO - now));
+    }
+
+    fn receive(&mut self, now: SimTime, port: Port, bytes: &[u8]) {
+        // Taken out during use: sentences change the rest of the emulator.
+        let mut framer = std::mem::take(&mut self.framers[port as usize]);
+        framer.push(bytes, &mut |body| {
+            // Unknown sentences are ignored.
+            if let Ok(sentence) = Sentence::parse(body) {
+                self.apply(now, port, sentence);
+            }
+        });
+        self.framers[port as usize] = framer;
+    }
+
+    fn take_remark(&mut self) -> Option<String> {
+        self.remark.take()
+    }
+
+    fn operator(&self) -> Option<Operator> {
+        Some(self.operator)
+    }
+
+    fn observe(&mut self, now: SimTime, own: &OwnBoat) {
+        self.sensed.observe(now, own);
+    }
+
+    fn order(&mut self, now: SimTime) -> Order {
+        let watchdog = self.plan.watchdog_s.map(SimTime::from_s);
+        let silent = watchdog.is_some_and(|limit| now - self.commanded_at > limit);
+        // Only if a file enables it: whether Surveyors have a watchdog is not published, and a
+        // gateway that is safe without one is safe with it.
+        if silent && self.command.mode != Mode::Standby {
+            self.command = Command::default();
+        }
+        let order = self.commanded();
+        self.battery.carry_out(now, order)
+    }
+
+    fn telemetry(&mut self, now: SimTime, out: &mut Vec<u8>) {
+        telemetry::burst(self, now, out);
     }
 }

@@ -144,7 +144,7 @@ fn attitude(boat: &Emulator, nav: &Nav, imu: &Imu) -> Attitude {
 }
 
 fn battery(battery: &super::battery::Battery, now: SimTime) -> Battery {
-    let [port_a, starboard_a] = battery.thruster_a();
+    let [port_a, starboard_a] = battery.thruster_a;
     Battery {
         volts: Some(battery.volts()),
         charge: Some(battery.left_mah()),
@@ -152,7 +152,7 @@ fn battery(battery: &super::battery::Battery, now: SimTime) -> Battery {
         celsius: Some(22.3),
         charge_used: Some(battery.used_mah()),
         port_volts: Some(battery.volts()),
-        system_amps: Some(battery.system_a()),
+        system_amps: Some(battery.pack.system_a),
         port_amps: Some(port_a),
         starboard_amps: Some(starboard_a),
         hours: Some((now.as_s() / 3600.0).floor()),

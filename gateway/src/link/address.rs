@@ -7,7 +7,7 @@ use thiserror::Error;
 /// Supported speeds of a serial line, baud.
 // A Surveyor's serial speed and format are not published. These are the usual ones of NMEA devices,
 // 8N1. RTK receivers use the faster ones, and autopilots' telemetry ports 921600.
-pub const BAUDS: [u32; 9] = [4800, 9600, 19_200, 38_400, 57_600, 115_200, 230_400, 460_800, 921_600];
+const BAUDS: [u32; 9] = [4800, 9600, 19_200, 38_400, 57_600, 115_200, 230_400, 460_800, 921_600];
 
 /// The default speed of a serial line: NMEA 0183-HS.
 const BAUD: u32 = 38_400;
@@ -30,7 +30,7 @@ pub enum LinkAddress {
     Serial {
         /// The device.
         path: PathBuf,
-        /// One of [`BAUDS`].
+        /// One of `BAUDS`.
         baud: u32,
     },
     /// A new pseudo-terminal, which other programs open like a serial line.

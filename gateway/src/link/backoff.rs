@@ -31,15 +31,10 @@ impl Backoff {
         wait
     }
 
-    /// Starts again with the first wait.
-    pub(super) fn reset(&mut self) {
-        self.next = self.first;
-    }
-
     /// Resets the waits if the connection received bytes for long enough.
     pub(super) fn note_connection(&mut self, received_for: Duration) {
         if received_for >= STEADY {
-            self.reset();
+            self.next = self.first;
         }
     }
 }

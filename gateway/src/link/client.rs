@@ -1,15 +1,17 @@
 //! The side that connects, and reconnects when the connection is lost.
 
+use super::address::{HostPort, LinkAddress, Side};
 use super::backoff::Backoff;
 use super::clock::{self, TICK};
 use super::connection::Connection;
+use super::interface::LinkEvent;
 use super::port::Port;
-use super::threads::{Threads, Woken};
-use super::{HostPort, LinkAddress, LinkEvent, Side};
+use super::threads::Threads;
+use super::udp_server;
 use serial2::SerialPort;
 use socket2::{Domain, Protocol, Socket, TcpKeepalive, Type};
 use std::io::{self, ErrorKind};
-use std::net::{Ipv6Addr, SocketAddr, TcpStream, ToSocketAddrs, UdpSocket};
+use std::net::{SocketAddr, TcpStream, ToSocketAddrs};
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
@@ -32,13 +34,12 @@ const UNACKNOWLEDGED: Duration = Duration::from_secs(2);
 /// Connects, serves and waits in turn until the link is closed.
 pub(super) fn run(threads: &Arc<Threads>, address: &LinkAddress) {
     let mut backoff = Backoff::new(threads.settings.retry_first, threads.settings.retry_max);
-    let mut seen = threads.reconnects();
     loop {
         let begun_at = clock::now();
         let connection = connect(threads, address).and_then(|(port, name)| Connection::open(threads, port, name));
-        let mut wait = match connection {
+        let wait = match connection {
             Ok(connection) => {
-                backoff.note_connection(connection.serve().received_for);
+                backoff.note_connection(connection.serve());
                 backoff.wait()
             }
             Err(_) if threads.is_stopped() => return,
@@ -50,15 +51,8 @@ pub(super) fn run(threads: &Arc<Threads>, address: &LinkAddress) {
                 retry_in
             }
         };
-        loop {
-            match threads.pause(wait, &mut seen) {
-                Woken::Elapsed => break,
-                Woken::Stopped => return,
-                Woken::Asked => {
-                    backoff.reset();
-                    wait = backoff.wait();
-                }
-            }
+        if threads.stops_within(wait) {
+            return;
         }
     }
 }
@@ -100,7 +94,7 @@ fn connect_to(threads: &Threads, address: SocketAddr) -> io::Result<TcpStream> {
         if clock::since(start) >= CONNECT {
             return Err(io::Error::new(ErrorKind::TimedOut, format!("no answer for {CONNECT:?}")));
         }
-        if threads.sleep(POLL) == Woken::Stopped {
+        if threads.stops_within(POLL) {
             return Err(ErrorKind::Interrupted.into());
         }
     }
@@ -140,11 +134,8 @@ fn connect_udp(at: &HostPort) -> io::Result<(Port, String)> {
     };
     // The socket has its peer's address family: on some systems an IPv6 socket cannot reach IPv4
     // addresses.
-    let any: SocketAddr = if address.is_ipv4() { ([0, 0, 0, 0], 0).into() } else { (Ipv6Addr::UNSPECIFIED, 0).into() };
-    let socket = UdpSocket::bind(any)?;
+    let (socket, _) = udp_server::bind((if address.is_ipv4() { "0.0.0.0" } else { "::" }, 0))?;
     socket.connect(address)?;
-    socket.set_read_timeout(Some(TICK))?;
-    socket.set_write_timeout(Some(TICK))?;
     Ok((Port::Udp(socket), address.to_string()))
 }
 
@@ -152,9 +143,7 @@ fn connect_udp(at: &HostPort) -> io::Result<(Port, String)> {
 // A single peer rather than a server: there is one boat, and the guard needs a socket on which a plain write
 // reaches it. A boat that restarts sends from another port; it is found after silence has ended the link.
 fn await_udp(threads: &Threads, at: &HostPort) -> io::Result<(Port, String)> {
-    let socket = UdpSocket::bind((at.host.as_str(), at.port))?;
-    socket.set_read_timeout(Some(TICK))?;
-    socket.set_write_timeout(Some(TICK))?;
+    let (socket, _) = udp_server::bind((&at.host, at.port))?;
     let start = clock::now();
     while clock::since(start) < CONNECT && !threads.is_stopped() {
         // Only peeked at: the connection reads this datagram first.

@@ -1,7 +1,7 @@
 //! One connection to a peer, from up to down, with a reading and a writing thread.
 
-use super::LinkEvent;
 use super::clock::{self, TICK};
+use super::interface::LinkEvent;
 use super::outbox::Priority;
 use super::peer::{End, Peer};
 use super::port::{Port, Received, Wrote};
@@ -22,13 +22,6 @@ pub(super) struct Connection {
     threads: Arc<Threads>,
     pub(super) peer: Arc<Peer>,
     writer: Option<JoinHandle<()>>,
-}
-
-/// The result of a connection.
-pub(super) struct Served {
-    pub(super) end: End,
-    /// Time between coming up and the last bytes received.
-    pub(super) received_for: Duration,
 }
 
 impl Connection {
@@ -52,13 +45,13 @@ impl Connection {
         Ok(connection)
     }
 
-    /// Reads until the connection ends.
-    pub(super) fn serve(self) -> Served {
+    /// Reads until the connection ends; returns the time between coming up and the last bytes received.
+    pub(super) fn serve(self) -> Duration {
         let up_at = clock::now();
         let mut received_at = up_at;
         let end = self.read_on(&mut received_at);
         self.close(&end);
-        Served { end, received_for: received_at.saturating_duration_since(up_at) }
+        received_at.saturating_duration_since(up_at)
     }
 
     fn read_on(&self, received_at: &mut Instant) -> End {
@@ -99,7 +92,7 @@ impl Connection {
         match end {
             // Bytes still held by a lost connection are outdated commands.
             End::Lost(_) => self.peer.port.reset(),
-            End::Asked | End::Stopped => self.peer.port.finish(),
+            End::Stopped => self.peer.port.finish(),
         }
         self.threads.tell_port(None);
         if let Some(writer) = self.writer.take() {
@@ -126,7 +119,7 @@ fn write_on(peer: &Peer, threads: &Threads) {
             peer.port.discard_unsent();
         }
         let (begun_at, transit) = (clock::now(), peer.port.transit(request.bytes().len()));
-        match peer.port.write(request.bytes(), || peer.is_over()) {
+        match peer.port.write(request.bytes(), || peer.is_to_end().is_some()) {
             Ok(Wrote::All) => {
                 let at = clock::now();
                 // Reported after the system has accepted the last byte, to measure the latency of orders.
@@ -138,8 +131,8 @@ fn write_on(peer: &Peer, threads: &Threads) {
             Err(e) => peer.end(End::Lost(format!("cannot write: {e}"))),
         }
         // Bytes queued meanwhile can still be displaced here, but not in the driver.
-        while clock::since(begun_at) < transit && !peer.is_over() {
-            threads.sleep(transit.saturating_sub(clock::since(begun_at)).min(TICK));
+        while clock::since(begun_at) < transit && peer.is_to_end().is_none() {
+            threads.stops_within(transit.saturating_sub(clock::since(begun_at)).min(TICK));
         }
         settled_at = clock::now();
     }

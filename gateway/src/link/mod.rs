@@ -10,6 +10,7 @@ mod backoff;
 mod client;
 mod clock;
 mod connection;
+mod interface;
 mod outbox;
 mod peer;
 mod port;
@@ -19,161 +20,22 @@ mod tcp_server;
 mod threads;
 mod udp_server;
 
-pub use address::{BAUDS, HostPort, LinkAddress, LinkAddressError, Side};
+pub use address::{HostPort, LinkAddress, LinkAddressError, Side};
+pub use interface::{BoatLink, LinkError, LinkEvent, LinkSettings, OnPort};
 
 use outbox::Priority;
 use std::io;
 use std::net::SocketAddr;
-use std::os::fd::BorrowedFd;
-use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
-use thiserror::Error;
+use std::time::Duration;
 use threads::Threads;
-
-/// Maximum number of peers per link.
-const PEERS_MAX: usize = 8;
 
 /// How long dropping a link waits for its threads.
 // Several ticks of 25 ms in which threads notice, and a graceful close of 80 ms.
 const CLOSE_MAX: Duration = Duration::from_millis(190);
 
-/// The timeouts of a link.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct LinkSettings {
-    /// Without bytes for this long, a peer counts as lost. `None`, for the side that listens, means never. The peer of a
-    /// pseudo-terminal may stay silent; a peer of a UDP server for at most 10 s.
-    pub silence: Option<Duration>,
-    /// The wait before the second attempt; doubles each time.
-    pub retry_first: Duration,
-    /// Maximum wait between attempts.
-    pub retry_max: Duration,
-}
-
-impl Default for LinkSettings {
-    fn default() -> LinkSettings {
-        LinkSettings {
-            // A boat sends at least once a second. TCP alone notices a pulled cable after minutes; UDP and
-            // serial lines never do.
-            silence: Some(Duration::from_secs(3)),
-            retry_first: Duration::from_millis(100),
-            // No longer back-off, because an E-stop may be waiting for the connection.
-            retry_max: Duration::from_secs(1),
-        }
-    }
-}
-
-/// An event of a link.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum LinkEvent {
-    /// A peer has connected. Peers are numbered from 0; a link never reuses a number.
-    Up {
-        /// The peer's number.
-        peer: u32,
-        /// The peer's address or device.
-        name: String,
-    },
-    /// A peer has sent bytes.
-    Bytes {
-        /// The peer's number.
-        peer: u32,
-        /// When the read returned.
-        at: Instant,
-        /// The bytes, whether whole lines or not; at most 64 KiB.
-        bytes: Vec<u8>,
-    },
-    /// A peer is lost.
-    Down {
-        /// The peer's number.
-        peer: u32,
-        /// Why it was lost.
-        reason: String,
-    },
-    /// The peer cannot be reached.
-    Failed {
-        /// The cause.
-        reason: String,
-        /// Time until the next attempt.
-        retry_in: Duration,
-    },
-    /// Everything sent with this tag has been written to all peers that were up at the time. Not emitted if there were
-    /// none, or if one of them missed it.
-    Written {
-        /// The tag.
-        tag: u64,
-        /// When the system accepted the last byte.
-        at: Instant,
-    },
-}
-
-/// Why a link cannot be opened.
-#[derive(Debug, Error)]
-pub enum LinkError {
-    /// Cannot listen on the port.
-    #[error("cannot listen on {kind} port {} of {}: {reason}", at.port, at.host)]
-    Listen {
-        /// `TCP` or `UDP`.
-        kind: &'static str,
-        /// The port.
-        at: HostPort,
-        /// The system's error.
-        reason: String,
-    },
-    /// The serial line does not support this speed.
-    #[error("{path}: baud is {baud}, allowed: {BAUDS:?}")]
-    Baud {
-        /// The device.
-        path: PathBuf,
-        /// The requested speed.
-        baud: u32,
-    },
-    /// No pseudo-terminal available.
-    #[error("cannot open a pseudo-terminal: {reason}")]
-    Pty {
-        /// The system's error.
-        reason: String,
-    },
-    /// Cannot create the symlink to the pseudo-terminal.
-    #[error("cannot make the symlink {path}: {reason}")]
-    Symlink {
-        /// The path of the symlink.
-        path: PathBuf,
-        /// The cause.
-        reason: String,
-    },
-    /// No thread available.
-    #[error("cannot start a thread for {address}: {source}")]
-    Thread {
-        /// The link's address.
-        address: String,
-        /// The system's error.
-        source: io::Error,
-    },
-}
-
-/// A gateway's connection to its boat.
-pub trait BoatLink {
-    /// Queues bytes without blocking. Displaces queued bytes whose write has not begun.
-    fn send(&self, bytes: Vec<u8>, tag: u64);
-
-    /// Like [`BoatLink::send`], for a command that stops the boat: discards earlier commands that wait in a stalled line,
-    /// where possible.
-    fn send_stop(&self, bytes: Vec<u8>, tag: u64) {
-        self.send(bytes, tag);
-    }
-
-    /// The number of displaced writes so far.
-    fn displaced(&self) -> u64;
-
-    /// Sends a shutdown message; see [`Link::send_and_wait`].
-    fn send_and_wait(&self, bytes: &[u8], limit: Duration) -> bool;
-}
-
-/// Called with the descriptor of every connection before its use, and with `None` after its end.
-pub type OnPort = Box<dyn Fn(Option<BorrowedFd<'_>>) + Send + Sync>;
-
 /// A link that reconnects automatically, on its own threads. Dropping it closes everything within 200 ms: written
-/// bytes still arrive, queued ones are lost. To send a shutdown message, use [`Link::send_and_wait`].
+/// bytes still arrive, queued ones are lost. To send a shutdown message, use [`BoatLink::send_and_wait`].
 pub struct Link {
     threads: Arc<Threads>,
     reach: String,
@@ -215,52 +77,24 @@ impl Link {
     pub fn reach(&self) -> String {
         self.reach.clone()
     }
-
-    /// Queues bytes for all peers without blocking. For each peer, displaces queued bytes whose write has not begun.
-    pub fn send(&self, bytes: Vec<u8>, tag: u64) {
-        // Never wait here: if the boat does not read, the next command displaces this one.
-        drop(self.threads.enqueue(bytes, Some(tag), Priority::Normal));
-    }
-
-    /// Like [`Link::send`], for a command that stops the boat: discards what a serial line still holds of earlier commands.
-    pub fn send_stop(&self, bytes: Vec<u8>, tag: u64) {
-        drop(self.threads.enqueue(bytes, Some(tag), Priority::Stop));
-    }
-
-    /// The number of displaced writes so far, over all peers.
-    #[must_use]
-    pub fn displaced(&self) -> u64 {
-        self.threads.displaced()
-    }
-
-    /// Sends a shutdown message: displaces what is queued, writes these bytes to all peers, and waits up to `limit`.
-    /// Returns whether there was a peer and the system accepted the bytes for all of them. Bytes whose write has not
-    /// begun by then stay queued. Other threads' bytes do not displace them. Works while panicking.
-    pub fn send_and_wait(&self, bytes: &[u8], limit: Duration) -> bool {
-        self.threads.enqueue(bytes.to_vec(), None, Priority::Shutdown).wait(limit)
-    }
-
-    /// Breaks all connections; a client reconnects after the first wait.
-    pub fn reconnect(&self) {
-        self.threads.reconnect();
-    }
 }
 
 impl BoatLink for Link {
     fn send(&self, bytes: Vec<u8>, tag: u64) {
-        Link::send(self, bytes, tag);
+        // Never wait here: if the boat does not read, the next command displaces this one.
+        drop(self.threads.enqueue(bytes, Some(tag), Priority::Normal));
     }
 
     fn send_stop(&self, bytes: Vec<u8>, tag: u64) {
-        Link::send_stop(self, bytes, tag);
+        drop(self.threads.enqueue(bytes, Some(tag), Priority::Stop));
     }
 
     fn displaced(&self) -> u64 {
-        Link::displaced(self)
+        self.threads.displaced()
     }
 
     fn send_and_wait(&self, bytes: &[u8], limit: Duration) -> bool {
-        Link::send_and_wait(self, bytes, limit)
+        self.threads.enqueue(bytes.to_vec(), None, Priority::Shutdown).wait(limit)
     }
 }
 
@@ -277,20 +111,17 @@ type Work = Box<dyn FnOnce() + Send>;
 fn prepare(threads: Arc<Threads>, address: &LinkAddress) -> Result<(String, Work), LinkError> {
     Ok(match address {
         LinkAddress::Tcp(Side::Listens, at) => {
-            let (listener, at) = tcp_server::bind(at)?;
+            let (listener, at) = listening("TCP", at, tcp_server::bind)?;
             (reached("tcp", at), Box::new(move || tcp_server::run(&threads, &listener)))
         }
         LinkAddress::Udp(Side::Listens, at) => {
-            let (socket, at) = udp_server::bind(at)?;
+            let (socket, at) = listening("UDP", at, udp_server::bind)?;
             let socket = Arc::new(socket);
             (reached("udp", at), Box::new(move || udp_server::run(&threads, &socket)))
         }
         LinkAddress::Pty { link } => {
             let pty = Arc::new(pty::Pty::open(link.as_deref())?);
             (pty.path().display().to_string(), Box::new(move || pty_server::run(&threads, &pty)))
-        }
-        LinkAddress::Serial { path, baud } if !BAUDS.contains(baud) => {
-            return Err(LinkError::Baud { path: path.clone(), baud: *baud });
         }
         LinkAddress::Tcp(..) | LinkAddress::Udp(..) | LinkAddress::UdpListen(_) | LinkAddress::Serial { .. } => {
             let address = address.clone();
@@ -299,12 +130,8 @@ fn prepare(threads: Arc<Threads>, address: &LinkAddress) -> Result<(String, Work
     })
 }
 
-fn listening<T>(
-    kind: &'static str,
-    at: &HostPort,
-    bound: impl FnOnce((&str, u16)) -> io::Result<T>,
-) -> Result<T, LinkError> {
-    bound((&at.host, at.port)).map_err(|e| LinkError::Listen { kind, at: at.clone(), reason: e.to_string() })
+fn listening<T>(kind: &'static str, at: &HostPort, bind: fn((&str, u16)) -> io::Result<T>) -> Result<T, LinkError> {
+    bind((&at.host, at.port)).map_err(|e| LinkError::Listen { kind, at: at.clone(), reason: e.to_string() })
 }
 
 fn reached(scheme: &str, at: SocketAddr) -> String {

@@ -8,8 +8,6 @@ use std::fmt;
 /// Why a connection ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum End {
-    /// A reconnect was requested.
-    Asked,
     /// The link is closing.
     Stopped,
     /// The connection broke.
@@ -27,7 +25,6 @@ pub(super) struct Peer {
 impl fmt::Display for End {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            End::Asked => write!(f, "a reconnect was requested"),
             End::Stopped => write!(f, "closed here"),
             End::Lost(reason) => write!(f, "{reason}"),
         }
@@ -49,9 +46,5 @@ impl Peer {
     /// Why the connection must end, if it must.
     pub(super) fn is_to_end(&self) -> Option<End> {
         self.end.lock().clone()
-    }
-
-    pub(super) fn is_over(&self) -> bool {
-        self.end.lock().is_some()
     }
 }

@@ -1,7 +1,7 @@
 //! A pseudo-terminal of our own, which other programs open like a boat's serial line.
 
-use super::LinkError;
 use super::clock::{self, TICK};
+use super::interface::LinkError;
 use parking_lot::Mutex;
 use rustix::fs::{Mode, OFlags};
 use rustix::pty::OpenptFlags;
@@ -88,11 +88,6 @@ impl Pty {
         let is_old = reader.begun_at.is_none_or(|at| clock::since(at) >= UNREAD_MAX);
         let unread_for = self.unread_for(&mut reader)?;
         if is_old && unread_for >= UNREAD_MAX { self.discard(&mut reader) } else { Ok(()) }
-    }
-
-    /// Discards all unread bytes.
-    pub(super) fn flush(&self) -> io::Result<()> {
-        self.discard(&mut self.reader.lock())
     }
 
     /// How long there have always been unread bytes.

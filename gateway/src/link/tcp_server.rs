@@ -4,22 +4,19 @@ use super::client::tune;
 use super::clock::TICK;
 use super::connection::Connection;
 use super::port::Port;
-use super::threads::{Threads, Woken};
-use super::{HostPort, LinkError, PEERS_MAX, listening};
+use super::threads::{PEERS_MAX, Threads};
 use socket2::SockRef;
 use std::io;
 use std::net::{SocketAddr, TcpListener, TcpStream};
 use std::sync::Arc;
 
 /// Opens the port.
-pub(super) fn bind(at: &HostPort) -> Result<(TcpListener, SocketAddr), LinkError> {
-    listening("TCP", at, |at| {
-        let listener = TcpListener::bind(at)?;
-        // On Linux this applies to `accept` too.
-        SockRef::from(&listener).set_read_timeout(Some(TICK))?;
-        let address = listener.local_addr()?;
-        Ok((listener, address))
-    })
+pub(super) fn bind(at: (&str, u16)) -> io::Result<(TcpListener, SocketAddr)> {
+    let listener = TcpListener::bind(at)?;
+    // On Linux this applies to `accept` too.
+    SockRef::from(&listener).set_read_timeout(Some(TICK))?;
+    let address = listener.local_addr()?;
+    Ok((listener, address))
 }
 
 /// Accepts connections until the link is closed.
@@ -29,7 +26,7 @@ pub(super) fn run(threads: &Arc<Threads>, listener: &TcpListener) {
             Ok((stream, from)) => serve_peer(threads, stream, from),
             Err(e) if e.kind() == io::ErrorKind::WouldBlock => {}
             // For example too many open files, which may pass.
-            Err(_) if threads.sleep(TICK) == Woken::Stopped => return,
+            Err(_) if threads.stops_within(TICK) => return,
             Err(_) => {}
         }
     }
@@ -43,5 +40,7 @@ fn serve_peer(threads: &Arc<Threads>, stream: TcpStream, from: SocketAddr) {
     // A peer that is already gone, or that gets no thread, finds the connection closed.
     let Ok(stream) = tune(stream.into()) else { return };
     let Ok(connection) = Connection::open(threads, Port::Tcp(stream), from.to_string()) else { return };
-    drop(threads.spawn("link reader", move || drop(connection.serve())));
+    drop(threads.spawn("link reader", move || {
+        connection.serve();
+    }));
 }

@@ -1,8 +1,8 @@
 //! The threads of one link, and their peers.
 
+use super::interface::{LinkEvent, LinkSettings, OnPort};
 use super::outbox::{Completion, Priority, WriteRequest};
 use super::peer::{End, Peer};
-use super::{LinkEvent, LinkSettings, OnPort};
 use parking_lot::{Condvar, Mutex, MutexGuard};
 use std::io;
 use std::os::fd::BorrowedFd;
@@ -10,6 +10,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
+
+/// Maximum number of peers per link.
+pub(super) const PEERS_MAX: usize = 8;
 
 /// State shared by all threads of a link.
 pub(super) struct Threads {
@@ -27,18 +30,7 @@ pub(super) struct Threads {
 #[derive(Default)]
 struct State {
     stopped: bool,
-    reconnects: u64,
     running: usize,
-}
-
-/// Why a wait ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Woken {
-    Elapsed,
-    /// A reconnect was requested.
-    Asked,
-    /// The link is closed.
-    Stopped,
 }
 
 /// Counts a running thread until dropped.
@@ -133,17 +125,13 @@ impl Threads {
         self.displaced.load(Ordering::Relaxed)
     }
 
-    pub(super) fn reconnect(&self) {
-        self.state.lock().reconnects += 1;
-        self.changed.notify_all();
-        self.end_all(&End::Asked);
-    }
-
     /// Ends all threads and waits for them, up to `limit`.
     pub(super) fn stop(&self, limit: Duration) {
         self.state.lock().stopped = true;
         self.changed.notify_all();
-        self.end_all(&End::Stopped);
+        for peer in self.peers.lock().iter() {
+            peer.end(End::Stopped);
+        }
         // A thread that is still running hangs in its callback and ends after it.
         drop(self.wait(limit, |state| state.running > 0));
     }
@@ -152,35 +140,14 @@ impl Threads {
         self.state.lock().stopped
     }
 
-    /// The number of reconnects requested.
-    pub(super) fn reconnects(&self) -> u64 {
-        self.state.lock().reconnects
-    }
-
-    /// Waits this long or until the link is closed.
-    pub(super) fn sleep(&self, limit: Duration) -> Woken {
-        if self.wait(limit, |state| !state.stopped).stopped { Woken::Stopped } else { Woken::Elapsed }
-    }
-
-    /// Like [`Threads::sleep`], but a reconnect requested since `seen` also ends the wait. Updates `seen`.
-    pub(super) fn pause(&self, limit: Duration, seen: &mut u64) -> Woken {
-        let state = self.wait(limit, |state| !state.stopped && state.reconnects == *seen);
-        if state.stopped {
-            return Woken::Stopped;
-        }
-        let before = std::mem::replace(seen, state.reconnects);
-        if before == *seen { Woken::Elapsed } else { Woken::Asked }
+    /// Waits this long or until the link is closed; returns whether it is.
+    pub(super) fn stops_within(&self, limit: Duration) -> bool {
+        self.wait(limit, |state| !state.stopped).stopped
     }
 
     fn wait(&self, limit: Duration, nothing_new: impl Fn(&State) -> bool) -> MutexGuard<'_, State> {
         let mut state = self.state.lock();
         self.changed.wait_while_for(&mut state, |state| nothing_new(state), limit);
         state
-    }
-
-    fn end_all(&self, end: &End) {
-        for peer in self.peers.lock().iter() {
-            peer.end(end.clone());
-        }
     }
 }

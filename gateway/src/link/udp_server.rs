@@ -2,10 +2,10 @@
 
 use super::clock::{self, TICK};
 use super::connection::{CHUNK, Connection};
+use super::interface::LinkEvent;
 use super::peer::End;
 use super::port::Port;
-use super::threads::{Threads, Woken};
-use super::{HostPort, LinkError, LinkEvent, PEERS_MAX, listening};
+use super::threads::{PEERS_MAX, Threads};
 use std::io;
 use std::net::{SocketAddr, UdpSocket};
 use std::sync::Arc;
@@ -21,14 +21,12 @@ struct UdpPeer {
 }
 
 /// Opens the port.
-pub(super) fn bind(at: &HostPort) -> Result<(UdpSocket, SocketAddr), LinkError> {
-    listening("UDP", at, |at| {
-        let socket = UdpSocket::bind(at)?;
-        socket.set_read_timeout(Some(TICK))?;
-        socket.set_write_timeout(Some(TICK))?;
-        let address = socket.local_addr()?;
-        Ok((socket, address))
-    })
+pub(super) fn bind(at: (&str, u16)) -> io::Result<(UdpSocket, SocketAddr)> {
+    let socket = UdpSocket::bind(at)?;
+    socket.set_read_timeout(Some(TICK))?;
+    socket.set_write_timeout(Some(TICK))?;
+    let address = socket.local_addr()?;
+    Ok((socket, address))
 }
 
 /// Receives from all peers until the link is closed.
@@ -40,7 +38,7 @@ pub(super) fn run(threads: &Arc<Threads>, socket: &Arc<UdpSocket>) {
         match socket.recv_from(&mut buffer) {
             Ok((count, from)) => receive(threads, socket, &mut peers, from, &buffer[..count]),
             Err(e) if e.kind() == io::ErrorKind::WouldBlock => {}
-            Err(_) if threads.sleep(TICK) == Woken::Stopped => break,
+            Err(_) if threads.stops_within(TICK) => break,
             Err(_) => {}
         }
         while let Some((at, end)) = first_to_close(&peers, silence_max) {

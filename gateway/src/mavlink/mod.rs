@@ -24,7 +24,7 @@ pub const AUTOPILOT: u8 = 1;
 /// Writes the messages of one system and component.
 #[derive(Clone, Copy, Debug)]
 pub struct Writer {
-    system: u8,
+    pub(crate) system: u8,
     component: u8,
     sequence: u8,
 }
@@ -34,11 +34,6 @@ impl Writer {
     #[must_use]
     pub fn new(system: u8, component: u8) -> Writer {
         Writer { system, component, sequence: 0 }
-    }
-
-    /// Sets the system of the next messages.
-    pub fn set_system(&mut self, system: u8) {
-        self.system = system;
     }
 
     /// Appends a message that the dialect cannot express, from its number, the byte of its

@@ -76,13 +76,13 @@ pub(super) enum Field<'a> {
 /// The format of a number.
 #[derive(Clone, Copy)]
 pub(super) struct Format {
-    decimals: usize,
+    pub(super) decimals: usize,
     /// Zero-padded to this width.
-    width: usize,
+    pub(super) width: usize,
     /// Whether it is normalised to 0 (inclusive) to 360 (exclusive).
-    compass: bool,
+    pub(super) compass: bool,
     /// Whether trailing zeros are omitted.
-    brief: bool,
+    pub(super) brief: bool,
 }
 
 /// Without decimals.
@@ -94,21 +94,9 @@ pub(super) const HUNDREDTHS: Format = Format { decimals: 2, ..WHOLE };
 /// With three decimals, without trailing zeros.
 pub(super) const BRIEF_THOUSANDTHS: Format = Format { decimals: 3, brief: true, ..WHOLE };
 /// An angle in the format of most sentences: `005.0`.
-pub(super) const COMPASS: Format = TENTHS.compass().wide(5);
+pub(super) const COMPASS: Format = Format { compass: true, width: 5, ..TENTHS };
 
 impl Format {
-    pub(super) const fn compass(self) -> Format {
-        Format { compass: true, ..self }
-    }
-
-    pub(super) const fn brief(self) -> Format {
-        Format { brief: true, ..self }
-    }
-
-    pub(super) const fn wide(self, width: usize) -> Format {
-        Format { width, ..self }
-    }
-
     /// The text of a number, never `-0`; empty for a missing or non-finite number.
     pub(super) fn text(self, number: Option<f64>) -> String {
         let Some(number) = number.filter(|number| number.is_finite()) else { return String::new() };

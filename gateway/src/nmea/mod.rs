@@ -119,18 +119,23 @@ impl Sentence {
     /// [`ParseError::Unknown`] for an unsupported sentence, other errors for a malformed one.
     pub fn parse(body: &str) -> Result<Sentence, ParseError> {
         let reader = Reader::of(body);
-        let address = reader.address();
-        let blank = Sentence::blank(address);
-        let mut sentence = blank.ok_or_else(|| ParseError::Unknown { address: address.to_owned() })?;
+        let blank = Sentence::blank(reader.address);
+        let mut sentence = blank.ok_or_else(|| ParseError::Unknown { address: reader.address.to_owned() })?;
         reader.read(sentence.layout())?;
         Ok(sentence)
     }
 
-    /// Appends `$body*HH\r\n`, at most [`EMITTED_MAX`] bytes.
+    /// Appends [`Sentence::line`].
+    pub fn write(&self, out: &mut Vec<u8>) {
+        out.extend_from_slice(self.line().as_bytes());
+    }
+
+    /// The sentence as sent: `$body*HH\r\n`, at most [`EMITTED_MAX`] bytes, all ASCII.
     ///
     /// A non-finite number becomes an empty field, as does any field that would make the sentence
     /// too long.
-    pub fn write(&self, out: &mut Vec<u8>) {
+    #[must_use]
+    pub fn line(&self) -> String {
         // Rounded before writing, so that thrust and difference together still stay within 100 %.
         let mut rounded = match self.clone() {
             Sentence::Command(command) => Sentence::Command(command.rounded()),
@@ -138,7 +143,7 @@ impl Sentence {
             Sentence::MissionSettings(settings) => Sentence::MissionSettings(settings.rounded()),
             other => other,
         };
-        Writer::write(rounded.layout(), out);
+        Writer::line(rounded.layout())
     }
 
     /// An empty sentence with this address: a Surveyor's own, or a standard one with a

@@ -14,7 +14,7 @@ use std::str::FromStr;
 
 /// A sentence's address, and its data fields, counted from 1 as in manuals.
 pub(super) struct Reader<'a> {
-    address: &'a str,
+    pub(super) address: &'a str,
     data: Vec<&'a str>,
     /// The field read last.
     at: usize,
@@ -25,10 +25,6 @@ impl<'a> Reader<'a> {
         let mut parts = body.split(',');
         let address = parts.next().unwrap_or_default();
         Reader { address, data: parts.collect(), at: 0 }
-    }
-
-    pub(super) fn address(&self) -> &'a str {
-        self.address
     }
 
     /// Reads all fields of a layout.

@@ -1,6 +1,6 @@
 //! The Surveyor's own sentences: commands, reports and missions.
 
-use super::layout::{BRIEF_THOUSANDTHS, Field, HUNDREDTHS, Layout, TENTHS, WHOLE};
+use super::layout::{BRIEF_THOUSANDTHS, Field, Format, HUNDREDTHS, Layout, TENTHS, WHOLE};
 use super::mode::Mode;
 use super::operator::Operator;
 use primitives::LatLon;
@@ -27,14 +27,15 @@ impl Command {
     /// keep the previous value.
     pub(super) fn layout(&mut self) -> Layout<'_> {
         // In a download without following lines, the three unused fields are zero.
-        let zeros = |number: &Option<f64>| WHOLE.wide(if *number == Some(0.0) { 3 } else { 0 });
+        let zeros = |number: &Option<f64>| Format { width: if *number == Some(0.0) { 3 } else { 0 }, ..WHOLE };
+        let heading = Format { compass: true, brief: true, ..TENTHS };
         let (heading, thrust, difference) = match self.mode {
             Mode::FileDownload => (zeros(&self.heading_deg), zeros(&self.thrust), zeros(&self.difference)),
             // Whole numbers in mode T: a stand-in for the boat reads each field as an integer, and
             // keeps the previous difference if it has decimals.
-            Mode::Thruster => (WHOLE.compass(), WHOLE, WHOLE),
-            Mode::Speed => (TENTHS.compass().brief(), BRIEF_THOUSANDTHS, WHOLE),
-            _ => (TENTHS.compass().brief(), WHOLE, WHOLE),
+            Mode::Thruster => (Format { compass: true, ..WHOLE }, WHOLE, WHOLE),
+            Mode::Speed => (heading, BRIEF_THOUSANDTHS, WHOLE),
+            _ => (heading, WHOLE, WHOLE),
         };
         let fields = vec![
             Field::Address("PSEAC"),
@@ -105,7 +106,7 @@ impl Attitude {
             Field::Address("PSEAA"),
             Field::Number(&mut self.pitch_deg, TENTHS),
             Field::Number(&mut self.roll_deg, TENTHS),
-            Field::Number(&mut self.heading_deg, TENTHS.compass()),
+            Field::Number(&mut self.heading_deg, Format { compass: true, ..TENTHS }),
             // Written blank: a public client treats a field that contains only a space as a broken
             // sentence, and boats omit heave.
             Field::ReadOnly(&mut self.heave_m),
@@ -207,7 +208,7 @@ impl ControlState {
         let fields = vec![
             Field::Address("PSEAD"),
             Field::Mode(&mut self.mode),
-            Field::Number(&mut self.heading_deg, TENTHS.compass()),
+            Field::Number(&mut self.heading_deg, Format { compass: true, ..TENTHS }),
             Field::Number(&mut self.thrust, thrust),
             Field::Number(&mut self.difference, WHOLE),
             Field::Text(&mut self.words),

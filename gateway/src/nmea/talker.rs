@@ -3,25 +3,13 @@
 /// The talker: two characters, A to Z and 0 to 9, that identify the kind of device that sends a
 /// sentence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Talker([u8; 2]);
+pub struct Talker(pub(super) [u8; 2]);
 
 impl Talker {
     /// A satellite receiver that uses GPS.
     pub const GP: Talker = Talker(*b"GP");
-    /// A satellite receiver that uses several systems.
-    pub const GN: Talker = Talker(*b"GN");
     /// A magnetic compass.
     pub const HC: Talker = Talker(*b"HC");
-    /// A weather instrument.
-    pub const WI: Talker = Talker(*b"WI");
-    /// A log: speed through the water.
-    pub const VW: Talker = Talker(*b"VW");
-
-    /// The two characters.
-    #[must_use]
-    pub fn characters(self) -> [u8; 2] {
-        self.0
-    }
 
     /// Talker and kind of a five-character address. A manufacturer's own sentence begins with `P`
     /// and has no talker.

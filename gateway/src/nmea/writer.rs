@@ -22,8 +22,8 @@ pub(super) struct Writer {
 }
 
 impl Writer {
-    /// Appends the sentence of this layout to `out`.
-    pub(super) fn write(layout: Layout<'_>, out: &mut Vec<u8>) {
+    /// The sentence of this layout.
+    pub(super) fn line(layout: Layout<'_>) -> String {
         let mut line = Writer { body: String::with_capacity(EMITTED_MAX), spare: Vec::new() };
         layout.fields.into_iter().for_each(|field| line.field(field));
         // Better to omit a field than to send a sentence that a strict reader rejects.
@@ -31,14 +31,14 @@ impl Writer {
             line.empty_the_longest();
         }
         let sum = checksum(line.body.as_bytes());
-        out.extend_from_slice(format!("${}*{sum:02X}\r\n", line.body).as_bytes());
+        format!("${}*{sum:02X}\r\n", line.body)
     }
 
     fn field(&mut self, field: Field<'_>) {
         match field {
             Field::Address(address) => self.body.push_str(address),
             Field::Standard(talker, kind) => {
-                self.body.extend(talker.characters().map(char::from));
+                self.body.extend(talker.0.map(char::from));
                 self.body.push_str(kind);
             }
             Field::Constant(text) | Field::Unit(text) => self.fixed(text),

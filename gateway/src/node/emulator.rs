@@ -8,7 +8,7 @@ use super::node_event::NodeEvent;
 use crate::bridge::Event;
 use crate::config::BoatProtocol;
 use crate::emulator::{ArduPilot, Emulator, Extra, FrontSeat, Plan, Port};
-use crate::link::{Link, LinkAddress, LinkEvent, LinkSettings};
+use crate::link::{BoatLink, Link, LinkAddress, LinkEvent, LinkSettings};
 use crate::nmea::Operator;
 use crate::nmea::date_and_time;
 use agent::{Mind, MindRunner};
@@ -89,12 +89,12 @@ pub fn emulate(settings: &EmulatorSettings, notify: &mut dyn FnMut(NodeEvent<'_>
         began: date_and_time(utc::now_ns()),
         charge: settings.charge,
     };
-    let front_seat = match settings.protocol {
+    let front_seat: Box<dyn FrontSeat> = match settings.protocol {
         BoatProtocol::Surveyor => {
             let plan = surveyor(declination_rad(settings.declination_rad, datum)?);
-            FrontSeat::Surveyor(Box::new(Emulator::new(plan)))
+            Box::new(Emulator::new(plan))
         }
-        BoatProtocol::Mavlink => FrontSeat::ArduPilot(Box::new(ArduPilot::new(datum, settings.charge))),
+        BoatProtocol::Mavlink => Box::new(ArduPilot::new(datum, settings.charge)),
     };
     let incoming = Arc::new(Watched::new(Incoming::default()));
     let pictures = Arc::clone(&incoming);
@@ -159,7 +159,7 @@ impl Incoming {
 /// The emulated boat as a mind: its order is the back seat's command.
 struct EmulatedBoat {
     vehicle: VehicleId,
-    front_seat: FrontSeat,
+    front_seat: Box<dyn FrontSeat>,
 }
 
 impl Mind for EmulatedBoat {
@@ -222,9 +222,9 @@ impl EmulatorNode {
         Ok(())
     }
 
-    fn front_seat(&mut self) -> &mut FrontSeat {
+    fn front_seat(&mut self) -> &mut dyn FrontSeat {
         let (_, boat) = self.runner.minds_mut().next().expect("one boat is run here");
-        &mut boat.front_seat
+        &mut *boat.front_seat
     }
 
     /// Reports who commands the boat, if that changed.

@@ -6,10 +6,11 @@
 //! requested until the boat shows it once, and never again after the boat has left it: an operator
 //! who takes the boat out of GUIDED keeps it.
 
-use super::mavlink_boat::Boat;
-use super::mavlink_upload::{Next, Upload};
+use super::codec::{Codec, Command, UploadStep};
+use super::mavlink_boat::{Asked, Boat, Target};
+use super::mavlink_upload::Upload;
+use super::mission_check;
 use super::report::{Report, Shown};
-use super::{Command, UploadStep, mission_check};
 use crate::config::{Gateway, Mavlink as Settings};
 use crate::mavlink::dialect::{
     ATTITUDE_DATA, AttitudeTargetTypemask, COMMAND_LONG_DATA, GLOBAL_POSITION_INT_DATA, GPS_RAW_INT_DATA,
@@ -18,7 +19,7 @@ use crate::mavlink::dialect::{
     PositionTargetTypemask, SET_ATTITUDE_TARGET_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA, SYS_STATUS_DATA,
     SYSTEM_TIME_DATA,
 };
-use crate::mavlink::{AUTOPILOT, Framer, Received, RoverMode, Writer, lat_lon};
+use crate::mavlink::{Framer, Received, RoverMode, Writer, lat_lon};
 use crate::nmea::Mode;
 use crate::set_point::SetPoint;
 use crate::supervisor::Task;
@@ -49,23 +50,6 @@ const STREAMS: [(u32, f64); 9] = [
 ];
 /// They are requested again after this time, s: the boat may have restarted.
 const STREAMS_AGAIN_S: f64 = 10.0;
-
-/// The system and component that a message is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Target {
-    pub(super) system: u8,
-    pub(super) component: u8,
-}
-
-/// A mode requested from the boat.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Asked {
-    pub(super) mode: RoverMode,
-    pub(super) is_armed: bool,
-    at: SimTime,
-    /// Whether the boat has shown it.
-    pub(super) is_shown: bool,
-}
 
 /// The state of a link.
 #[derive(Clone, Debug)]
@@ -103,21 +87,6 @@ impl Mavlink {
         }
     }
 
-    pub(super) fn begin_link(&mut self) {
-        self.framer.interrupt();
-        self.boat.forget(self.settings.boat_system);
-        // The boat may be a different one, or have restarted: earlier requests no longer hold.
-        (self.asked, self.upload) = (None, None);
-        (self.heartbeat_due, self.streams_due) = (SimTime::LONG_AGO, SimTime::LONG_AGO);
-        self.answers.clear();
-    }
-
-    pub(super) fn read(&mut self, now: SimTime, bytes: &[u8], take: &mut dyn FnMut(Report)) {
-        let mut framer = std::mem::take(&mut self.framer);
-        framer.push(bytes, &mut |received| self.read_message(now, &received, take));
-        self.framer = framer;
-    }
-
     fn read_message(&mut self, now: SimTime, received: &Received, take: &mut dyn FnMut(Report)) {
         let ours = (self.settings.system, self.settings.component);
         if !self.boat.is_its(received) {
@@ -143,41 +112,12 @@ impl Mavlink {
                 self.upload.iter_mut().for_each(|upload| upload.take_ack(ack.mavtype, now));
             }
             other => match item_request(other) {
-                Some((seq, from)) if from == ours => self.answer(seq, now),
+                Some((seq, from)) if from == ours => {
+                    let item = self.upload.as_mut().and_then(|upload| upload.take_request(seq, now));
+                    self.answers.extend(item);
+                }
                 _ => self.boat.report(now, other, take),
             },
-        }
-    }
-
-    fn answer(&mut self, seq: u16, now: SimTime) {
-        let item = self.upload.as_mut().and_then(|upload| upload.take_request(seq, now));
-        self.answers.extend(item);
-    }
-
-    fn target(&self) -> Target {
-        // No target means everybody: a set-point of zero may be for all.
-        let system = self.boat.system.unwrap_or(0);
-        Target { system, component: if system == 0 { 0 } else { AUTOPILOT } }
-    }
-
-    pub(super) fn write(&mut self, now: SimTime, command: Command, out: &mut Vec<u8>) {
-        match command {
-            Command::Zero => self.write_set_point(SetPoint::ZERO, out),
-            Command::SetPoint(set_point) => {
-                self.engage(now, RoverMode::Guided, out);
-                self.write_set_point(set_point, out);
-            }
-            Command::Task(task) => self.engage(now, mode_of(task), out),
-            Command::Standby | Command::Switch(_) => self.stand_by(now, out),
-            Command::EndOfUpload => self.send(
-                MavMessage::MISSION_ACK(MISSION_ACK_DATA {
-                    target_system: self.target().system,
-                    target_component: self.target().component,
-                    mavtype: MavMissionResult::MAV_MISSION_OPERATION_CANCELLED,
-                    ..MISSION_ACK_DATA::default()
-                }),
-                out,
-            ),
         }
     }
 
@@ -223,7 +163,7 @@ impl Mavlink {
     }
 
     fn write_command(&mut self, command: MavCmd, [param1, param2]: [f32; 2], out: &mut Vec<u8>) {
-        let Target { system: target_system, component: target_component } = self.target();
+        let Target { system: target_system, component: target_component } = self.boat.target();
         let params = COMMAND_LONG_DATA { param1, param2, ..COMMAND_LONG_DATA::default() };
         let message = COMMAND_LONG_DATA { command, target_system, target_component, ..params };
         self.send(MavMessage::COMMAND_LONG(message), out);
@@ -241,7 +181,7 @@ impl Mavlink {
     /// See "Rover commands in guided mode" in ArduPilot's documentation. A boat drops a set-point
     /// after three seconds.
     fn write_set_point(&mut self, set_point: SetPoint, out: &mut Vec<u8>) {
-        let Target { system: target_system, component: target_component } = self.target();
+        let Target { system: target_system, component: target_component } = self.boat.target();
         let no_roll_no_pitch = AttitudeTargetTypemask::ATTITUDE_TARGET_TYPEMASK_BODY_ROLL_RATE_IGNORE
             | AttitudeTargetTypemask::ATTITUDE_TARGET_TYPEMASK_BODY_PITCH_RATE_IGNORE;
         let message = match set_point {
@@ -297,10 +237,48 @@ impl Mavlink {
         };
         self.send(message, out);
     }
+}
+
+impl Codec for Mavlink {
+    fn begin_link(&mut self) {
+        self.framer.interrupt();
+        self.boat.forget(self.settings.boat_system);
+        // The boat may be a different one, or have restarted: earlier requests no longer hold.
+        (self.asked, self.upload) = (None, None);
+        (self.heartbeat_due, self.streams_due) = (SimTime::LONG_AGO, SimTime::LONG_AGO);
+        self.answers.clear();
+    }
+
+    fn read(&mut self, now: SimTime, bytes: &[u8], take: &mut dyn FnMut(Report)) {
+        let mut framer = std::mem::take(&mut self.framer);
+        framer.push(bytes, &mut |received| self.read_message(now, &received, take));
+        self.framer = framer;
+    }
+
+    fn write(&mut self, now: SimTime, command: Command, out: &mut Vec<u8>) {
+        match command {
+            Command::Zero => self.write_set_point(SetPoint::ZERO, out),
+            Command::SetPoint(set_point) => {
+                self.engage(now, RoverMode::Guided, out);
+                self.write_set_point(set_point, out);
+            }
+            Command::Task(task) => self.engage(now, mode_of(task).0, out),
+            Command::Standby | Command::Switch(_) => self.stand_by(now, out),
+            Command::EndOfUpload => self.send(
+                MavMessage::MISSION_ACK(MISSION_ACK_DATA {
+                    target_system: self.boat.target().system,
+                    target_component: self.boat.target().component,
+                    mavtype: MavMissionResult::MAV_MISSION_OPERATION_CANCELLED,
+                    ..MISSION_ACK_DATA::default()
+                }),
+                out,
+            ),
+        }
+    }
 
     /// The messages due without a command: our heartbeat, requests for messages, and answers to the
     /// boat.
-    pub(super) fn keep_up(&mut self, now: SimTime, out: &mut Vec<u8>) {
+    fn keep_up(&mut self, now: SimTime, out: &mut Vec<u8>) {
         for message in std::mem::take(&mut self.answers) {
             self.send(message, out);
         }
@@ -329,14 +307,44 @@ impl Mavlink {
         }
     }
 
-    pub(super) fn due(&self) -> SimTime {
-        let upload = self.upload.as_ref().map_or(SimTime::NEVER, Upload::due);
-        upload.min(self.heartbeat_due)
+    fn has_boat_modes(&self) -> bool {
+        false
+    }
+
+    fn shown(&self, command: Command) -> Shown {
+        let mode = match command {
+            Command::Standby | Command::Switch(_) | Command::Zero | Command::EndOfUpload => Mode::Standby,
+            Command::SetPoint(_) => Mode::Speed,
+            Command::Task(task) => mode_of(task).1,
+        };
+        let heading_deg = match command {
+            Command::SetPoint(SetPoint::Speed { heading_deg, .. }) => Some(heading_deg),
+            _ => None,
+        };
+        Shown { mode, heading_deg, thrust: None, difference: None }
+    }
+
+    fn text(&self, command: Command) -> String {
+        match command {
+            Command::Standby | Command::Switch(_) => "HOLD, disarm".to_owned(),
+            Command::Zero => "SET_ATTITUDE_TARGET thrust 0".to_owned(),
+            Command::SetPoint(SetPoint::Thrust { thrust_pct, difference_pct }) => {
+                format!("GUIDED, SET_ATTITUDE_TARGET thrust {thrust_pct:.0} %, turn {difference_pct:.0} %")
+            }
+            Command::SetPoint(SetPoint::Speed { heading_deg, speed_m_s }) if speed_m_s < VELOCITY_MIN_M_S => {
+                format!("GUIDED, SET_ATTITUDE_TARGET heading {heading_deg:.1}, thrust 0")
+            }
+            Command::SetPoint(SetPoint::Speed { heading_deg, speed_m_s }) => {
+                format!("GUIDED, SET_POSITION_TARGET_LOCAL_NED heading {heading_deg:.1}, speed {speed_m_s:.2} m/s")
+            }
+            Command::Task(task) => mode_of(task).2.to_owned(),
+            Command::EndOfUpload => "MISSION_ITEM_INT".to_owned(),
+        }
     }
 
     /// The stop message for a boat that is ours; one under other control receives a set-point of
     /// zero, which it ignores.
-    pub(super) fn stop_message(&self) -> Vec<u8> {
+    fn stop_message(&self) -> Vec<u8> {
         let (mut copy, mut out) = (self.clone(), Vec::new());
         // The same bytes as long as nothing changes.
         copy.writer = Writer::new(self.settings.system, self.settings.component);
@@ -349,7 +357,7 @@ impl Mavlink {
     }
 
     /// The stop message for a boat, regardless of who commands it.
-    pub(super) fn forced_stop_message(&self) -> Vec<u8> {
+    fn forced_stop_message(&self) -> Vec<u8> {
         let (mut copy, mut out) = (self.clone(), Vec::new());
         copy.write_set_point(SetPoint::ZERO, &mut out);
         copy.write_mode(RoverMode::Hold, &mut out);
@@ -357,43 +365,41 @@ impl Mavlink {
         out
     }
 
-    pub(super) fn begin_upload(&mut self, now: SimTime, mission: &Mission) -> Result<(), String> {
+    fn begin_upload(&mut self, now: SimTime, mission: &Mission) -> Result<(), String> {
         mission_check::check(mission)?;
         // The game's missions specify a throttle, like a Surveyor's; ArduPilot's specify a speed.
         let speed_m_s = math::interpolate(self.thrust_map.iter().copied(), mission.throttle_pct);
         let speed_m_s = speed_m_s.clamp(0.0, self.speed_max_m_s);
-        self.upload = Some(Upload::new(mission, speed_m_s, self.target(), now));
+        self.upload = Some(Upload::new(mission, speed_m_s, self.boat.target(), now));
         Ok(())
     }
 
-    pub(super) fn continue_upload(&mut self, now: SimTime, out: &mut Vec<u8>) -> UploadStep {
-        let target = self.target();
-        match self.upload.as_mut().map(|upload| upload.next(now, target)) {
-            Some(Next::Send(messages)) => {
-                messages.into_iter().for_each(|message| self.send(message, out));
-                UploadStep::Sent
-            }
-            Some(Next::Wait) => UploadStep::Waiting,
-            Some(Next::Done) | None => {
-                self.upload = None;
-                UploadStep::Done
-            }
-            Some(Next::Failed(reason)) => {
-                self.upload = None;
-                UploadStep::Failed(reason)
-            }
+    fn continue_upload(&mut self, now: SimTime, out: &mut Vec<u8>) -> UploadStep {
+        let Some(upload) = &mut self.upload else { return UploadStep::Done };
+        let mut messages = vec![];
+        let step = upload.next(now, self.boat.target(), &mut messages);
+        messages.into_iter().for_each(|message| self.send(message, out));
+        if matches!(step, UploadStep::Done | UploadStep::Failed(_)) {
+            self.upload = None;
         }
+        step
     }
 
-    pub(super) fn is_uploading(&self) -> bool {
+    fn is_uploading(&self) -> bool {
         self.upload.is_some()
     }
 
-    pub(super) fn abort_upload(&mut self) -> bool {
+    fn abort_upload(&mut self) -> bool {
         self.upload.take().is_some()
     }
 
-    pub(super) fn counts(&self) -> [Vec<(String, u64)>; 2] {
+    /// MAVLink needs a message every second even without commands: otherwise a boat may enter a failsafe of its own.
+    fn due(&self) -> Option<SimTime> {
+        let upload = self.upload.as_ref().map_or(SimTime::NEVER, Upload::due);
+        Some(upload.min(self.heartbeat_due))
+    }
+
+    fn counts(&self) -> [Vec<(String, u64)>; 2] {
         let framed = self.framer.counts();
         let known = [
             ("messages in", framed.messages),
@@ -407,15 +413,16 @@ impl Mavlink {
     }
 }
 
-fn mode_of(task: Task) -> RoverMode {
+/// The mode in which a boat carries out a task: Rover's, as it is shown, and its name.
+fn mode_of(task: Task) -> (RoverMode, Mode, &'static str) {
     match task {
-        Task::StationKeep => RoverMode::Loiter,
+        Task::StationKeep => (RoverMode::Loiter, Mode::StationKeep, "LOITER"),
         // The closest match on an ArduPilot boat: it goes home to where it was armed, or to its
         // rally point.
-        Task::GoToErp => RoverMode::Rtl,
-        Task::Mission => RoverMode::Auto,
+        Task::GoToErp => (RoverMode::Rtl, Mode::GoToErp, "RTL"),
+        Task::Mission => (RoverMode::Auto, Mode::Waypoint, "AUTO"),
         // Refused earlier.
-        Task::Mode(_) => RoverMode::Hold,
+        Task::Mode(_) => (RoverMode::Hold, Mode::Standby, "HOLD"),
     }
 }
 
@@ -428,42 +435,5 @@ fn item_request(message: &MavMessage) -> Option<(u16, (u8, u8))> {
         }
         MavMessage::MISSION_REQUEST(request) => Some((request.seq, (request.target_system, request.target_component))),
         _ => None,
-    }
-}
-
-pub(super) fn shown(command: Command) -> Shown {
-    let mode = match command {
-        Command::Standby | Command::Switch(_) | Command::Zero | Command::EndOfUpload => Mode::Standby,
-        Command::Task(Task::Mode(_)) => Mode::Standby,
-        Command::SetPoint(_) => Mode::Speed,
-        Command::Task(Task::StationKeep) => Mode::StationKeep,
-        Command::Task(Task::GoToErp) => Mode::GoToErp,
-        Command::Task(Task::Mission) => Mode::Waypoint,
-    };
-    let heading_deg = match command {
-        Command::SetPoint(SetPoint::Speed { heading_deg, .. }) => Some(heading_deg),
-        _ => None,
-    };
-    Shown { mode, heading_deg, thrust: None, difference: None }
-}
-
-pub(super) fn text(command: Command) -> String {
-    match command {
-        Command::Standby | Command::Switch(_) => "HOLD, disarm".to_owned(),
-        Command::Zero => "SET_ATTITUDE_TARGET thrust 0".to_owned(),
-        Command::SetPoint(SetPoint::Thrust { thrust_pct, difference_pct }) => {
-            format!("GUIDED, SET_ATTITUDE_TARGET thrust {thrust_pct:.0} %, turn {difference_pct:.0} %")
-        }
-        Command::SetPoint(SetPoint::Speed { heading_deg, speed_m_s }) if speed_m_s < VELOCITY_MIN_M_S => {
-            format!("GUIDED, SET_ATTITUDE_TARGET heading {heading_deg:.1}, thrust 0")
-        }
-        Command::SetPoint(SetPoint::Speed { heading_deg, speed_m_s }) => {
-            format!("GUIDED, SET_POSITION_TARGET_LOCAL_NED heading {heading_deg:.1}, speed {speed_m_s:.2} m/s")
-        }
-        Command::Task(Task::StationKeep) => "LOITER".to_owned(),
-        Command::Task(Task::GoToErp) => "RTL".to_owned(),
-        Command::Task(Task::Mission) => "AUTO".to_owned(),
-        Command::Task(Task::Mode(_)) => "HOLD".to_owned(),
-        Command::EndOfUpload => "MISSION_ITEM_INT".to_owned(),
     }
 }

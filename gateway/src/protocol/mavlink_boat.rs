@@ -1,11 +1,10 @@
 //! The state of an ArduPilot boat, from its messages.
 
-use super::mavlink::Asked;
 use super::report::{ControlReport, Fix, Heading, North, Power, Report, Shown};
 use super::status_text::StatusTexts;
 use crate::mavlink::dialect::{
     ATTITUDE_DATA, COMMAND_ACK_DATA, GLOBAL_POSITION_INT_DATA, GPS_RAW_INT_DATA, GpsFixType, HEARTBEAT_DATA,
-    MavAutopilot, MavCmd, MavMessage, MavModeFlag, MavResult, MavSeverity, MavType, NAV_CONTROLLER_OUTPUT_DATA,
+    MavAutopilot, MavCmd, MavMessage, MavModeFlag, MavResult, MavSeverity, MavType,
 };
 use crate::mavlink::{AUTOPILOT, Received, RoverMode, on_globe};
 use crate::nmea::{FixQuality, Mode, Operator, date_and_time};
@@ -27,6 +26,23 @@ const STATIONS_MAX: usize = 8;
 pub(super) struct ShownMode {
     pub(super) mode: RoverMode,
     pub(super) is_armed: bool,
+}
+
+/// A mode requested from the boat.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Asked {
+    pub(super) mode: RoverMode,
+    pub(super) is_armed: bool,
+    pub(super) at: SimTime,
+    /// Whether the boat has shown it.
+    pub(super) is_shown: bool,
+}
+
+/// The system and component that a message is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Target {
+    pub(super) system: u8,
+    pub(super) component: u8,
 }
 
 /// The contents of its messages.
@@ -71,6 +87,13 @@ impl Boat {
 
     pub(super) fn forget(&mut self, system: u8) {
         *self = Boat { others: self.others, ..Boat::new(system) };
+    }
+
+    /// The target of messages for it.
+    pub(super) fn target(&self) -> Target {
+        // No target means everybody: a set-point of zero may be for all.
+        let system = self.system.unwrap_or(0);
+        Target { system, component: if system == 0 { 0 } else { AUTOPILOT } }
     }
 
     /// Whether a message is from this boat. Without a system number, the first boat's autopilot is
@@ -167,30 +190,21 @@ impl Boat {
         ControlReport { shown, operator: Some(operator) }
     }
 
-    /// The set-point that it shows; none of it is ours before it shows that it is armed in GUIDED.
-    fn take_target(&mut self, now: SimTime, message: &MavMessage) {
-        if self.mode != Some(ShownMode { mode: RoverMode::Guided, is_armed: true }) {
-            (self.ordered, self.position_target_at) = (None, SimTime::LONG_AGO);
-            return;
-        }
-        match message {
-            // The ordered heading, from version 4.7 on; before that it is 0, except for the bearing
-            // of a position.
-            MavMessage::NAV_CONTROLLER_OUTPUT(NAV_CONTROLLER_OUTPUT_DATA { nav_bearing, .. }) => {
-                self.ordered = Some((now, f64::from(*nav_bearing)));
-            }
-            // Rover sends it only for positions, and when it keeps station for lack of a set-point.
-            MavMessage::POSITION_TARGET_GLOBAL_INT(_) => self.position_target_at = now,
-            _ => {}
-        }
-    }
-
     /// The reports in a message.
     pub(super) fn report(&mut self, now: SimTime, message: &MavMessage, take: &mut dyn FnMut(Report)) {
         self.texts.take_overdue(now, &mut |text| take(Report::Notice(text)));
+        let is_guided = self.mode == Some(ShownMode { mode: RoverMode::Guided, is_armed: true });
         match message {
+            // The ordered heading, from version 4.7 on; before that it is 0, except for the bearing
+            // of a position.
+            MavMessage::NAV_CONTROLLER_OUTPUT(shown) if is_guided => {
+                self.ordered = Some((now, f64::from(shown.nav_bearing)));
+            }
+            // Rover sends it only for positions, and when it keeps station for lack of a set-point.
+            MavMessage::POSITION_TARGET_GLOBAL_INT(_) if is_guided => self.position_target_at = now,
+            // None of it is ours before it shows that it is armed in GUIDED.
             MavMessage::NAV_CONTROLLER_OUTPUT(_) | MavMessage::POSITION_TARGET_GLOBAL_INT(_) => {
-                self.take_target(now, message);
+                (self.ordered, self.position_target_at) = (None, SimTime::LONG_AGO);
             }
             MavMessage::GPS_RAW_INT(gps) => self.fix = Some((now, fix(gps))),
             MavMessage::GLOBAL_POSITION_INT(position) => self.take_position(now, position, take),

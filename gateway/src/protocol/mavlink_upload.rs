@@ -1,7 +1,8 @@
 //! The upload of a mission by MAVLink: the boat's home is set and confirmed, then the boat requests
 //! one item after the other.
 
-use super::mavlink::Target;
+use super::codec::UploadStep;
+use super::mavlink_boat::Target;
 use crate::mavlink::dialect::HOME_POSITION_DATA;
 use crate::mavlink::dialect::{
     COMMAND_INT_DATA, COMMAND_LONG_DATA, MISSION_COUNT_DATA, MISSION_ITEM_INT_DATA, MavCmd, MavFrame, MavMessage,
@@ -43,15 +44,6 @@ enum Phase {
     Refused(String),
 }
 
-/// The next step of an upload.
-pub(super) enum Next {
-    /// Send these messages.
-    Send(Vec<MavMessage>),
-    Wait,
-    Done,
-    Failed(String),
-}
-
 impl Upload {
     /// The items of a mission at this speed, m/s. The first is the home, as in ArduPilot's
     /// numbering.
@@ -87,24 +79,26 @@ impl Upload {
         self.due
     }
 
-    pub(super) fn next(&mut self, now: SimTime, target: Target) -> Next {
-        match &self.phase {
-            Phase::Done => return Next::Done,
-            Phase::Refused(reason) => return Next::Failed(reason.clone()),
-            Phase::Home | Phase::Items if now < self.due => return Next::Wait,
-            Phase::Home | Phase::Items => {}
-        }
+    /// Appends the messages that are due.
+    pub(super) fn next(&mut self, now: SimTime, target: Target, messages: &mut Vec<MavMessage>) -> UploadStep {
+        let unanswered = match &self.phase {
+            Phase::Done => return UploadStep::Done,
+            Phase::Refused(reason) => return UploadStep::Failed(reason.clone()),
+            Phase::Home | Phase::Items if now < self.due => return UploadStep::Waiting,
+            Phase::Home => "does not report the home position that it was sent",
+            Phase::Items => "requests no item",
+        };
         if self.tries == TRIES_MAX {
-            let what = if self.phase == Phase::Home {
-                "does not report the home position that it was sent"
-            } else {
-                "requests no item"
-            };
-            return Next::Failed(format!("the boat {what}"));
+            return UploadStep::Failed(format!("the boat {unanswered}"));
         }
         self.tries += 1;
         self.due = now + SimTime::from_s(AGAIN_S);
-        Next::Send(if self.phase == Phase::Home { self.home(target) } else { vec![self.count(target)] })
+        if self.phase == Phase::Home {
+            messages.extend(self.home(target));
+        } else {
+            messages.push(self.count(target));
+        }
+        UploadStep::Sent
     }
 
     /// Handles the home that the boat reports.
@@ -137,7 +131,7 @@ impl Upload {
         }
     }
 
-    fn home(&self, target: Target) -> Vec<MavMessage> {
+    fn home(&self, target: Target) -> [MavMessage; 2] {
         let set = COMMAND_INT_DATA {
             x: self.home.0,
             y: self.home.1,
@@ -154,7 +148,7 @@ impl Upload {
             target_component: target.component,
             ..COMMAND_LONG_DATA::default()
         };
-        vec![MavMessage::COMMAND_INT(set), MavMessage::COMMAND_LONG(show)]
+        [MavMessage::COMMAND_INT(set), MavMessage::COMMAND_LONG(show)]
     }
 
     fn count(&self, target: Target) -> MavMessage {

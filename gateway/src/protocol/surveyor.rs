@@ -1,18 +1,28 @@
 //! The Surveyor's protocol: reports from its sentences, sentences from commands.
 
+use super::codec::{Codec, Command, UploadStep};
+use super::mission_check;
 use super::report::{ControlReport, Fix, Heading, North, Power, Report, Shown};
-use super::surveyor_upload::{Next, Upload};
-use super::{Command, UploadStep, mission_check};
-use crate::nmea::{self, ControlState, FixQuality, Framer, Gga, M_S_PER_KN, Mode, ParseError, Sentence};
+use crate::nmea::{
+    self, ControlState, FixQuality, Framer, Gga, M_S_PER_KN, MissionSettings, Mode, ParseError, Sentence, Waypoint,
+};
 use crate::set_point::SetPoint;
 use crate::supervisor::Task;
 use messages::external::{BoatMode, Mission};
 use primitives::SimTime;
-use primitives::frame::Ned;
-use std::collections::BTreeMap;
+use primitives::frame::{LatLon, Ned};
+use std::collections::{BTreeMap, VecDeque};
 
 /// Maximum number of unknown sentence names stored.
 const UNKNOWN_MAX: usize = 64;
+
+/// A mission that is being uploaded: one line after the other, with pauses.
+#[derive(Clone, Debug)]
+struct Upload {
+    /// The lines still to be sent.
+    lines: VecDeque<Sentence>,
+    due: SimTime,
+}
 
 /// The state of a link.
 #[derive(Clone, Debug)]
@@ -28,14 +38,16 @@ impl Surveyor {
     pub(super) fn new(upload_gap_s: f64) -> Surveyor {
         Surveyor { framer: Framer::new(), upload: None, upload_gap_s, unreadable: 0, unknown: BTreeMap::new() }
     }
+}
 
-    pub(super) fn begin_link(&mut self) {
+impl Codec for Surveyor {
+    fn begin_link(&mut self) {
         // Bytes from the new link must not complete a truncated sentence.
         self.framer.push(b"\r\n", &mut |_| {});
         self.upload = None;
     }
 
-    pub(super) fn read(&mut self, bytes: &[u8], take: &mut dyn FnMut(Report)) {
+    fn read(&mut self, _: SimTime, bytes: &[u8], take: &mut dyn FnMut(Report)) {
         let Surveyor { framer, unreadable, unknown, .. } = self;
         framer.push(bytes, &mut |body| match Sentence::parse(body) {
             Ok(sentence) => report(&sentence, take),
@@ -50,39 +62,81 @@ impl Surveyor {
         });
     }
 
-    pub(super) fn begin_upload(&mut self, now: SimTime, mission: &Mission) -> Result<(), String> {
+    fn write(&mut self, _: SimTime, command: Command, out: &mut Vec<u8>) {
+        write(command, out);
+    }
+
+    /// A Surveyor sends everything unasked and needs no heartbeat.
+    fn keep_up(&mut self, _: SimTime, _: &mut Vec<u8>) {}
+
+    fn has_boat_modes(&self) -> bool {
+        true
+    }
+
+    fn shown(&self, command: Command) -> Shown {
+        // Compared with what was sent: whole percentages.
+        let nmea::Command { mode, heading_deg, thrust, difference, .. } = sentence(command).rounded();
+        Shown { mode, heading_deg, thrust, difference }
+    }
+
+    fn text(&self, command: Command) -> String {
+        Sentence::Command(sentence(command)).line().trim_end().to_owned()
+    }
+
+    fn stop_message(&self) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        write(Command::Zero, &mut bytes);
+        write(Command::Standby, &mut bytes);
+        bytes
+    }
+
+    /// A Surveyor follows only the operator in control, and no sentence of ours changes that.
+    fn forced_stop_message(&self) -> Vec<u8> {
+        self.stop_message()
+    }
+
+    /// An incomplete sentence is ended first.
+    fn guard_message(&self) -> Vec<u8> {
+        [b"\r\n".to_vec(), self.stop_message()].concat()
+    }
+
+    fn begin_upload(&mut self, now: SimTime, mission: &Mission) -> Result<(), String> {
         mission_check::check(mission)?;
-        self.upload = Some(Upload::new(mission, self.upload_gap_s, now));
+        self.upload = Some(Upload { lines: lines_of(mission), due: now });
         Ok(())
     }
 
-    pub(super) fn continue_upload(&mut self, now: SimTime, out: &mut Vec<u8>) -> UploadStep {
-        match self.upload.as_mut().map(|upload| upload.next(now)) {
-            Some(Next::Line(line)) => {
+    fn continue_upload(&mut self, now: SimTime, out: &mut Vec<u8>) -> UploadStep {
+        let Some(upload) = &mut self.upload else { return UploadStep::Done };
+        if now < upload.due {
+            return UploadStep::Waiting;
+        }
+        upload.due = now + SimTime::from_s(self.upload_gap_s);
+        match upload.lines.pop_front() {
+            Some(line) => {
                 line.write(out);
                 UploadStep::Sent
             }
-            Some(Next::Wait) => UploadStep::Waiting,
-            Some(Next::Done) | None => {
+            None => {
                 self.upload = None;
                 UploadStep::Done
             }
         }
     }
 
-    pub(super) fn is_uploading(&self) -> bool {
+    fn is_uploading(&self) -> bool {
         self.upload.is_some()
     }
 
-    pub(super) fn abort_upload(&mut self) -> bool {
+    fn abort_upload(&mut self) -> bool {
         self.upload.take().is_some()
     }
 
-    pub(super) fn due(&self) -> Option<SimTime> {
-        self.upload.as_ref().map(Upload::due)
+    fn due(&self) -> Option<SimTime> {
+        self.upload.as_ref().map(|upload| upload.due)
     }
 
-    pub(super) fn counts(&self) -> [Vec<(String, u64)>; 2] {
+    fn counts(&self) -> [Vec<(String, u64)>; 2] {
         let framed = self.framer.counts();
         let known = [
             ("sentences in", framed.sentences),
@@ -95,6 +149,22 @@ impl Surveyor {
         let unknown = self.unknown.iter().map(|(name, count)| (format!("unknown {name}"), *count));
         [known.into_iter().map(|(name, count)| (name.to_owned(), count)).collect(), unknown.collect()]
     }
+}
+
+/// The lines of a mission: start of download, settings, emergency recovery point (index 0), waypoints, end.
+fn lines_of(mission: &Mission) -> VecDeque<Sentence> {
+    // The lines that follow: settings, recovery point, waypoints.
+    let count = mission.waypoints.len() + 2;
+    let mut lines = VecDeque::from([
+        Sentence::Command(pseac(Mode::FileDownload, [Some(count as f64), Some(0.0), Some(0.0)])),
+        Sentence::MissionSettings(MissionSettings { throttle_pct: mission.throttle_pct }),
+    ]);
+    for (index, [lat_deg, lon_deg]) in std::iter::once(&mission.erp).chain(&mission.waypoints).enumerate() {
+        let at = LatLon { lat_deg: *lat_deg, lon_deg: *lon_deg };
+        lines.push_back(Sentence::Waypoint(Waypoint { at, index: index as u16 }));
+    }
+    lines.push_back(Sentence::Command(sentence(Command::EndOfUpload)));
+    lines
 }
 
 /// The reports in a sentence.
@@ -191,37 +261,8 @@ fn mode_of(mode: BoatMode) -> Mode {
     }
 }
 
-/// Starts a download of this many lines.
-pub(super) fn start_of_download(lines: usize) -> Sentence {
-    Sentence::Command(pseac(Mode::FileDownload, [Some(lines as f64), Some(0.0), Some(0.0)]))
-}
-
-/// Ends a download, finished or not.
-pub(super) fn end_of_download() -> Sentence {
-    Sentence::Command(sentence(Command::EndOfUpload))
-}
-
-pub(super) fn write(command: Command, out: &mut Vec<u8>) {
+fn write(command: Command, out: &mut Vec<u8>) {
     Sentence::Command(sentence(command)).write(out);
-}
-
-pub(super) fn shown(command: Command) -> Shown {
-    // Compared with what was sent: whole percentages.
-    let nmea::Command { mode, heading_deg, thrust, difference, .. } = sentence(command).rounded();
-    Shown { mode, heading_deg, thrust, difference }
-}
-
-pub(super) fn text(command: Command) -> String {
-    let mut bytes = Vec::new();
-    write(command, &mut bytes);
-    String::from_utf8_lossy(&bytes).trim_end().to_owned()
-}
-
-pub(super) fn stop_message() -> Vec<u8> {
-    let mut bytes = Vec::new();
-    write(Command::Zero, &mut bytes);
-    write(Command::Standby, &mut bytes);
-    bytes
 }
 
 #[cfg(test)]
@@ -236,7 +277,7 @@ mod tests {
             write(command, &mut bytes);
             Framer::new().push(&bytes, &mut |body| sent = Sentence::parse(body).ok());
             let Some(Sentence::Command(sent)) = sent else { panic!("no command: {bytes:?}") };
-            let shown = shown(command);
+            let shown = Surveyor::new(1.0).shown(command);
             assert_eq!((shown.thrust, shown.difference), (sent.thrust, sent.difference));
         }
     }

@@ -5,7 +5,7 @@ use crate::boat::emulated;
 use crate::rig::plan;
 use crate::script::played;
 use crate::tamper::with_checksum;
-use gateway::emulator::{self, Emulator, Extra, Port};
+use gateway::emulator::{self, Emulator, Extra, FrontSeat, Port};
 use gateway::nmea::Sentence;
 use messages::Order;
 use primitives::SimTime;

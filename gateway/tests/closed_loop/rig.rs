@@ -5,7 +5,7 @@ use crate::boat::{Boat, STEP_S, emulated};
 use crate::oracle::{Oracle, age_s};
 use crate::tamper::{Tamper, with_checksum};
 use gateway::bridge::{Bridge, Event, Input, NavOut, Output, Plan, Site};
-use gateway::emulator::{self, Emulator, Port};
+use gateway::emulator::{self, Emulator, FrontSeat, Port};
 use messages::Order;
 use messages::external::{FleetCommand, OperatorCommand};
 use primitives::SimTime;

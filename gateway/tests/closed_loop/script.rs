@@ -5,7 +5,7 @@
 use crate::rig::{Rig, plan};
 use crate::tamper::tamper;
 use gateway::bridge::{Input, Preflight};
-use gateway::emulator::Port;
+use gateway::emulator::{FrontSeat, Port};
 use gateway::geodesy::LocalFrame;
 use messages::Order;
 use messages::external::{Mission, OperatorCommand};
@@ -252,7 +252,7 @@ fn value(rig: &Rig, name: &str) -> String {
         ["remark"] => rig.remark.clone(),
         ["events"] => format!("{:?}", rig.events),
         ["mode"] => rig.emulator.command().mode.letter().to_string(),
-        ["boat-operator"] => format!("{:?}", rig.emulator.operator()),
+        ["boat-operator"] => rig.emulator.operator().map(|operator| format!("{operator:?}")).unwrap_or_default(),
         ["boat-order"] => match rig.boat_order {
             Order::Hold => "hold".to_owned(),
             Order::Steer { heading_rad, speed_m_s } => format!("steer {:.3} {speed_m_s:.3}", heading_rad.to_degrees()),

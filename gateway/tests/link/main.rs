@@ -5,7 +5,6 @@
 
 mod address;
 mod event_log;
-mod latency;
 mod pty;
 mod serial;
 mod shutdown;

@@ -1,7 +1,7 @@
 //! Links that provide a pseudo-terminal.
 
 use crate::event_log::{LIMIT, close, listen, patient, read};
-use gateway::link::{Link, LinkAddress, LinkError};
+use gateway::link::{BoatLink, Link, LinkAddress, LinkError};
 use serial2::{KeepSettings, SerialPort};
 use std::fs;
 use std::os::unix::fs::symlink;

@@ -1,7 +1,7 @@
 //! Links to a serial line, with a pseudo-terminal as the boat's end.
 
-use crate::event_log::{close, connect, listen, open, patient, wait};
-use gateway::link::{Link, LinkAddress, LinkError, LinkEvent};
+use crate::event_log::{connect, listen, patient, wait};
+use gateway::link::{BoatLink, LinkEvent};
 use serial2::SerialPort;
 use std::ffi::OsStr;
 use std::os::unix::ffi::OsStrExt;
@@ -40,16 +40,6 @@ fn bytes_go_both_ways_and_a_hang_up_is_survived() {
 }
 
 #[test]
-fn a_terminal_can_be_opened_by_its_own_path() {
-    let (boat, boat_log) = listen("pty");
-    let (link, log) = connect(&format!("serial://{}", boat.reach()), patient());
-    log.up(0);
-    link.send(b"x".to_vec(), 0);
-    boat_log.received(b"x");
-    close(link);
-}
-
-#[test]
 fn what_is_no_serial_line_is_tried_again() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("letter");
@@ -57,17 +47,6 @@ fn what_is_no_serial_line_is_tried_again() {
     let (_link, log) = connect(&format!("serial://{}", file.display()), patient());
     log.until("second failure", |events| events.iter().filter_map(wait).nth(1));
     assert_eq!(std::fs::read_to_string(&file).unwrap(), "dear");
-}
-
-#[test]
-fn a_speed_that_no_line_has_is_refused() {
-    let address = LinkAddress::Serial { path: "/dev/ttyUSB0".into(), baud: 1234 };
-    let refused = Link::open(&address, patient(), drop).err().expect("not a valid speed");
-    assert!(matches!(refused, LinkError::Baud { baud: 1234, .. }), "{refused}");
-    assert!(refused.to_string().contains("allowed: [4800, 9600"), "{refused}");
-    // The same with a valid baud rate starts, even though the device does not exist.
-    let (_link, log) = open(&LinkAddress::Serial { path: "/dev/none".into(), baud: 9600 }, patient());
-    log.failure();
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use crate::event_log::{LIMIT, listen};
 use crate::tcp_client::joined_narrowly;
-use gateway::link::Link;
+use gateway::link::{BoatLink, Link};
 use std::io::Read;
 use std::net::TcpStream;
 use std::sync::Arc;

@@ -1,7 +1,7 @@
 //! Links that listen on a TCP port.
 
 use crate::event_log::{EventLog, LIMIT, close, listen, open, patient, read};
-use gateway::link::{HostPort, Link, LinkAddress, LinkError, LinkEvent, LinkSettings, Side};
+use gateway::link::{BoatLink, HostPort, Link, LinkAddress, LinkError, LinkEvent, LinkSettings, Side};
 use std::io::{Read, Write};
 use std::net::{TcpListener, TcpStream};
 use std::time::{Duration, Instant};
@@ -109,18 +109,6 @@ fn a_dropped_link_frees_its_port_within_200_ms() {
     let (again, log) = listen(&address);
     let _back_seat = join(&again);
     log.up(0);
-}
-
-#[test]
-fn a_reconnect_lets_all_go_and_takes_them_again() {
-    let (link, log) = listen(ANY);
-    let mut old = join(&link);
-    log.up(0);
-    link.reconnect();
-    assert_eq!(old.read(&mut [0]).unwrap(), 0);
-    log.down(0);
-    let _new = join(&link);
-    log.up(1);
 }
 
 #[test]

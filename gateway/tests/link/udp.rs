@@ -1,7 +1,7 @@
 //! Links over UDP.
 
 use crate::event_log::{LIMIT, close, connect, listen, open, patient, up};
-use gateway::link::{LinkAddress, LinkEvent, LinkSettings};
+use gateway::link::{BoatLink, LinkAddress, LinkEvent, LinkSettings};
 use std::net::UdpSocket;
 use std::time::{Duration, Instant};
 

@@ -3,7 +3,7 @@
 use crate::rig::{Rig, plan};
 use gateway::bridge::{Event, Input};
 use gateway::config::Drive;
-use gateway::emulator::ArduPilot;
+use gateway::emulator::{ArduPilot, FrontSeat};
 use gateway::geodesy::LocalFrame;
 use gateway::mavlink::dialect::{
     COMMAND_LONG_DATA, MISSION_ACK_DATA, MavCmd, MavFrame, MavMessage, MavMissionResult, PositionTargetTypemask,
@@ -41,15 +41,8 @@ fn is_mode_command(message: &MavMessage) -> bool {
 #[test]
 fn a_boat_is_armed_driven_on_a_true_heading_and_disarmed() {
     for drive in [Drive::Speed, Drive::Thrust] {
-        let mut plan = plan();
-        plan.gateway.drive = drive;
-        let mut rig = Rig::of(plan);
-        rig.order = Some(Order::Steer { heading_rad: 1.0, speed_m_s: 1.0 });
-        rig.run(2.0);
-        assert_eq!((rig.mode(), rig.sent.iter().any(|(_, sent)| is_driving(sent))), (HOLD, false));
-        rig.operator(OperatorCommand::Arm);
-        rig.run(30.0);
-        assert_eq!((rig.state().as_str(), rig.mode()), ("armed", (RoverMode::Guided, true)), "{:?}", rig.events);
+        let mut rig = ordered(drive, Order::Steer { heading_rad: 1.0, speed_m_s: 1.0 });
+        assert_eq!(rig.mode(), (RoverMode::Guided, true), "{:?}", rig.events);
         let off_rad = wrap_pi(rig.boat.psi_rad - 1.0).abs();
         assert!(off_rad < 0.1 && (rig.boat.speed_m_s - 1.0).abs() < 0.2, "{drive:?}: {:?}", rig.boat);
         rig.operator(OperatorCommand::Disarm);
@@ -59,13 +52,14 @@ fn a_boat_is_armed_driven_on_a_true_heading_and_disarmed() {
     }
 }
 
-/// A boat armed with this order, after 20 s.
+/// A boat armed with this order, which nothing drove before, after 20 s.
 fn ordered(drive: Drive, order: Order) -> Rig {
     let mut plan = plan();
     plan.gateway.drive = drive;
     let mut rig = Rig::of(plan);
     rig.order = Some(order);
     rig.run(2.0);
+    assert_eq!((rig.mode(), rig.sent.iter().any(|(_, sent)| is_driving(sent))), (HOLD, false));
     rig.operator(OperatorCommand::Arm);
     rig.run(20.0);
     assert_eq!(rig.state(), "armed", "{order:?}: {:?}", rig.events);
@@ -338,8 +332,7 @@ fn a_mission_that_the_boat_does_not_take_is_given_up_with_the_reason() {
     let mission = Mission { throttle_pct: 40.0, erp: [0.0; 2], waypoints: vec![[0.0; 2]] };
     rig.operator(OperatorCommand::Mission(mission));
     assert!(rig.refused.take().is_some_and(|reason| reason.contains("outside the geofence")));
-    let at = LocalFrame::new(plan().site.expect("the rig has one").field.plan.datum).lat_lon(Ned::from_xy(40.0, 30.0));
-    let there = [at.lat_deg, at.lon_deg];
+    let there = self::mission().erp;
     rig.open.0 = false;
     rig.operator(OperatorCommand::Mission(Mission { throttle_pct: 40.0, erp: there, waypoints: vec![there] }));
     rig.run(8.0);

@@ -2,7 +2,7 @@
 
 use crate::boat::Boat;
 use crate::rig::plan;
-use gateway::emulator::{ArduPilot, SYSTEM};
+use gateway::emulator::{ArduPilot, FrontSeat, SYSTEM};
 use gateway::geofence::GeofenceArea;
 use gateway::mavlink::dialect::{GLOBAL_POSITION_INT_DATA, HEARTBEAT_DATA, MavAutopilot, MavCmd, MavMessage, MavType};
 use gateway::mavlink::{AUTOPILOT, Framer, RoverMode, Writer};

@@ -3,7 +3,7 @@
 
 use crate::boat::{Boat, STEP_S};
 use gateway::bridge::{Bridge, Event, Input, Output, Plan, Preflight, Site};
-use gateway::emulator::ArduPilot;
+use gateway::emulator::{ArduPilot, FrontSeat};
 use gateway::mavlink::dialect::MavMessage;
 use gateway::mavlink::{Framer, RoverMode, Writer};
 use messages::Order;

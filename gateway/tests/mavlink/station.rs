@@ -2,7 +2,7 @@
 
 use crate::boat::{Boat, STEP_S};
 use crate::rig::plan;
-use gateway::emulator::ArduPilot;
+use gateway::emulator::{ArduPilot, FrontSeat};
 use gateway::mavlink::dialect::{
     COMMAND_ACK_DATA, MISSION_COUNT_DATA, MISSION_ITEM_INT_DATA, MISSION_REQUEST_LIST_DATA, MavCmd, MavFrame,
     MavMessage, MavMissionResult, MavMissionType,

@@ -6,18 +6,11 @@ mod golden;
 mod round_trip;
 mod sentences;
 
-use gateway::nmea::{Framer, Sentence};
+use gateway::nmea::Framer;
 
 /// The bodies that a new framer extracts from `bytes`.
 fn bodies(bytes: &[u8]) -> Vec<String> {
     let mut found = Vec::new();
     Framer::new().push(bytes, &mut |body| found.push(body.to_owned()));
     found
-}
-
-/// The sentence as sent.
-fn written(sentence: &Sentence) -> String {
-    let mut out = Vec::new();
-    sentence.write(&mut out);
-    String::from_utf8(out).expect("a sentence is ASCII")
 }

@@ -1,8 +1,8 @@
 //! Written sentences are read back to their printed resolution if they fit, and as nothing else if
 //! they do not.
 
+use crate::bodies;
 use crate::sentences::{Domain, boat_sentences, on_the_globe, sentences, values};
-use crate::{bodies, written};
 use gateway::nmea::{Command, EMITTED_MAX, Mode, ParseError, Sentence};
 use primitives::LatLon;
 use proptest::prelude::*;
@@ -99,7 +99,7 @@ fn wild() -> BoxedStrategy<Sentence> {
     let texts = prop_oneof!["\\PC{0,100}", "[ -~\\x00-\\x1f]{0,100}", "[A-Z]{60,90}"].boxed();
     let place = (number.clone(), number.clone()).prop_map(|(lat_deg, lon_deg)| LatLon { lat_deg, lon_deg });
     let places = prop_oneof![place, on_the_globe()].boxed();
-    sentences(&Domain { places, ..domain(number, texts) })
+    sentences(&Domain { places, day_ms: 0..u32::MAX, ..domain(number, texts) })
 }
 
 proptest! {
@@ -107,7 +107,7 @@ proptest! {
 
     #[test]
     fn what_fits_comes_back(sentence in tame()) {
-        let line = written(&sentence);
+        let line = sentence.line();
         prop_assert!(line.len() <= EMITTED_MAX, "{line}");
         let found = bodies(line.as_bytes());
         prop_assert_eq!(found.len(), 1);
@@ -115,14 +115,14 @@ proptest! {
         prop_assert!(back.is_ok(), "{line}: {back:?}");
         let back = back.unwrap();
         prop_assert!(same(&sentence, &back), "{sentence:?} came back as {back:?}: {line}");
-        let (second, third) = (written(&back), &written(&back)[1..]);
+        let (second, third) = (back.line(), &back.line()[1..]);
         let again = Sentence::parse(&third[..third.len() - 5]);
-        prop_assert_eq!(again.map(|again| written(&again)), Ok(second), "written again");
+        prop_assert_eq!(again.map(|again| again.line()), Ok(second), "written again");
     }
 
     #[test]
     fn what_does_not_fit_is_left_out(sentence in wild()) {
-        let line = written(&sentence);
+        let line = sentence.line();
         prop_assert!(line.len() <= EMITTED_MAX, "{} bytes: {line}", line.len());
         let found = bodies(line.as_bytes());
         prop_assert_eq!(found.len(), 1, "one sentence: {}", line);
@@ -142,12 +142,12 @@ proptest! {
     #[test]
     fn what_is_read_can_be_written_and_read_again(body in "(PSEA[ABCDGR]|OIWPL|GP(GGA|RMC|VTG|HDT|HDG|ZDA|GLL|MWV|VHW))(,[TLCGNSEWAVMK]|,[0-9]{0,6}|,-?[0-9]{1,4}\\.[0-9]{1,4}){0,16}") {
         if let Ok(sentence) = Sentence::parse(&body) {
-            let line = written(&sentence);
+            let line = sentence.line();
             let again = Sentence::parse(&line[1..line.len() - 5]);
             prop_assert!(again.is_ok(), "{body} -> {line}: {again:?}");
             // Derived values (km/h) are stable only after the first round trip.
-            let (second, body) = (written(&again.unwrap()), written(&sentence));
-            let settled = Sentence::parse(&second[1..second.len() - 5]).map(|settled| written(&settled));
+            let (second, body) = (again.unwrap().line(), sentence.line());
+            let settled = Sentence::parse(&second[1..second.len() - 5]).map(|settled| settled.line());
             prop_assert_eq!(settled, Ok(second), "{}", body);
         }
     }

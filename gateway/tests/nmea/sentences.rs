@@ -124,7 +124,7 @@ pub(crate) fn standard_sentences(domain: &Domain) -> BoxedStrategy<Sentence> {
     let size = || option::of(domain.sizes.clone());
     let signed = || option::of(domain.signed.clone());
     let at = || option::of(domain.places.clone());
-    let talker = || select(vec![Talker::GP, Talker::GN, Talker::HC, Talker::WI, Talker::VW]);
+    let talker = || select(vec![Talker::GP, Talker::HC]);
     let time = || option::of(domain.day_ms.clone().prop_map(TimeOfDay));
     let date = || {
         let dates = (domain.years.clone(), 1..=12_u8, 1..=31_u8);

@@ -52,53 +52,39 @@ enum Kind {
 
 /// Pieces of many texts, as replacements.
 pub struct Pieces {
-    numbers: Vec<String>,
-    words: Vec<String>,
-    quoted: Vec<String>,
+    /// Numbers, words and quoted texts, by [`Kind`].
+    kinds: [Vec<String>; 3],
     lines: Vec<String>,
 }
 
 impl Pieces {
     /// Collects the pieces of the texts.
     pub fn of(texts: &[Vec<u8>]) -> Pieces {
-        let mut pieces = Pieces {
-            numbers: NUMBERS.map(str::to_owned).to_vec(),
-            words: WORDS.map(str::to_owned).to_vec(),
-            quoted: vec!["\"\"".to_owned()],
-            lines: vec![String::new()],
-        };
+        let (numbers, words) = (NUMBERS.map(str::to_owned).to_vec(), WORDS.map(str::to_owned).to_vec());
+        let mut pieces = Pieces { kinds: [numbers, words, vec!["\"\"".to_owned()]], lines: vec![String::new()] };
         for text in texts.iter().map(|text| String::from_utf8_lossy(text)) {
             pieces.lines.extend(text.lines().filter(|line| line.len() < 1000).map(str::to_owned));
             for (kind, piece) in split(&text).into_iter().filter(|(_, piece)| piece.len() < 200) {
-                pieces.all_of(kind).into_iter().for_each(|all| all.push(piece.to_owned()));
+                pieces.kinds.get_mut(kind as usize).into_iter().for_each(|all| all.push(piece.to_owned()));
             }
         }
-        for all in [&mut pieces.numbers, &mut pieces.words, &mut pieces.quoted, &mut pieces.lines] {
+        for all in pieces.kinds.iter_mut().chain([&mut pieces.lines]) {
             all.sort();
             all.dedup();
         }
         pieces
     }
 
-    fn all_of(&mut self, kind: Kind) -> Option<&mut Vec<String>> {
-        match kind {
-            Kind::Number => Some(&mut self.numbers),
-            Kind::Word => Some(&mut self.words),
-            Kind::Quoted => Some(&mut self.quoted),
-            Kind::Other => None,
-        }
-    }
-
     /// A random piece of the same kind.
     fn like(&self, kind: Kind, dice: &mut Dice) -> &str {
-        let all = match kind {
-            Kind::Number if dice.roll(2) == 0 => return NUMBERS[dice.roll(NUMBERS.len())],
-            Kind::Other => return WORDS[dice.roll(WORDS.len())],
-            Kind::Number => &self.numbers,
-            Kind::Word => &self.words,
-            Kind::Quoted => &self.quoted,
-        };
-        &all[dice.roll(all.len())]
+        match kind {
+            Kind::Number if dice.roll(2) == 0 => NUMBERS[dice.roll(NUMBERS.len())],
+            Kind::Other => WORDS[dice.roll(WORDS.len())],
+            kind => {
+                let all = &self.kinds[kind as usize];
+                &all[dice.roll(all.len())]
+            }
+        }
     }
 
     /// One of the texts with a few mutations.

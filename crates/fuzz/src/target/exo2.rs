@@ -1,7 +1,7 @@
 //! The conversation between a sonde and its clients: it gives the same measurements however it is
 //! split, and every number has a name.
 
-use super::{Target, texts};
+use super::{Target, in_pieces, texts};
 use gateway::payload::exo2::{Conversation, Measurement, Sonde};
 
 pub(super) const TARGET: Target = Target { name: "exo2", seeds, change: texts, check, allocated_max: (1 << 20, 2000) };
@@ -23,11 +23,7 @@ fn seeds() -> Vec<Vec<u8>> {
 }
 
 fn check(bytes: &[u8]) {
-    let (whole, sonde) = measured(bytes, usize::MAX);
-    let step = 1 + usize::from(bytes.first().copied().unwrap_or_default()) % 97;
-    for size in [1, step] {
-        assert_eq!(measured(bytes, size), (whole.clone(), sonde.clone()), "in pieces of {size}");
-    }
+    let (whole, sonde) = in_pieces(bytes, |size| measured(bytes, size));
     assert_eq!(whole.len() as u64, sonde.measured);
     assert!(whole.is_empty() || sonde.told > 0);
     for value in whole.iter().flat_map(|measurement| &measurement.values) {

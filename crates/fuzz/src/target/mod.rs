@@ -14,6 +14,7 @@ mod scenario;
 mod sheet;
 
 use crate::Dice;
+use std::fmt::{Debug, Display};
 
 /// Generates a new input from real ones.
 pub type Change = Box<dyn Fn(&mut Dice) -> Vec<u8>>;
@@ -65,9 +66,19 @@ fn binaries(seeds: Vec<Vec<u8>>) -> Change {
     Box::new(move |dice| crate::change::binary::change(&seeds, dice))
 }
 
+/// What `read` makes of bytes in pieces of any size, which must be the same as at once.
+fn in_pieces<T: PartialEq + Debug>(bytes: &[u8], read: impl Fn(usize) -> T) -> T {
+    let whole = read(usize::MAX);
+    let step = 1 + usize::from(bytes.first().copied().unwrap_or_default()) % 97;
+    for size in [1, step] {
+        assert_eq!(read(size), whole, "in pieces of {size}");
+    }
+    whole
+}
+
 /// Checks an error as displayed: few lines, each of limited length and without terminal control
 /// characters.
-fn check_shown(error: &dyn std::fmt::Display) {
+fn check_shown(error: &dyn Display) {
     let shown = primitives::printable::message(&error.to_string());
     assert!(!shown.trim().is_empty(), "an empty error");
     for line in shown.lines() {

@@ -1,11 +1,7 @@
 //! NMEA sentences from boats.
 
-use super::{Target, texts};
-use gateway::nmea::{
-    ACCEPTED_MAX, Battery, Command, Counts, EMITTED_MAX, Framer, Gga, Hdg, Mode, Sentence, Talker, TimeOfDay, Waypoint,
-    checksum,
-};
-use primitives::LatLon;
+use super::{Target, in_pieces, texts};
+use gateway::nmea::{ACCEPTED_MAX, Counts, EMITTED_MAX, Framer, Sentence, checksum};
 
 /// Sentence addresses that the codec reads; random fields would rarely match one.
 const ADDRESSES: [&str; 16] = [
@@ -40,16 +36,11 @@ fn check(bytes: &[u8]) {
     read(&text);
     let address = ADDRESSES[usize::from(bytes.first().copied().unwrap_or_default()) % ADDRESSES.len()];
     read(&format!("{address},{text}"));
-    numbers(bytes);
 }
 
 /// A byte stream gives the same sentences however it is split, and every `$` is counted.
 fn stream(bytes: &[u8]) {
-    let (whole, counts) = framed([bytes]);
-    let step = 1 + usize::from(bytes.first().copied().unwrap_or_default()) % 97;
-    for size in [1, step] {
-        assert_eq!(framed(bytes.chunks(size)), (whole.clone(), counts), "in pieces of {size}");
-    }
+    let (whole, counts) = in_pieces(bytes, |size| framed(bytes.chunks(size)));
     let begun = bytes.iter().filter(|byte| **byte == b'$').count() as u64;
     let ended = counts.sentences + counts.bad_checksum + counts.overlong + counts.broken;
     assert!(begun == ended || begun == ended + 1, "{begun} begun, {counts:?}");
@@ -66,8 +57,7 @@ fn repaired(line: &[u8]) {
     let plain = |byte: &&u8| (b' '..=b'~').contains(*byte) && !b"$*".contains(*byte);
     let body: Vec<u8> = line.iter().filter(plain).take(ACCEPTED_MAX - 6).copied().collect();
     let body = String::from_utf8_lossy(&body).into_owned();
-    let wire = format!("${body}*{:02X}\r\n", checksum(body.as_bytes()));
-    let (found, counts) = framed([b"noise".as_slice(), wire.as_bytes()]);
+    let (found, counts) = framed([b"noise".as_slice(), framed_body(&body).as_bytes()]);
     assert_eq!(counts, Counts { sentences: 1, garbage: 5, ..Counts::default() });
     assert_eq!(found, [body]);
     read(&found[0]);
@@ -78,47 +68,12 @@ fn read(body: &str) {
     let Ok(sentence) = Sentence::parse(body) else { return };
     let Some(again) = reread(&sentence) else { return };
     let settled = reread(&again).expect("a written sentence is short");
-    assert_eq!(written(&settled), written(&again), "{body}");
-}
-
-/// Interprets the bytes as numbers, finite or not.
-fn numbers(bytes: &[u8]) {
-    let mut eights =
-        bytes.chunks_exact(8).map(|eight| f64::from_bits(eight.iter().fold(0, |n, b| n << 8 | u64::from(*b))));
-    let mut number = || eights.next();
-    let mode = Mode::all()[bytes.len() % Mode::all().len()];
-    let words = String::from_utf8_lossy(bytes).into_owned();
-    let (heading_deg, thrust, difference) = (number(), number(), number());
-    reread(&Sentence::Command(Command { mode, heading_deg, thrust, difference, words: words.clone() }));
-    let at = LatLon { lat_deg: heading_deg.unwrap_or_default(), lon_deg: thrust.unwrap_or_default() };
-    reread(&Sentence::Waypoint(Waypoint { at, index: 7 }));
-    let time = difference.map(|number| TimeOfDay(number as u32));
-    reread(&Sentence::Gga(Gga {
-        talker: Talker::GP,
-        time,
-        at: Some(at),
-        quality: bytes.len() as u8,
-        satellites: bytes.first().copied(),
-        hdop: number(),
-        altitude_m: number(),
-        geoid_m: number(),
-    }));
-    let hdg = Hdg { talker: Talker::HC, heading_deg: number(), deviation_deg: number(), variation_deg: number() };
-    reread(&Sentence::Hdg(hdg));
-    reread(&Sentence::Battery(Battery {
-        volts: heading_deg,
-        charge: thrust,
-        amps: difference,
-        reset_time: words,
-        port_volts: number(),
-        hours: number(),
-        ..Battery::default()
-    }));
+    assert_eq!(settled.line(), again.line(), "{body}");
 }
 
 /// The sentence after writing and reading. `None` if a required field stayed empty.
 fn reread(sentence: &Sentence) -> Option<Sentence> {
-    let wire = written(sentence);
+    let wire = sentence.line();
     assert!(wire.len() <= EMITTED_MAX, "{} bytes: {wire}", wire.len());
     let (found, counts) = framed([wire.as_bytes()]);
     assert_eq!(counts, Counts { sentences: 1, ..Counts::default() }, "{wire}");
@@ -127,12 +82,6 @@ fn reread(sentence: &Sentence) -> Option<Sentence> {
         Err(_) if matches!(sentence, Sentence::MissionSettings(_) | Sentence::Waypoint(_)) => None,
         Err(error) => panic!("cannot read {wire} from {sentence:?}: {error}"),
     }
-}
-
-fn written(sentence: &Sentence) -> String {
-    let mut out = Vec::new();
-    sentence.write(&mut out);
-    String::from_utf8(out).expect("a sentence is ASCII")
 }
 
 fn framed<'a>(pieces: impl IntoIterator<Item = &'a [u8]>) -> (Vec<String>, Counts) {

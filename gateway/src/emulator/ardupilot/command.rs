@@ -133,7 +133,7 @@ impl ArduPilot {
         match self.mode {
             RoverMode::Guided => self.set_points.set_speed(speed_m_s),
             RoverMode::Auto | RoverMode::Rtl if speed_m_s >= 0.0 => {
-                self.autopilot.set_speed(speed_m_s);
+                self.autopilot.speed_m_s = Some(speed_m_s);
                 true
             }
             _ => false,
@@ -165,7 +165,7 @@ impl ArduPilot {
     /// Continues with an item of the mission; returns whether it exists.
     pub(super) fn set_current(&mut self, seq: u16) -> bool {
         let waypoint = self.mission.waypoint_of(seq);
-        waypoint.into_iter().for_each(|waypoint| self.autopilot.set_next(waypoint));
+        waypoint.into_iter().for_each(|waypoint| self.autopilot.next = waypoint);
         waypoint.is_some()
     }
 

@@ -42,7 +42,7 @@ impl ArduPilot {
     }
 
     fn fail_safe(&mut self) {
-        self.set_points.release_manual();
+        self.set_points.manual = None;
         // With 2 a mission continues.
         if self.mode == RoverMode::Auto && self.parameters.value("FS_GCS_ENABLE") == 2.0 {
             return self.say(MavSeverity::MAV_SEVERITY_WARNING, "Failsafe - Continuing Auto Mode");

@@ -15,9 +15,11 @@ mod telemetry;
 use super::autopilot::Autopilot;
 use super::battery::{Battery, Pack};
 use super::sensed::Sensed;
+use super::{FrontSeat, Port};
 use crate::geodesy::LocalFrame;
 use crate::mavlink::dialect::{MISSION_ITEM_INT_DATA, MavCmd, MavMessage, MavMissionResult, MavSeverity};
 use crate::mavlink::{AUTOPILOT, Frame, Framer, Received, RoverMode, Writer, e7, on_globe};
+use crate::nmea::Operator;
 use ::mavlink::Message;
 use failsafe::StationWatch;
 use messages::Order;
@@ -93,12 +95,6 @@ impl ArduPilot {
         }
     }
 
-    /// Sets the receiver's clock: UTC, ns since 1970.
-    pub fn set_clock(&mut self, now: SimTime, utc_ns: u64) {
-        let since_us = (1e6 * now.as_s()) as u64;
-        self.began_us = (utc_ns / 1000).saturating_sub(since_us);
-    }
-
     /// Receives bytes from a link.
     pub fn receive(&mut self, now: SimTime, bytes: &[u8]) {
         // Taken out during the call, because the callback needs the whole boat.
@@ -116,11 +112,11 @@ impl ArduPilot {
             self.mode = mode;
             self.set_points.forget();
             if let Some(own) = &self.sensed.own {
-                let next = self.autopilot.next();
+                let next = self.autopilot.next;
                 self.autopilot.begin(own.nav.at());
                 // An interrupted mission continues, as with MIS_RESTART at its default.
                 if usize::from(next) <= self.mission.waypoints() {
-                    self.autopilot.set_next(next);
+                    self.autopilot.next = next;
                 }
             }
             self.note(format!("mode {mode:?}"));
@@ -140,27 +136,9 @@ impl ArduPilot {
         }
     }
 
-    /// The next log message, if any.
-    pub fn take_remark(&mut self) -> Option<String> {
-        self.remarks.pop_front()
-    }
-
     /// Makes the battery show this voltage from now on, V.
     pub fn set_volts(&mut self, volts: f64) {
-        self.battery.show_volts(volts);
-    }
-
-    /// Updates the sensor measurements.
-    pub fn observe(&mut self, now: SimTime, own: &OwnBoat) {
-        self.sensed.observe(now, own);
-        self.origin.get_or_insert(own.nav.at());
-    }
-
-    /// The boat's order to its thrusters now.
-    pub fn order(&mut self, now: SimTime) -> Order {
-        self.check_failsafe(now);
-        let order = self.commanded(now);
-        self.battery.carry_out(now, order)
+        self.battery.shown_v = Some(volts);
     }
 
     /// The thrusters' order from its mode and set-point.
@@ -202,18 +180,7 @@ impl ArduPilot {
     pub fn answers(&mut self, out: &mut Vec<u8>) {
         out.append(&mut self.outbox);
         // Here and not earlier: the reply to a new number comes from the old one.
-        self.writer.set_system(self.system());
-    }
-
-    /// Appends the telemetry that is due.
-    pub fn telemetry(&mut self, now: SimTime, out: &mut Vec<u8>) {
-        let overdue = self.mission.overdue(now);
-        overdue.iter().for_each(|message| self.send(message));
-        self.answers(out);
-        for id in self.streams.due(now) {
-            self.send_message(now, id);
-        }
-        self.answers(out);
+        self.writer.system = self.system();
     }
 
     #[expect(deprecated, reason = "ground stations send SET_MODE and REQUEST_DATA_STREAM all the same")]
@@ -257,7 +224,7 @@ impl ArduPilot {
             MavMessage::MISSION_ITEM_INT(item) if item.current > 1 => self.take_guided(from, item),
             MavMessage::MISSION_SET_CURRENT(set) => {
                 self.set_current(set.seq);
-                self.send(&self.mission.current(self.autopilot.next()));
+                self.send(&self.mission.current(self.autopilot.next));
             }
             other => self.answer(now, from, other),
         }
@@ -326,5 +293,45 @@ impl ArduPilot {
     /// UTC from its receiver, µs since 1970.
     fn utc_us(&self, now: SimTime) -> u64 {
         self.began_us + (1e6 * now.as_s()) as u64
+    }
+}
+
+impl FrontSeat for ArduPilot {
+    fn set_clock(&mut self, now: SimTime, utc_ns: u64) {
+        let since_us = (1e6 * now.as_s()) as u64;
+        self.began_us = (utc_ns / 1000).saturating_sub(since_us);
+    }
+
+    fn receive(&mut self, now: SimTime, _: Port, bytes: &[u8]) {
+        self.receive(now, bytes);
+    }
+
+    fn take_remark(&mut self) -> Option<String> {
+        self.remarks.pop_front()
+    }
+
+    fn operator(&self) -> Option<Operator> {
+        None
+    }
+
+    fn observe(&mut self, now: SimTime, own: &OwnBoat) {
+        self.sensed.observe(now, own);
+        self.origin.get_or_insert(own.nav.at());
+    }
+
+    fn order(&mut self, now: SimTime) -> Order {
+        self.check_failsafe(now);
+        let order = self.commanded(now);
+        self.battery.carry_out(now, order)
+    }
+
+    fn telemetry(&mut self, now: SimTime, out: &mut Vec<u8>) {
+        let overdue = self.mission.overdue(now);
+        overdue.iter().for_each(|message| self.send(message));
+        self.answers(out);
+        for id in self.streams.due(now) {
+            self.send_message(now, id);
+        }
+        self.answers(out);
     }
 }

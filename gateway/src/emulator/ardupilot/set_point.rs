@@ -23,7 +23,7 @@ const SPEED_MAX_M_S: f64 = 100.0;
 
 /// The steering target.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Course {
+pub(super) enum Course {
     /// A true heading, rad.
     Heading(f64),
     /// A rate of turn, rad/s.
@@ -79,24 +79,19 @@ pub(super) fn is_global(frame: MavFrame) -> bool {
 /// The set-points in force.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SetPoints {
-    /// When it arrived, the steering target, and the speed, m/s.
-    guided: Option<(SimTime, Course, f64)>,
+    /// In mode GUIDED: when it arrived, the steering target, and the speed, m/s.
+    pub(super) guided: Option<(SimTime, Course, f64)>,
     /// The position to which it goes instead.
     destination: Option<Ned>,
     /// The commanded speed on the way there, if any, m/s.
     speed_m_s: Option<f64>,
-    /// Throttle and steering, -1 to 1.
-    manual: Option<(SimTime, f64, f64)>,
+    /// The input of a remote control over MAVLink: throttle and steering, -1 to 1.
+    pub(super) manual: Option<(SimTime, f64, f64)>,
 }
 
 impl SetPoints {
     pub(super) fn forget(&mut self) {
         *self = SetPoints::default();
-    }
-
-    /// Drops the input of a remote control over MAVLink.
-    pub(super) fn release_manual(&mut self) {
-        self.manual = None;
     }
 
     /// Whether a set-point in mode GUIDED has just expired.
@@ -243,11 +238,6 @@ impl SetPoints {
     /// The position to which it goes in mode GUIDED, if any, and the commanded speed, m/s.
     pub(super) fn destination(&self) -> Option<(Ned, Option<f64>)> {
         self.destination.map(|place| (place, self.speed_m_s))
-    }
-
-    /// Whether it follows a heading or a rate of turn in mode GUIDED.
-    pub(super) fn has_course(&self) -> bool {
-        self.guided.is_some()
     }
 
     /// The ordered heading in mode GUIDED, whole degrees, as version 4.7 shows it (earlier ones

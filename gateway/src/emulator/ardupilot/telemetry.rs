@@ -159,7 +159,7 @@ impl ArduPilot {
                 let data = POSITION_TARGET_GLOBAL_INT_DATA { time_boot_ms, lat_int, lon_int, ..Default::default() };
                 MavMessage::POSITION_TARGET_GLOBAL_INT(data)
             }
-            MISSION_CURRENT_DATA::ID => self.mission.current(self.autopilot.next()),
+            MISSION_CURRENT_DATA::ID => self.mission.current(self.autopilot.next),
             LOCAL_POSITION_NED_DATA::ID => MavMessage::LOCAL_POSITION_NED(self.local_position(now)?),
             GPS_GLOBAL_ORIGIN_DATA::ID if self.origin.is_some() => self.origin_message(),
             VFR_HUD_DATA::ID => MavMessage::VFR_HUD(self.vfr_hud()?),
@@ -228,7 +228,7 @@ impl ArduPilot {
     }
 
     fn percent_left(&self) -> i8 {
-        (100.0 * self.battery.left()).round() as i8
+        (100.0 * self.battery.left).round() as i8
     }
 
     fn battery(&self) -> BATTERY_STATUS_DATA {
@@ -275,7 +275,7 @@ impl ArduPilot {
     /// The position to which it goes in GUIDED, or where it keeps station for lack of a set-point.
     fn position_target(&self) -> Option<Ned> {
         let destination = self.set_points.destination().map(|(place, _)| place);
-        destination.or_else(|| self.autopilot.station().filter(|_| !self.set_points.has_course()))
+        destination.or_else(|| self.autopilot.station.filter(|_| self.set_points.guided.is_none()))
     }
 
     /// The origin of positions in the frame LOCAL_NED.

@@ -4,7 +4,7 @@
 use super::forward::{is_pause, prepare};
 use super::passed_payload::{Payload, Talk};
 use super::{ANSWER_PAUSE, CONNECT_MAX};
-use crate::link::{Link, LinkAddress, LinkError, LinkEvent, LinkSettings};
+use crate::link::{BoatLink, Link, LinkAddress, LinkError, LinkEvent, LinkSettings};
 use bus::{Slot, Watched, clock};
 use parking_lot::Mutex;
 use std::io::{self, Read, Write};
