@@ -36,7 +36,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE", requires = "csv")]
     out: Option<PathBuf>,
     /// Plots tracks, score, and each boat's speed, heading and navigation as SVG and PNG files in this folder
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", conflicts_with = "compare")]
     plot: Option<PathBuf>,
     /// Writes MOOS logs for the shoreside and every boat to this folder; if the name ends in .alog, writes only the
     /// shoreside log, to this file
@@ -155,11 +155,6 @@ fn compare(args: &Args, files: &[PathBuf]) -> Result<()> {
     screen::print(&difference::text([a, b], &comparison));
     if let Some(path) = &args.json {
         output_file::write_json(path, "the comparison", &comparison)?;
-    }
-    if let Some(dir) = &args.plot {
-        output_file::make_folder(dir)?;
-        plot::write_comparison(dir, [a, b], series.each_ref(), &comparison)?;
-        screen::remark(&format!("wrote compare.svg and compare.png to {}", dir.display()));
     }
     Ok(())
 }

@@ -5,7 +5,7 @@
 use crate::game_args;
 use crate::output_file;
 use crate::plot::film::{Boat, Moment, Stage};
-use crate::plot::{colour, pixels};
+use crate::plot::pixels;
 use crate::water_args::within;
 use anyhow::{Context, Result, bail};
 use command_line::number::whole;
@@ -53,7 +53,7 @@ pub(super) fn write(path: &Path, recording: &Recording, args: &FilmArgs) -> Resu
     output_file::check(path, "the animation")?;
     let header = recording.header();
     let scenario = &header.info.scenario;
-    let teams = scenario.teams.iter().enumerate().map(|(i, team)| (team.name.clone(), colour::of_team(i))).collect();
+    let teams = scenario.teams.iter().map(|team| team.name.clone()).collect();
     let stage = Stage::new(header.game.replace('_', " "), &scenario.field, teams, args.width);
     let mut damaged = Damaged::default();
     // Nothing changes between two decisions.

@@ -1,7 +1,7 @@
 //! Draws one moment of a game: a frame of its film.
 
-use crate::plot::field::{Symbol, View, draw_field, draw_symbol, fine, is_drawn};
-use crate::plot::{Area, Drawing, Drawn, FONT};
+use crate::plot::field::{Symbol, View, bounds, draw_field, draw_symbol, fine, is_drawn};
+use crate::plot::{Area, Drawing, Drawn, FONT, colour};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use primitives::{Ned, math};
@@ -20,8 +20,8 @@ pub(crate) struct Stage<'a> {
     /// The game's name.
     pub(crate) title: String,
     pub(crate) field: &'a Field,
-    /// Name and colour of each team.
-    pub(crate) teams: Vec<(String, RGBColor)>,
+    /// Name of each team.
+    pub(crate) teams: Vec<String>,
     view: View,
 }
 
@@ -50,14 +50,10 @@ pub(crate) struct Moment<'a> {
 
 impl<'a> Stage<'a> {
     /// A stage with a field of this width, pixels.
-    pub(crate) fn new(title: String, field: &'a Field, teams: Vec<(String, RGBColor)>, width: u32) -> Stage<'a> {
-        let corners = || field.corners.iter();
-        let of = |pick: fn(&Ned) -> f64| {
-            let (low, high) =
-                corners().map(pick).fold((f64::MAX, f64::MIN), |(low, high), each| (low.min(each), high.max(each)));
-            (low - MARGIN_M, high + MARGIN_M)
-        };
-        let (east_m, north_m) = (of(|at| at.east), of(|at| at.north));
+    pub(crate) fn new(title: String, field: &'a Field, teams: Vec<String>, width: u32) -> Stage<'a> {
+        let (low, high) = bounds(field.corners.iter());
+        let (east_m, north_m) =
+            ((low.east - MARGIN_M, high.east + MARGIN_M), (low.north - MARGIN_M, high.north + MARGIN_M));
         let pixels_per_m = f64::from(width) / (east_m.1 - east_m.0);
         // Scale a tall field so that it is no higher than the picture is wide.
         let (wide, high) = (f64::from(width), (north_m.1 - north_m.0) * pixels_per_m);
@@ -77,25 +73,25 @@ impl Drawing for Moment<'_> {
         (wide, high + HEAD)
     }
 
-    fn draw<B: DrawingBackend>(&self, root: &Area<B>) -> Drawn<B> {
+    fn draw(&self, root: &Area<'_>) -> Drawn {
         let stage = self.stage;
         let (head, water) = root.split_vertically(HEAD);
         self.draw_head(&head)?;
         water.fill(&WATER)?;
-        draw_field(&water, stage.field, &stage.teams, &stage.view)?;
+        draw_field(&water, stage.field, &stage.view)?;
         for boat in &self.boats {
-            let trail = stage.colour(boat.team).mix(0.45).stroke_width(2);
+            let trail = colour::of_team(boat.team).mix(0.45).stroke_width(2);
             water.draw(&PathElement::new(fine(&boat.trail, &stage.view), trail))?;
         }
         for (team, at) in self.flags.iter().filter(|(_, at)| is_drawn(at)) {
-            draw_symbol(&water, Symbol::Flag, stage.view.pixel(*at), stage.colour(*team))?;
+            draw_symbol(&water, Symbol::Flag, stage.view.pixel(*at), colour::of_team(*team))?;
         }
         self.boats.iter().filter(|boat| is_drawn(&boat.at)).try_for_each(|boat| self.draw_boat(&water, boat))
     }
 }
 
 impl Moment<'_> {
-    fn draw_head<B: DrawingBackend>(&self, head: &Area<B>) -> Drawn<B> {
+    fn draw_head(&self, head: &Area<'_>) -> Drawn {
         let style = |colour: RGBColor, side| (FONT, 18).into_font().color(&colour).pos(Pos::new(side, VPos::Center));
         let (wide, y) = (head.dim_in_pixel().0 as i32, HEAD as i32 / 2);
         head.draw(&Text::new(self.stage.title.clone(), (12, y), style(BLACK, HPos::Left)))?;
@@ -104,16 +100,16 @@ impl Moment<'_> {
         head.draw(&Text::new(clock, (wide - 12, y), style(BLACK, HPos::Right)))?;
         let step = 150;
         let mut x = wide / 2 - step * (self.stage.teams.len() as i32 - 1) / 2;
-        for ((name, colour), points) in self.stage.teams.iter().zip(&self.score) {
-            head.draw(&Text::new(format!("{name} {points}"), (x, y), style(*colour, HPos::Center)))?;
+        for (team, (name, points)) in self.stage.teams.iter().zip(&self.score).enumerate() {
+            head.draw(&Text::new(format!("{name} {points}"), (x, y), style(colour::of_team(team), HPos::Center)))?;
             x += step;
         }
         Ok(())
     }
 
     /// Draws a hull with a pointed bow; for a tagged boat, only the outline.
-    fn draw_boat<B: DrawingBackend>(&self, water: &Area<B>, boat: &Boat) -> Drawn<B> {
-        let (centre, colour) = (self.stage.view.pixel(boat.at), self.stage.colour(boat.team));
+    fn draw_boat(&self, water: &Area<'_>, boat: &Boat) -> Drawn {
+        let (centre, colour) = (self.stage.view.pixel(boat.at), colour::of_team(boat.team));
         let half = 0.5 * (boat.length_m * self.stage.pixels_per_m()).max(HULL_LEAST);
         let (sin, cos) = math::sin_cos(boat.psi_rad);
         let corner = |(ahead, aside): (f64, f64)| {
@@ -127,11 +123,5 @@ impl Moment<'_> {
         water.draw(&PathElement::new(hull.to_vec(), edge))?;
         let style = (FONT, 13).into_font().color(&BLACK).pos(Pos::new(HPos::Center, VPos::Top));
         water.draw(&Text::new(boat.name.clone(), (centre.0, centre.1 + half.round() as i32 + 4), style))
-    }
-}
-
-impl Stage<'_> {
-    fn colour(&self, team: usize) -> RGBColor {
-        self.teams.get(team).map_or(BLACK, |(_, colour)| *colour)
     }
 }

@@ -34,4 +34,4 @@ pub use series::{BoatSeries, GameSeries};
 pub use statistics::{BoatStatistics, NavigationError, StatisticsBuilder, SteeringError};
 pub use step::{Sample, Step, for_each_step};
 pub use summary::{Summary, Topic, topics};
-pub use track::{TrackDifference, distances};
+pub use track::TrackDifference;
