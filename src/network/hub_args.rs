@@ -6,6 +6,7 @@ use bus::{Net, Token};
 use command_line::leaf_args::{KeysArgs, TokenArgs};
 use command_line::number::endpoint;
 use messages::topic::GameName;
+use std::net::{IpAddr, Ipv4Addr, UdpSocket};
 use std::path::PathBuf;
 
 #[derive(clap::Args, Clone, Debug)]
@@ -72,6 +73,16 @@ pub(crate) fn unique_game_name(scenario: &str) -> Result<GameName> {
     let bits = RandomState::new().build_hasher().finish() & 0xff_ffff;
     let stem: String = scenario.chars().take(40).collect();
     GameName::new(&format!("{stem}-{bits:06x}")).map_err(|e| anyhow!(e))
+}
+
+/// This machine's address as others see it, if it has one. Sends nothing: the system only looks up
+/// the route.
+pub(crate) fn own_address() -> Option<IpAddr> {
+    let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0)).ok()?;
+    // A documentation address (RFC 5737), which takes the default route.
+    socket.connect((Ipv4Addr::new(192, 0, 2, 1), 9)).ok()?;
+    let address = socket.local_addr().ok()?.ip();
+    (!address.is_loopback() && !address.is_unspecified()).then_some(address)
 }
 
 /// What users on other machines, or other users of this one, need to join and control a game.
