@@ -5,6 +5,7 @@ use crate::response::{Response, response};
 use crate::series::{BoatSeries, GameSeries};
 use crate::track::{TrackDifference, apart};
 use recording::Header;
+use scenario::Scenario;
 use scenario::outcome::EventOutcome;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -124,7 +125,7 @@ impl Comparison {
             notes: notes([head_a, head_b], [a, b]),
             boats,
             score: score(a, b),
-            events: events([a.named_events(scenario_a), b.named_events(scenario_b)], until_s, tolerance_s),
+            events: events([(a, scenario_a), (b, scenario_b)].map(named_events), until_s, tolerance_s),
         })
     }
 }
@@ -151,7 +152,7 @@ fn notes(heads: [&Header; 2], [a, b]: [&GameSeries; 2]) -> Vec<String> {
     let kind = |is_real: bool| if is_real { "real" } else { "simulated" };
     for (i, boat) in a.boats.iter().enumerate() {
         let Some(j) = b.boats.iter().position(|there| there.name == boat.name) else { continue };
-        let of = |scenario: &scenario::Scenario, i: usize| scenario.boat_of(primitives::VehicleId::at(i)).name.clone();
+        let of = |scenario: &Scenario, i: usize| scenario.boat_of(primitives::VehicleId::at(i)).name.clone();
         differ(&boat.name, &of(one, i), &of(other, j));
         differ(&boat.name, kind(boat.is_real), kind(b.boats[j].is_real));
     }
@@ -188,6 +189,10 @@ fn score(a: &GameSeries, b: &GameSeries) -> BTreeMap<String, [Option<u32>; 2]> {
         }
     }
     score
+}
+
+fn named_events((series, scenario): (&GameSeries, &Scenario)) -> Vec<EventOutcome> {
+    series.events.iter().map(|logged| EventOutcome::new(scenario, logged)).collect()
 }
 
 /// The attributes of an event, apart from its time, that must match.

@@ -9,7 +9,7 @@ mod encounter;
 mod orbit;
 mod text;
 
-pub use encounter::{Encounters, Relation};
+pub use encounter::Encounters;
 pub use orbit::ORBIT_MIN_S;
 
 use crate::step::{Sample, Step};
@@ -18,7 +18,7 @@ use messages::Order;
 use messages::helm::HelmReport;
 use orbit::OrbitDetector;
 use primitives::angle::wrap_pi;
-use primitives::{Ned, TeamId, VehicleId};
+use primitives::{TeamId, VehicleId};
 use scenario::Scenario;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -200,7 +200,7 @@ impl GameQuality {
 impl ModeQuality {
     /// Adds one step of a boat.
     fn add(&mut self, scenario: &Scenario, sample: &Sample, step_s: f64) {
-        let is_at_edge = inside_m(scenario, sample.truth.at()) < EDGE_M;
+        let is_at_edge = scenario.field.inside_by_m(sample.truth.at()) < EDGE_M;
         self.time_s += step_s;
         self.standing_s += if sample.truth.speed_m_s() < STANDING_M_S { step_s } else { 0.0 };
         self.edge_s += if is_at_edge { step_s } else { 0.0 };
@@ -285,13 +285,6 @@ fn strategies_of(scenario: &Scenario, team: TeamId) -> Vec<&str> {
 /// Whether a boat attacks: it brings a flag home, or is beyond its own side and free to act.
 fn attacks(scenario: &Scenario, team: TeamId, sample: &Sample) -> bool {
     sample.carrying || (sample.is_free && !scenario.field.is_own_side(team, sample.truth.at()))
-}
-
-/// Distance inside the field, m; negative outside.
-fn inside_m(scenario: &Scenario, at: Ned) -> f64 {
-    let plan = &scenario.field.plan;
-    let (x, y) = scenario.field.along_across(at);
-    x.min(plan.width_m - x).min(y).min(plan.depth_m - y)
 }
 
 #[cfg(test)]
