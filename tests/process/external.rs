@@ -153,23 +153,6 @@ fn a_real_boat_has_one_gateway_and_holds_without_navigation_or_agent() {
 }
 
 #[test]
-fn real_boats_are_refused_without_real_time_and_the_error_names_what_to_do() {
-    let mixed = "scenarios/games/mixed_2v2.toml";
-    let tournament = own("tournament_of_real_boats");
-    for args in [
-        &["run", mixed][..],
-        &["run", mixed, "--in-process"],
-        &["sim", mixed],
-        &["tournament", &tournament, "--games", "2"],
-    ] {
-        let printed = refusal_of(args);
-        for part in ["blue_one, red_one", "--pace realtime", "--rehearse"] {
-            assert!(printed.contains(part), "{args:?}: {printed}");
-        }
-    }
-}
-
-#[test]
 fn a_rehearsal_is_the_game_of_simulated_boats_in_one_process_and_across() {
     let (mixed, simulated) = (own("mixed_30s"), own("pav01_30s"));
     let want = result_of(&[&simulated, "--in-process"])["digest"].clone();

@@ -142,18 +142,6 @@ fn games_on_this_machine_are_listed_and_can_be_watched() {
 }
 
 #[test]
-fn broken_scenarios_are_explained_where_they_are_broken() {
-    let output = run(&["check", &own("broken")]);
-    let text = stdout(&output);
-    assert!(!output.status.success());
-    for place in ["broken.toml:1:1: ", "broken.toml:2:8: "] {
-        assert!(text.contains(place), "{place} is not in {text}");
-    }
-    let said = refusal_of(&["run", &own("broken"), "--no-record"]);
-    assert!(said.contains("broken.toml:1:1: "), "{said}");
-}
-
-#[test]
 fn a_game_is_not_registered_in_a_folder_that_another_user_could_have_linked() {
     let dir = temporary();
     let elsewhere = dir.path().join("elsewhere");

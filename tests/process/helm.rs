@@ -111,13 +111,3 @@ fn an_agent_plays_by_a_strategy_file_of_its_own() {
     }
     sim.stop();
 }
-
-#[test]
-fn mistakes_in_a_strategy_file_are_told_before_joining() {
-    // There is no game to join: the agent does not even search for one.
-    let mut command = squall(&["agent", "--vehicle", "blue_one", "--strategy", &own("bad"), "--wait-s", "50"]);
-    command.stderr(Stdio::piped());
-    let mut agent = Process::start(command);
-    let said = agent.refusal();
-    assert!(said.contains("bad.toml:3:") && said.contains("\"fly\"") && said.contains("waypoint"), "{said}");
-}

@@ -243,7 +243,7 @@ fn the_boat_is_commanded_ten_times_a_second_whatever_payloads_do() {
 }
 
 #[test]
-fn a_payload_whose_port_cannot_be_opened_is_a_warning_and_what_is_mistyped_is_refused() {
+fn a_payload_whose_port_cannot_be_opened_is_a_warning() {
     let sonde = FakePayload::sonde();
     let taken = std::net::TcpListener::bind("127.0.0.1:0").expect("a free port");
     let at = taken.local_addr().expect("an address");
@@ -257,15 +257,6 @@ fn a_payload_whose_port_cannot_be_opened_is_a_warning_and_what_is_mistyped_is_re
     client.read_exact(&mut answer).expect("an answer");
     assert_eq!(&answer, b"# para\r\n1 18 212\r");
     gateway.end();
-    for (payloads, part) in [
-        (&["camera"][..], "it has no `=`, allowed: NAME=URL"),
-        (&["a=tcp://1.2.3.4:5", "a=tcp://1.2.3.4:6"], "two payloads have this name"),
-    ] {
-        let payloads = payloads.iter().flat_map(|payload| ["--payload", *payload]);
-        let args = ["gateway", "surveyor", "--vehicle", "blue_one", "--no-record", "--link", "tcp://127.0.0.1:1"];
-        let output = run(&args.into_iter().chain(payloads).collect::<Vec<_>>());
-        assert!(!output.status.success() && stderr(&output).contains(part), "{}", stderr(&output));
-    }
 }
 
 #[test]

@@ -129,29 +129,6 @@ fn what_is_heard_is_written_down_if_it_is_sound() {
     assert!(said.contains(&format!("cannot record to {file}")), "{said}");
 }
 
-#[test]
-fn what_is_no_recording_is_refused_with_the_reason() {
-    for (file, part) in [("README.md", "it is not an MCAP file"), ("nowhere.mcap", "cannot read the recording")] {
-        for how in [&["replay", file][..], &["replay", "--check", file]] {
-            let said = refusal_of(how);
-            assert!(said.contains(file) && said.contains(part), "{how:?}: {said}");
-        }
-    }
-    let dir = temporary();
-    let taken = dir.path().join("file").display().to_string();
-    std::fs::write(&taken, "").expect("a file can be written");
-    let game = "scenarios/games/attack_1v1.toml";
-    for (args, part) in [
-        (&["replay", "--check", "README.md", "--listen", "127.0.0.1:0"][..], "--check shows no page"),
-        (&["run", game, "--in-process", "--record", &taken], "cannot create the folder"),
-        (&["run", game, "--no-record", "--token", "secret"], "require --view"),
-        (&["view", "--listen", "0.0.0.0:0"], "or require a token"),
-    ] {
-        let said = refusal_of(args);
-        assert!(said.contains(part), "{args:?}: {said}");
-    }
-}
-
 /// Runs the program on a disk that is full after one or two MiB, depending on the shell's block
 /// size.
 #[cfg(unix)]
