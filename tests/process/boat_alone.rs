@@ -1,7 +1,7 @@
 //! A boat with no node but its gateway, or not even that: it can be stopped without a sim, and it
 //! stops when its gateway dies.
 
-use crate::support::{LIMIT, Process, Sim, newest, run, squall, stderr, stdout, wait_until, wait_within};
+use crate::support::{LIMIT, Process, Sim, all_output, newest, printed, refusal_of, squall, wait_until, wait_within};
 use bus::token::TOKEN_VARIABLE;
 use bus::{Bus, Declaration, Watched};
 use gateway::link::{Link, LinkAddress, LinkEvent, LinkSettings};
@@ -37,9 +37,8 @@ impl Afloat {
         let water = Sim::start("real_attacker", &["--pace", "realtime", "--afloat", "blue_one"]);
         let mut command =
             water.squall(&["gateway", "emulate", "--vehicle", "blue_one", "--listen", "tcp://127.0.0.1:0"]);
-        command.stdout(Stdio::piped()).stderr(Stdio::null());
-        let mut emulator = Process::start(command);
-        let mut lines = emulator.lines();
+        command.stderr(Stdio::null());
+        let (emulator, mut lines) = Process::with_lines(command);
         let line = lines.find(|line| line.starts_with("back seat at ")).expect("it prints where it listens");
         let back_seat = line.rsplit("back seat at ").next().expect("an address").trim().to_owned();
         std::thread::spawn(move || lines.for_each(drop));
@@ -80,8 +79,8 @@ impl Afloat {
     /// Runs an operator's command on the gateway's machine.
     fn tell(&self, command: &str) -> String {
         let mut tell = squall(&["gateway", "tell", "blue_one", command, "--game", self.game]);
-        let output = tell.env_remove(TOKEN_VARIABLE).output().expect("the program starts");
-        let told = format!("{}{}", stdout(&output), stderr(&output));
+        tell.env_remove(TOKEN_VARIABLE);
+        let told = all_output(tell);
         assert!(!told.contains('\x1b') && !told.contains("u001b"), "colours where there is no terminal: {told}");
         told
     }
@@ -89,8 +88,8 @@ impl Afloat {
     fn gateway(&self) -> Process {
         let args = self.gateway_args();
         let mut command = squall(&args.iter().map(String::as_str).collect::<Vec<_>>());
-        command.env_remove(TOKEN_VARIABLE).stdout(Stdio::null()).stderr(Stdio::null());
-        Process::start(command)
+        command.env_remove(TOKEN_VARIABLE);
+        Process::quiet(command)
     }
 }
 
@@ -109,14 +108,12 @@ fn a_gateway_stops_its_boat_and_serves_operators_before_there_is_a_game() {
     assert!(released.contains("safed"), "by the gateway's own token: {released}");
     // A second gateway on this machine is refused without any effect on the boat.
     let second = afloat.gateway_args();
-    let output = run(&second.iter().map(String::as_str).collect::<Vec<_>>());
-    assert!(!output.status.success());
-    let said = stderr(&output);
+    let said = refusal_of(&second.iter().map(String::as_str).collect::<Vec<_>>());
     assert!(said.contains("another gateway on this machine has the link"), "{said}");
     assert!(afloat.tell("status").contains("safed"));
     // A stop over the link goes to the gateway that holds it.
-    let output = run(&["gateway", "stop", &afloat.back_seat]);
-    assert!(output.status.success() && stdout(&output).contains("the gateway of blue_one has the link: e-stopped"));
+    let said = printed(&["gateway", "stop", &afloat.back_seat]);
+    assert!(said.contains("the gateway of blue_one has the link: e-stopped"), "{said}");
     gateway.signal("TERM");
     assert!(gateway.wait().success());
 }
@@ -125,13 +122,12 @@ fn a_gateway_stops_its_boat_and_serves_operators_before_there_is_a_game() {
 fn a_boat_can_be_stopped_over_its_link_with_nothing_else_running() {
     let afloat = Afloat::start("alone-stop");
     afloat.set_going();
-    let output = run(&["gateway", "stop", &afloat.back_seat]);
-    assert!(output.status.success(), "{}", stderr(&output));
-    assert!(stdout(&output).contains("the boat reports standby"), "{}", stdout(&output));
+    let said = printed(&["gateway", "stop", &afloat.back_seat]);
+    assert!(said.contains("the boat reports standby"), "{said}");
     afloat.stops();
     let nobody = format!("tcp://127.0.0.1:{}", bus::free_port(false).expect("a free port"));
-    let output = run(&["gateway", "stop", &nobody, "--wait-s", "0.5"]);
-    assert!(!output.status.success() && stderr(&output).contains("was not reached"), "{}", stderr(&output));
+    let said = refusal_of(&["gateway", "stop", &nobody, "--wait-s", "0.5"]);
+    assert!(said.contains("was not reached"), "{said}");
 }
 
 #[test]
@@ -220,9 +216,7 @@ fn the_guard_stops_a_boat_on_every_kind_of_link_when_its_gateway_is_killed_or_su
     for listen in ["tcp://127.0.0.1:0", "udp://127.0.0.1:0", "pty"] {
         let wire = Wire::listen(listen);
         let args = ["gateway", "surveyor", "--vehicle", "blue_one", "--no-record", "--game", "nowhere-else", "--link"];
-        let mut command = squall(&[&args[..], &[&wire.address()]].concat());
-        command.stdout(Stdio::null()).stderr(Stdio::null());
-        let mut gateway = Process::start(command);
+        let mut gateway = Process::quiet(squall(&[&args[..], &[&wire.address()]].concat()));
         wire.wait_for(zero, LIMIT);
         wire.wait_for(standby, LIMIT);
         let text = wire.received.visit(|text| text.clone());

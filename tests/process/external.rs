@@ -1,6 +1,6 @@
 //! Real boats: the test's own gateway adds one, moves it according to its orders, and falls silent.
 
-use crate::support::{LIMIT, Sim, own, refusal_of, result_of, wait_until};
+use crate::support::{LIMIT, Sim, own, result_of, wait_until};
 use bus::{Bus, Declaration, Priority, Publisher};
 use messages::external::{ExternalOrder, NavReport};
 use messages::picture::Nav;

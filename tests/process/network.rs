@@ -38,9 +38,7 @@ fn sim_with_few_threads(name: &str, pace: &str) -> Sim {
 
 /// An observer of the game at this endpoint.
 fn observer(endpoint: &str, game: &str) -> Process {
-    let mut command = squall(&["watch", "--connect", endpoint, "--game", game, "--rate", "30"]);
-    command.stdout(Stdio::null()).stderr(Stdio::null());
-    Process::start(command)
+    Process::quiet(squall(&["watch", "--connect", endpoint, "--game", game, "--rate", "30"]))
 }
 
 /// Checks that the game goes on without a pause and loses no more agents.
@@ -263,8 +261,8 @@ fn an_e_stop_is_obeyed_at_once_under_a_flood_of_garbage() {
 fn flood(sim: &Sim) -> Process {
     let mut command = Command::new(std::env::current_exe().expect("this program"));
     command.args(["--ignored", "--exact", "network::floods_a_game"]);
-    command.env(FLOODED, format!("{} {}", sim.endpoint, sim.game)).stdout(Stdio::null()).stderr(Stdio::null());
-    Process::start(command)
+    command.env(FLOODED, format!("{} {}", sim.endpoint, sim.game));
+    Process::quiet(command)
 }
 
 /// The variable that names the game to flood.

@@ -2,7 +2,7 @@
 
 use crate::boat_alone::Wire;
 use crate::fake_payload::{FakePayload, VALUES};
-use crate::support::{LIMIT, Process, run, squall, stderr, stdout, temporary, wait_until, wait_within};
+use crate::support::{LIMIT, Process, all_output, printed, squall, temporary, wait_until, wait_within};
 use bus::token::TOKEN_VARIABLE;
 use messages::payload::PayloadBytes;
 use recording::Bag;
@@ -31,11 +31,11 @@ impl Gateway {
         let args = ["gateway", "surveyor", "--vehicle", "blue_one", "--game", game, "--link", &address];
         let args: Vec<&str> = args.into_iter().chain(payloads).chain(more.iter().copied()).collect();
         let mut command = squall(&args);
-        command.env_remove(TOKEN_VARIABLE).stdout(Stdio::piped()).stderr(Stdio::piped());
-        let mut process = Process::start(command);
+        command.env_remove(TOKEN_VARIABLE).stderr(Stdio::piped());
+        let (mut process, lines) = Process::with_lines(command);
         let printed = Arc::<Mutex<Vec<String>>>::default();
         let said = BufReader::new(process.0.stderr.take().expect("piped")).lines().map_while(Result::ok);
-        let lines: [Box<dyn Iterator<Item = String> + Send>; 2] = [Box::new(said), Box::new(process.lines())];
+        let lines: [Box<dyn Iterator<Item = String> + Send>; 2] = [Box::new(said), Box::new(lines)];
         for lines in lines {
             let printed = Arc::clone(&printed);
             std::thread::spawn(move || lines.for_each(|line| printed.lock().expect("nobody panics").push(line)));
@@ -68,8 +68,8 @@ impl Gateway {
     /// Runs an operator's command.
     fn tell(&self, command: &str) -> String {
         let mut tell = squall(&["gateway", "tell", "blue_one", command, "--game", self.game]);
-        let output = tell.env_remove(TOKEN_VARIABLE).output().expect("the program starts");
-        format!("{}{}", stdout(&output), stderr(&output))
+        tell.env_remove(TOKEN_VARIABLE);
+        all_output(tell)
     }
 
     fn end(&mut self) {
@@ -165,8 +165,8 @@ fn bytes_pass_both_ways_and_are_recorded_with_what_the_sonde_measures() {
         (&["log", &file, "--csv", "payload/dac"], "to_payload,GET /data HTTP/1.0"),
         (&["log", &file, "--csv", "values/sonde"], "values.2.value"),
     ] {
-        let output = run(args);
-        assert!(stdout(&output).contains(part), "{args:?}: {}{}", stdout(&output), stderr(&output));
+        let said = printed(args);
+        assert!(said.contains(part), "{args:?}: {said}");
     }
 }
 
@@ -238,8 +238,8 @@ fn the_boat_is_commanded_ten_times_a_second_whatever_payloads_do() {
     assert!((1..=remarks_max).contains(&remarks.len()), "{remarks:?} in {:?}", began.elapsed());
     assert!(remarks[0].contains("refused"), "{remarks:?}");
     gateway.end();
-    let replayed = run(&["gateway", "replay", &file]);
-    assert!(stdout(&replayed).contains("byte for byte"), "all of the boat was recorded: {}", stdout(&replayed));
+    let replayed = printed(&["gateway", "replay", &file]);
+    assert!(replayed.contains("byte for byte"), "all of the boat was recorded: {replayed}");
 }
 
 #[test]

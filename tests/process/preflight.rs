@@ -5,46 +5,60 @@ use crate::support::{stderr, stdout, temporary, wait_until};
 use messages::external::OperatorCommand;
 use std::time::Duration;
 
+/// Why the boat cannot be armed now.
+fn refusal(all: &Loop) -> String {
+    all.try_ask(&OperatorCommand::Arm).and_then(|reply| reply.refused).unwrap_or_default()
+}
+
+/// Stops the gateway: the boat serves one program at a time.
+fn stop_gateway(all: &mut Loop) {
+    all.gateway.signal("INT");
+    all.gateway.wait();
+}
+
+/// Checks the boat in the gateway's place; returns what is printed, and all that is said besides.
+fn check(all: &mut Loop, config: &str, report: &str) -> (String, String) {
+    stop_gateway(all);
+    let link = format!("tcp://127.0.0.1:{}", all.proxy.port);
+    let args = ["gateway", "check", "--link", &link, "--vehicle", "blue_one", "--config", config, "--report", report];
+    let checked = all.sim.run(&args);
+    let (printed, said) = (stdout(&checked), stderr(&checked));
+    assert!(checked.status.success(), "{printed}{said}");
+    (printed, said)
+}
+
+/// Starts a gateway with these options.
+fn begin_again(all: &mut Loop, options: &[&str]) {
+    all.gateway = start_gateway(&all.sim, all.proxy.port, options);
+    wait_until("it is in the game", || all.try_ask(&OperatorCommand::Status).is_some());
+}
+
 #[test]
 fn a_boat_is_armed_with_a_passed_report_and_without_one_in_somebodys_name_alone() {
     let dir = temporary();
     let report = dir.path().join("report.json").display().to_string();
     let mut all = Loop::begin(&[], &["--config", "surveyor"]);
-    let refused = || all.try_ask(&OperatorCommand::Arm).and_then(|reply| reply.refused).unwrap_or_default();
     wait_until("only the report is missing", || {
-        let why = refused();
+        let why = refusal(&all);
         why.contains("a passed pre-flight check") && !why.contains("a fresh order") && !why.contains("navigation")
     });
-    // The boat serves one program at a time.
-    all.gateway.signal("INT");
-    all.gateway.wait();
-
-    let link = format!("tcp://127.0.0.1:{}", all.proxy.port);
-    let check =
-        ["gateway", "check", "--link", &link, "--vehicle", "blue_one", "--config", "surveyor", "--report", &report];
-    let checked = all.sim.squall(&check).output().expect("the program starts");
-    assert!(checked.status.success(), "{}{}", stdout(&checked), stderr(&checked));
+    check(&mut all, "surveyor", &report);
     let text = std::fs::read_to_string(dir.path().join("report.txt")).expect("it is written as text too");
     assert!(text.contains("geofence") && text.trim_end().ends_with("passed"), "{text}");
 
     let options = ["--config", "surveyor", "--preflight", &report];
-    all.gateway = start_gateway(&all.sim, all.proxy.port, &options);
-    wait_until("it is in the game", || all.try_ask(&OperatorCommand::Status).is_some());
+    begin_again(&mut all, &options);
     all.arm();
-    all.gateway.signal("INT");
-    all.gateway.wait();
+    stop_gateway(&mut all);
 
     // The report of another boat does not count.
     let other = std::fs::read_to_string(&report).expect("it is written").replace("blue_one", "red_one");
     std::fs::write(&report, other).expect("it can be written");
-    all.gateway = start_gateway(&all.sim, all.proxy.port, &options);
-    let refused = || all.try_ask(&OperatorCommand::Arm).and_then(|reply| reply.refused).unwrap_or_default();
-    wait_until("it is of another boat", || refused().contains("red_one"));
-    all.gateway.signal("INT");
-    all.gateway.wait();
+    begin_again(&mut all, &options);
+    wait_until("it is of another boat", || refusal(&all).contains("red_one"));
+    stop_gateway(&mut all);
 
-    all.gateway = start_gateway(&all.sim, all.proxy.port, &["--config", "surveyor", "--without-preflight", "Ada"]);
-    wait_until("it is in the game", || all.try_ask(&OperatorCommand::Status).is_some());
+    begin_again(&mut all, &["--config", "surveyor", "--without-preflight", "Ada"]);
     all.arm();
 }
 
@@ -53,20 +67,11 @@ fn a_mavlink_boat_is_armed_with_a_passed_report_too() {
     let dir = temporary();
     let report = dir.path().join("report.json").display().to_string();
     let mut all = Loop::begin(&["--protocol", "mavlink"], &["--config", "blueboat"]);
-    let refused = || all.try_ask(&OperatorCommand::Arm).and_then(|reply| reply.refused).unwrap_or_default();
-    wait_until("the report is missing", || refused().contains("a passed pre-flight check"));
-    all.gateway.signal("INT");
-    all.gateway.wait();
-    let link = format!("tcp://127.0.0.1:{}", all.proxy.port);
-    let check =
-        ["gateway", "check", "--link", &link, "--vehicle", "blue_one", "--config", "blueboat", "--report", &report];
-    let checked = all.sim.squall(&check).output().expect("the program starts");
-    let (printed, said) = (stdout(&checked), stderr(&checked));
-    assert!(checked.status.success(), "{printed}{said}");
+    wait_until("the report is missing", || refusal(&all).contains("a passed pre-flight check"));
+    let (printed, said) = check(&mut all, "blueboat", &report);
     assert!(printed.contains("GLOBAL_POSITION_INT") && printed.contains("nothing is missing"), "{printed}");
     assert!(said.contains("nothing but requests for telemetry"), "{said}");
-    all.gateway = start_gateway(&all.sim, all.proxy.port, &["--config", "blueboat", "--preflight", &report]);
-    wait_until("it is in the game", || all.try_ask(&OperatorCommand::Status).is_some());
+    begin_again(&mut all, &["--config", "blueboat", "--preflight", &report]);
     all.arm();
 }
 
