@@ -2,7 +2,7 @@
 
 use crate::plot::field::{Chart, Spot, Symbol, Track};
 use crate::plot::{self, Line, Page, Panel, colour};
-use analysis::{BoatSeries, GameSeries, Sample};
+use analysis::{BoatSeries, GameSeries, Sample, ordered_m_s};
 use anyhow::Result;
 use messages::Order;
 use plotters::style::RGBColor;
@@ -108,11 +108,7 @@ fn boat_page(header: &Header, series: &GameSeries, boat: &BoatSeries) -> Page {
     };
     let ordered = |points| Line { colour: Some(ORDERED), ..Line::of("ordered", points) };
     let sailed = |points| Line { colour: Some(colour::of_team(boat.team)), ..Line::of("sailed", points) };
-    let speed = |sample: &Sample| match sample.order {
-        Order::Steer { speed_m_s, .. } | Order::Turn { speed_m_s, .. } => Some(speed_m_s),
-        Order::Hold => Some(0.0),
-        Order::Thrust { .. } => None,
-    };
+    let speed = |sample: &Sample| ordered_m_s(sample.order);
     let heading = |sample: &Sample| match sample.order {
         Order::Steer { heading_rad, .. } => Some(compass_deg_from_rad(heading_rad)),
         Order::Hold | Order::Turn { .. } | Order::Thrust { .. } => None,

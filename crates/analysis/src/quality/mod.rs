@@ -12,7 +12,7 @@ mod text;
 pub use encounter::Encounters;
 pub use orbit::ORBIT_MIN_S;
 
-use crate::step::{Sample, Step};
+use crate::step::{Sample, Step, ordered_m_s};
 use encounter::EncounterCounter;
 use messages::Order;
 use messages::helm::HelmReport;
@@ -216,7 +216,7 @@ impl ModeQuality {
         if let (Order::Steer { heading_rad: old_rad, .. }, Order::Steer { heading_rad, .. }) = (*before, order) {
             self.course_jumps += u64::from(wrap_pi(heading_rad - old_rad).abs() > COURSE_JUMP_RAD);
         }
-        let change_m_s = speed_m_s(order).zip(speed_m_s(*before)).map_or(0.0, |(new, old)| (new - old).abs());
+        let change_m_s = ordered_m_s(order).zip(ordered_m_s(*before)).map_or(0.0, |(new, old)| (new - old).abs());
         self.speed_jumps += u64::from(change_m_s > SPEED_JUMP_M_S);
     }
 
@@ -256,15 +256,6 @@ impl StrategyQuality {
                 role.modes.entry(name.clone()).or_default().merge(other);
             }
         }
-    }
-}
-
-/// The speed of an order, m/s; unknown for thrusts.
-fn speed_m_s(order: Order) -> Option<f64> {
-    match order {
-        Order::Hold => Some(0.0),
-        Order::Steer { speed_m_s, .. } | Order::Turn { speed_m_s, .. } => Some(speed_m_s),
-        Order::Thrust { .. } => None,
     }
 }
 
