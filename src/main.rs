@@ -34,8 +34,7 @@ mod water_args;
 
 use anyhow::Result;
 use clap::{ColorChoice, FromArgMatches, Parser, Subcommand};
-use command_line::program::{self, Program};
-use command_line::{clock, explain, output_file, recording_file, scenario_files, stop, style};
+use command_line::{clock, explain, output_file, program, recording_file, scenario_files, stop, style};
 use std::process::ExitCode;
 
 /// The version, and the commit that it was built from.
@@ -124,7 +123,7 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    program::set(Program { name: "squall", gateway: "squall gateway" });
+    program::set("squall", "squall gateway");
     scenario_files::install(kinds::KINDS);
     let cli = Cli::from_arg_matches(&cli::matches()).unwrap_or_else(|error| error.exit());
     screen::set_colour(cli.color);

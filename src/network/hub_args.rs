@@ -3,7 +3,7 @@
 use anyhow::{Result, anyhow, bail};
 use bus::token::TOKEN_VARIABLE;
 use bus::{Net, Token};
-use command_line::leaf_args::{KeysArgs, TokenArgs};
+use command_line::leaf_args::AccessArgs;
 use command_line::number::endpoint;
 use messages::topic::GameName;
 use std::net::{IpAddr, Ipv4Addr, UdpSocket};
@@ -25,9 +25,7 @@ pub(crate) struct HubArgs {
     #[arg(long, value_name = "FILE")]
     zenoh_config: Option<PathBuf>,
     #[command(flatten)]
-    keys: KeysArgs,
-    #[command(flatten)]
-    token: TokenArgs,
+    access: AccessArgs,
 }
 
 impl HubArgs {
@@ -40,7 +38,7 @@ impl HubArgs {
             listen.push(format!("tcp/127.0.0.1:{}", free_port(true)?));
         }
         listen.iter_mut().try_for_each(with_port)?;
-        let keys = self.keys.load()?;
+        let keys = self.access.keys()?;
         match (&keys, listen.iter().find(|endpoint| !bus::is_loopback(endpoint))) {
             (None, Some(open)) if !self.insecure => bail!(
                 "{open} can be reached from other machines, where anyone can see and stop the game: create keys with \
@@ -49,7 +47,7 @@ impl HubArgs {
             _ => {}
         }
         // With keys, certificates define the rights, so no token is needed.
-        let token = self.token.token()?.or_else(|| keys.is_none().then(Token::random));
+        let token = self.access.token()?.or_else(|| keys.is_none().then(Token::random));
         Ok(Net { listen, connect: vec![], lan: self.lan, config_file: self.zenoh_config.clone(), token, keys })
     }
 }

@@ -1,15 +1,17 @@
 //! Command line arguments that define where the page is served.
 
 use super::hub_args::own_address;
-use crate::screen;
+use crate::screen::{self, Screen};
+use crate::stop;
+use crate::style::Names;
 use anyhow::{Result, ensure};
 use command_line::leaf_args;
 use command_line::number::address;
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 use shore::page::{Background, Page, PageError, PageSettings};
 use std::net::{Ipv4Addr, SocketAddr};
-use std::path::PathBuf;
-use std::process::Command;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -100,6 +102,16 @@ impl PageArgs {
     /// The same arguments with the browser opened.
     pub(crate) fn opened(&self) -> PageArgs {
         PageArgs { open: true, ..self.clone() }
+    }
+
+    /// Serves a page with what `put` puts there, from this path, until Ctrl-C.
+    pub(crate) fn show(&self, path: &Path, stop: &Arc<AtomicBool>, put: impl FnOnce(&Page)) -> Result<ExitCode> {
+        let page = self.open(stop)?;
+        put(&page);
+        Screen::new(Names::default()).line(&format!("{} at {} (Ctrl-C to stop)", path.display(), self.url(&page)));
+        self.open_browser(&page);
+        stop::wait(stop);
+        Ok(ExitCode::SUCCESS)
     }
 
     /// Opens the page in the browser if requested. Its address has already been printed.
