@@ -2,7 +2,7 @@
 
 use super::hub_args::own_address;
 use crate::screen;
-use anyhow::{Result, bail};
+use anyhow::{Result, anyhow, bail};
 use bus::keys::{self, Bundle, Identity};
 use command_line::number::whole;
 use std::fmt::Write as _;
@@ -101,10 +101,8 @@ fn new(args: &NewArgs) -> Result<()> {
 }
 
 fn named(text: &str) -> Result<Identity> {
-    match text.parse() {
-        Ok(identity) => Ok(identity),
-        Err(_) => bail!("{text:?} is not a valid name, expected 1 to 48 of the characters a-z A-Z 0-9 _ -"),
-    }
+    let wrong = |_| anyhow!("{text:?} is not a valid name, expected 1 to 48 of the characters a-z A-Z 0-9 _ -");
+    text.parse().map_err(wrong)
 }
 
 fn show(folder: &Path) -> Result<()> {

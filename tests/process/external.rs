@@ -1,6 +1,6 @@
 //! Real boats: the test's own gateway adds one, moves it according to its orders, and falls silent.
 
-use crate::support::{LIMIT, Sim, own, result_of, wait_until};
+use crate::support::{Sim, join, own, result_of, wait_until};
 use bus::{Bus, Declaration, Priority, Publisher};
 use messages::external::{ExternalOrder, NavReport};
 use messages::picture::Nav;
@@ -30,23 +30,21 @@ pub(crate) struct Gateway {
     moved: Instant,
 }
 
-fn join(bus: &Bus, (name, scenario): (&GameName, &Scenario), vehicle: &str) -> JoinReply {
+fn request(bus: &Bus, vehicle: &str) -> JoinRequest {
     let (version, vehicles) = (primitives::VERSION.to_owned(), vec![vehicle.to_owned()]);
-    let request = JoinRequest { version, role: Role::Gateway, node: bus.id(), vehicles };
-    let key = topic::join(name, scenario, request.role, &request.vehicles);
-    bus.request(&key, &request, LIMIT).expect("the hub is there").expect("an answer")
+    JoinRequest { version, role: Role::Gateway, node: bus.id(), vehicles }
 }
 
 impl Gateway {
     pub(crate) fn joined(sim: &Sim) -> Gateway {
-        let (bus, name) = (sim.bus(), sim.name());
-        let scenario = sim.info(&bus).scenario;
+        let (bus, name, scenario) = sim.session();
         let orders = Arc::new(Mutex::new(Vec::new()));
         let inbox = Arc::clone(&orders);
         let take = move |bytes: &[u8]| inbox.lock().expect("whole").push(codec::decode(bytes).expect("an order"));
         let standing = bus.subscribe(topic::external_order(&name, &scenario, ME), take).expect("the hub is there");
         let nav = bus.publisher(topic::nav(&name, &scenario, ME), Priority::Normal).expect("the hub is there");
-        let JoinReply::Granted { ticket, vehicles, .. } = join(&bus, (&name, &scenario), "blue_one") else {
+        let JoinReply::Granted { ticket, vehicles, .. } = join(&bus, (&name, &scenario), &request(&bus, "blue_one"))
+        else {
             panic!("the boat is free")
         };
         assert_eq!(vehicles, [ME]);
@@ -56,7 +54,7 @@ impl Gateway {
 
     /// The reply to another node that requests a boat.
     fn join(&self, other: &Bus, vehicle: &str) -> JoinReply {
-        join(other, (&self.name, &self.scenario), vehicle)
+        join(other, (&self.name, &self.scenario), &request(other, vehicle))
     }
 
     fn newest(&self) -> Option<ExternalOrder> {

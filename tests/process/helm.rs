@@ -1,8 +1,7 @@
 //! Helm queries during a game, and a boat that gets another strategy.
 
-use crate::support::{FOUR, LIMIT, Process, Sim, own, printed, squall, temporary};
-use messages::helm::HelmReport;
-use messages::topic;
+use crate::support::{FOUR, Process, Sim, helm, own, printed, squall, temporary};
+use primitives::VehicleId;
 
 /// A running game with an agent for each boat.
 fn game() -> (Sim, Vec<Process>) {
@@ -14,17 +13,11 @@ fn game() -> (Sim, Vec<Process>) {
 #[test]
 fn a_helm_says_what_it_thinks_and_its_functions_if_they_are_asked_for() {
     let (sim, _agents) = game();
-    let (bus, name) = (sim.bus(), sim.name());
-    let scenario = sim.info(&bus).scenario;
-    let two = scenario.vehicle_by_name("blue_two").expect("it is there");
-    let ask = |question: &[u8]| -> HelmReport {
-        let key = topic::helm(&name, &scenario, two);
-        let answer = bus.ask_node(&key, question.to_vec(), LIMIT).expect("the hub is there");
-        serde_json::from_slice(&answer.expect("an answer")).expect("a report")
-    };
+    let (bus, name, scenario) = sim.session();
+    let ask = |question: &[u8]| helm(&bus, (&name, &scenario), "blue_two", question);
     for (question, whole) in [(&b"{\"functions\":true}"[..], true), (b"", false), (b"ahoy", false)] {
         let report = ask(question);
-        assert_eq!((report.vehicle, report.program.as_str()), (two, "easy_attacker"));
+        assert_eq!((report.vehicle, report.program.as_str()), (VehicleId(1), "easy_attacker"));
         assert!(!report.mode.is_empty() && !report.functions.is_empty(), "{report:?}");
         let length = if whole { report.courses * report.speeds } else { 0 };
         assert!(report.functions.iter().all(|function| function.utilities.len() == length));

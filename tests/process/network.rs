@@ -217,13 +217,13 @@ fn an_e_stop_is_obeyed_at_once_under_a_flood_of_garbage() {
     let sim = sim_with_few_threads("real_attacker", &format!("{FACTOR}x"));
     let _agents = [sim.agent(&["blue_one"]), sim.agent(&["red_one"])];
     let mut gateway = Gateway::joined(&sim);
-    let (bus, operator, name) = (sim.bus(), sim.bus(), sim.name());
+    let ((bus, name, scenario), operator) = (sim.session(), sim.bus());
     let (sender, orders) = channel();
     let take = move |bytes: &[u8]| {
         let order: ExternalOrder = codec::decode(bytes).expect("an order");
         let _ = sender.send((Instant::now(), order.order.order() == Some(Order::Hold)));
     };
-    let key = topic::external_order(&name, &sim.info(&bus).scenario, ME);
+    let key = topic::external_order(&name, &scenario, ME);
     let _orders = bus.subscribe(key, take).expect("the hub is there");
     let stop = operator.publisher(topic::control(&name), Priority::Urgent).expect("the hub is there");
     ordered(&orders, &mut gateway, false);

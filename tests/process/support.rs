@@ -2,8 +2,10 @@
 
 use bus::token::TOKEN_VARIABLE;
 use bus::{Bus, Declaration, Net, Token, Watched};
-use messages::GameInfo;
+use messages::helm::HelmReport;
 use messages::topic::{self, GameName};
+use messages::{GameInfo, JoinReply, JoinRequest};
+use scenario::Scenario;
 use serde_json::Value;
 use std::io::{BufRead, BufReader, Read};
 use std::process::{Child, ChildStdin, Command, ExitStatus, Output, Stdio};
@@ -111,6 +113,19 @@ pub(crate) fn newest<T: Default + Send + 'static>(
     let to = Arc::clone(&newest);
     let standing = bus.subscribe(key, move |bytes| to.visit(|newest| *newest = read(bytes)));
     (newest, standing.expect("the hub is there"))
+}
+
+/// The reply to a node that asks for boats.
+pub(crate) fn join(bus: &Bus, (name, scenario): (&GameName, &Scenario), request: &JoinRequest) -> JoinReply {
+    let key = topic::join(name, scenario, request.role, &request.vehicles);
+    bus.request(&key, request, LIMIT).expect("the hub is there").expect("an answer")
+}
+
+/// The report of a vehicle's helm.
+pub(crate) fn helm(bus: &Bus, (name, scenario): (&GameName, &Scenario), vehicle: &str, question: &[u8]) -> HelmReport {
+    let vehicle = scenario.vehicle_by_name(vehicle).expect("it is there");
+    let answer = bus.ask_node(&topic::helm(name, scenario, vehicle), question.to_vec(), LIMIT);
+    serde_json::from_slice(&answer.expect("the hub is there").expect("an answer")).expect("a report")
 }
 
 /// Runs a game to its end and returns its result.
@@ -348,6 +363,13 @@ impl Sim {
     pub(crate) fn info(&self, bus: &Bus) -> GameInfo {
         let info = bus.ask(&topic::scenario(&self.name()), Vec::new(), LIMIT).expect("the hub is there");
         serde_json::from_slice(&info.expect("an answer")).expect("a game")
+    }
+
+    /// A session at its hub, its name and its scenario.
+    pub(crate) fn session(&self) -> (Bus, GameName, Scenario) {
+        let bus = self.bus();
+        let scenario = self.info(&bus).scenario;
+        (bus, self.name(), scenario)
     }
 
     /// A session at its hub.
