@@ -1,6 +1,6 @@
 //! The command line as a whole: grouped help, first steps, shell completion scripts, man pages.
 
-use crate::screen;
+use crate::{Cli, screen};
 use anyhow::{Context, Result};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{ArgMatches, Command, CommandFactory};
@@ -44,8 +44,8 @@ pub(crate) struct ManArgs {
 }
 
 /// The command line with its subcommands in groups.
-pub(crate) fn command<T: CommandFactory>() -> Command {
-    let command = T::command();
+pub(crate) fn command() -> Command {
+    let command = Cli::command();
     let width = command.get_subcommands().map(|one| one.get_name().len()).max().unwrap_or(0);
     let mut text = String::new();
     for (group, names) in GROUPS {
@@ -66,8 +66,8 @@ pub(crate) fn command<T: CommandFactory>() -> Command {
 
 /// Parses the command line. On a command that only another build has, it exits and names that
 /// build.
-pub(crate) fn matches<T: CommandFactory>() -> ArgMatches {
-    let mut command = number::with_negative_numbers(command::<T>());
+pub(crate) fn matches() -> ArgMatches {
+    let mut command = number::with_negative_numbers(command());
     command.try_get_matches_from_mut(std::env::args_os()).unwrap_or_else(|error| {
         if let Some(ContextValue::String(name)) = error.get(ContextKind::InvalidSubcommand)
             && GROUPS.iter().any(|(_, names)| names.contains(&name.as_str()))
@@ -87,32 +87,32 @@ pub(crate) fn not_built(what: &str) -> String {
     )
 }
 
-pub(crate) fn first<T: CommandFactory>() -> ExitCode {
+pub(crate) fn first() -> ExitCode {
     // Skip commands that only another build understands.
     let command = |line: &str| Some(line.trim().strip_prefix("squall ")?.split("  ").next()?.to_owned());
-    let is_known = |line: &&str| command(line).and_then(|words| refused::<T>(&words)).is_none();
+    let is_known = |line: &&str| command(line).and_then(|words| refused(&words)).is_none();
     let lines: Vec<&str> = FIRST.lines().filter(is_known).collect();
     screen::print(&(lines.join("\n") + "\n"));
     ExitCode::SUCCESS
 }
 
 /// The error of this build for a command line, if it does not accept it.
-fn refused<T: CommandFactory>(words: &str) -> Option<clap::Error> {
+fn refused(words: &str) -> Option<clap::Error> {
     let words = std::iter::once("squall").chain(words.split_whitespace());
-    let refused = T::command().try_get_matches_from(words).err()?;
+    let refused = Cli::command().try_get_matches_from(words).err()?;
     (refused.kind() != ErrorKind::DisplayHelp).then_some(refused)
 }
 
-pub(crate) fn completions<T: CommandFactory>(args: &CompletionArgs) -> ExitCode {
+pub(crate) fn completions(args: &CompletionArgs) -> ExitCode {
     let mut script = vec![];
-    clap_complete::generate(args.shell, &mut command::<T>(), "squall", &mut script);
+    clap_complete::generate(args.shell, &mut command(), "squall", &mut script);
     screen::print(&String::from_utf8_lossy(&script));
     ExitCode::SUCCESS
 }
 
-pub(crate) fn man<T: CommandFactory>(args: &ManArgs) -> Result<ExitCode> {
+pub(crate) fn man(args: &ManArgs) -> Result<ExitCode> {
     crate::output_file::make_folder(&args.folder)?;
-    clap_mangen::generate_to(T::command(), &args.folder)
+    clap_mangen::generate_to(Cli::command(), &args.folder)
         .with_context(|| format!("cannot write man pages to {}", args.folder.display()))?;
     screen::print(&format!(
         "wrote man pages to {}; read the first with: man {}/squall.1\n",
@@ -128,7 +128,7 @@ mod tests {
 
     #[test]
     fn every_subcommand_is_in_one_group_and_its_help_has_an_example() {
-        let command = crate::Cli::command();
+        let command = Cli::command();
         let grouped: Vec<&str> = GROUPS.iter().flat_map(|(_, names)| names.iter().copied()).collect();
         let known: Vec<&str> = command.get_subcommands().map(Command::get_name).collect();
         assert!(known.iter().all(|name| grouped.contains(name)), "{grouped:?} lacks one of {known:?}");
@@ -147,16 +147,16 @@ mod tests {
 
     #[test]
     fn the_lines_of_the_help_fit_a_terminal_and_the_examples_are_commands() {
-        let help = command::<crate::Cli>().render_help().to_string();
+        let help = command().render_help().to_string();
         let mut wrong: Vec<String> = help.lines().chain(FIRST.lines()).map(str::to_owned).collect();
         wrong.retain(|line| line.chars().count() > 80);
-        let all = crate::Cli::command();
+        let all = Cli::command();
         for one in all.get_subcommands() {
             let examples = one.get_after_help().map(ToString::to_string).unwrap_or_default();
             for line in examples.lines().filter_map(|line| line.trim().strip_prefix("squall ")) {
                 // The rest of the line is for the shell.
                 let line = line.split(" >").next().unwrap_or(line);
-                wrong.extend(refused::<crate::Cli>(line).map(|error| format!("{line}: {error}")));
+                wrong.extend(refused(line).map(|error| format!("{line}: {error}")));
             }
         }
         assert!(wrong.is_empty(), "{}", wrong.join("\n"));

@@ -12,16 +12,16 @@ use std::sync::Arc;
 #[derive(Clone, clap::Args)]
 pub(crate) struct GameArgs {
     /// Game: a file, or the name of a built-in game or of one in scenarios/games
-    #[arg(value_name = "GAME", value_parser = scenario_files::game)]
+    #[arg(value_name = "GAME", value_parser = scenario_files::file_of(Kind::GAME))]
     scenario: PathBuf,
     /// Random seed [default: the seed in the game file]
     #[arg(long, value_parser = whole::<u64>(0, u64::MAX))]
     pub(crate) seed: Option<u64>,
     /// Sea to use instead of the game's: a file or a name, such as gale
-    #[arg(long, value_name = "SEA", value_parser = scenario_files::sea)]
+    #[arg(long, value_name = "SEA", value_parser = scenario_files::file_of(Kind::SEA))]
     sea: Option<PathBuf>,
     /// Field to use instead of the game's: a file or a name
-    #[arg(long, value_name = "FIELD", value_parser = scenario_files::field)]
+    #[arg(long, value_name = "FIELD", value_parser = scenario_files::file_of(Kind::FIELD))]
     field: Option<PathBuf>,
     /// Strategy of all blue boats, instead of those in the game: a file, or a name, which is looked up first in
     /// the strategies folder next to the game's folder

@@ -8,6 +8,7 @@ use analysis::{Comparison, GameSeries, Summary};
 use anyhow::{Context, Result};
 use recording::{Bag, Damaged, Kind, Recording};
 use scenario::Scenario;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -36,7 +37,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE", requires = "csv")]
     out: Option<PathBuf>,
     /// Plots tracks, score, and each boat's speed, heading and navigation as SVG and PNG files in this folder
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", conflicts_with = "compare")]
     plot: Option<PathBuf>,
     /// Writes MOOS logs for the shoreside and every boat to this folder; if the name ends in .alog, writes only the
     /// shoreside log, to this file
@@ -75,7 +76,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 
 fn look_at(args: &Args, file: &Path) -> Result<()> {
     let bag = recording_file::open_any(file, "read")?;
-    let wants_page = args.csv.is_none() && args.plot.is_none() && args.alog.is_none() && args.gif.is_none();
+    let wants_page = [&args.plot, &args.alog, &args.gif].iter().all(|file| file.is_none()) && args.csv.is_none();
     if bag.kind == Kind::Gateway {
         if let Some(topic) = &args.csv {
             return csv(args, file, (&bag, None), topic);
@@ -89,7 +90,6 @@ fn look_at(args: &Args, file: &Path) -> Result<()> {
     if let Some(topic) = &args.csv {
         csv(args, file, (recording.bag(), Some(recording.scenario())), topic)?;
     }
-    // Every pass over the file finds the same damage.
     let mut remarks = vec![];
     if wants_page || args.events || args.json.is_some() {
         let damaged = summary(args, &recording, wants_page)?;
@@ -99,22 +99,23 @@ fn look_at(args: &Args, file: &Path) -> Result<()> {
     if let Some(dir) = &args.plot {
         output_file::make_folder(dir)?;
         let series = GameSeries::of(&recording);
-        remarks.extend(series.damaged.remark().filter(|remark| !remarks.contains(remark)));
-        remarks.extend(series.remark());
+        remarks.extend(series.damaged.remark().into_iter().chain(series.remark()));
         let files = plot::write(dir, recording.header(), &series)?;
         screen::remark(&format!("wrote {files} plots to {}, each as SVG and PNG", dir.display()));
     }
     if let Some(path) = &args.alog {
         let (files, damaged) = export::alog(&recording, path)?;
         screen::remark(&format!("wrote {files} MOOS log{} to {}", if files == 1 { "" } else { "s" }, path.display()));
-        remarks.extend(damaged.remark().filter(|remark| !remarks.contains(remark)));
+        remarks.extend(damaged.remark());
     }
     if let Some(path) = &args.gif {
         let (pictures, damaged) = gif::write(path, &recording, &args.film)?;
         screen::remark(&format!("wrote {pictures} frames to {}", path.display()));
-        remarks.extend(damaged.remark().filter(|remark| !remarks.contains(remark)));
+        remarks.extend(damaged.remark());
     }
-    remarks.iter().for_each(|remark| screen::remark(remark));
+    // Every pass over the file finds the same damage.
+    let mut told = BTreeSet::new();
+    remarks.iter().filter(|remark| told.insert(*remark)).for_each(|remark| screen::remark(remark));
     Ok(())
 }
 
@@ -155,11 +156,6 @@ fn compare(args: &Args, files: &[PathBuf]) -> Result<()> {
     screen::print(&difference::text([a, b], &comparison));
     if let Some(path) = &args.json {
         output_file::write_json(path, "the comparison", &comparison)?;
-    }
-    if let Some(dir) = &args.plot {
-        output_file::make_folder(dir)?;
-        plot::write_comparison(dir, [a, b], series.each_ref(), &comparison)?;
-        screen::remark(&format!("wrote compare.svg and compare.png to {}", dir.display()));
     }
     Ok(())
 }

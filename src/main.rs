@@ -34,8 +34,7 @@ mod water_args;
 
 use anyhow::Result;
 use clap::{ColorChoice, FromArgMatches, Parser, Subcommand};
-use command_line::program::{self, Program};
-use command_line::{clock, explain, output_file, recording_file, scenario_files, stop, style};
+use command_line::{clock, explain, output_file, program, recording_file, scenario_files, stop, style};
 use std::process::ExitCode;
 
 /// The version, and the commit that it was built from.
@@ -124,11 +123,11 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    program::set(Program { name: "squall", gateway: "squall gateway" });
+    program::set("squall", "squall gateway");
     scenario_files::install(kinds::KINDS);
-    let cli = Cli::from_arg_matches(&cli::matches::<Cli>()).unwrap_or_else(|error| error.exit());
+    let cli = Cli::from_arg_matches(&cli::matches()).unwrap_or_else(|error| error.exit());
     screen::set_colour(cli.color);
-    let done = cli.command.map_or_else(|| Ok(cli::first::<Cli>()), run);
+    let done = cli.command.map_or_else(|| Ok(cli::first()), run);
     match done.and_then(|code| screen::check_output().map(|()| code)) {
         Ok(code) => code,
         Err(error) => {
@@ -165,7 +164,7 @@ fn run(command: Command) -> Result<ExitCode> {
         Command::Files => Ok(new_command::files()),
         Command::Copy(args) => new_command::copy(&args),
         Command::New(args) => new_command::new(&args),
-        Command::Completions(args) => Ok(cli::completions::<Cli>(&args)),
-        Command::Man(args) => cli::man::<Cli>(&args),
+        Command::Completions(args) => Ok(cli::completions(&args)),
+        Command::Man(args) => cli::man(&args),
     }
 }

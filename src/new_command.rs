@@ -117,26 +117,4 @@ mod tests {
             assert_eq!(check_file(KINDS, &file).unwrap_or_else(|problems| panic!("{problems}")), kind);
         }
     }
-
-    #[test]
-    fn names_are_found_inside_of_the_program_and_what_is_meant_is_guessed() {
-        scenario_files::install(KINDS);
-        let find = |word: &str, kind| scenario_files::find(word, kind).map_err(|error| error.to_string());
-        assert!(find("gale", Kind::SEA).is_ok_and(|path| path.ends_with("scenarios/seas/gale.toml")));
-        assert_eq!(
-            find("pav1_vs_pav01", Kind::GAME),
-            Err("there is no game pav1_vs_pav01 (did you mean pav01_vs_pav01?)".into())
-        );
-        assert_eq!(
-            find("pav01", Kind::GAME),
-            Err("there is no game pav01, but there is a strategy of that name; use it with --blue or --red".into())
-        );
-        let folder = tempfile::tempdir().expect("a folder");
-        let sweep = folder.path().join("mine.toml");
-        std::fs::write(&sweep, TEMPLATES[4].1).expect("it is written");
-        let said = find(&sweep.display().to_string(), Kind::GAME).expect_err("it is none");
-        assert!(said.ends_with("is a sweep, expected a game; run it with squall sweep"), "{said}");
-        let path = "scenarios/seas/gale.toml";
-        assert_eq!(find(path, Kind::GAME), Err(format!("{path} is a sea, expected a game; use it with --sea")));
-    }
 }

@@ -18,6 +18,13 @@ const LINE_EVERY: Duration = Duration::from_secs(30);
 /// Interval at which a bar without a known end moves.
 const TURN_EVERY: Duration = Duration::from_millis(200);
 
+/// Tells the user that an odd number of games per point or pairing is rounded up.
+pub(crate) fn tell_rounded(games: u32, each: &str) {
+    if !games.is_multiple_of(2) {
+        screen::remark(&format!("{games} games per {each} become {}: half of them are played on each side", games + 1));
+    }
+}
+
 impl Progress {
     /// Progress of this many games, none played yet.
     pub(crate) fn of_games(games: u64) -> Progress {

@@ -7,10 +7,7 @@ use sim::Report;
 pub(crate) fn text(report: &Report) -> String {
     let outcome = &report.outcome;
     let width = outcome.counts.boats.keys().map(String::len).max().unwrap_or(0).max(8) + 2;
-    let mut text = format!(
-        "\n{:width$}{:>6}{:>7}{:>10}{:>6}{:>8}{:>15}{:>12}\n",
-        "", "score", "grabs", "captures", "tags", "tagged", "out of bounds", "collisions"
-    );
+    let mut text = format!("\n{:width$} score  grabs  captures  tags  tagged  out of bounds  collisions\n", "");
     for (team, counts) in &outcome.counts.teams {
         text += &row((team, width), outcome.score.teams[team], counts);
         let of_team = outcome.counts.boats.iter().filter(|(boat, _)| outcome.boats.get(*boat) == Some(team));

@@ -17,7 +17,7 @@ use trial::{Drift, Manoeuvre, Plan, Sample, Start, TrialBoat};
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Sea to describe: a file or a name
-    #[arg(value_parser = crate::scenario_files::sea)]
+    #[arg(value_parser = crate::scenario_files::file_of(scenario::Kind::SEA))]
     sea: PathBuf,
     /// Boat for which effects are computed: a file, or the name of a boat in scenarios/boats
     #[arg(long, value_name = "BOAT", default_value = "surveyor_m1_8")]

@@ -2,7 +2,6 @@
 
 use crate::screen;
 use anyhow::{Result, anyhow, bail};
-
 use scenario::strategy::{Behaviour, Program, Strategy};
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -11,7 +10,7 @@ use std::process::ExitCode;
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Strategy to explain: a file or a name
-    #[arg(required_unless_present = "reference", value_parser = crate::scenario_files::strategy)]
+    #[arg(required_unless_present = "reference", value_parser = crate::scenario_files::file_of(scenario::Kind::STRATEGY))]
     file: Option<PathBuf>,
     /// Prints the modes and their possible behaviours as a Graphviz graph
     #[arg(long)]

@@ -1,20 +1,19 @@
 //! `squall sweep`: measures how much sea, noise and failure a team tolerates.
 
 use crate::jobs_args::JobsArgs;
-use crate::progress::Progress;
+use crate::progress::{Progress, tell_rounded};
 use crate::{output_file, screen, stop};
 use anyhow::{Context, Result};
 use command_line::number::whole;
-use experiment::sweep::Sweep;
-use experiment::sweep::{self, Condition, Journal, Plan, SearchError, Study};
-use scenario::load_file;
+use experiment::sweep::{self, Condition, Journal, Plan, SearchError, Study, Sweep};
+use scenario::{Kind, load_file};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Sweep to run: a file or a name
-    #[arg(value_parser = crate::scenario_files::file_of::<Sweep>)]
+    #[arg(value_parser = crate::scenario_files::file_of(Kind::of::<Sweep>()))]
     sweep: PathBuf,
     /// Games per entry and point, half of them on each side [default: the number in the file]
     #[arg(long, value_name = "N", value_parser = whole::<u32>(2, 1_000_000))]
@@ -174,8 +173,6 @@ fn planned(args: &Args) -> Result<Plan> {
     let context = || format!("cannot run the sweep {}", args.sweep.display());
     let file = load_file::<Sweep>(&args.sweep).with_context(context)?;
     let games = args.games.unwrap_or(file.games);
-    if !games.is_multiple_of(2) {
-        screen::remark(&format!("{games} games per point become {}: half of them are played on each side", games + 1));
-    }
+    tell_rounded(games, "point");
     Plan::new(&Sweep { games, seed: args.seed.unwrap_or(file.seed), ..file }).with_context(context)
 }

@@ -2,17 +2,16 @@
 
 use crate::jobs_args::JobsArgs;
 use crate::league_file::LeagueFile;
-use crate::progress::Progress;
+use crate::progress::{Progress, tell_rounded};
 use crate::{output_file, screen, stop};
 use agent::MindRunner;
 use analysis::Step;
 use analysis::quality::{GameQuality, MindState, Quality};
 use anyhow::{Context, Result};
 use command_line::number::whole;
-use experiment::tournament::Tournament;
-use experiment::tournament::{self, Observer, Plan, Record, Report, play, play_observed};
+use experiment::tournament::{self, Observer, Plan, Record, Report, Tournament, play, play_observed};
 use rules::event::EventCursor;
-use scenario::{Scenario, load_file};
+use scenario::{Kind, Scenario, load_file};
 use serde::Serialize;
 use sim::Contest;
 use std::num::NonZeroUsize;
@@ -23,7 +22,7 @@ use std::sync::atomic::AtomicBool;
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Tournament to play: a file or a name
-    #[arg(value_parser = crate::scenario_files::file_of::<Tournament>)]
+    #[arg(value_parser = crate::scenario_files::file_of(Kind::of::<Tournament>()))]
     tournament: PathBuf,
     /// Games per pairing, half of them on each side [default: the number in the file]
     #[arg(long, value_name = "N", value_parser = whole::<u32>(2, 1_000_000))]
@@ -100,7 +99,7 @@ struct Played {
 }
 
 /// Plays the games of a plan; with a league, only those that it does not contain.
-fn play_all(args: &Args, plan: &Plan, stop: &AtomicBool, league: Option<&mut LeagueFile>) -> Played {
+fn play_all(args: &Args, plan: &Plan, stop: &AtomicBool, mut league: Option<&mut LeagueFile>) -> Played {
     let all = || (0..plan.games()).collect::<Vec<usize>>();
     let pairings = plan.pairings();
     let (mut records, games) =
@@ -110,18 +109,15 @@ fn play_all(args: &Args, plan: &Plan, stop: &AtomicBool, league: Option<&mut Lea
     }
     let jobs = args.jobs.threads(games.len());
     let mut progress = Progress::of_games(games.len() as u64);
+    let take = |record: Record| {
+        league.iter_mut().for_each(|file| file.add(plan, &pairings, &record));
+        progress.add();
+        records.push(record);
+    };
     let quality = if args.quality {
-        Some(play_judged(plan, &games, (jobs, stop), |record| {
-            progress.add();
-            records.push(record);
-        }))
+        Some(play_judged(plan, &games, (jobs, stop), take))
     } else {
-        let mut league = league;
-        play(plan, &games, jobs, stop, |record| {
-            league.iter_mut().for_each(|file| file.add(plan, &pairings, &record));
-            progress.add();
-            records.push(record);
-        });
+        play(plan, &games, jobs, stop, take);
         None
     };
     records.sort_by_key(|record| plan.place_of(record.of));
@@ -156,12 +152,6 @@ fn planned(args: &Args) -> Result<Plan> {
     let context = || format!("cannot play the tournament {}", path.display());
     let file = load_file::<Tournament>(path).with_context(context)?;
     let games = args.games.unwrap_or(file.games);
-    if !games.is_multiple_of(2) {
-        screen::remark(&format!(
-            "{games} games per pairing become {}: half of them are played on each side",
-            games + 1
-        ));
-    }
-    let tournament = Tournament { games, seed: args.seed.unwrap_or(file.seed), ..file };
-    Plan::new(&tournament).with_context(context)
+    tell_rounded(games, "pairing");
+    Plan::new(&Tournament { games, seed: args.seed.unwrap_or(file.seed), ..file }).with_context(context)
 }

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 #[derive(clap::Args)]
 pub(crate) struct WaterArgs {
     /// Sea: a file or a name [default: salt water at rest, without wind]
-    #[arg(long, value_name = "SEA", value_parser = scenario_files::sea)]
+    #[arg(long, value_name = "SEA", value_parser = scenario_files::file_of(Kind::SEA))]
     sea: Option<PathBuf>,
     /// Random seed for waves, gusts and the randomised values of boat and sea
     #[arg(long, default_value_t = 1, value_parser = whole::<u64>(0, u64::MAX))]

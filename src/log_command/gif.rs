@@ -4,13 +4,12 @@
 
 use crate::game_args;
 use crate::output_file;
-use crate::plot::film::{Boat, Moment, Stage};
-use crate::plot::{colour, pixels};
+use crate::plot::film::{Moment, Stage};
+use crate::plot::pixels;
 use crate::water_args::within;
 use anyhow::{Context, Result, bail};
 use command_line::number::whole;
 use gif::{DisposalMethod, Encoder, Repeat};
-use messages::{Frame, VehicleTruth};
 use primitives::Ned;
 use recording::{Damaged, Recording};
 use std::borrow::Cow;
@@ -25,8 +24,6 @@ const END_CS: u16 = 200;
 const PICTURES_MAX: f64 = 5000.0;
 /// Length of the trails, s.
 const TRAIL_S: f64 = 30.0;
-/// Boats are labelled only up to this number of boats.
-const NAMES_MAX: usize = 12;
 /// The palette index of an unchanged pixel (transparent).
 const UNCHANGED: u8 = 255;
 /// Number of pictures from which the palette is computed.
@@ -53,8 +50,7 @@ pub(super) fn write(path: &Path, recording: &Recording, args: &FilmArgs) -> Resu
     output_file::check(path, "the animation")?;
     let header = recording.header();
     let scenario = &header.info.scenario;
-    let teams = scenario.teams.iter().enumerate().map(|(i, team)| (team.name.clone(), colour::of_team(i))).collect();
-    let stage = Stage::new(header.game.replace('_', " "), &scenario.field, teams, args.width);
+    let stage = Stage::new(header.game.replace('_', " "), scenario, args.width);
     let mut damaged = Damaged::default();
     // Nothing changes between two decisions.
     let step_s = f64::max(args.speed / PICTURES_HZ, scenario.decision().as_s());
@@ -118,7 +114,7 @@ fn moments<'a>(
         if t_s < from_s - TRAIL_S {
             continue;
         }
-        trails.push_back((t_s, frame.vehicles.iter().map(place).collect()));
+        trails.push_back((t_s, frame.vehicles.iter().map(|boat| boat.nav.at()).collect()));
         while trails.front().is_some_and(|(before_s, _)| *before_s < t_s - TRAIL_S) {
             trails.pop_front();
         }
@@ -130,43 +126,11 @@ fn moments<'a>(
                 "the animation has more than {PICTURES_MAX} frames; increase --speed, or limit it with --from and --to"
             );
         }
-        moments.push(moment(recording, &frame, stage, &trails));
+        let trail = |i| trails.iter().filter_map(|(_, places)| places.get(i).copied()).collect();
+        let trails = (0..frame.vehicles.len()).map(trail).collect();
+        moments.push(Moment { stage, frame, trails });
     }
     Ok(moments)
-}
-
-fn place(vehicle: &VehicleTruth) -> Ned {
-    Ned { north: vehicle.nav.north_m, east: vehicle.nav.east_m }
-}
-
-fn moment<'a>(
-    recording: &Recording,
-    frame: &Frame,
-    stage: &'a Stage<'a>,
-    trails: &VecDeque<(f64, Vec<Ned>)>,
-) -> Moment<'a> {
-    let scenario = &recording.header().info.scenario;
-    let named = scenario.vehicles.len() <= NAMES_MAX;
-    let boat = |(i, (vehicle, truth)): (usize, (&scenario::Vehicle, &VehicleTruth))| Boat {
-        name: if named { vehicle.name.replace('_', " ") } else { String::new() },
-        team: vehicle.team.index(),
-        at: place(truth),
-        psi_rad: truth.nav.psi_rad,
-        length_m: scenario.boats[vehicle.boat].length_m,
-        tagged: truth.tagged,
-        trail: trails.iter().filter_map(|(_, places)| places.get(i).copied()).collect(),
-    };
-    let flag = |(flag, view): (&rules::field::Flag, &messages::picture::FlagView)| {
-        let carrier = usize::try_from(view.carrier).ok().and_then(|carrier| frame.vehicles.get(carrier));
-        (flag.team.index(), carrier.map_or(flag.home, place))
-    };
-    Moment {
-        stage,
-        t_s: frame.stamp.valid_ns.as_s(),
-        score: frame.score.clone(),
-        boats: scenario.vehicles.iter().zip(&frame.vehicles).enumerate().map(boat).collect(),
-        flags: scenario.field.flags.iter().zip(&frame.flags).map(flag).collect(),
-    }
 }
 
 /// The palette of a film: the most frequent colours.

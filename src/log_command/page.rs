@@ -1,6 +1,6 @@
 //! The summary of a recorded game as text.
 
-use analysis::{BoatStatistics, Gateway, Summary, Topic, Traffic};
+use analysis::{BoatStatistics, Gateway, NavigationError, SteeringError, Summary, Topic, Traffic};
 use primitives::printable::add_line;
 use recording::{Bag, Damaged, utc};
 use std::collections::BTreeMap;
@@ -78,41 +78,32 @@ fn head(summary: &Summary) -> String {
 /// accuracy.
 fn boats(boats: &[BoatStatistics]) -> String {
     let width = boats.iter().map(|boat| boat.boat.len()).max().unwrap_or(0).max(8) + 2;
-    let mut text = format!("\n{:width$}{:>10}{:>8}{:>7}", "", "distance", "speed", "max");
-    add_line(
-        &mut text,
-        format_args!("{:>7}{:>10}{:>6}{:>8}{:>12}", "grabs", "captures", "tags", "tagged", "collisions"),
-    );
-    add_line(&mut text, format_args!("{:width$}{:>10}{:>8}{:>7}", "", "m", "m/s", "m/s"));
-    for boat in boats {
-        let moved = format!("{:>10.0}{:>8.2}{:>7.2}", boat.distance_m, boat.speed_mean_m_s, boat.speed_max_m_s);
+    let mut text = String::new();
+    let mut table = |heads: [&str; 2], cells: fn(&BoatStatistics) -> String| {
+        add_line(&mut text, format_args!("\n{:width$}{}", "", heads[0]));
+        add_line(&mut text, format_args!("{:width$}{}", "", heads[1]));
+        for boat in boats {
+            add_line(&mut text, format_args!("{:width$}{}", boat.boat, cells(boat)));
+        }
+    };
+    let heads = ["  distance   speed    max  grabs  captures  tags  tagged  collisions", "         m     m/s    m/s"];
+    table(heads, |boat| {
         let c = &boat.counts;
-        let did = format!("{:>7}{:>10}{:>6}{:>8}{:>12}", c.grabs, c.captures, c.tags, c.tagged, c.collisions);
-        add_line(&mut text, format_args!("{:width$}{moved}{did}", boat.boat));
-    }
-    let heads = ["carrying", "tagged", "outside", "no agent", "lost"].map(|head| format!("{head:>9}")).concat();
-    add_line(&mut text, format_args!("\n{:width$}{heads}", ""));
-    add_line(&mut text, format_args!("{:width$}{}", "", format!("{:>9}", "s").repeat(5)));
-    for boat in boats {
+        let moved = format!("{:>10.0}{:>8.2}{:>7.2}", boat.distance_m, boat.speed_mean_m_s, boat.speed_max_m_s);
+        format!("{moved}{:>7}{:>10}{:>6}{:>8}{:>12}", c.grabs, c.captures, c.tags, c.tagged, c.collisions)
+    });
+    let heads = [" carrying   tagged  outside no agent     lost", "        s        s        s        s        s"];
+    table(heads, |boat| {
         let spans_s = [boat.carrying_s, boat.tagged_s, boat.outside_s, boat.agent_lost_s, boat.nav_lost_s];
-        let spans = spans_s.map(|span_s| format!("{span_s:>9.1}")).concat();
-        add_line(&mut text, format_args!("{:width$}{spans}", boat.boat));
-    }
-    add_line(&mut text, format_args!("\n{:width$}{:>22}{:>22}", "", "navigation error", "error against orders"));
-    let (navigation, orders) =
-        (format!("{:>12}{:>10}", "rms m", "95 % m"), format!("{:>12}{:>10}", "rms deg", "rms m/s"));
-    add_line(&mut text, format_args!("{:width$}{navigation}{orders}", ""));
-    for boat in boats {
-        let navigation = match &boat.navigation {
-            Some(error) => format!("{:>12.2}{:>10.2}", error.rms_m, error.p95_m),
-            None => format!("{:>12}{:>10}", "-", "-"),
-        };
-        let orders = match &boat.steering {
-            Some(error) => format!("{:>12.1}{:>10.2}", error.heading_rms_deg, error.speed_rms_m_s),
-            None => format!("{:>12}{:>10}", "-", "-"),
-        };
-        add_line(&mut text, format_args!("{:width$}{navigation}{orders}", boat.boat));
-    }
+        spans_s.map(|span_s| format!("{span_s:>9.1}")).concat()
+    });
+    let heads = ["      navigation error  error against orders", "       rms m    95 % m     rms deg   rms m/s"];
+    table(heads, |boat| {
+        let none = || format!("{:>12}{:>10}", "-", "-");
+        let navigation = |error: &NavigationError| format!("{:>12.2}{:>10.2}", error.rms_m, error.p95_m);
+        let orders = |error: &SteeringError| format!("{:>12.1}{:>10.2}", error.heading_rms_deg, error.speed_rms_m_s);
+        boat.navigation.as_ref().map_or_else(none, navigation) + &boat.steering.as_ref().map_or_else(none, orders)
+    });
     let real: Vec<&str> = boats.iter().filter(|boat| boat.is_real).map(|boat| boat.boat.as_str()).collect();
     if !real.is_empty() {
         let real = real.join(", ");

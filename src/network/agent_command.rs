@@ -6,8 +6,7 @@ use agent::node::{News, Settings};
 use anyhow::{Context, Result};
 use command_line::leaf_args::LeafArgs;
 use command_line::number::seconds;
-use scenario::strategy::Strategy;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
 
@@ -36,16 +35,14 @@ pub(crate) struct Args {
     for_parent: bool,
 }
 
-/// Loads the strategy in a file; the error lists every problem.
-fn load_strategy(path: &Path) -> Result<Strategy> {
-    scenario::load_strategy(path).with_context(|| format!("cannot use the strategy {}", path.display()))
-}
-
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let stop = stop::on_ctrl_c_or_parent(args.for_parent)?;
     stop::exit_when_late(&stop, None);
     let names = args.vehicle.join(", ");
-    let strategy = args.strategy.as_deref().map(load_strategy).transpose()?;
+    let load = |path: &PathBuf| {
+        scenario::load_strategy(path).with_context(|| format!("cannot use the strategy {}", path.display()))
+    };
+    let strategy = args.strategy.as_ref().map(load).transpose()?;
     let settings = Settings {
         game: args.leaf.game.clone(),
         place: args.leaf.place()?,

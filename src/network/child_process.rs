@@ -6,7 +6,7 @@ use bus::token::TOKEN_VARIABLE;
 use bus::{Token, clock};
 use std::fmt::Display;
 use std::io::{BufRead, BufReader, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::LazyLock;
 use std::sync::mpsc::{Receiver, sync_channel};
@@ -17,14 +17,9 @@ pub(crate) fn squall(args: &[&str]) -> Result<Command> {
     squall_with(bus::RUNTIME, args)
 }
 
-/// The path of this program's executable.
-pub(crate) fn own_program() -> Result<PathBuf> {
-    std::env::current_exe().context("cannot find this program's executable")
-}
-
 /// A command that starts this program with these zenoh threads.
 pub(crate) fn squall_with(runtime: &str, args: &[&str]) -> Result<Command> {
-    let mut command = Command::new(own_program()?);
+    let mut command = Command::new(std::env::current_exe().context("cannot find this program's executable")?);
     if std::env::var_os(bus::RUNTIME_VARIABLE).is_none() {
         command.env(bus::RUNTIME_VARIABLE, runtime);
     }

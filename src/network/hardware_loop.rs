@@ -5,12 +5,12 @@ use super::child_process::{self, ChildProcess, option};
 use super::hub_args::{free_port, unique_game_name};
 use super::pace_args::PaceArgs;
 use crate::game_args::GameArgs;
-use crate::output_file;
+use crate::{output_file, scenario_files};
 use anyhow::{Context, Result, anyhow, bail};
 use bus::keys::Identity;
 use gateway::config::{BoatProtocol, Gateway};
 use recording::{LentFile, NewFile};
-use scenario::Scenario;
+use scenario::{Kind, Scenario};
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::time::Duration;
@@ -22,7 +22,7 @@ pub(crate) struct LoopArgs {
     #[arg(long, conflicts_with_all = ["in_process", "rehearse"])]
     emulate: bool,
     /// Gateway file or name for the emulated boats [default: a Surveyor with careful limits]
-    #[arg(long, value_name = "FILE", requires = "emulate", value_parser = crate::scenario_files::file_of::<gateway::config::Gateway>)]
+    #[arg(long, value_name = "FILE", requires = "emulate", value_parser = scenario_files::file_of(Kind::of::<Gateway>()))]
     gateway: Option<PathBuf>,
     /// Records the link traffic of each gateway to NAME.mcap in this folder
     #[arg(long, value_name = "DIR", requires = "emulate")]
@@ -65,7 +65,7 @@ impl LoopArgs {
         }
         let gateway = match &self.gateway {
             None => gateway::config::default_gateway(),
-            Some(path) => scenario::load_file::<gateway::config::Gateway>(path)
+            Some(path) => scenario::load_file::<Gateway>(path)
                 .with_context(|| format!("cannot use the gateway file {}", path.display()))?,
         };
         let mut recordings = Vec::new();

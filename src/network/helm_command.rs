@@ -42,22 +42,16 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn course_deg(report: &HelmReport, k: usize) -> f64 {
-    360.0 * k as f64 / report.courses as f64
-}
-
-fn speed_m_s(report: &HelmReport, j: usize) -> f64 {
-    report.speed_max_m_s * j as f64 / (report.speeds - 1) as f64
-}
-
 /// One row for each function, course and speed; then the sums. The helm chooses the largest sum.
 fn write_csv(path: &Path, scenario: &Scenario, report: &HelmReport) -> Result<()> {
     let mut csv = csv::Writer::from_path(path)?;
     csv.write_record(["behaviour", "contact", "weight", "course_deg", "speed_m_s", "utility"])?;
     let mut write = |behaviour: &str, contact: &str, weight: f64, utilities: &mut dyn Iterator<Item = f64>| {
         for (i, utility) in utilities.enumerate() {
-            let (course, speed) = (course_deg(report, i / report.speeds), speed_m_s(report, i % report.speeds));
-            let numbers = [weight, course, speed, utility].map(|number| number.to_string());
+            let (k, j) = ((i / report.speeds) as f64, (i % report.speeds) as f64);
+            let course_deg = 360.0 * k / report.courses as f64;
+            let speed_m_s = report.speed_max_m_s * j / (report.speeds - 1) as f64;
+            let numbers = [weight, course_deg, speed_m_s, utility].map(|number| number.to_string());
             let [weight, course, speed, utility] = numbers.each_ref().map(String::as_str);
             csv.write_record([behaviour, contact, weight, course, speed, utility])?;
         }

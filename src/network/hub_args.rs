@@ -3,9 +3,10 @@
 use anyhow::{Result, anyhow, bail};
 use bus::token::TOKEN_VARIABLE;
 use bus::{Net, Token};
-use command_line::leaf_args::{KeysArgs, TokenArgs};
+use command_line::leaf_args::AccessArgs;
 use command_line::number::endpoint;
 use messages::topic::GameName;
+use std::net::{IpAddr, Ipv4Addr, UdpSocket};
 use std::path::PathBuf;
 
 #[derive(clap::Args, Clone, Debug)]
@@ -24,9 +25,7 @@ pub(crate) struct HubArgs {
     #[arg(long, value_name = "FILE")]
     zenoh_config: Option<PathBuf>,
     #[command(flatten)]
-    keys: KeysArgs,
-    #[command(flatten)]
-    token: TokenArgs,
+    access: AccessArgs,
 }
 
 impl HubArgs {
@@ -39,7 +38,7 @@ impl HubArgs {
             listen.push(format!("tcp/127.0.0.1:{}", free_port(true)?));
         }
         listen.iter_mut().try_for_each(with_port)?;
-        let keys = self.keys.load()?;
+        let keys = self.access.keys()?;
         match (&keys, listen.iter().find(|endpoint| !bus::is_loopback(endpoint))) {
             (None, Some(open)) if !self.insecure => bail!(
                 "{open} can be reached from other machines, where anyone can see and stop the game: create keys with \
@@ -48,7 +47,7 @@ impl HubArgs {
             _ => {}
         }
         // With keys, certificates define the rights, so no token is needed.
-        let token = self.token.token()?.or_else(|| keys.is_none().then(Token::random));
+        let token = self.access.token()?.or_else(|| keys.is_none().then(Token::random));
         Ok(Net { listen, connect: vec![], lan: self.lan, config_file: self.zenoh_config.clone(), token, keys })
     }
 }
@@ -72,6 +71,16 @@ pub(crate) fn unique_game_name(scenario: &str) -> Result<GameName> {
     let bits = RandomState::new().build_hasher().finish() & 0xff_ffff;
     let stem: String = scenario.chars().take(40).collect();
     GameName::new(&format!("{stem}-{bits:06x}")).map_err(|e| anyhow!(e))
+}
+
+/// This machine's address as others see it, if it has one. Sends nothing: the system only looks up
+/// the route.
+pub(crate) fn own_address() -> Option<IpAddr> {
+    let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0)).ok()?;
+    // A documentation address (RFC 5737), which takes the default route.
+    socket.connect((Ipv4Addr::new(192, 0, 2, 1), 9)).ok()?;
+    let address = socket.local_addr().ok()?.ip();
+    (!address.is_loopback() && !address.is_unspecified()).then_some(address)
 }
 
 /// What users on other machines, or other users of this one, need to join and control a game.

@@ -1,11 +1,11 @@
 //! `squall keys`: creates and shows the keys of a game.
 
+use super::hub_args::own_address;
 use crate::screen;
-use anyhow::{Result, bail};
+use anyhow::{Result, anyhow, bail};
 use bus::keys::{self, Bundle, Identity};
 use command_line::number::whole;
 use std::fmt::Write as _;
-use std::net::UdpSocket;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
@@ -88,7 +88,7 @@ fn new(args: &NewArgs) -> Result<()> {
     let mut hosts: Vec<String> = ["localhost", "127.0.0.1", "::1"].map(str::to_owned).to_vec();
     if args.hosts.is_empty() {
         hosts.extend(own_name());
-        hosts.extend(own_address());
+        hosts.extend(own_address().map(|address| address.to_string()));
     }
     hosts.extend(args.hosts.iter().cloned());
     let folders = keys::make(&args.folder, &identities, &hosts, args.days * DAY)?;
@@ -101,10 +101,8 @@ fn new(args: &NewArgs) -> Result<()> {
 }
 
 fn named(text: &str) -> Result<Identity> {
-    match text.parse() {
-        Ok(identity) => Ok(identity),
-        Err(_) => bail!("{text:?} is not a valid name, expected 1 to 48 of the characters a-z A-Z 0-9 _ -"),
-    }
+    let wrong = |_| anyhow!("{text:?} is not a valid name, expected 1 to 48 of the characters a-z A-Z 0-9 _ -");
+    text.parse().map_err(wrong)
 }
 
 fn show(folder: &Path) -> Result<()> {
@@ -123,13 +121,4 @@ fn own_name() -> Option<String> {
     let name = std::fs::read_to_string("/proc/sys/kernel/hostname").ok()?.trim().to_owned();
     let is_host = name.chars().all(|c| c.is_ascii_alphanumeric() || c == '-' || c == '.');
     (!name.is_empty() && name != "localhost" && is_host).then_some(name)
-}
-
-/// This machine's address as others see it. Sends nothing: the system only looks up the route.
-fn own_address() -> Option<String> {
-    let socket = UdpSocket::bind(("0.0.0.0", 0)).ok()?;
-    // A documentation address (RFC 5737), which takes the default route.
-    socket.connect(("192.0.2.1", 9)).ok()?;
-    let address = socket.local_addr().ok()?.ip();
-    (!address.is_loopback() && !address.is_unspecified()).then(|| address.to_string())
 }

@@ -23,7 +23,7 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let mut places: Vec<Net> = Vec::new();
     if !args.elsewhere {
-        let keys = args.leaf.keys()?;
+        let keys = args.leaf.access.keys()?;
         let place = |entry: bus::Entry| Net { connect: vec![entry.endpoint], keys: keys.clone(), ..Net::default() };
         places.extend(bus::local_registry().into_iter().map(place));
     }

@@ -29,7 +29,7 @@ use std::process::ExitCode;
 pub(crate) enum Command {
     /// Shows a game in strong wind in the browser.
     #[command(after_help = "Examples:\n  squall demo\n  SQUALL_PAGE_TOKEN=secret squall demo --listen 0.0.0.0:8088")]
-    Demo(run_command::DemoArgs),
+    Demo(page_args::PageArgs),
     /// Plays a whole game: starts the simulation and the agents, shows events, and prints the result.
     #[command(
         after_help = "Examples:\n  squall run strategy_4_vs_3\n  squall run surveyor_2v2 --sea gale --blue learned --red strategy_3 --view\n  squall run surveyor_2v2 --set link.delay_s=1 --seed 7 --both-sides"

@@ -1,14 +1,17 @@
 //! Command line arguments that define where the page is served.
 
-use crate::screen;
+use super::hub_args::own_address;
+use crate::screen::{self, Screen};
+use crate::stop;
+use crate::style::Names;
 use anyhow::{Result, ensure};
 use command_line::leaf_args;
 use command_line::number::address;
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 use shore::page::{Background, Page, PageError, PageSettings};
-use std::net::{IpAddr, Ipv4Addr, SocketAddr, UdpSocket};
-use std::path::PathBuf;
-use std::process::Command;
+use std::net::{Ipv4Addr, SocketAddr};
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -101,6 +104,16 @@ impl PageArgs {
         PageArgs { open: true, ..self.clone() }
     }
 
+    /// Serves a page with what `put` puts there, from this path, until Ctrl-C.
+    pub(crate) fn show(&self, path: &Path, stop: &Arc<AtomicBool>, put: impl FnOnce(&Page)) -> Result<ExitCode> {
+        let page = self.open(stop)?;
+        put(&page);
+        Screen::new(Names::default()).line(&format!("{} at {} (Ctrl-C to stop)", path.display(), self.url(&page)));
+        self.open_browser(&page);
+        stop::wait(stop);
+        Ok(ExitCode::SUCCESS)
+    }
+
     /// Opens the page in the browser if requested. Its address has already been printed.
     pub(crate) fn open_browser(&self, page: &Page) {
         if self.open && open::that_detached(self.url(page)).is_err() {
@@ -129,7 +142,7 @@ pub(crate) fn operator_url(page: &Page) -> String {
 fn address_of(page: &Page, token: Option<&str>) -> String {
     let token = token.map(|token| format!("#token={}", in_address(token))).unwrap_or_default();
     let mut address = page.address;
-    if let (true, Some(own)) = (address.ip().is_unspecified(), own_ip()) {
+    if let (true, Some(own)) = (address.ip().is_unspecified(), own_address()) {
         address.set_ip(own);
     }
     format!("http://{address}/{token}")
@@ -139,14 +152,6 @@ fn address_of(page: &Page, token: Option<&str>) -> String {
 fn in_address(text: &str) -> String {
     const SPELLED: &AsciiSet = &NON_ALPHANUMERIC.remove(b'-').remove(b'.').remove(b'_').remove(b'~');
     utf8_percent_encode(text, SPELLED).to_string()
-}
-
-/// This machine's address on the network, if it has one. Sends nothing.
-fn own_ip() -> Option<IpAddr> {
-    // A documentation address (RFC 5737), which takes the default route.
-    let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0)).ok()?;
-    socket.connect((Ipv4Addr::new(192, 0, 2, 1), 9)).ok()?;
-    socket.local_addr().ok().map(|address| address.ip())
 }
 
 #[cfg(test)]

@@ -4,9 +4,7 @@
 use super::page_args::PageArgs;
 use super::replay_helms::ReplayHelms;
 use crate::replay_command;
-use crate::screen::{self, Screen};
-use crate::stop;
-use crate::style::Names;
+use crate::{screen, stop};
 use anyhow::{Result, bail};
 use shore::page::replay::{Recorded, ReplayView};
 use std::path::Path;
@@ -29,23 +27,17 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         }
         return replay_command::check(file);
     }
-    let show = show(file)?;
-    let stop = stop::on_ctrl_c()?;
-    let page = args.page.open(&stop)?;
-    page.show(Arc::new(show));
-    Screen::new(Names::default()).line(&format!("{} at {} (Ctrl-C to stop)", file.display(), args.page.url(&page)));
-    args.page.open_browser(&page);
-    stop::wait(&stop);
-    Ok(ExitCode::SUCCESS)
+    show(file, &args.page)
 }
 
-/// Opens a recording for a page.
-pub(crate) fn show(file: &Path) -> Result<ReplayView> {
-    show_about(file, None)
+/// Shows a recording on a page until Ctrl-C.
+pub(crate) fn show(file: &Path, page: &PageArgs) -> Result<ExitCode> {
+    let view = open(file, None)?;
+    page.show(file, &stop::on_ctrl_c()?, |page| page.show(Arc::new(view)))
 }
 
-/// Opens a recording for a page, with a sentence about its origin.
-pub(crate) fn show_about(file: &Path, about: Option<String>) -> Result<ReplayView> {
+/// Opens a recording for a page, with a sentence about its origin if there is one.
+pub(crate) fn open(file: &Path, about: Option<String>) -> Result<ReplayView> {
     let recording = Arc::new(replay_command::open(file)?);
     let recorded = Recorded::new(Arc::clone(&recording), file.display().to_string());
     recorded.damaged.remark().iter().for_each(|remark| screen::remark(remark));

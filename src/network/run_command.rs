@@ -45,17 +45,11 @@ pub(crate) struct Args {
     hardware_loop: LoopArgs,
 }
 
-#[derive(clap::Args)]
-pub(crate) struct DemoArgs {
-    #[command(flatten)]
-    page: PageArgs,
-}
-
 /// Plays a game to watch.
-pub(crate) fn demo(args: &DemoArgs) -> Result<ExitCode> {
+pub(crate) fn demo(page: &PageArgs) -> Result<ExitCode> {
     let words = ["run", "surveyor_2v2", "--sea", "fresh_breeze", "--blue", "learned", "--red", "strategy_3", "--view"];
     let matches = Args::augment_args(clap::Command::new("demo")).try_get_matches_from(words)?;
-    run(&Args { page: args.page.opened(), ..Args::from_arg_matches(&matches)? })
+    run(&Args { page: page.opened(), ..Args::from_arg_matches(&matches)? })
 }
 
 /// The fastest speed that a person can follow, simulated seconds per second.

@@ -59,7 +59,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
             screen::remark(&format!("to operate real boats, open {}", page_args::operator_url(&page)));
         }
         let Some(file) = recordings.as_ref().and_then(|named| named.try_recv().ok()) else { continue };
-        match replay_command::show(Path::new(&file)) {
+        match replay_command::open(Path::new(&file), None) {
             Ok(show) => page.show(Arc::new(show)),
             Err(error) => screen::remark(&command_line::explain::line(&error)),
         }
@@ -72,21 +72,10 @@ fn show_report(args: &Args, path: &Path) -> Result<ExitCode> {
     if args.for_parent {
         bail!("reports are not shown for a parent process");
     }
+    if path.extension().is_some_and(|end| end == "mcap") {
+        return replay_command::show(path, &args.page);
+    }
     let stop = stop::on_ctrl_c()?;
-    let is_recording = path.extension().is_some_and(|end| end == "mcap");
-    let page = if is_recording {
-        let show = replay_command::show(path)?;
-        let page = args.page.open(&stop)?;
-        page.show(Arc::new(show));
-        page
-    } else {
-        let report = report::open(path, &stop)?;
-        let page = args.page.open(&stop)?;
-        page.publish(report);
-        page
-    };
-    Screen::new(Names::default()).line(&format!("{} at {} (Ctrl-C to stop)", path.display(), args.page.url(&page)));
-    args.page.open_browser(&page);
-    stop::wait(&stop);
-    Ok(ExitCode::SUCCESS)
+    let report = report::open(path, &stop)?;
+    args.page.show(path, &stop, |page| page.publish(report))
 }

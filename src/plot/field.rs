@@ -1,6 +1,6 @@
 //! A chart of the field with tracks, as SVG and PNG files.
 
-use crate::plot::{Area, Drawing, Drawn, FONT};
+use crate::plot::{Area, Drawing, Drawn, FONT, colour};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use primitives::{Ned, math};
@@ -11,8 +11,8 @@ pub(crate) struct Chart<'a> {
     /// The title above the chart.
     pub(crate) title: String,
     pub(crate) field: &'a Field,
-    /// Name and colour of each team.
-    pub(crate) teams: Vec<(String, RGBColor)>,
+    /// Name of each team.
+    pub(crate) teams: Vec<String>,
     /// The tracks of the boats.
     pub(crate) tracks: Vec<Track>,
     /// Places of events.
@@ -34,8 +34,8 @@ pub(crate) struct Spot {
     pub(crate) symbol: Symbol,
     /// Its position.
     pub(crate) at: Ned,
-    /// The colour of the team concerned.
-    pub(crate) colour: RGBColor,
+    /// The team concerned.
+    pub(crate) team: usize,
 }
 
 /// The symbol of a spot.
@@ -88,12 +88,7 @@ impl View {
     fn of(chart: &Chart<'_>) -> View {
         let corners = chart.field.corners.iter();
         let places = corners.chain(chart.tracks.iter().flat_map(|track| &track.places));
-        let places = places.filter(|place| is_drawn(place));
-        let (mut low, mut high) = (Ned { north: f64::MAX, east: f64::MAX }, Ned { north: f64::MIN, east: f64::MIN });
-        for place in places {
-            low = Ned { north: low.north.min(place.north), east: low.east.min(place.east) };
-            high = Ned { north: high.north.max(place.north), east: high.east.max(place.east) };
-        }
+        let (low, high) = bounds(places.filter(|place| is_drawn(place)));
         let margin_m = 0.04 * (high - low).length();
         let (wide_m, high_m) = (high.east - low.east + 2.0 * margin_m, high.north - low.north + 2.0 * margin_m);
         let pixels_per_m = f64::min(WATER_MAX.0 / wide_m, WATER_MAX.1 / high_m);
@@ -126,20 +121,19 @@ impl Drawing for Chart<'_> {
         View::of(self).size()
     }
 
-    fn draw<B: DrawingBackend>(&self, root: &Area<B>) -> Drawn<B> {
+    fn draw(&self, root: &Area<'_>) -> Drawn {
         let view = View::of(self);
         root.draw(&Text::new(self.title.clone(), (24, 16), (FONT, 20).into_font()))?;
         draw_axes(root, &view)?;
-        draw_field(root, self.field, &self.teams, &view)?;
+        draw_field(root, self.field, &view)?;
         for track in &self.tracks {
             root.draw(&PathElement::new(fine(&track.places, &view), track.colour.stroke_width(2)))?;
         }
         for flag in &self.field.flags {
-            let colour = self.teams.get(flag.team.index()).map_or(GREY, |team| team.1);
-            draw_symbol(root, Symbol::Flag, view.pixel(flag.home), colour)?;
+            draw_symbol(root, Symbol::Flag, view.pixel(flag.home), colour::of_team(flag.team.index()))?;
         }
         for spot in self.spots.iter().filter(|spot| is_drawn(&spot.at)) {
-            draw_symbol(root, spot.symbol, view.pixel(spot.at), spot.colour)?;
+            draw_symbol(root, spot.symbol, view.pixel(spot.at), colour::of_team(spot.team))?;
         }
         draw_names(root, self, &view)?;
         draw_legend(root, self, &view)
@@ -147,7 +141,7 @@ impl Drawing for Chart<'_> {
 }
 
 /// Draws the frame of the water with its scales in metres.
-fn draw_axes<B: DrawingBackend>(root: &Area<B>, view: &View) -> Drawn<B> {
+fn draw_axes(root: &Area<'_>, view: &View) -> Drawn {
     let area = root.margin(TITLE, BELOW + MARGIN, MARGIN, MARGIN);
     let mut axes = ChartBuilder::on(&area)
         .x_label_area_size(LABELS.1)
@@ -175,15 +169,10 @@ fn draw_axes<B: DrawingBackend>(root: &Area<B>, view: &View) -> Drawn<B> {
 }
 
 /// Draws zones in their teams' colours, the outline, the scrimmage line, and obstacles.
-pub(super) fn draw_field<B: DrawingBackend>(
-    root: &Area<B>,
-    field: &Field,
-    teams: &[(String, RGBColor)],
-    view: &View,
-) -> Drawn<B> {
+pub(super) fn draw_field(root: &Area<'_>, field: &Field, view: &View) -> Drawn {
     let pixels = |places: &[Ned]| places.iter().map(|place| view.pixel(*place)).collect::<Vec<_>>();
-    for (zone, (_, colour)) in field.zones.iter().zip(teams) {
-        root.draw(&Polygon::new(pixels(&zone.corners), colour.mix(0.08)))?;
+    for (team, zone) in field.zones.iter().enumerate() {
+        root.draw(&Polygon::new(pixels(&zone.corners), colour::of_team(team).mix(0.08)))?;
     }
     let outline: Vec<Ned> = field.corners.iter().chain(field.corners.first()).copied().collect();
     root.draw(&PathElement::new(pixels(&outline), GREY.stroke_width(1)))?;
@@ -199,6 +188,15 @@ pub(super) fn draw_field<B: DrawingBackend>(
         root.draw(&Polygon::new(pixels(&corners), GREY.mix(0.5)))?;
     }
     Ok(())
+}
+
+/// The south-west and the north-east corner of an area that contains all these places.
+pub(super) fn bounds<'a>(places: impl Iterator<Item = &'a Ned>) -> (Ned, Ned) {
+    let nothing = (Ned { north: f64::MAX, east: f64::MAX }, Ned { north: f64::MIN, east: f64::MIN });
+    places.fold(nothing, |(low, high), place| {
+        let low = Ned { north: low.north.min(place.north), east: low.east.min(place.east) };
+        (low, Ned { north: high.north.max(place.north), east: high.east.max(place.east) })
+    })
 }
 
 /// Whether a position can be drawn: false for positions from a damaged recording or a boat with
@@ -219,12 +217,7 @@ pub(super) fn fine(places: &[Ned], view: &View) -> Vec<(i32, i32)> {
     kept.into_iter().map(|place| view.pixel(place)).collect()
 }
 
-pub(super) fn draw_symbol<B: DrawingBackend>(
-    root: &Area<B>,
-    symbol: Symbol,
-    at: (i32, i32),
-    colour: RGBColor,
-) -> Drawn<B> {
+pub(super) fn draw_symbol(root: &Area<'_>, symbol: Symbol, at: (i32, i32), colour: RGBColor) -> Drawn {
     let off = |(right, down): (i32, i32)| (at.0 + right, at.1 + down);
     let edge = BLACK.stroke_width(1);
     let solid = |corners: Vec<(i32, i32)>| {
@@ -266,7 +259,7 @@ fn star(radius: f64) -> Vec<(i32, i32)> {
 }
 
 /// Draws names beside the starts on a light background, so that tracks do not hide them.
-fn draw_names<B: DrawingBackend>(root: &Area<B>, chart: &Chart<'_>, view: &View) -> Drawn<B> {
+fn draw_names(root: &Area<'_>, chart: &Chart<'_>, view: &View) -> Drawn {
     for track in chart.tracks.iter().filter(|track| !track.name.is_empty()) {
         let Some(start) = track.places.first() else { continue };
         let at = view.pixel(*start);
@@ -285,7 +278,7 @@ fn draw_names<B: DrawingBackend>(root: &Area<B>, chart: &Chart<'_>, view: &View)
     Ok(())
 }
 
-fn draw_legend<B: DrawingBackend>(root: &Area<B>, chart: &Chart<'_>, view: &View) -> Drawn<B> {
+fn draw_legend(root: &Area<'_>, chart: &Chart<'_>, view: &View) -> Drawn {
     let y = (TITLE + view.water.1 + LABELS.1 + BELOW / 2) as i32;
     let mut x = (MARGIN + LABELS.0) as i32;
     let name = |text: &str, x: i32| {
@@ -293,8 +286,8 @@ fn draw_legend<B: DrawingBackend>(root: &Area<B>, chart: &Chart<'_>, view: &View
         root.draw(&Text::new(text.to_owned(), (x, y), style))
     };
     let width = |text: &str| 8 * text.chars().count() as i32;
-    for (team, colour) in &chart.teams {
-        root.draw(&PathElement::new([(x, y), (x + 22, y)], colour.stroke_width(3)))?;
+    for (i, team) in chart.teams.iter().enumerate() {
+        root.draw(&PathElement::new([(x, y), (x + 22, y)], colour::of_team(i).stroke_width(3)))?;
         name(team, x + 28)?;
         x += 28 + width(team) + 18;
     }
@@ -328,14 +321,13 @@ mod tests {
     }
 
     fn chart(field: &Field, places: Vec<Ned>) -> Chart<'_> {
-        let blue = RGBColor(0, 114, 178);
-        let spots = places.last().map(|at| Spot { symbol: Symbol::Capture, at: *at, colour: blue });
+        let spots = places.last().map(|at| Spot { symbol: Symbol::Capture, at: *at, team: 0 });
         Chart {
             title: "a game".into(),
             field,
-            teams: vec![("blue".into(), blue), ("red".into(), RGBColor(213, 94, 0))],
+            teams: vec!["blue".into(), "red".into()],
             spots: spots.into_iter().collect(),
-            tracks: vec![Track { name: "blue_one".into(), colour: blue, places }],
+            tracks: vec![Track { name: "blue_one".into(), colour: colour::of_team(0), places }],
         }
     }
 

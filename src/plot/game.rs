@@ -1,12 +1,11 @@
-//! Plots of recorded games: tracks, score and every boat; or two games overlaid.
+//! Plots of a recorded game: tracks, score and every boat.
 
 use crate::plot::field::{Chart, Spot, Symbol, Track};
 use crate::plot::{self, Line, Page, Panel, colour};
-use analysis::{BoatSeries, Comparison, GameSeries, Sample, distances};
+use analysis::{BoatSeries, GameSeries, Sample, ordered_m_s};
 use anyhow::Result;
 use messages::Order;
 use plotters::style::RGBColor;
-use primitives::Ned;
 use primitives::angle::compass_deg_from_rad;
 use recording::Header;
 use rules::event::Event;
@@ -28,31 +27,6 @@ pub(crate) fn write(dir: &Path, header: &Header, series: &GameSeries) -> Result<
         plot::write_both(&dir.join(format!("boat_{}", boat.name)), &boat_page(header, series, boat))?;
     }
     Ok(2 + series.boats.len())
-}
-
-/// Draws two games overlaid, to a file in a folder.
-pub(crate) fn write_comparison(
-    dir: &Path,
-    [name_a, name_b]: [&Path; 2],
-    [a, b]: [&GameSeries; 2],
-    comparison: &Comparison,
-) -> Result<()> {
-    let mut panels = vec![];
-    for pair in &comparison.boats {
-        let (Some(in_a), Some(in_b)) = (a.boat(&pair.boat), b.boat(&pair.boat)) else { continue };
-        let lines = vec![Line::of("A", track(in_a)), Line::of("B", track(in_b))];
-        let axes = ["x (east) in m", "y (north) in m"];
-        panels.push(Panel { equal: true, ..Panel::of(&format!("{}: tracks", pair.boat), axes, lines, "") });
-        let apart = Line::of("", distances((a, in_a), (b, in_b)));
-        let title = format!("{}: distance at the same time", pair.boat);
-        panels.push(Panel::of(&title, [TIME, "m"], vec![apart], ""));
-    }
-    let title = format!("A {}   B {}", stem(name_a), stem(name_b));
-    plot::write_both(&dir.join("compare"), &Page { title, columns: 2, panel: plot::PANEL, panels })
-}
-
-fn stem(path: &Path) -> String {
-    path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned())
 }
 
 fn title(header: &Header, what: &str) -> String {
@@ -80,9 +54,7 @@ fn chart<'a>(header: &'a Header, series: &GameSeries) -> Chart<'a> {
         colour,
         places: boat.track().collect(),
     };
-    let start = |boat: &BoatSeries| {
-        Some(Spot { symbol: Symbol::Start, at: boat.track().next()?, colour: colour::of_team(boat.team) })
-    };
+    let start = |boat: &BoatSeries| Some(Spot { symbol: Symbol::Start, at: boat.track().next()?, team: boat.team });
     let mut spots: Vec<Spot> = series.boats.iter().filter_map(start).collect();
     for logged in &series.events {
         let symbol = match logged.event {
@@ -95,13 +67,13 @@ fn chart<'a>(header: &'a Header, series: &GameSeries) -> Chart<'a> {
         let place =
             |boat: &BoatSeries| boat.samples.get(series.sample_at(logged.at.as_s())).map(|sample| sample.truth.at());
         if let Some((boat, at)) = boat.and_then(|boat| Some((boat, place(boat)?))) {
-            spots.push(Spot { symbol, at, colour: colour::of_team(boat.team) });
+            spots.push(Spot { symbol, at, team: boat.team });
         }
     }
     Chart {
         title: title(header, "tracks"),
         field: &header.info.scenario.field,
-        teams: series.teams.iter().enumerate().map(|(i, name)| (name.clone(), colour::of_team(i))).collect(),
+        teams: series.teams.clone(),
         tracks: series.boats.iter().zip(shades(series)).map(track).collect(),
         spots,
     }
@@ -136,11 +108,7 @@ fn boat_page(header: &Header, series: &GameSeries, boat: &BoatSeries) -> Page {
     };
     let ordered = |points| Line { colour: Some(ORDERED), ..Line::of("ordered", points) };
     let sailed = |points| Line { colour: Some(colour::of_team(boat.team)), ..Line::of("sailed", points) };
-    let speed = |sample: &Sample| match sample.order {
-        Order::Steer { speed_m_s, .. } | Order::Turn { speed_m_s, .. } => Some(speed_m_s),
-        Order::Hold => Some(0.0),
-        Order::Thrust { .. } => None,
-    };
+    let speed = |sample: &Sample| ordered_m_s(sample.order);
     let heading = |sample: &Sample| match sample.order {
         Order::Steer { heading_rad, .. } => Some(compass_deg_from_rad(heading_rad)),
         Order::Hold | Order::Turn { .. } | Order::Thrust { .. } => None,
@@ -171,8 +139,4 @@ fn unwound(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
         line.push((time_s, heading_deg));
     }
     line
-}
-
-fn track(boat: &BoatSeries) -> Vec<(f64, f64)> {
-    boat.track().map(|Ned { north, east }| (east, north)).collect()
 }

@@ -54,7 +54,7 @@ fn drive(samples: &[Sample]) -> Vec<Panel> {
     panels
 }
 
-fn over_time(title: &str, unit: &str, lines: Vec<Line>) -> Panel {
+fn over_time(title: &'static str, unit: &'static str, lines: Vec<Line>) -> Panel {
     Panel::of(title, ["time in s", unit], lines, "")
 }
 

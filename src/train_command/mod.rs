@@ -24,7 +24,7 @@ const STATE_BYTES_MAX: u64 = 4 << 30;
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Training file to run: a path or a name
-    #[arg(value_parser = crate::scenario_files::file_of::<learn::training::Training>)]
+    #[arg(value_parser = crate::scenario_files::file_of(Kind::of::<Training>()))]
     training: PathBuf,
     /// Folder for the policy and all tables [default: runs/train/NAME]
     #[arg(long, value_name = "FOLDER")]
@@ -46,7 +46,7 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
-    let mut training = scenario::load_file::<learn::training::Training>(&args.training)?;
+    let mut training = scenario::load_file::<Training>(&args.training)?;
     training.seed = args.seed.unwrap_or(training.seed);
     let folder = args.out.clone().unwrap_or_else(|| Path::new("runs/train").join(&training.name));
     // Learning uses all threads, however few games there are.

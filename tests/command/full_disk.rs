@@ -1,7 +1,7 @@
 //! A full disk: every command reports it and fails. Linux has the device `/dev/full` for that.
 #![cfg(target_os = "linux")]
 
-use crate::program::{command, printed, project};
+use crate::program::{command, only_file, printed, project, words};
 use std::fs::File;
 use std::path::Path;
 
@@ -9,14 +9,13 @@ use std::path::Path;
 fn recorded_game(dir: &Path) -> String {
     let args = ["run", "attack_1v1", "--in-process", "--set", "game.duration_s=5", "--record", "runs"];
     printed(dir, &args);
-    let file = std::fs::read_dir(dir.join("runs")).unwrap().next().unwrap().unwrap();
-    format!("runs/{}", file.file_name().display())
+    only_file(dir.join("runs"))
 }
 
 /// The commands, with this standard output, that do not fail or do not report the full disk.
 fn silent<'a>(dir: &Path, output: &str, commands: &[&'a str]) -> Vec<&'a str> {
-    let is_silent = |words: &&&str| {
-        let mut command = command(dir, &words.split(' ').collect::<Vec<_>>());
+    let is_silent = |line: &&&str| {
+        let mut command = command(dir, &words(line));
         let output = command.stdout(File::create(output).unwrap()).output().unwrap();
         let errors = String::from_utf8_lossy(&output.stderr);
         output.status.success() || !errors.contains("cannot ") || !errors.contains("No space left on device")

@@ -17,8 +17,7 @@ fn recorded(dir: &Path, duration_s: u32) -> String {
     let idle = program::scenario("strategies/idle.toml");
     let args = ["run", game.to_str().unwrap(), "--in-process", "--blue", &idle, "--red", &idle, "--record"];
     program::printed(dir, &[&args[..], &[runs.to_str().unwrap()]].concat());
-    let file = std::fs::read_dir(&runs).unwrap().next().unwrap().unwrap().path();
-    file.to_str().unwrap().to_owned()
+    program::only_file(runs)
 }
 
 /// The peak memory of a process so far, kB (proc(5)).

@@ -1,7 +1,7 @@
 //! `squall policy` from the command line: describes a model and explains a choice with a known
 //! reason.
 
-use crate::program::{printed, project, refusal, scenario};
+use crate::program::{only_file, printed, project, refusal, scenario, words};
 use messages::helm::{PolicyReport, PolicyWords};
 use onnx::{Head, Layer, Perceptron};
 use scenario::Overrides;
@@ -9,6 +9,7 @@ use scenario::action::ActionSpace;
 use scenario::observation::ObservationSpace;
 use scenario::policy::PolicySpec;
 use std::collections::BTreeMap;
+use tempfile::TempDir;
 
 const SPEC: PolicySpec = PolicySpec {
     observation: ObservationSpace::Squall { mates: 0, enemies: 1, frames: 1 },
@@ -34,6 +35,16 @@ fn model() -> Vec<u8> {
     network.onnx().unwrap()
 }
 
+/// A folder with this model, and a strategy that uses it.
+fn known() -> TempDir {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("known.onnx"), model()).unwrap();
+    let base = scenario("strategies/policy.toml");
+    let strategy = format!("base = {base:?}\n[behaviour.learned]\nmodel = \"known.onnx\"\n");
+    std::fs::write(dir.path().join("known.toml"), strategy).unwrap();
+    dir
+}
+
 /// The probability of [`ACTION`], per cent.
 fn percent(input: f64) -> f64 {
     let part = primitives::math::exp(3.0 + 2.0 * input);
@@ -42,22 +53,15 @@ fn percent(input: f64) -> f64 {
 
 #[test]
 fn a_decision_of_a_recorded_game_is_explained() {
-    let dir = tempfile::tempdir().unwrap();
+    let dir = known();
     let here = dir.path();
-    std::fs::write(here.join("known.onnx"), model()).unwrap();
-    let base = scenario("strategies/policy.toml");
-    let strategy = format!("base = {base:?}\n[behaviour.learned]\nmodel = \"known.onnx\"\n");
-    std::fs::write(here.join("known.toml"), strategy).unwrap();
     let game = scenario("games/attack_1v1.toml");
     printed(here, &["run", &game, "--in-process", "--blue", "known.toml", "--record", "runs"]);
-    let recording = std::fs::read_dir(here.join("runs")).unwrap().next().unwrap().unwrap().path();
-    let recording = recording.display().to_string();
-    let explain = |vehicle: &'static str, at: &'static str| {
-        ["policy", "known.onnx", "--game", &recording, "--vehicle", vehicle, "--at", at, "--inputs", "1"]
-            .map(str::to_owned)
+    let recording = only_file(here.join("runs"));
+    let explain = |vehicle: &str, at: &str| {
+        format!("policy known.onnx --game {recording} --vehicle {vehicle} --at {at} --inputs 1")
     };
-    let asked = explain("blue_one", "20.5");
-    let text = printed(here, &asked.each_ref().map(String::as_str));
+    let text = printed(here, &words(&explain("blue_one", "20.5")));
     assert!(text.contains("one of 17 turns and speeds") && text.contains("every 0.5 s"), "{text}");
     let row: Vec<&str> = text.lines().last().unwrap().split_whitespace().collect();
     let [name, value, then, "%"] = row[..] else { panic!("{text}") };
@@ -73,21 +77,15 @@ fn a_decision_of_a_recorded_game_is_explained() {
         ("blue_one", "-1", "no decision by blue_one at -1 s"),
         ("nobody", "20", "nobody"),
     ] {
-        let asked = explain(vehicle, at);
-        let why = refusal(here, &asked.each_ref().map(String::as_str));
+        let why = refusal(here, &words(&explain(vehicle, at)));
         assert!(why.contains(said), "{why}");
     }
 }
 
 #[test]
 fn what_a_helm_reports_of_a_policy_is_told_in_words() {
-    let dir = tempfile::tempdir().unwrap();
-    let here = dir.path();
-    std::fs::write(here.join("known.onnx"), model()).unwrap();
-    let base = scenario("strategies/policy.toml");
-    std::fs::write(here.join("known.toml"), format!("base = {base:?}\n[behaviour.learned]\nmodel = \"known.onnx\"\n"))
-        .unwrap();
-    let strategies = BTreeMap::from([("blue".to_owned(), here.join("known.toml"))]);
+    let dir = known();
+    let strategies = BTreeMap::from([("blue".to_owned(), dir.path().join("known.toml"))]);
     let overrides = Overrides { strategies, ..Overrides::default() };
     let game = scenario::load_with(scenario("games/attack_1v1.toml").as_ref(), &overrides).unwrap();
     let blue = game.vehicle_named("blue_one").unwrap();
@@ -111,9 +109,7 @@ fn what_a_helm_reports_of_a_policy_is_told_in_words() {
 }
 
 #[test]
-fn a_model_that_says_nothing_of_itself_is_told_from_a_file_that_is_none() {
+fn a_model_that_says_nothing_of_itself_is_described() {
     let text = printed(project(), &["policy", "crates/onnx/tests/network/sb3_dynamo.onnx"]);
     assert!(text.contains("obs (45) -> logits (17)") && text.contains("the strategy must declare it"), "{text}");
-    let why = refusal(project(), &["policy", "README.md"]);
-    assert!(why.contains("README.md is not a usable model"), "{why}");
 }

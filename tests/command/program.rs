@@ -13,6 +13,18 @@ pub(crate) fn scenario(file: &str) -> String {
     project().join("scenarios").join(file).display().to_string()
 }
 
+/// The path of the only file in a folder.
+pub(crate) fn only_file(dir: impl AsRef<Path>) -> String {
+    let files: Vec<_> = std::fs::read_dir(dir).unwrap().map(|file| file.unwrap().path()).collect();
+    assert_eq!(files.len(), 1, "{files:?}");
+    files[0].display().to_string()
+}
+
+/// The arguments in a command line without quotes.
+pub(crate) fn words(line: &str) -> Vec<&str> {
+    line.split(' ').collect()
+}
+
 /// A command that runs the program in a folder.
 pub(crate) fn command(dir: impl AsRef<Path>, args: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_squall"));

@@ -1,6 +1,6 @@
 //! Commands that must be refused: `refusals.txt` lists them with the required messages.
 
-use crate::program::{command, project, refusal, scenario};
+use crate::program::{command, project, refusal, scenario, words};
 
 /// Runs the commands of one case; returns the texts missing from their output.
 fn missing(case: &str) -> Vec<String> {
@@ -12,7 +12,7 @@ fn missing(case: &str) -> Vec<String> {
             file = Some((dir.path().join(path), String::new()));
         } else if let Some(command) = line.strip_prefix("$ squall ") {
             file = None;
-            let said = refusal(&dir, &command.split(' ').collect::<Vec<_>>());
+            let said = refusal(&dir, &words(command));
             commands.push((command.to_owned(), said));
         } else if let Some((_, text)) = &mut file {
             *text += &format!("{line}\n");
@@ -34,7 +34,7 @@ fn every_mistake_is_refused_and_explained() {
     let text = include_str!("refusals.txt");
     let cases: Vec<_> = text.split("\n## ").skip(1).map(|case| case.split_once('\n').unwrap_or((case, ""))).collect();
     assert_eq!(cases.len(), text.lines().filter(|line| line.starts_with("##")).count());
-    assert!(cases.len() >= 39, "only {} cases", cases.len());
+    assert!(cases.len() >= 75, "only {} cases", cases.len());
     let wrong =
         cases.iter().flat_map(|(name, case)| missing(case).into_iter().map(move |why| format!("{name}: {why}")));
     let wrong: Vec<String> = wrong.collect();

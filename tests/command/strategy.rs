@@ -1,6 +1,6 @@
 //! `squall strategy` from the command line: its output for valid and invalid files.
 
-use crate::program::{printed, project, scenario, squall};
+use crate::program::{printed, project, refusal, scenario, squall};
 
 /// The output of `squall strategy` for a file with this text: success, standard output, standard
 /// error.
@@ -80,10 +80,8 @@ role 1: x - an example
 
 #[test]
 fn an_unsafe_strategy_says_so_loudly() {
-    let (_, text, _) = shown(
-        "unsafe_i_know = true\nunsafe_because = \"it lies still\"\n[behaviour.stop]\nkind = \"full_stop\"\n",
-        &[],
-    );
+    let program = "unsafe_i_know = true\nunsafe_because = \"it lies still\"\n[behaviour.stop]\nkind = \"full_stop\"\n";
+    let (_, text, _) = shown(program, &[]);
     assert!(text.contains("\n  !!! UNSAFE: it lies still\n"), "{text}");
     assert!(!shown(PROGRAM, &[]).1.contains("UNSAFE"));
 }
@@ -116,9 +114,7 @@ fn a_strategy_is_drawn_as_a_graph() {
 
 #[test]
 fn shipped_strategies_are_shown_role_by_role() {
-    let output = squall(project(), &["strategy", "scenarios/strategies/pav01.toml"]);
-    let text = String::from_utf8(output.stdout).unwrap();
-    assert!(output.status.success(), "{text}");
+    let text = printed(project(), &["strategy", "scenarios/strategies/pav01.toml"]);
     for words in ["role 1: easy_defender", "role 2: easy_attacker", "\n  in tagged\n"] {
         assert!(text.contains(words), "{words} is not in\n{text}");
     }
@@ -126,10 +122,9 @@ fn shipped_strategies_are_shown_role_by_role() {
 
 #[test]
 fn the_reference_is_printed_without_a_file() {
-    let output = squall(project(), &["strategy", "--reference"]);
-    let page = std::fs::read(project().join("scenarios/strategies/REFERENCE.md")).unwrap();
-    assert!(output.status.success() && output.stdout == page);
-    assert!(!squall(project(), &["strategy"]).status.success());
+    let page = std::fs::read_to_string(project().join("scenarios/strategies/REFERENCE.md")).unwrap();
+    assert!(printed(project(), &["strategy", "--reference"]) == page);
+    refusal(project(), &["strategy"]);
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! `squall tournament` and strategies, from the command line.
 
-use crate::program::{command, printed, project, squall};
+use crate::program::{command, only_file, printed, project, scenario, squall, words};
 use serde_json::Value;
 use std::io::{BufRead, BufReader, Read};
 use std::process::{Command, Output, Stdio};
@@ -35,6 +35,19 @@ fn short_tournament(dir: &TempDir, more: &str) -> String {
     path
 }
 
+/// The same, with these settings and with entries by name and strategy.
+fn tournament_of(dir: &TempDir, settings: &str, entries: &[(&str, &str)]) -> String {
+    let path = short_tournament(dir, "");
+    let entry = |(name, file): &(&str, &str)| {
+        let strategy = scenario(&format!("strategies/{file}.toml"));
+        format!("[[entry]]\nname = {name:?}\nstrategy = {strategy:?}\n")
+    };
+    let entries: String = entries.iter().map(entry).collect();
+    let sea = project().join(SEA);
+    std::fs::write(&path, format!("game = \"short.toml\"\nsea = {sea:?}\n{settings}\n{entries}")).unwrap();
+    path
+}
+
 fn keys(value: &Value) -> Vec<&str> {
     let mut keys: Vec<&str> = value.as_object().unwrap().keys().map(String::as_str).collect();
     keys.sort_unstable();
@@ -45,10 +58,8 @@ fn keys(value: &Value) -> Vec<&str> {
 fn a_game_of_a_tournament_is_played_again_by_run_byte_for_byte() {
     let dir = tempfile::tempdir().unwrap();
     let (report, result) = (place(&dir, "report.json"), place(&dir, "result.json"));
-    let text = printed(
-        project(),
-        &["tournament", TOURNAMENT, "--games", "2", "--seed", "11", "--jobs", "2", "--json", &report],
-    );
+    let how = format!("tournament {TOURNAMENT} --games 2 --seed 11 --jobs 2 --json {report}");
+    let text = printed(project(), &words(&how));
     let how = format!("squall run {GAME} --sea {SEA} --blue A --red B --seed 11 --in-process");
     assert!(text.contains(&how), "{text}");
 
@@ -61,8 +72,8 @@ fn a_game_of_a_tournament_is_played_again_by_run_byte_for_byte() {
     };
     for game in matches {
         let (blue, red, seed) = (strategy(&game["blue"]), strategy(&game["red"]), game["seed"].to_string());
-        let options = ["--sea", SEA, "--blue", &blue, "--red", &red, "--seed", &seed, "--in-process"];
-        printed(project(), &[&["run", GAME, "--no-record"], &options[..], &["--json", &result]].concat());
+        let how = format!("--sea {SEA} --blue {blue} --red {red} --seed {seed} --in-process --json {result}");
+        printed(project(), &words(&format!("run {GAME} --no-record {how}")));
         let played = json(&result);
         assert_eq!(played["digest"], game["digest"], "{game}");
         assert_eq!(played["score"]["teams"]["blue"], game["score"][0], "{game}");
@@ -94,10 +105,8 @@ fn the_report_has_every_number_and_is_the_same_on_one_thread_and_on_four() {
     let tournament = short_tournament(&dir, "self_play = true");
     let (path, table) = (place(&dir, "report.json"), place(&dir, "table.csv"));
     let play = |jobs: &str| {
-        let text = printed(
-            project(),
-            &["tournament", &tournament, "--games", "4", "--jobs", jobs, "--json", &path, "--csv", &table],
-        );
+        let how = format!("tournament {tournament} --games 4 --jobs {jobs} --json {path} --csv {table}");
+        let text = printed(project(), &words(&how));
         let mut report = json(&path);
         assert!(report["rate"].as_f64().unwrap() > 0.0);
         report["rate"] = Value::Null;
@@ -106,27 +115,9 @@ fn the_report_has_every_number_and_is_the_same_on_one_thread_and_on_four() {
     let (text, report, csv) = play("1");
     assert_eq!((&text, &report, &csv), (&play("4").0, &play("4").1, &play("4").2));
 
-    let wanted = [
-        "challenger",
-        "commit",
-        "entries",
-        "failures",
-        "game",
-        "games_left_out",
-        "games_per_pairing",
-        "games_unplayed",
-        "matches",
-        "matrix",
-        "plan",
-        "rate",
-        "sea",
-        "seed",
-        "seeds_counted",
-        "teams",
-        "tournament",
-        "version",
-    ];
-    assert_eq!(keys(&report), wanted);
+    let wanted = "challenger commit entries failures game games_left_out games_per_pairing \
+                  games_unplayed matches matrix plan rate sea seed seeds_counted teams tournament version";
+    assert_eq!(keys(&report).join(" "), wanted);
     assert_eq!((&report["tournament"], &report["seed"]), (&"tournament".into(), &1.into()));
     assert_eq!((&report["games_per_pairing"], &report["seeds_counted"]), (&4.into(), &2.into()));
     let commit = report["commit"].as_str().unwrap();
@@ -165,40 +156,19 @@ fn the_report_has_every_number_and_is_the_same_on_one_thread_and_on_four() {
 #[test]
 fn the_quality_of_a_tournament_is_that_of_its_recorded_games() {
     let dir = tempfile::tempdir().unwrap();
-    let strategies = project().join("scenarios/strategies");
-    let entry =
-        |name: &str| format!("[[entry]]\nname = {name:?}\nstrategy = {:?}\n", strategies.join(format!("{name}.toml")));
-    let tournament = short_tournament(&dir, "");
+    let settings = "games = 2\nseed = 5\nself_play = false";
+    let tournament = tournament_of(&dir, settings, &[("strategy_4", "strategy_4"), ("pav01", "pav01")]);
     let game = place(&dir, "short.toml");
-    let text =
-        format!("game = \"short.toml\"\nsea = {:?}\ngames = 2\nseed = 5\nself_play = false\n", project().join(SEA));
-    std::fs::write(&tournament, text + &entry("strategy_4") + &entry("pav01")).unwrap();
     let (report, quality) = (place(&dir, "report.json"), place(&dir, "quality.json"));
     let said = printed(project(), &["tournament", &tournament, "--quality", "--jobs", "2", "--json", &report]);
 
     let mut recordings = vec![];
     for (i, sides) in [["strategy_4", "pav01"], ["pav01", "strategy_4"]].into_iter().enumerate() {
         let runs = place(&dir, &format!("runs{i}"));
-        let [blue, red] = sides.map(|name| strategies.join(format!("{name}.toml")).display().to_string());
-        printed(
-            project(),
-            &[
-                "run",
-                &game,
-                "--sea",
-                SEA,
-                "--blue",
-                &blue,
-                "--red",
-                &red,
-                "--seed",
-                "5",
-                "--in-process",
-                "--record",
-                &runs,
-            ],
-        );
-        recordings.push(std::fs::read_dir(&runs).unwrap().next().unwrap().unwrap().path().display().to_string());
+        let [blue, red] = sides;
+        let how = format!("--sea {SEA} --blue {blue} --red {red} --seed 5 --in-process --record {runs}");
+        printed(project(), &words(&format!("run {game} {how}")));
+        recordings.push(only_file(&runs));
     }
     let told = printed(project(), &["log", "--quality", &recordings[0], &recordings[1], "--json", &quality]);
     assert!(said.ends_with(&told) && told.starts_with("quality of play in 2 games"), "{said}\n{told}");
@@ -243,37 +213,31 @@ fn games_that_cannot_start_are_explained() {
 #[test]
 fn who_joins_a_league_plays_its_own_games_alone_and_a_torn_line_is_played_again() {
     let dir = tempfile::tempdir().unwrap();
-    let strategies = project().join("scenarios/strategies");
-    let entry = |name: &str, file: &str| {
-        format!("[[entry]]\nname = {name:?}\nstrategy = {:?}\n", strategies.join(format!("{file}.toml")))
-    };
     let (league, whole) = (place(&dir, "league"), place(&dir, "whole.json"));
     let results = format!("{league}/results.jsonl");
-    let play = |entries: &[String], options: &[&str]| {
-        let tournament = short_tournament(&dir, "");
-        let text = format!("game = \"short.toml\"\nsea = {:?}\ngames = 4\n", project().join(SEA));
-        std::fs::write(&tournament, text + &entries.concat()).unwrap();
+    let play = |entries: &[(&str, &str)], options: &[&str]| {
+        let tournament = tournament_of(&dir, "games = 4", entries);
         let output = output(&[&["tournament", &tournament], options].concat());
         assert!(output.status.success(), "{output:?}");
         String::from_utf8(output.stderr).unwrap()
     };
-    let [four, pav01, idle] = ["strategy_4", "pav01", "idle"].map(|name| entry(name, name));
-    let said = play(&[four.clone(), pav01.clone()], &["--league", &league]);
+    let [four, pav01, idle] = ["strategy_4", "pav01", "idle"].map(|name| (name, name));
+    let said = play(&[four, pav01], &["--league", &league]);
     assert!(said.contains("0 of 4 games already played"), "{said}");
     // The last line was cut off when the machine stopped.
     let text = std::fs::read_to_string(&results).unwrap();
     std::fs::write(&results, &text[..text.len() - 9]).unwrap();
-    let said = play(&[four.clone(), pav01.clone(), idle.clone()], &["--league", &league]);
+    let said = play(&[four, pav01, idle], &["--league", &league]);
     assert!(said.contains("3 of 12 games already played") && said.contains("9 games in"), "{said}");
     // The result equals that of a tournament that plays all games.
-    play(&[four.clone(), pav01.clone(), idle], &["--json", &whole]);
+    play(&[four, pav01, idle], &["--json", &whole]);
     let (mut known, mut anew) = (json(&format!("{league}/report.json")), json(&whole));
     (known["rate"], anew["rate"]) = (Value::Null, Value::Null);
     assert_eq!(known, anew);
     // A renamed file is the same player; a different file is not.
-    let said = play(&[entry("renamed", "strategy_4"), pav01], &["--league", &league]);
+    let said = play(&[("renamed", "strategy_4"), pav01], &["--league", &league]);
     assert!(said.contains("4 of 4 games already played"), "{said}");
-    let said = play(&[four, entry("pav01", "easy_attackers")], &["--league", &league]);
+    let said = play(&[four, ("pav01", "easy_attackers")], &["--league", &league]);
     assert!(said.contains("0 of 4 games already played"), "{said}");
     // If a game file has changed on the disk, its earlier results are unusable.
     let changed = text.replacen("\"seed\":1", "\"seed\":7", 1);

@@ -1,11 +1,15 @@
 //! `squall train` from the command line: the same bytes on any number of threads and after
 //! resuming, and complete tables.
 
-use crate::program::{printed, refusal, scenario, squall};
+use crate::program::{command, printed, refusal, scenario};
+use std::collections::BTreeSet;
+use std::fs::DirEntry;
 use std::path::Path;
+use std::process::Stdio;
+use tempfile::TempDir;
 
-/// A training run with two short stages.
-fn training() -> String {
+/// A folder with the file `short.toml` of a training run with two short stages.
+fn training() -> TempDir {
     let [game, rewards, idle, pav01] =
         ["games/pav01_afloat.toml", "rewards/bold.toml", "strategies/idle.toml", "strategies/pav01.toml"].map(scenario);
     // Not on the disk here: the built-in one.
@@ -16,24 +20,31 @@ fn training() -> String {
              strategies = 1\npast_selves = 1\nstarts = 8\nepisode_max_s = 20\nsamples = {samples}\n"
         )
     };
-    format!(
+    let text = format!(
         "observation = {{ kind = \"squall\", mates = 1, enemies = 2 }}\ngames = 8\n[network]\nhidden = [16]\n\
          [ppo]\nsteps = 32\nminibatch = 256\n[league]\nevery_samples = 1000\nmost = 2\n\
          [evaluation]\nevery_samples = 3000\ngames = 2\nopponents = [{pav01:?}]\n{}{}",
         stage("alone", &idle, 4_000),
         stage("against", &pav01, 8_000) + &format!("helm = {policy:?}\n")
-    )
+    );
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("short.toml"), text).unwrap();
+    dir
 }
 
 fn read(folder: &Path, name: &str) -> Vec<u8> {
     std::fs::read(folder.join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
+/// The lines of a table without their last cell, and that cell.
+fn split(table: &str) -> (Vec<&str>, Vec<&str>) {
+    table.lines().map(|line| line.rsplit_once(',').unwrap()).unzip()
+}
+
 #[test]
 fn a_training_leaves_the_same_files_on_any_number_of_threads() {
-    let dir = tempfile::tempdir().unwrap();
+    let dir = training();
     let here = dir.path();
-    std::fs::write(here.join("short.toml"), training()).unwrap();
     let told = printed(here, &["train", "short.toml", "--out", "one", "--jobs", "1"]);
     assert!(told.contains("stage alone") && told.contains("stage against") && told.contains("best after"), "{told}");
     printed(here, &["train", "short.toml", "--out", "three", "--jobs", "3"]);
@@ -60,26 +71,20 @@ fn a_training_leaves_the_same_files_on_any_number_of_threads() {
 
 #[test]
 fn a_training_goes_on_from_its_state_as_if_it_had_not_stopped() {
-    let dir = tempfile::tempdir().unwrap();
+    let dir = training();
     let here = dir.path();
-    std::fs::write(here.join("short.toml"), training()).unwrap();
     printed(here, &["train", "short.toml", "--out", "whole"]);
     // Simulate a power cut after the first state: the files have later lines, the state does not.
     let why = refusal(here, &["train", "short.toml", "--out", "cut", "--resume"]);
     assert!(why.contains("state.bin"), "{why}");
-    let (mut child, cut) = (
-        crate::program::command(here, &["train", "short.toml", "--out", "cut"])
-            .stdout(std::process::Stdio::null())
-            .spawn()
-            .unwrap(),
-        here.join("cut"),
-    );
+    let cut = here.join("cut");
+    let mut child = command(here, &["train", "short.toml", "--out", "cut"]).stdout(Stdio::null()).spawn().unwrap();
     while !cut.join("state.bin").exists() && child.try_wait().unwrap().is_none() {
         std::thread::yield_now();
     }
     child.kill().unwrap();
     child.wait().unwrap();
-    assert!(squall(here, &["train", "short.toml", "--out", "cut", "--resume"]).status.success());
+    printed(here, &["train", "short.toml", "--out", "cut", "--resume"]);
     for name in ["best.onnx", "last.onnx", "state.bin", "updates.csv", "evaluations.csv", "episodes.csv"] {
         assert!(read(&here.join("whole"), name) == read(&cut, name), "{name} is another after --resume");
     }
@@ -105,9 +110,8 @@ fn a_training_goes_on_from_its_state_as_if_it_had_not_stopped() {
 
 #[test]
 fn each_nth_episode_of_a_training_is_recorded_and_can_be_replayed() {
-    let dir = tempfile::tempdir().unwrap();
+    let dir = training();
     let here = dir.path();
-    std::fs::write(here.join("short.toml"), training()).unwrap();
     printed(here, &["train", "short.toml", "--out", "plain"]);
     printed(here, &["train", "short.toml", "--out", "seen", "--record-every", "7"]);
     let [plain, seen] = ["plain", "seen"].map(|folder| here.join(folder));
@@ -117,28 +121,18 @@ fn each_nth_episode_of_a_training_is_recorded_and_can_be_replayed() {
 
     // The tables list the same episodes, and this one names a recording for every seventh.
     let [plain, episodes] = [&plain, &seen].map(|folder| String::from_utf8(read(folder, "episodes.csv")).unwrap());
-    let split =
-        |line: &str| line.rsplit_once(',').map(|(episode, file)| (episode.to_owned(), file.to_owned())).unwrap();
-    let of_plain: Vec<(String, String)> = plain.lines().map(split).collect();
-    let of_seen: Vec<(String, String)> = episodes.lines().map(split).collect();
-    assert!(of_plain.iter().map(|one| &one.0).eq(of_seen.iter().map(|one| &one.0)));
-    assert!(of_plain.iter().skip(1).all(|one| one.1.is_empty()) && of_seen[0].1 == "recording", "{episodes}");
-    let named: Vec<(&str, &str)> = episodes
-        .lines()
-        .skip(1)
-        .filter(|line| line.ends_with(".mcap"))
-        .map(|line| (line.split(',').nth(2).unwrap(), line.rsplit_once(',').unwrap().1))
-        .collect();
+    let (of_plain, no_files) = split(&plain);
+    let (of_seen, seen_files) = split(&episodes);
+    assert_eq!(of_plain, of_seen);
+    assert!(no_files[1..].iter().all(|file| file.is_empty()) && seen_files[0] == "recording", "{episodes}");
+    let of_file = of_seen.iter().zip(&seen_files).filter(|(_, file)| file.ends_with(".mcap"));
+    let named: Vec<(&str, &str)> = of_file.map(|(episode, file)| (episode.split(',').nth(2).unwrap(), *file)).collect();
     let count = of_seen.len() - 1;
     assert!((count / 10..=count / 4).contains(&named.len()), "{} of {count}", named.len());
-    let mut files: Vec<String> = std::fs::read_dir(seen.join("games"))
-        .unwrap()
-        .map(|entry| format!("games/{}", entry.unwrap().file_name().to_str().unwrap()))
-        .collect();
-    let mut told: Vec<String> = named.iter().map(|(_, file)| (*file).to_owned()).collect();
-    files.sort();
-    told.sort();
-    assert_eq!(files, told, "a file for each episode that ended, and no other");
+    let file = |entry: std::io::Result<DirEntry>| format!("games/{}", entry.unwrap().file_name().display());
+    let files: BTreeSet<String> = std::fs::read_dir(seen.join("games")).unwrap().map(file).collect();
+    let told: BTreeSet<String> = named.iter().map(|(_, file)| (*file).to_owned()).collect();
+    assert!(files == told && told.len() == named.len(), "a file for each episode that ended, and no other");
     for (seed, file) in [named[0], named[named.len() - 1]] {
         assert!(file.starts_with(&format!("games/{seed}_")), "{file} is of seed {seed}");
         let checked = printed(here, &["replay", &format!("seen/{file}"), "--check"]);

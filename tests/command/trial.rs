@@ -72,24 +72,19 @@ fn last(columns: &Columns, head: &str) -> f64 {
 }
 
 #[test]
-fn the_otter_accelerates_as_the_reference_does() {
-    let (want, got) = otter("accel_n80", &[]);
-    let error = position_error(&want, &got);
-    assert!(error < 0.005, "position is off by {error}");
-    let steady_m_s = 2.0 * 0.01108 * 80.0 * 80.0 / 77.5544;
-    assert!((last(&got, "surge_m_s") - steady_m_s).abs() < 0.001 * steady_m_s);
-    assert!((last(&got, "port_newton") - 0.01108 * 6400.0).abs() < 1e-6);
-}
-
-#[test]
-fn the_otter_turns_as_the_reference_does() {
-    let (want, got) = otter("turn_80_60", &[]);
-    let (u, v, r) = (last(&got, "surge_m_s"), last(&got, "sway_m_s"), last(&got, "yaw_rate_deg_s"));
-    let radius_m = u.hypot(v) / r.to_radians();
-    for (what, got, want) in [("surge", u, 1.400), ("yaw rate", r, 9.375), ("radius", radius_m, 8.57)] {
-        assert!((got - want).abs() < 0.01 * want, "{what} {got}, reference {want}");
+fn the_otter_accelerates_and_turns_as_the_reference_does() {
+    for (name, share) in [("accel_n80", 0.001), ("turn_80_60", 0.01)] {
+        let (want, got) = otter(name, &[]);
+        let error = position_error(&want, &got);
+        assert!(error < f64::max(share, 0.005), "{name}: position is off by {error}");
+        let yaw_rate_deg_s = last(&want, "r").to_degrees();
+        for (head, want) in
+            [("surge_m_s", last(&want, "u")), ("yaw_rate_deg_s", yaw_rate_deg_s), ("port_newton", last(&want, "T1"))]
+        {
+            let got = last(&got, head);
+            assert!((got - want).abs() <= share * want.abs() + 1e-9, "{name}: {head} {got}, reference {want}");
+        }
     }
-    assert!(position_error(&want, &got) < 0.01);
 }
 
 #[test]
@@ -117,22 +112,6 @@ fn zigzag(times_s: &[f64], headings_deg: &[f64]) -> (Vec<f64>, f64) {
     (swings_deg, (passes[passes.len() - 1] - passes[0]) / (passes.len() - 1) as f64)
 }
 
-fn mean_size(numbers: &[f64]) -> f64 {
-    numbers.iter().map(|number| number.abs()).sum::<f64>() / numbers.len() as f64
-}
-
-/// The reference could switch every 0.02 s, but its rows are 0.1 s apart. In the replay a single
-/// swing is therefore off by up to the turn in that time (1°), but not the mean and not the period.
-#[test]
-fn the_otter_zigzags_as_the_reference_does() {
-    let (want, got) = otter("zigzag10_n80_d10", &[]);
-    let psi_deg: Vec<f64> = want["psi"].iter().map(|psi| psi.to_degrees()).collect();
-    let (want_deg, _) = zigzag(&want["t"], &psi_deg);
-    let (swings_deg, period_s) = zigzag(&got["t_s"], &got["heading_deg"]);
-    assert!((period_s - 8.25).abs() < 0.02 * 8.25, "period {period_s} s");
-    assert!((mean_size(&swings_deg) - mean_size(&want_deg)).abs() < 0.1, "{swings_deg:?}, reference {want_deg:?}");
-}
-
 /// With the switching times taken from the recorded shaft speeds, every swing is right.
 #[test]
 fn the_otter_zigzags_swing_by_swing_where_the_switches_are_known() {
@@ -153,8 +132,9 @@ fn the_otter_zigzags_swing_by_swing_where_the_switches_are_known() {
     trial(&dir, &[&[boat("otter").as_str(), "--orders", "in.csv", "--csv", "out.csv"][..], &how].concat());
     let got = columns(&dir.path().join("out.csv"));
     let psi_deg: Vec<f64> = want["psi"].iter().map(|psi| psi.to_degrees()).collect();
-    let ((want_deg, _), (swings_deg, _)) = (zigzag(&want["t"], &psi_deg), zigzag(&got["t_s"], &got["heading_deg"]));
-    assert_eq!(swings_deg.len(), want_deg.len());
+    let (want_deg, _) = zigzag(&want["t"], &psi_deg);
+    let (swings_deg, period_s) = zigzag(&got["t_s"], &got["heading_deg"]);
+    assert!(swings_deg.len() == want_deg.len() && (period_s - 8.25).abs() < 0.02 * 8.25, "period {period_s} s");
     let worst_deg = swings_deg.iter().zip(&want_deg).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     let error = position_error(&want, &got);
     assert!(worst_deg < 0.5 && error < 0.005, "{swings_deg:?}, reference {want_deg:?}; position {error}");
@@ -174,7 +154,6 @@ fn kinematic(name: &str, kind: &str, heads: [&str; 2], more: &[&str]) {
     trial(&dir, &[&[boat(&format!("{kind}_kinematic")).as_str()][..], &fixed, more].concat());
     let got = columns(&dir.path().join("out.csv"));
     assert_eq!(got["t_s"].len(), n);
-    let mut worst = 0.0_f64;
     for i in 0..n {
         let turned = (got["heading_deg"][i] - want["heading"][i] + 180.0).rem_euclid(360.0) - 180.0;
         let errors = [
@@ -184,33 +163,30 @@ fn kinematic(name: &str, kind: &str, heads: [&str; 2], more: &[&str]) {
             turned,
         ];
         for (what, error) in ["x", "y", "speed", "heading"].iter().zip(errors) {
-            worst = worst.max(error.abs());
             assert!(error.abs() < 1e-6, "{kind} {name}, row {i}: {what} is off by {error}");
         }
     }
     assert!(got["port_newton"].iter().all(|newton| newton.is_nan()), "it has no thrusters");
 }
 
-const STEERED: [&str; 2] = ["cmd_speed", "target_heading"];
-
 #[test]
-fn kinematic_boats_accelerate_as_the_reference_does() {
-    kinematic("accel_max", "heron", STEERED, &[]);
-    kinematic("accel_max", "surveyor", STEERED, &[]);
-}
-
-#[test]
-fn kinematic_boats_turn_as_the_reference_does() {
-    // The first row of the reference.
-    let start = ["--start-surge-m-s", "1.999944", "--start-thrust-pct", "99.996694"];
-    kinematic("turn90_max", "heron", STEERED, &start);
-    kinematic("turn90_max", "surveyor", STEERED, &["--start-surge-m-s", "3"]);
-}
-
-#[test]
-fn kinematic_boats_take_thrust_and_rudder_as_the_reference_does() {
-    let start = ["--start-surge-m-s", "3", "--start-thrust-pct", "100"];
-    kinematic("tr_thrust100_rudder50", "surveyor", ["thrust", "rudder"], &start);
+fn kinematic_boats_follow_orders_and_commands_as_the_reference_does() {
+    const STEERED: [&str; 2] = ["cmd_speed", "target_heading"];
+    // Each begins with the first row of the reference.
+    for (name, kind, heads, start) in [
+        ("accel_max", "heron", STEERED, &[][..]),
+        ("accel_max", "surveyor", STEERED, &[]),
+        ("turn90_max", "heron", STEERED, &["--start-surge-m-s", "1.999944", "--start-thrust-pct", "99.996694"]),
+        ("turn90_max", "surveyor", STEERED, &["--start-surge-m-s", "3"]),
+        (
+            "tr_thrust100_rudder50",
+            "surveyor",
+            ["thrust", "rudder"],
+            &["--start-surge-m-s", "3", "--start-thrust-pct", "100"],
+        ),
+    ] {
+        kinematic(name, kind, heads, start);
+    }
 }
 
 #[test]
@@ -289,20 +265,12 @@ fn manoeuvres_give_numbers_a_track_and_a_plot() {
 }
 
 #[test]
-fn a_drifting_boat_goes_where_the_water_goes() {
+fn manoeuvres_have_the_numbers_of_the_current_and_of_the_published_boat() {
     let dir = tempfile::tempdir().unwrap();
-    let results = manoeuvre(&dir, "otter", "drift", &["--current-m-s", "0.5", "--current-toward-deg", "30"]);
-    assert!(
-        (results["drift speed"] - 0.5).abs() < 0.005 && (results["drift toward"] - 30.0).abs() < 0.5,
-        "{results:?}"
-    );
-}
-
-#[test]
-fn acceleration_has_the_published_numbers_of_the_kinematic_surveyor() {
-    let dir = tempfile::tempdir().unwrap();
-    let results = manoeuvre(&dir, "surveyor_kinematic", "acceleration", &["--duration-s", "60"]);
-    assert!((results["steady speed"] - 3.0).abs() < 0.005, "{results:?}");
+    let drift = manoeuvre(&dir, "otter", "drift", &["--current-m-s", "0.5", "--current-toward-deg", "30"]);
+    assert!((drift["drift speed"] - 0.5).abs() < 0.005 && (drift["drift toward"] - 30.0).abs() < 0.5, "{drift:?}");
+    let ahead = manoeuvre(&dir, "surveyor_kinematic", "acceleration", &["--duration-s", "60"]);
+    assert!((ahead["steady speed"] - 3.0).abs() < 0.005, "{ahead:?}");
 }
 
 #[test]
@@ -350,22 +318,4 @@ fn identify_writes_a_boat_that_check_accepts() {
     let checked = squall(&dir, &["check", "new.toml"]);
     assert!(checked.status.success(), "{}", String::from_utf8_lossy(&checked.stdout));
     trial(&dir, &["new.toml", "--manoeuvre", "acceleration"]);
-}
-
-#[test]
-fn identify_says_what_is_wrong() {
-    let dir = tempfile::tempdir().unwrap();
-    log_and_start(&dir);
-    let kinematic = boat("heron_kinematic");
-    for (args, want) in [
-        (["start.toml", "--log", "none.csv", "--fit", "lag"], "cannot read none.csv"),
-        (["start.toml", "--log", "in.csv", "--fit", "lag"], "in.csv:1: no column heading_deg"),
-        (["start.toml", "--log", "log.csv", "--fit", "keel"], "keel is not a parameter, expected some of surge_linear"),
-        (["none.toml", "--log", "log.csv", "--fit", "lag"], "there is no file none.toml"),
-        ([kinematic.as_str(), "--log", "log.csv", "--fit", "surge_linear"], "heron_kinematic is kinematic"),
-    ] {
-        let output = squall(&dir, &[&["identify"], &args[..]].concat());
-        let said = String::from_utf8(output.stderr).unwrap();
-        assert!(!output.status.success() && said.contains(want), "{args:?}: {said}");
-    }
 }

@@ -1,7 +1,7 @@
 //! The operator console: stops take every path, and are complete when the boats report them.
 
 use crate::boat_alone::Wire;
-use crate::support::{LIMIT, Process, Sim, stderr, stdout, temporary};
+use crate::support::{LIMIT, Process, Sim, printed_by, refused, temporary};
 use std::io::{BufRead, BufReader, Write};
 use std::net::SocketAddr;
 use std::process::{ExitStatus, Stdio};
@@ -46,10 +46,10 @@ impl Fleet {
         let controls = self.controls.map(|at| at.to_string());
         let mut command =
             self.sim.squall(&["gateway", "console", "--gateway", &controls[0], "--gateway", &controls[1]]);
-        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-        let mut process = Process::start(command);
+        command.stdin(Stdio::piped()).stderr(Stdio::piped());
+        let (mut process, said) = Process::with_lines(command);
         let ((sender, lines), (complainer, complaints)) = (channel(), channel());
-        let (said, stderr) = (process.lines(), BufReader::new(process.0.stderr.take().expect("piped")));
+        let stderr = BufReader::new(process.0.stderr.take().expect("piped"));
         std::thread::spawn(move || said.map_while(|line| sender.send(line).ok()).for_each(drop));
         std::thread::spawn(move || {
             stderr.lines().map_while(|line| complainer.send(line.ok()?).ok()).for_each(drop);
@@ -152,8 +152,8 @@ fn a_suspended_or_killed_sim_blocks_neither_stops_nor_their_reports() {
     let mut console = fleet.console();
     fleet.sim.process.signal("STOP");
     console.ask("all estop", &ALL_STOPPED);
-    let told = fleet.sim.run(&["gateway", "tell", "all", "estop"]);
-    assert!(told.status.success() && stdout(&told).contains("red_one: e-stopped"), "{}", stderr(&told));
+    let told = fleet.sim.printed(&["gateway", "tell", "all", "estop"]);
+    assert!(told.contains("red_one: e-stopped"), "{told}");
     fleet.sim.process.signal("CONT");
     fleet.sim.process.kill();
     for _ in 0..3 {
@@ -172,8 +172,8 @@ fn a_boat_that_does_not_report_its_stop_fails_the_console_and_tell() {
     console.wait_for(&["red_one  silent"]);
     console.ask("all estop", &ALL_STOPPED[..1]);
     console.wait_for(&["red_one  has not confirmed E-stop"]);
-    let told = fleet.sim.run(&["gateway", "tell", "red_one", "estop"]);
-    assert!(!told.status.success() && stderr(&told).contains("red_one"), "{told:?}");
+    let told = fleet.sim.refusal_of(&["gateway", "tell", "red_one", "estop"]);
+    assert!(told.contains("red_one"), "{told}");
     let (status, said) = console.end();
     assert!(!status.success() && said.contains("red_one does not report that it has stopped: safed"), "{said}");
     // Its stop was repeated for as long as the console ran.
@@ -189,17 +189,17 @@ fn tell_stops_boats_by_way_of_the_game_alone_within_its_time() {
     let console = fleet.console();
     // A console that finds no gateway, as on another machine.
     let nothing = temporary();
+    let estop = |name: &str| {
+        let mut command = fleet.sim.squall(&["gateway", "tell", name, "estop"]);
+        command.env("XDG_RUNTIME_DIR", nothing.path());
+        command
+    };
     for (name, reports) in
         [("red_one", &["red_one: e-stopped"][..]), ("all", &["blue_one: e-stopped", "red_one: e-stopped"])]
     {
-        let mut command = fleet.sim.squall(&["gateway", "tell", name, "estop"]);
-        let told = command.env("XDG_RUNTIME_DIR", nothing.path()).output().expect("the program starts");
-        let said = stdout(&told);
-        assert!(told.status.success(), "{name}: {said}{}", stderr(&told));
+        let said = printed_by(estop(name));
         assert!(reports.iter().all(|report| said.contains(report)), "{name}: {said}");
     }
-    let mut command = fleet.sim.squall(&["gateway", "tell", "nobody", "estop"]);
-    let told = command.env("XDG_RUNTIME_DIR", nothing.path()).output().expect("the program starts");
-    assert!(!told.status.success() && stderr(&told).contains("nobody"), "{told:?}");
+    assert!(refused(estop("nobody")).contains("nobody"));
     drop(console);
 }

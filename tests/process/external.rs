@@ -1,6 +1,6 @@
 //! Real boats: the test's own gateway adds one, moves it according to its orders, and falls silent.
 
-use crate::support::{LIMIT, Sim, own, refusal_of, result_of, wait_until};
+use crate::support::{Sim, join, own, result_of, wait_until};
 use bus::{Bus, Declaration, Priority, Publisher};
 use messages::external::{ExternalOrder, NavReport};
 use messages::picture::Nav;
@@ -30,23 +30,21 @@ pub(crate) struct Gateway {
     moved: Instant,
 }
 
-fn join(bus: &Bus, (name, scenario): (&GameName, &Scenario), vehicle: &str) -> JoinReply {
+fn request(bus: &Bus, vehicle: &str) -> JoinRequest {
     let (version, vehicles) = (primitives::VERSION.to_owned(), vec![vehicle.to_owned()]);
-    let request = JoinRequest { version, role: Role::Gateway, node: bus.id(), vehicles };
-    let key = topic::join(name, scenario, request.role, &request.vehicles);
-    bus.request(&key, &request, LIMIT).expect("the hub is there").expect("an answer")
+    JoinRequest { version, role: Role::Gateway, node: bus.id(), vehicles }
 }
 
 impl Gateway {
     pub(crate) fn joined(sim: &Sim) -> Gateway {
-        let (bus, name) = (sim.bus(), sim.name());
-        let scenario = sim.info(&bus).scenario;
+        let (bus, name, scenario) = sim.session();
         let orders = Arc::new(Mutex::new(Vec::new()));
         let inbox = Arc::clone(&orders);
         let take = move |bytes: &[u8]| inbox.lock().expect("whole").push(codec::decode(bytes).expect("an order"));
         let standing = bus.subscribe(topic::external_order(&name, &scenario, ME), take).expect("the hub is there");
         let nav = bus.publisher(topic::nav(&name, &scenario, ME), Priority::Normal).expect("the hub is there");
-        let JoinReply::Granted { ticket, vehicles, .. } = join(&bus, (&name, &scenario), "blue_one") else {
+        let JoinReply::Granted { ticket, vehicles, .. } = join(&bus, (&name, &scenario), &request(&bus, "blue_one"))
+        else {
             panic!("the boat is free")
         };
         assert_eq!(vehicles, [ME]);
@@ -56,7 +54,7 @@ impl Gateway {
 
     /// The reply to another node that requests a boat.
     fn join(&self, other: &Bus, vehicle: &str) -> JoinReply {
-        join(other, (&self.name, &self.scenario), vehicle)
+        join(other, (&self.name, &self.scenario), &request(other, vehicle))
     }
 
     fn newest(&self) -> Option<ExternalOrder> {
@@ -150,23 +148,6 @@ fn a_real_boat_has_one_gateway_and_holds_without_navigation_or_agent() {
     let report = sim.stop();
     assert!(report["run"]["refused"]["ticket"].as_u64() >= Some(1), "{}", report["run"]);
     assert_eq!(report["outcome"]["counts"]["boats"]["blue_one"]["agents_lost"], 1);
-}
-
-#[test]
-fn real_boats_are_refused_without_real_time_and_the_error_names_what_to_do() {
-    let mixed = "scenarios/games/mixed_2v2.toml";
-    let tournament = own("tournament_of_real_boats");
-    for args in [
-        &["run", mixed][..],
-        &["run", mixed, "--in-process"],
-        &["sim", mixed],
-        &["tournament", &tournament, "--games", "2"],
-    ] {
-        let printed = refusal_of(args);
-        for part in ["blue_one, red_one", "--pace realtime", "--rehearse"] {
-            assert!(printed.contains(part), "{args:?}: {printed}");
-        }
-    }
 }
 
 #[test]

@@ -83,12 +83,7 @@ fn a_taken_seat_stays_taken() {
     let (sim, _agents) = game("lockstep");
     let said = sim.refusal_of(&["agent", "--wait-s", "1", "--vehicle", "blue_one"]);
     assert!(said.contains("blue_one has another agent"), "{said}");
-    sim.stop();
-}
-
-#[test]
-fn an_agent_for_an_unknown_vehicle_is_told_which_there_are() {
-    let (sim, _agents) = game("lockstep");
+    // A vehicle that is not there has none.
     let said = sim.refusal_of(&["agent", "--vehicle", "green_one"]);
     assert!(said.contains("green_one") && said.contains("blue_one, blue_two, red_one, red_two"), "{said}");
     sim.stop();

@@ -1,9 +1,7 @@
 //! Helm queries during a game, and a boat that gets another strategy.
 
-use crate::support::{FOUR, LIMIT, Process, Sim, own, run, squall, stderr, stdout, temporary};
-use messages::helm::HelmReport;
-use messages::topic;
-use std::process::Stdio;
+use crate::support::{FOUR, Process, Sim, helm, own, printed, squall, temporary};
+use primitives::VehicleId;
 
 /// A running game with an agent for each boat.
 fn game() -> (Sim, Vec<Process>) {
@@ -15,17 +13,11 @@ fn game() -> (Sim, Vec<Process>) {
 #[test]
 fn a_helm_says_what_it_thinks_and_its_functions_if_they_are_asked_for() {
     let (sim, _agents) = game();
-    let (bus, name) = (sim.bus(), sim.name());
-    let scenario = sim.info(&bus).scenario;
-    let two = scenario.vehicle_by_name("blue_two").expect("it is there");
-    let ask = |question: &[u8]| -> HelmReport {
-        let key = topic::helm(&name, &scenario, two);
-        let answer = bus.ask_node(&key, question.to_vec(), LIMIT).expect("the hub is there");
-        serde_json::from_slice(&answer.expect("an answer")).expect("a report")
-    };
+    let (bus, name, scenario) = sim.session();
+    let ask = |question: &[u8]| helm(&bus, (&name, &scenario), "blue_two", question);
     for (question, whole) in [(&b"{\"functions\":true}"[..], true), (b"", false), (b"ahoy", false)] {
         let report = ask(question);
-        assert_eq!((report.vehicle, report.program.as_str()), (two, "easy_attacker"));
+        assert_eq!((report.vehicle, report.program.as_str()), (VehicleId(1), "easy_attacker"));
         assert!(!report.mode.is_empty() && !report.functions.is_empty(), "{report:?}");
         let length = if whole { report.courses * report.speeds } else { 0 };
         assert!(report.functions.iter().all(|function| function.utilities.len() == length));
@@ -45,18 +37,14 @@ fn a_helm_says_what_it_thinks_and_its_functions_if_they_are_asked_for() {
 #[test]
 fn watch_shows_a_helm_and_helm_writes_its_functions() {
     let ((sim, _agents), dir) = (game(), temporary());
-    let mut command = sim.squall(&["watch", "--helm", "blue_two", "--rate", "20"]);
-    command.stdout(Stdio::piped());
-    let mut watch = Process::start(command);
-    let mut lines = watch.lines();
+    let watch = sim.squall(&["watch", "--helm", "blue_two", "--rate", "20"]);
+    let (mut watch, mut lines) = Process::with_lines(watch);
     for line in lines.by_ref().take(3) {
         let is_mode = |mode: &&str| line.contains(&format!("blue_two  {mode}  course"));
         assert!(["attacking", "returning", "tagged"].iter().any(is_mode), "{line}");
     }
     let file = dir.path().join("one.csv").display().to_string();
-    let output = sim.run(&["helm", "--vehicle", "blue_two", "--csv", &file]);
-    assert!(output.status.success(), "{}", stderr(&output));
-    let page = stdout(&output);
+    let page = sim.printed(&["helm", "--vehicle", "blue_two", "--csv", &file]);
     assert!(
         page.contains("follows easy_attacker") && page.contains("waypoint") && page.contains("op_region"),
         "{page}"
@@ -74,10 +62,8 @@ fn watch_shows_a_helm_and_helm_writes_its_functions() {
 #[test]
 fn a_game_goes_on_while_somebody_takes_a_decision_apart() {
     let dir = temporary();
-    let mut command = squall(&["run", &own("long"), "--pace", "1x", "--no-record"]);
-    command.stdout(Stdio::piped());
-    let mut game = Process::start(command);
-    let mut lines = game.lines();
+    let game = squall(&["run", &own("long"), "--pace", "1x", "--no-record"]);
+    let (game, mut lines) = Process::with_lines(game);
     let open = lines.next().expect("where it is");
     let words: Vec<&str> = open.split_whitespace().collect();
     let ["game", name, "at", endpoint] = words[..] else { panic!("{open}") };
@@ -88,10 +74,7 @@ fn a_game_goes_on_while_somebody_takes_a_decision_apart() {
         for vehicle in FOUR {
             let args = ["helm", "--connect", endpoint, "--game", name, "--vehicle", vehicle, "--csv"];
             let csv = format!("{csv}.{vehicle}");
-            scope.spawn(move || {
-                let output = run(&[&args[..], &[csv.as_str()]].concat());
-                assert!(output.status.success(), "{vehicle}: {}", stderr(&output));
-            });
+            scope.spawn(move || printed(&[&args[..], &[csv.as_str()]].concat()));
         }
     });
     game.signal("INT");
@@ -106,18 +89,8 @@ fn an_agent_plays_by_a_strategy_file_of_its_own() {
     let _theirs = sim.quiet(&["agent", "--vehicle", "red_one", "red_two"]);
     sim.wait_for_kind("started");
     for (vehicle, program) in [("blue_one", "mine"), ("blue_two", "mine"), ("red_two", "easy_attacker")] {
-        let page = stdout(&sim.run(&["helm", "--vehicle", vehicle]));
+        let page = sim.printed(&["helm", "--vehicle", vehicle]);
         assert!(page.contains(&format!("follows {program}")), "{page}");
     }
     sim.stop();
-}
-
-#[test]
-fn mistakes_in_a_strategy_file_are_told_before_joining() {
-    // There is no game to join: the agent does not even search for one.
-    let mut command = squall(&["agent", "--vehicle", "blue_one", "--strategy", &own("bad"), "--wait-s", "50"]);
-    command.stderr(Stdio::piped());
-    let mut agent = Process::start(command);
-    let said = agent.refusal();
-    assert!(said.contains("bad.toml:3:") && said.contains("\"fly\"") && said.contains("waypoint"), "{said}");
 }

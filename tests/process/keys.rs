@@ -2,8 +2,8 @@
 
 use crate::gateway::assert_no_boat_was_lost;
 use crate::support::{
-    FOUR, LIMIT, Process, Sim, free_endpoint, game_itself, own, result_of, run, squall, stderr, stdout, temporary,
-    wait_until,
+    FOUR, LIMIT, Process, Sim, free_endpoint, game_itself, own, printed, printed_by, refusal_of, refused, result_of,
+    squall, temporary, wait_until,
 };
 use bus::token::TOKEN_VARIABLE;
 use bus::{BusError, Token};
@@ -19,8 +19,8 @@ fn keys() -> (TempDir, PathBuf) {
     let dir = temporary();
     let folder = dir.path().join("keys");
     let words = ["--team", "blue", "--team", "red", "--gateway", "--observer", "--operator"];
-    let made = run(&[&["keys", "new", text(&folder)], &words[..]].concat());
-    assert!(made.status.success() && stdout(&made).contains("team-blue, valid from"), "{}", stderr(&made));
+    let made = printed(&[&["keys", "new", text(&folder)], &words[..]].concat());
+    assert!(made.contains("team-blue, valid from"), "{made}");
     (dir, folder)
 }
 
@@ -43,7 +43,7 @@ fn a_game_with_keys_is_the_game_in_one_process_byte_for_byte() {
     let there = game_itself(result_of(&[&game, "--keys", text(&folder), "--agents-per-process", "4"]));
     assert_eq!(here, there);
     std::fs::remove_dir_all(folder.join("team-red")).expect("it was there");
-    let refused = stderr(&run(&["run", &game, "--keys", text(&folder)]));
+    let refused = refusal_of(&["run", &game, "--keys", text(&folder)]);
     assert!(refused.contains("team-red: no keys found"), "{refused}");
 }
 
@@ -75,9 +75,8 @@ fn the_control_port_of_a_gateway_with_keys_has_a_token_of_its_own() {
     let port: SocketAddr = free_endpoint().trim_start_matches("tcp/").parse().expect("an address");
     let gateway =
         ["gateway", "surveyor", "--vehicle", "blue_one", "--no-record", "--link", &link, "--keys", &of("gateway")];
-    let mut gateway = without_token(sim.squall(&[&gateway[..], &["--control-listen", &port.to_string()]].concat()));
-    gateway.stdout(Stdio::null()).stderr(Stdio::null());
-    let _gateway = Process::start(gateway);
+    let gateway = sim.squall(&[&gateway[..], &["--control-listen", &port.to_string()]].concat());
+    let _gateway = Process::quiet(without_token(gateway));
     let ask = |token: Option<&Token>, command: OperatorCommand| {
         bus::ask_gateway(port, token, &GatewayCommand::Boat { name: "blue_one".to_owned(), command }, LIMIT)
     };
@@ -104,21 +103,16 @@ fn who_has_the_wrong_keys_is_told_so_and_everybody_with_keys_may_stop_the_boats(
     );
     assert!(sim.endpoint.starts_with("tls/"), "{}", sim.endpoint);
     let with = |args: &[&str], keys: &Path| without_token(sim.squall(&[args, &["--keys", text(keys)]].concat()));
-    let refusal = |mut command: Command| {
-        let output = command.output().expect("the program starts");
-        assert!(!output.status.success(), "{command:?} works");
-        stderr(&output)
-    };
     for (text, want) in [
-        (refusal(without_token(sim.squall(&["agent", "--vehicle", "blue_one"]))), "the game has keys"),
-        (refusal(with(&["agent", "--vehicle", "blue_one"], &other.join("team-blue"))), "from another authority"),
+        (refused(without_token(sim.squall(&["agent", "--vehicle", "blue_one"]))), "the game has keys"),
+        (refused(with(&["agent", "--vehicle", "blue_one"], &other.join("team-blue"))), "from another authority"),
         (
-            refusal(with(&["agent", "--vehicle", "blue_one"], &of("team-red"))),
+            refused(with(&["agent", "--vehicle", "blue_one"], &of("team-red"))),
             "the keys of team-red are not for the agent of blue_one",
         ),
-        (refusal(with(&["agent", "--vehicle", "blue_one"], &of("observer"))), "are not for the agent of blue_one"),
-        (refusal(with(&["watch"], &of("sim"))), "only serve games"),
-        (refusal(with(&["watch"], &folder)), "this folder contains the bundles gateway, observer, operator, sim"),
+        (refused(with(&["agent", "--vehicle", "blue_one"], &of("observer"))), "are not for the agent of blue_one"),
+        (refused(with(&["watch"], &of("sim"))), "only serve games"),
+        (refused(with(&["watch"], &folder)), "this folder contains the bundles gateway, observer, operator, sim"),
     ] {
         assert!(text.contains(want), "{text}");
     }
@@ -130,11 +124,11 @@ fn who_has_the_wrong_keys_is_told_so_and_everybody_with_keys_may_stop_the_boats(
     });
     sim.wait_for_kind("started");
     let tell = |what: &str, part: &str| with(&["gateway", "tell", "all", what], &of(part));
-    assert!(tell("estop", "observer").status().expect("the program starts").success());
+    printed_by(tell("estop", "observer"));
     sim.wait_for_event("e_stopped", Value::Null);
-    let refused = refusal(tell("release", "observer"));
-    assert!(refused.contains("the keys of observer do not allow this"), "{refused}");
-    assert!(tell("release", "operator").status().expect("the program starts").success());
+    let said = refused(tell("release", "observer"));
+    assert!(said.contains("the keys of observer do not allow this"), "{said}");
+    printed_by(tell("release", "operator"));
     sim.wait_for_event("released", Value::Null);
     sim.stop();
     drop(agents);

@@ -38,9 +38,7 @@ fn sim_with_few_threads(name: &str, pace: &str) -> Sim {
 
 /// An observer of the game at this endpoint.
 fn observer(endpoint: &str, game: &str) -> Process {
-    let mut command = squall(&["watch", "--connect", endpoint, "--game", game, "--rate", "30"]);
-    command.stdout(Stdio::null()).stderr(Stdio::null());
-    Process::start(command)
+    Process::quiet(squall(&["watch", "--connect", endpoint, "--game", game, "--rate", "30"]))
 }
 
 /// Checks that the game goes on without a pause and loses no more agents.
@@ -185,12 +183,7 @@ fn a_sim_with_unread_output_continues() {
 }
 
 /// Time limit from an E-stop to the order for the boat.
-const PROMISED_MS: f64 = 200.0;
-
-/// Number of E-stops; the environment can raise it.
-fn tries() -> usize {
-    std::env::var("SQUALL_TRIES").ok().and_then(|text| text.parse().ok()).unwrap_or(100)
-}
+const PROMISED: Duration = Duration::from_millis(200);
 
 /// Waits for an order to hold (or not to) while the boat runs on; returns its time.
 fn ordered(orders: &Receiver<(Instant, bool)>, gateway: &mut Gateway, hold: bool) -> Instant {
@@ -219,13 +212,13 @@ fn an_e_stop_is_obeyed_at_once_under_a_flood_of_garbage() {
     let sim = sim_with_few_threads("real_attacker", &format!("{FACTOR}x"));
     let _agents = [sim.agent(&["blue_one"]), sim.agent(&["red_one"])];
     let mut gateway = Gateway::joined(&sim);
-    let (bus, operator, name) = (sim.bus(), sim.bus(), sim.name());
+    let ((bus, name, scenario), operator) = (sim.session(), sim.bus());
     let (sender, orders) = channel();
     let take = move |bytes: &[u8]| {
         let order: ExternalOrder = codec::decode(bytes).expect("an order");
         let _ = sender.send((Instant::now(), order.order.order() == Some(Order::Hold)));
     };
-    let key = topic::external_order(&name, &sim.info(&bus).scenario, ME);
+    let key = topic::external_order(&name, &scenario, ME);
     let _orders = bus.subscribe(key, take).expect("the hub is there");
     let stop = operator.publisher(topic::control(&name), Priority::Urgent).expect("the hub is there");
     ordered(&orders, &mut gateway, false);
@@ -234,28 +227,14 @@ fn an_e_stop_is_obeyed_at_once_under_a_flood_of_garbage() {
     let refused = |sim: &Sim| sim.newest_progress()["refused"].as_u64().expect("a number");
     let before = refused(&sim);
     wait_until("the flood has come", || refused(&sim) > before + 10_000);
-    let (start, before) = (Instant::now(), refused(&sim));
-    let mut took_ms: Vec<f64> = Vec::new();
-    for _ in 0..tries() {
+    for _ in 0..100 {
         driven(&orders, &mut gateway);
         let sent = Instant::now();
         stop.send_json(b"\"e_stop\"".to_vec()).expect("a session");
-        took_ms.push(ordered(&orders, &mut gateway, true).duration_since(sent).as_secs_f64() * 1e3);
+        let took = ordered(&orders, &mut gateway, true).duration_since(sent);
+        assert!(took < PROMISED, "it takes {took:?}");
         bus::control(&operator, &name, Control::Release).expect("it goes on");
     }
-    let rate = (refused(&sim) - before) as f64 / start.elapsed().as_secs_f64();
-    took_ms.sort_by(f64::total_cmp);
-    let at = |share: f64| took_ms[((took_ms.len() - 1) as f64 * share) as usize];
-    let distribution = format!(
-        "{} E-stops under {rate:.0} refused messages a second: median {:.2} ms, 90 % {:.2} ms, 99 % {:.1} ms, longest {:.1} ms",
-        took_ms.len(),
-        at(0.5),
-        at(0.9),
-        at(0.99),
-        at(1.0)
-    );
-    eprintln!("{distribution}");
-    assert!(at(1.0) < PROMISED_MS, "{distribution}");
     sim.stop();
 }
 
@@ -263,8 +242,8 @@ fn an_e_stop_is_obeyed_at_once_under_a_flood_of_garbage() {
 fn flood(sim: &Sim) -> Process {
     let mut command = Command::new(std::env::current_exe().expect("this program"));
     command.args(["--ignored", "--exact", "network::floods_a_game"]);
-    command.env(FLOODED, format!("{} {}", sim.endpoint, sim.game)).stdout(Stdio::null()).stderr(Stdio::null());
-    Process::start(command)
+    command.env(FLOODED, format!("{} {}", sim.endpoint, sim.game));
+    Process::quiet(command)
 }
 
 /// The variable that names the game to flood.

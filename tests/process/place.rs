@@ -1,7 +1,7 @@
 //! The game's address and token: nodes that start before their sim or outlive it find them by
 //! themselves.
 
-use crate::support::{FOUR, LIMIT, Process, Sim, free_endpoint, squall, stderr, stdout, temporary, wait_until};
+use crate::support::{FOUR, LIMIT, Process, Sim, free_endpoint, printed_by, squall, stdout, temporary, wait_until};
 use bus::token::TOKEN_VARIABLE;
 use bus::{Bus, BusError, Net};
 use messages::external::{OperatorCommand, OperatorReply};
@@ -91,9 +91,8 @@ fn a_gateway_that_outlives_its_sim_joins_the_next_and_requires_its_token() {
     let pace = ["--pace", "realtime"];
     // The gateway starts before the first sim, too.
     let mut command = gateway(&user, "twice", &boat);
-    command.stdout(Stdio::piped()).stderr(Stdio::null());
-    let mut gateway = Process::start(command);
-    let mut said = gateway.lines();
+    command.stderr(Stdio::null());
+    let (mut gateway, mut said) = Process::with_lines(command);
     let mut sim = user.sim("real_attacker", "twice", &endpoint, &pace);
     assert!(said.any(|line| line.contains("joined: the sim accepts the boat")));
     let before = user.bus(&sim);
@@ -117,8 +116,7 @@ fn a_gateway_that_outlives_its_sim_joins_the_next_and_requires_its_token() {
     assert_eq!(reply.status.vehicle, "blue_one");
     // At its control port, and by a command that gets neither token nor address.
     for command in ["estop", "release"] {
-        let told = user.squall(&["gateway", "tell", "blue_one", command]).output().expect("the program starts");
-        assert!(told.status.success(), "{command}: {}", stderr(&told));
+        printed_by(user.squall(&["gateway", "tell", "blue_one", command]));
     }
     gateway.signal("TERM");
     assert!(gateway.wait().success());
@@ -136,12 +134,11 @@ fn a_gateway_whose_terminal_is_held_obeys_all_the_same() {
     let mut command = gateway(&user, "held", &boat);
     command.stdout(full.try_clone().expect("a handle")).stderr(full);
     let _gateway = Process::start(command);
-    let tell = |command| user.squall(&["gateway", "tell", "blue_one", command]).output().expect("the program starts");
+    let tell = |command| user.squall(&["gateway", "tell", "blue_one", command]);
     // Before it joins, the gateway answers without its main loop.
-    let is_running = |told: &Output| told.status.success() && !stdout(told).contains("looking for the game");
-    wait_until("its loop answers", || is_running(&tell("status")));
+    let is_running = |told: Output| told.status.success() && !stdout(&told).contains("looking for the game");
+    wait_until("its loop answers", || is_running(tell("status").output().expect("the program starts")));
     for command in ["estop", "release"] {
-        let told = tell(command);
-        assert!(told.status.success(), "{command}: {}", stderr(&told));
+        printed_by(tell(command));
     }
 }

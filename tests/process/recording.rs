@@ -1,15 +1,14 @@
 //! Recordings of whole games, killed games and real boats; and replays of games.
 
 use crate::support::{
-    FOUR, Process, Sim, own, refusal_of, result_of, run, squall, squall_on_a_disk_of, stderr, stdout, temporary,
-    wait_until,
+    FOUR, Process, Sim, all_output, own, printed, refusal_of, refused, result_of, squall, squall_on_a_disk_of,
+    temporary, wait_until,
 };
 use bus::Priority;
 use messages::external::LinkBytes;
 use messages::{Message, PolicyProposal, Stamp, topic};
 use primitives::VehicleId;
 use recording::{Bag, Recording};
-use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 
@@ -25,11 +24,9 @@ fn opened(path: &Path) -> Recording {
     Recording::open(path).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// The output of the replay check, and whether the rerun reproduced the game.
-fn checked(path: &Path) -> (bool, String) {
-    let output = run(&["replay", "--check", &path.display().to_string()]);
-    let said = [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).concat();
-    (output.status.success(), said)
+/// The output of the replay check; the rerun must reproduce the game.
+fn checked(path: &Path) -> String {
+    printed(&["replay", "--check", &path.display().to_string()])
 }
 
 #[test]
@@ -49,11 +46,8 @@ fn a_game_recorded_replayed_and_played_again_is_one_game() {
         let score = recording.frames().last().expect("frames").expect("a frame").score;
         let told = &result["score"]["teams"];
         assert_eq!([told["blue"].as_u64(), told["red"].as_u64()], [score[0], score[1]].map(|n| Some(u64::from(n))));
-        let (same, said) = checked(&path);
-        assert!(
-            same && said.contains("identical: 6001 frames to 600.0 s") && said.contains(&ending.outcome.digest),
-            "{said}"
-        );
+        let said = checked(&path);
+        assert!(said.contains("identical: 6001 frames to 600.0 s") && said.contains(&ending.outcome.digest), "{said}");
         digests.push(ending.outcome.digest.clone());
     }
     assert_eq!(digests[0], digests[1]);
@@ -91,8 +85,8 @@ fn a_killed_sim_leaves_a_recording_up_to_the_last_second() {
     let last_s = recording.frame(recording.frame_count() - 1).at.as_s();
     // The documented limit is a second, or 20 s of the game; the rest allows for a busy machine.
     assert!(last_s > now_s - 40.0, "{last_s} s recorded of {now_s} s");
-    let (same, said) = checked(&path);
-    assert!(same && said.contains("the file ends abruptly there"), "{said}");
+    let said = checked(&path);
+    assert!(said.contains("the file ends abruptly there"), "{said}");
 }
 
 #[test]
@@ -129,35 +123,11 @@ fn what_is_heard_is_written_down_if_it_is_sound() {
     assert!(said.contains(&format!("cannot record to {file}")), "{said}");
 }
 
-#[test]
-fn what_is_no_recording_is_refused_with_the_reason() {
-    for (file, part) in [("README.md", "it is not an MCAP file"), ("nowhere.mcap", "cannot read the recording")] {
-        for how in [&["replay", file][..], &["replay", "--check", file]] {
-            let said = refusal_of(how);
-            assert!(said.contains(file) && said.contains(part), "{how:?}: {said}");
-        }
-    }
-    let dir = temporary();
-    let taken = dir.path().join("file").display().to_string();
-    std::fs::write(&taken, "").expect("a file can be written");
-    let game = "scenarios/games/attack_1v1.toml";
-    for (args, part) in [
-        (&["replay", "--check", "README.md", "--listen", "127.0.0.1:0"][..], "--check shows no page"),
-        (&["run", game, "--in-process", "--record", &taken], "cannot create the folder"),
-        (&["run", game, "--no-record", "--token", "secret"], "require --view"),
-        (&["view", "--listen", "0.0.0.0:0"], "or require a token"),
-    ] {
-        let said = refusal_of(args);
-        assert!(said.contains(part), "{args:?}: {said}");
-    }
-}
-
-/// Runs the program on a disk that is full after one or two MiB, depending on the shell's block
-/// size.
+/// Runs the program, which must fail, on a disk that is full after one or two MiB, depending on the
+/// shell's block size; returns the last line of its error text.
 #[cfg(unix)]
-fn run_on_a_full_disk(args: &[&str]) -> (bool, String) {
-    let output = squall_on_a_disk_of(2048, args).output().expect("a shell");
-    (output.status.success(), stderr(&output))
+fn refused_on_a_full_disk(args: &[&str]) -> String {
+    refused(squall_on_a_disk_of(2048, args)).lines().last().unwrap_or_default().to_owned()
 }
 
 #[test]
@@ -167,16 +137,15 @@ fn a_recording_that_the_disk_has_no_room_for_is_told_in_the_end() {
         let dir = temporary();
         let folder = dir.path().display().to_string();
         let args = [&["run", "scenarios/games/attack_1v1.toml", "--record", &folder], how].concat();
-        let (is_good, said) = run_on_a_full_disk(&args);
-        let last = said.lines().last().unwrap_or_default();
-        assert!(!is_good && last.starts_with("squall: the recording ") && last.contains("too large"), "{said}");
+        let last = refused_on_a_full_disk(&args);
+        assert!(last.starts_with("squall: the recording ") && last.contains("too large"), "{last}");
         assert!(opened(&only_recording(dir.path())).is_cut(), "what there was room for is there");
     }
     let dir = temporary();
     let file = dir.path().join("game.mcap").display().to_string();
     let args = ["sim", "scenarios/games/attack_1v1.toml", "--record", &file, "--join-s", "0"];
-    let (is_good, said) = run_on_a_full_disk(&args);
-    assert!(!is_good && said.lines().last().is_some_and(|last| last.contains("is incomplete")), "{said}");
+    let last = refused_on_a_full_disk(&args);
+    assert!(last.contains("is incomplete"), "{last}");
 }
 
 #[test]
@@ -204,30 +173,25 @@ fn a_damaged_message_costs_itself_alone() {
     let folder = dir.path().display().to_string();
     result_of(&["scenarios/games/attack_1v1.toml", "--in-process", "--record", &folder]);
     let path = only_recording(dir.path());
-    let all = stdout(&run(&["log", "--events", &path.display().to_string()]));
+    let all = printed(&["log", "--events", &path.display().to_string()]);
     let frame = opened(&path).frame(7).bytes;
     let mut bytes = std::fs::read(&path).expect("it is there");
     let place = bytes.windows(frame.len()).position(|window| window == frame).expect("it is in it");
     // Corrupt the encapsulation header, which marks a message as CDR.
     bytes[place] = 0xff;
     std::fs::write(&path, bytes).expect("it is written");
-    let output = run(&["log", &path.display().to_string()]);
-    let told = stdout(&output);
-    assert!(
-        output.status.success() && told.contains("1 message is damaged and left out; message 7 of frame"),
-        "{told}"
-    );
+    let told = printed(&["log", &path.display().to_string()]);
+    assert!(told.contains("1 message is damaged and left out; message 7 of frame"), "{told}");
     assert!(told.contains(&all), "everything else is told as before");
-    let csv = stdout(&run(&["log", &path.display().to_string(), "--csv", "frame"]));
+    let csv = printed(&["log", &path.display().to_string(), "--csv", "frame"]);
     assert_eq!(csv.lines().count(), opened(&path).frame_count(), "a line of names, and a line less");
     let mut replay = squall(&["replay", &path.display().to_string(), "--listen", "127.0.0.1:0"]);
-    replay.stdout(Stdio::piped()).stderr(Stdio::piped());
-    let mut replay = Process::start(replay);
-    let shown = replay.lines().next().expect("it says where it is");
+    replay.stderr(Stdio::piped());
+    let (mut replay, mut lines) = Process::with_lines(replay);
+    let shown = lines.next().expect("it says where it is");
     assert!(shown.contains("http://127.0.0.1:"), "{shown}");
     replay.kill();
-    let mut said = String::new();
-    replay.0.stderr.take().expect("piped").read_to_string(&mut said).expect("text");
+    let said = replay.errors();
     assert_eq!(said.matches("1 message is damaged and left out; message 7 of frame").count(), 1, "{said}");
 }
 
@@ -263,8 +227,7 @@ fn real_boats_are_recorded_with_every_byte_and_their_game_can_be_played_again() 
             theirs.len()
         );
     }
-    let (same, said) = checked(&path);
-    assert!(same, "{said}");
+    checked(&path);
     for (args, part) in [
         (&["log", &file][..], "gateway of blue_one"),
         (&["log", &file, "--csv", "link/blue_one"], "to_boat,\"$PSEAC"),
@@ -273,8 +236,7 @@ fn real_boats_are_recorded_with_every_byte_and_their_game_can_be_played_again() 
         (&["replay", "--check", &file], "not a recording of a game: it is of a gateway"),
         (&["gateway", "replay", &path.display().to_string()], "not a recording of a gateway: it is of a game"),
     ] {
-        let output = run(args);
-        let said = [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).concat();
+        let said = all_output(squall(args));
         assert!(said.contains(part), "{args:?} should say {part:?}, but says {said:.500}");
     }
 }

@@ -1,6 +1,6 @@
 //! Agents that send invalid data: refused with a counted reason, without effect on the game.
 
-use crate::support::{FOUR, Sim};
+use crate::support::{FOUR, Sim, join};
 use bus::{Bus, Latest, Priority, Publisher};
 use messages::{JoinReply, JoinRequest, Message, Order, Orders, Picture, Role, Stamp, VehicleOrder, topic};
 use primitives::{TeamId, VehicleId, codec};
@@ -16,11 +16,6 @@ struct Rogue {
     _standing: bus::Declaration,
 }
 
-fn join(sim: &Sim, bus: &Bus, request: &JoinRequest) -> JoinReply {
-    let key = topic::join(&sim.name(), &sim.info(bus).scenario, request.role, &request.vehicles);
-    bus.request(&key, request, Duration::from_secs(10)).expect("a session").expect("the sim answers")
-}
-
 fn request(vehicles: &[&str]) -> JoinRequest {
     let vehicles = vehicles.iter().map(|name| (*name).to_owned()).collect();
     JoinRequest { version: primitives::VERSION.to_owned(), role: Role::Agent, node: "rogue".to_owned(), vehicles }
@@ -28,18 +23,16 @@ fn request(vehicles: &[&str]) -> JoinRequest {
 
 impl Rogue {
     fn enter(sim: &Sim) -> Rogue {
-        let bus = sim.bus();
-        let game = sim.name();
+        let (bus, game, scenario) = sim.session();
         let pictures = Arc::new(Latest::new(1));
         let slots = Arc::clone(&pictures);
-        let key = topic::picture(&game, &sim.info(&bus).scenario, TeamId(1));
+        let key = topic::picture(&game, &scenario, TeamId(1));
         let standing = bus.subscribe(key, move |bytes| slots.put(0, codec::decode(bytes).expect("a picture")));
-        let JoinReply::Granted { ticket, .. } = join(sim, &bus, &request(&["red_two"])) else {
+        let JoinReply::Granted { ticket, .. } = join(&bus, (&game, &scenario), &request(&["red_two"])) else {
             panic!("the boat is free")
         };
-        let orders = bus
-            .publisher(topic::orders(&game, &sim.info(&bus).scenario, &[TeamId(1)], "rogue"), Priority::Normal)
-            .expect("a session");
+        let key = topic::orders(&game, &scenario, &[TeamId(1)], "rogue");
+        let orders = bus.publisher(key, Priority::Normal).expect("a session");
         Rogue { _bus: bus, pictures, orders, ticket, _standing: standing.expect("a session") }
     }
 
@@ -108,14 +101,13 @@ fn every_agent_mistake_is_refused_counted_and_harmless() {
 #[test]
 fn another_version_is_refused_clearly() {
     let sim = Sim::start("long", &[]);
-    let bus = sim.bus();
-    let JoinReply::Refused { reason } =
-        join(&sim, &bus, &JoinRequest { version: "9.9.9".to_owned(), ..request(&["blue_one"]) })
-    else {
+    let (bus, name, scenario) = sim.session();
+    let other = JoinRequest { version: "9.9.9".to_owned(), ..request(&["blue_one"]) };
+    let JoinReply::Refused { reason } = join(&bus, (&name, &scenario), &other) else {
         panic!("another version is let in")
     };
     assert!(reason.contains("9.9.9") && reason.contains(primitives::VERSION), "{reason}");
-    let key = topic::join(&sim.name(), &sim.info(&bus).scenario, Role::Agent, &[]);
+    let key = topic::join(&name, &scenario, Role::Agent, &[]);
     let answer = bus.ask(&key, b"{]".to_vec(), Duration::from_secs(10)).expect("a session");
     let text = String::from_utf8_lossy(&answer.expect("an answer")).into_owned();
     assert!(text.contains("cannot parse the request"), "{text}");

@@ -2,8 +2,10 @@
 
 use bus::token::TOKEN_VARIABLE;
 use bus::{Bus, Declaration, Net, Token, Watched};
-use messages::GameInfo;
+use messages::helm::HelmReport;
 use messages::topic::{self, GameName};
+use messages::{GameInfo, JoinReply, JoinRequest};
+use scenario::Scenario;
 use serde_json::Value;
 use std::io::{BufRead, BufReader, Read};
 use std::process::{Child, ChildStdin, Command, ExitStatus, Output, Stdio};
@@ -56,10 +58,29 @@ pub(crate) fn refusal_of(args: &[&str]) -> String {
     refused(squall(args))
 }
 
-fn refused(mut command: Command) -> String {
+/// Runs a command, which must fail; returns its error text.
+pub(crate) fn refused(mut command: Command) -> String {
     let output = command.output().expect("the program starts");
     assert!(!output.status.success(), "{command:?} works");
     stderr(&output)
+}
+
+/// Runs the program, which must succeed; returns its standard output.
+pub(crate) fn printed(args: &[&str]) -> String {
+    printed_by(squall(args))
+}
+
+/// Runs a command, which must succeed; returns its standard output.
+pub(crate) fn printed_by(mut command: Command) -> String {
+    let output = command.output().expect("the program starts");
+    assert!(output.status.success(), "{command:?}: {}{}", stdout(&output), stderr(&output));
+    stdout(&output)
+}
+
+/// All output of the program, whether it succeeds or not.
+pub(crate) fn all_output(mut command: Command) -> String {
+    let output = command.output().expect("the program starts");
+    stdout(&output) + &stderr(&output)
 }
 
 /// A folder that is deleted when dropped.
@@ -94,14 +115,26 @@ pub(crate) fn newest<T: Default + Send + 'static>(
     (newest, standing.expect("the hub is there"))
 }
 
+/// The reply to a node that asks for boats.
+pub(crate) fn join(bus: &Bus, (name, scenario): (&GameName, &Scenario), request: &JoinRequest) -> JoinReply {
+    let key = topic::join(name, scenario, request.role, &request.vehicles);
+    bus.request(&key, request, LIMIT).expect("the hub is there").expect("an answer")
+}
+
+/// The report of a vehicle's helm.
+pub(crate) fn helm(bus: &Bus, (name, scenario): (&GameName, &Scenario), vehicle: &str, question: &[u8]) -> HelmReport {
+    let vehicle = scenario.vehicle_by_name(vehicle).expect("it is there");
+    let answer = bus.ask_node(&topic::helm(name, scenario, vehicle), question.to_vec(), LIMIT);
+    serde_json::from_slice(&answer.expect("the hub is there").expect("an answer")).expect("a report")
+}
+
 /// Runs a game to its end and returns its result.
 pub(crate) fn result_of(args: &[&str]) -> Value {
     let dir = temporary();
     let json = dir.path().join("result.json");
     let json_text = json.display().to_string();
     let unrecorded: &[&str] = if args.contains(&"--record") { &[] } else { &["--no-record"] };
-    let output = run(&[&["run"], args, unrecorded, &["--json", &json_text]].concat());
-    assert!(output.status.success(), "{args:?}: {}", stderr(&output));
+    printed(&[&["run"], args, unrecorded, &["--json", &json_text]].concat());
     serde_json::from_str(&std::fs::read_to_string(&json).expect("a result was written")).expect("it is JSON")
 }
 
@@ -139,6 +172,20 @@ pub(crate) struct Process(pub(crate) Child);
 impl Process {
     pub(crate) fn start(mut command: Command) -> Process {
         Process(command.spawn().expect("the program starts"))
+    }
+
+    /// Starts a command whose output is discarded.
+    pub(crate) fn quiet(mut command: Command) -> Process {
+        command.stdout(Stdio::null()).stderr(Stdio::null());
+        Process::start(command)
+    }
+
+    /// Starts a command; returns the lines of its standard output, too.
+    pub(crate) fn with_lines(mut command: Command) -> (Process, impl Iterator<Item = String> + use<>) {
+        command.stdout(Stdio::piped());
+        let mut process = Process::start(command);
+        let lines = process.lines();
+        (process, lines)
     }
 
     /// Sends SIGKILL.
@@ -216,9 +263,8 @@ impl Sim {
     /// Serves a test scenario with a program that accepts the arguments of `squall`.
     pub(crate) fn start_with(mut program: Command, name: &str, args: &[&str]) -> Sim {
         program.args(["sim", &own(name), "--for-parent"]).args(args);
-        program.stdin(Stdio::piped()).stdout(Stdio::piped());
-        let mut process = Process::start(program);
-        let lines = process.lines();
+        program.stdin(Stdio::piped());
+        let (mut process, lines) = Process::with_lines(program);
         let (sender, messages) = channel();
         std::thread::spawn(move || {
             lines.filter_map(|line| serde_json::from_str(&line).ok()).map_while(|v| sender.send(v).ok()).for_each(drop);
@@ -285,9 +331,7 @@ impl Sim {
 
     /// Starts a process with these arguments and the game's address; its output is discarded.
     pub(crate) fn quiet(&self, args: &[&str]) -> Process {
-        let mut command = self.squall(args);
-        command.stdout(Stdio::null()).stderr(Stdio::null());
-        Process::start(command)
+        Process::quiet(self.squall(args))
     }
 
     /// The game's name.
@@ -305,6 +349,11 @@ impl Sim {
         self.squall(args).output().expect("the program starts")
     }
 
+    /// Runs the program with these arguments; it must succeed. Returns its standard output.
+    pub(crate) fn printed(&self, args: &[&str]) -> String {
+        printed_by(self.squall(args))
+    }
+
     /// Runs the program with these arguments; it must fail. Returns its error text.
     pub(crate) fn refusal_of(&self, args: &[&str]) -> String {
         refused(self.squall(args))
@@ -314,6 +363,13 @@ impl Sim {
     pub(crate) fn info(&self, bus: &Bus) -> GameInfo {
         let info = bus.ask(&topic::scenario(&self.name()), Vec::new(), LIMIT).expect("the hub is there");
         serde_json::from_slice(&info.expect("an answer")).expect("a game")
+    }
+
+    /// A session at its hub, its name and its scenario.
+    pub(crate) fn session(&self) -> (Bus, GameName, Scenario) {
+        let bus = self.bus();
+        let scenario = self.info(&bus).scenario;
+        (bus, self.name(), scenario)
     }
 
     /// A session at its hub.

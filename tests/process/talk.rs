@@ -1,12 +1,10 @@
 //! Team messages between processes are received exactly one decision later.
 
-use crate::support::{LIMIT, Process, Sim, assert_a_game_each, own, wait_until};
+use crate::support::{LIMIT, Process, Sim, assert_a_game_each, helm, own, wait_until};
 use messages::helm::HelmReport;
-use messages::topic::{self, GameName};
-use messages::{GameInfo, Message, Say, Stamp, Word};
+use messages::{Message, Say, Stamp, Word, topic};
 use primitives::{TeamId, VehicleId, codec};
 use std::sync::mpsc::channel;
-use std::time::Duration;
 
 #[test]
 fn boats_that_talk_play_the_same_game_across_processes_as_in_one() {
@@ -14,11 +12,7 @@ fn boats_that_talk_play_the_same_game_across_processes_as_in_one() {
 }
 
 /// A variable of a boat, as reported by its helm.
-fn variable(bus: &bus::Bus, name: &GameName, info: &GameInfo, vehicle: &str, variable: &str) -> String {
-    let scenario = &info.scenario;
-    let key = topic::helm(name, scenario, scenario.vehicle_by_name(vehicle).expect("it is there"));
-    let answer = bus.ask_node(&key, Vec::new(), Duration::from_secs(10)).expect("the hub is there").expect("an answer");
-    let report: HelmReport = serde_json::from_slice(&answer).expect("a report");
+fn variable(report: HelmReport, variable: &str) -> String {
     report.variables.into_iter().find(|v| v.name == variable).expect("it has it").value
 }
 
@@ -32,13 +26,12 @@ fn a_killed_teammate_does_not_silence_the_others_and_nonsense_is_harmless() {
     agents[1].kill();
     sim.wait_for_event("agent_lost", "blue_2");
 
-    let (bus, name) = (sim.bus(), sim.name());
-    let info = sim.info(&bus);
+    let (bus, name, scenario) = sim.session();
     let (sender, said) = channel();
     let hear = move |bytes: &[u8]| sender.send(codec::decode::<Say>(bytes)).unwrap_or_default();
-    let _standing = bus.subscribe(topic::say(&name, &info.scenario, TeamId(0)), hear).expect("the hub is there");
+    let _standing = bus.subscribe(topic::say(&name, &scenario, TeamId(0)), hear).expect("the hub is there");
     let publisher =
-        bus.publisher(topic::say(&name, &info.scenario, TeamId(0)), bus::Priority::Normal).expect("the hub is there");
+        bus.publisher(topic::say(&name, &scenario, TeamId(0)), bus::Priority::Normal).expect("the hub is there");
     for vehicle in [1, 4, 5, 99] {
         let stamp = Stamp { seq: u64::MAX, version: Say::VERSION, ..Stamp::default() };
         let word = Word { vehicle: VehicleId(vehicle), key: 1, value: f64::NAN };
@@ -54,7 +47,7 @@ fn a_killed_teammate_does_not_silence_the_others_and_nonsense_is_harmless() {
     }
     assert_eq!(speakers[1], 0, "the dead do not talk");
     // The third boat's view of the first keeps changing; the second's last message stays.
-    let high = || variable(&bus, &name, &info, "blue_3", "high");
+    let high = || variable(helm(&bus, (&name, &scenario), "blue_3", b""), "high");
     let first = high();
     wait_until("it hears something new", || high() != first);
     let done = sim.stop();

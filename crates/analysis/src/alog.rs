@@ -39,13 +39,14 @@ pub type Open<'a> = dyn FnMut(&str) -> io::Result<Box<dyn Write>> + 'a;
 struct Log {
     file: BufWriter<Box<dyn Write>>,
     start_utc_s: f64,
+    /// When the next node report is due, s.
+    report_s: f64,
 }
 
 /// The shoreside's log being written.
 struct Shoreside {
     log: Log,
     points: Vec<Option<u32>>,
-    reported: Every,
     has_begun: bool,
 }
 
@@ -53,7 +54,6 @@ struct Shoreside {
 struct Vehicle {
     log: Log,
     place: usize,
-    reported: Every,
     before: Option<Sample>,
 }
 
@@ -99,7 +99,7 @@ impl Shoreside {
     fn begin(header: &Header, open: &mut Open<'_>) -> io::Result<Shoreside> {
         let log = Log::begin(header, SHORESIDE, open)?;
         let points = vec![None; header.info.scenario.teams.len()];
-        Ok(Shoreside { log, points, reported: Every::new(REPORT_S), has_begun: false })
+        Ok(Shoreside { log, points, has_begun: false })
     }
 
     fn add(&mut self, scenario: &Scenario, step: &Step) -> io::Result<()> {
@@ -117,7 +117,7 @@ impl Shoreside {
                 log.row(time_s, &format!("{}_SCORES", team.name.to_uppercase()), &now.to_string())?;
             }
         }
-        if self.reported.is_due(time_s) {
+        if log.reports(time_s) {
             for (place, sample) in step.samples.iter().enumerate() {
                 let report = log.node_report(time_s, scenario, (place, sample, &sample.truth));
                 log.row(time_s, "NODE_REPORT", &report)?;
@@ -130,7 +130,7 @@ impl Shoreside {
 impl Vehicle {
     fn begin(header: &Header, place: usize, open: &mut Open<'_>) -> io::Result<Vehicle> {
         let log = Log::begin(header, &header.info.scenario.vehicles[place].name, open)?;
-        Ok(Vehicle { log, place, reported: Every::new(REPORT_S), before: None })
+        Ok(Vehicle { log, place, before: None })
     }
 
     fn add(&mut self, scenario: &Scenario, step: &Step) -> io::Result<()> {
@@ -149,7 +149,7 @@ impl Vehicle {
                 log.row(time_s, name, if is { "true" } else { "false" })?;
             }
         }
-        if self.reported.is_due(time_s) {
+        if log.reports(time_s) {
             let report = log.node_report(time_s, scenario, (self.place, sample, &estimated));
             log.row(time_s, "NODE_REPORT_LOCAL", &report)?;
         }
@@ -165,7 +165,16 @@ impl Log {
         let mut file = BufWriter::new(open(community)?);
         writeln!(file, "{line}\n%% LOG FILE:       {community}.alog\n%% FILE OPENED ON  {opened}")?;
         writeln!(file, "%% LOGSTART        {start_utc_s:>20.2}\n{line}")?;
-        Ok(Log { file, start_utc_s })
+        Ok(Log { file, start_utc_s, report_s: f64::NEG_INFINITY })
+    }
+
+    /// Whether a node report is due at this time.
+    fn reports(&mut self, at_s: f64) -> bool {
+        let is_due = at_s >= self.report_s - 1e-6;
+        if is_due {
+            self.report_s = at_s + REPORT_S;
+        }
+        is_due
     }
 
     fn row(&mut self, at_s: f64, variable: &str, value: &str) -> io::Result<()> {
@@ -265,25 +274,5 @@ fn mode(sample: &Sample) -> &'static str {
         Sample { carrying: true, .. } => "CARRYING",
         Sample { is_free: false, .. } => "STOPPED",
         _ => "PLAYING",
-    }
-}
-
-/// Limits a stream of samples to one per period.
-struct Every {
-    step_s: f64,
-    next_s: f64,
-}
-
-impl Every {
-    fn new(step_s: f64) -> Every {
-        Every { step_s, next_s: f64::NEG_INFINITY }
-    }
-
-    fn is_due(&mut self, at_s: f64) -> bool {
-        let is_due = at_s >= self.next_s - 1e-6;
-        if is_due {
-            self.next_s = at_s + self.step_s;
-        }
-        is_due
     }
 }

@@ -5,6 +5,7 @@ use crate::response::{Response, response};
 use crate::series::{BoatSeries, GameSeries};
 use crate::track::{TrackDifference, apart};
 use recording::Header;
+use scenario::Scenario;
 use scenario::outcome::EventOutcome;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -124,7 +125,7 @@ impl Comparison {
             notes: notes([head_a, head_b], [a, b]),
             boats,
             score: score(a, b),
-            events: events([a.named_events(scenario_a), b.named_events(scenario_b)], until_s, tolerance_s),
+            events: events([(a, scenario_a), (b, scenario_b)].map(named_events), until_s, tolerance_s),
         })
     }
 }
@@ -151,7 +152,7 @@ fn notes(heads: [&Header; 2], [a, b]: [&GameSeries; 2]) -> Vec<String> {
     let kind = |is_real: bool| if is_real { "real" } else { "simulated" };
     for (i, boat) in a.boats.iter().enumerate() {
         let Some(j) = b.boats.iter().position(|there| there.name == boat.name) else { continue };
-        let of = |scenario: &scenario::Scenario, i: usize| scenario.boat_of(primitives::VehicleId::at(i)).name.clone();
+        let of = |scenario: &Scenario, i: usize| scenario.boat_of(primitives::VehicleId::at(i)).name.clone();
         differ(&boat.name, &of(one, i), &of(other, j));
         differ(&boat.name, kind(boat.is_real), kind(b.boats[j].is_real));
     }
@@ -188,6 +189,10 @@ fn score(a: &GameSeries, b: &GameSeries) -> BTreeMap<String, [Option<u32>; 2]> {
         }
     }
     score
+}
+
+fn named_events((series, scenario): (&GameSeries, &Scenario)) -> Vec<EventOutcome> {
+    series.events.iter().map(|logged| EventOutcome::new(scenario, logged)).collect()
 }
 
 /// The attributes of an event, apart from its time, that must match.
@@ -248,27 +253,26 @@ mod tests {
     }
 
     #[test]
-    fn events_are_the_same_within_the_tolerance() {
-        let a = vec![event(10.0, "grabbed", "x"), event(20.0, "tagged", "x"), event(50.0, "tagged", "x")];
-        let b = vec![event(11.9, "grabbed", "x"), event(20.0, "tagged", "y"), event(49.0, "tagged", "x")];
-        let found = events([a.clone(), b], 100.0, 2.0);
-        assert_eq!((found.in_both, times(&found.only_in_a), times(&found.only_in_b)), (2, vec![20.0], vec![20.0]));
+    fn events_within_the_tolerance_are_paired_once_up_to_the_end_of_the_shorter_game() {
+        let x = |at_s| event(at_s, "tagged", "x");
+        let a = vec![event(10.0, "grabbed", "x"), x(20.0), x(50.0)];
+        let b = vec![event(11.9, "grabbed", "x"), event(20.0, "tagged", "y"), x(49.0)];
+        let found = events([a.clone(), b.clone()], 100.0, 2.0);
         assert_eq!(found.counts.get("tagged"), Some(&[2, 2]));
-        let same = events([a.clone(), a], 100.0, 0.0);
-        assert_eq!((same.in_both, same.only_in_a.len(), same.only_in_b.len()), (3, 0, 0));
-    }
-
-    #[test]
-    fn each_event_has_one_counterpart_at_most() {
-        let a = vec![event(10.0, "tagged", "x"), event(11.0, "tagged", "x"), event(12.0, "tagged", "x")];
-        let b = vec![event(11.5, "tagged", "x")];
-        let found = events([a, b], 100.0, 2.0);
-        assert_eq!((found.in_both, times(&found.only_in_a), times(&found.only_in_b)), (1, vec![11.0, 12.0], vec![]));
-    }
-
-    #[test]
-    fn what_comes_after_the_shorter_game_is_not_missing() {
-        let found = events([vec![event(10.0, "tagged", "x"), event(61.0, "tagged", "x")], vec![]], 60.0, 2.0);
-        assert_eq!((found.in_both, times(&found.only_in_a)), (0, vec![10.0]));
+        for (what, [a, b], until_s, tolerance_s, want) in [
+            ("another boat", [a.clone(), b], 100.0, 2.0, (2, vec![20.0], vec![20.0])),
+            ("the same", [a.clone(), a], 100.0, 0.0, (3, vec![], vec![])),
+            (
+                "one of three",
+                [vec![x(10.0), x(11.0), x(12.0)], vec![x(11.5)]],
+                100.0,
+                2.0,
+                (1, vec![11.0, 12.0], vec![]),
+            ),
+            ("after the end", [vec![x(10.0), x(61.0)], vec![]], 60.0, 2.0, (0, vec![10.0], vec![])),
+        ] {
+            let found = events([a, b], until_s, tolerance_s);
+            assert_eq!((found.in_both, times(&found.only_in_a), times(&found.only_in_b)), want, "{what}");
+        }
     }
 }

@@ -32,6 +32,6 @@ pub use link_line::{Line, Lines};
 pub use response::{Response, SETTLED_S};
 pub use series::{BoatSeries, GameSeries};
 pub use statistics::{BoatStatistics, NavigationError, StatisticsBuilder, SteeringError};
-pub use step::{Sample, Step, for_each_step};
+pub use step::{Sample, Step, for_each_step, ordered_m_s};
 pub use summary::{Summary, Topic, topics};
-pub use track::{TrackDifference, distances};
+pub use track::TrackDifference;

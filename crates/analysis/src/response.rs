@@ -119,7 +119,9 @@ fn proportion(pairs: &[OrderAndAnswer]) -> (f64, f64) {
 
 fn hold_drift(series: &GameSeries, boat: &BoatSeries) -> Option<[f64; 2]> {
     let (mut held_s, mut sum, mut count) = (0.0, Ned::default(), 0_u32);
-    for (sample, step_s) in boat.samples.iter().zip(series.steps_s()) {
+    let mut before_s = None;
+    for (sample, time_s) in boat.samples.iter().zip(&series.times_s) {
+        let step_s = time_s - before_s.replace(*time_s).unwrap_or(*time_s);
         let holds = sample.order == Order::Hold && (sample.is_free || sample.agent_lost);
         held_s = if holds { held_s + step_s } else { 0.0 };
         if held_s > SETTLED_S {

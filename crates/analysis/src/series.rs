@@ -5,8 +5,7 @@ use crate::step::{Sample, Step, for_each_step};
 use primitives::Ned;
 use recording::{Damaged, Recording};
 use rules::event::Logged;
-use scenario::outcome::EventOutcome;
-use scenario::{Scenario, Source};
+use scenario::Source;
 
 /// Limit of samples of all boats together, about 140 bytes each. Longer games are thinned out.
 const SAMPLES_MAX: usize = 1_000_000;
@@ -111,13 +110,6 @@ impl GameSeries {
         self.times_s.last().zip(self.times_s.first()).map_or(0.0, |(last, first)| last - first)
     }
 
-    /// The time each sample covers, s: since the previous one, and 0 for the first.
-    pub fn steps_s(&self) -> impl Iterator<Item = f64> + '_ {
-        let first = self.times_s.first().copied().unwrap_or(0.0);
-        let before = std::iter::once(first).chain(self.times_s.iter().copied());
-        self.times_s.iter().zip(before).map(|(now, before)| now - before)
-    }
-
     /// Index of the sample at this time: the last one not later.
     #[must_use]
     pub fn sample_at(&self, at_s: f64) -> usize {
@@ -128,11 +120,5 @@ impl GameSeries {
     #[must_use]
     pub fn boat(&self, name: &str) -> Option<&BoatSeries> {
         self.boats.iter().find(|boat| boat.name == name)
-    }
-
-    /// All events, with names.
-    #[must_use]
-    pub fn named_events(&self, scenario: &Scenario) -> Vec<EventOutcome> {
-        self.events.iter().map(|logged| EventOutcome::new(scenario, logged)).collect()
     }
 }

@@ -5,11 +5,11 @@ use crate::step::{Sample, Step};
 use primitives::Ned;
 use primitives::angle::wrap_pi;
 use rules::count::{Counts, Tally};
-use scenario::{Scenario, Source, Vehicle};
+use scenario::{Scenario, Source};
 use serde::{Deserialize, Serialize};
 
 /// Statistics of one boat in a game.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct BoatStatistics {
     /// The boat.
     pub boat: String,
@@ -63,8 +63,7 @@ pub struct SteeringError {
 }
 
 /// Builds the statistics of all boats decision by decision. Only sums are kept.
-pub struct StatisticsBuilder<'a> {
-    scenario: &'a Scenario,
+pub struct StatisticsBuilder {
     /// Time of the previous decision, s.
     before_s: Option<f64>,
     span_s: f64,
@@ -72,17 +71,12 @@ pub struct StatisticsBuilder<'a> {
     boats: Vec<BoatSums>,
 }
 
-#[derive(Clone, Debug, Default)]
+#[derive(Default)]
 struct BoatSums {
+    /// The statistics; its means, counts and errors are known in the end.
+    sums: BoatStatistics,
     before: Option<Ned>,
-    distance_m: f64,
     travelled_m: f64,
-    speed_max_m_s: f64,
-    tagged_s: f64,
-    outside_s: f64,
-    carrying_s: f64,
-    agent_lost_s: f64,
-    nav_lost_s: f64,
     nav_error: MeanSquare,
     nav_errors_m: Quantile,
     heading_error: MeanSquare,
@@ -90,13 +84,21 @@ struct BoatSums {
     steered_s: f64,
 }
 
-impl<'a> StatisticsBuilder<'a> {
+impl StatisticsBuilder {
     /// Starts before the first decision of a game.
     #[must_use]
-    pub fn new(scenario: &'a Scenario) -> StatisticsBuilder<'a> {
-        let count = scenario.vehicles.len();
-        let (tally, boats) = (Tally::new(count), vec![BoatSums::default(); count]);
-        StatisticsBuilder { scenario, before_s: None, span_s: 0.0, tally, boats }
+    pub fn new(scenario: &Scenario) -> StatisticsBuilder {
+        let boat = |vehicle: &scenario::Vehicle| BoatSums {
+            sums: BoatStatistics {
+                boat: vehicle.name.clone(),
+                team: scenario.teams.get(vehicle.team.index()).map(|team| team.name.clone()).unwrap_or_default(),
+                is_real: vehicle.source == Source::External,
+                ..BoatStatistics::default()
+            },
+            ..BoatSums::default()
+        };
+        let boats: Vec<BoatSums> = scenario.vehicles.iter().map(boat).collect();
+        StatisticsBuilder { before_s: None, span_s: 0.0, tally: Tally::new(boats.len()), boats }
     }
 
     /// Adds a decision.
@@ -111,23 +113,22 @@ impl<'a> StatisticsBuilder<'a> {
     /// The statistics, by vehicle index.
     #[must_use]
     pub fn end(self) -> Vec<BoatStatistics> {
-        let boats = self.scenario.vehicles.iter().zip(self.boats).zip(self.tally.vehicles);
-        boats.map(|((vehicle, sums), counts)| sums.end(vehicle, counts, self.scenario, self.span_s)).collect()
+        self.boats.into_iter().zip(self.tally.vehicles).map(|(boat, counts)| boat.end(counts, self.span_s)).collect()
     }
 }
 
 impl BoatSums {
     fn add(&mut self, sample: &Sample, step_s: f64) {
-        let at = sample.truth.at();
-        self.distance_m += self.before.replace(at).map_or(0.0, |before| before.distance(at));
+        let (at, sums) = (sample.truth.at(), &mut self.sums);
+        sums.distance_m += self.before.replace(at).map_or(0.0, |before| before.distance(at));
+        sums.speed_max_m_s = sums.speed_max_m_s.max(sample.truth.speed_m_s());
         self.travelled_m += sample.truth.speed_m_s() * step_s;
-        self.speed_max_m_s = self.speed_max_m_s.max(sample.truth.speed_m_s());
         for (is, lasted_s) in [
-            (sample.tagged, &mut self.tagged_s),
-            (sample.outside, &mut self.outside_s),
-            (sample.carrying, &mut self.carrying_s),
-            (sample.agent_lost, &mut self.agent_lost_s),
-            (sample.nav_lost, &mut self.nav_lost_s),
+            (sample.tagged, &mut sums.tagged_s),
+            (sample.outside, &mut sums.outside_s),
+            (sample.carrying, &mut sums.carrying_s),
+            (sample.agent_lost, &mut sums.agent_lost_s),
+            (sample.nav_lost, &mut sums.nav_lost_s),
         ] {
             *lasted_s += if is { step_s } else { 0.0 };
         }
@@ -142,22 +143,12 @@ impl BoatSums {
         }
     }
 
-    fn end(self, vehicle: &Vehicle, counts: Counts, scenario: &Scenario, span_s: f64) -> BoatStatistics {
+    fn end(self, counts: Counts, span_s: f64) -> BoatStatistics {
         let navigation = self.nav_error.root().zip(self.nav_errors_m.at(0.95));
         let steering = self.heading_error.root().zip(self.speed_error.root());
         let steered_s = self.steered_s;
         BoatStatistics {
-            boat: vehicle.name.clone(),
-            team: scenario.teams.get(vehicle.team.index()).map(|team| team.name.clone()).unwrap_or_default(),
-            is_real: vehicle.source == Source::External,
-            distance_m: self.distance_m,
             speed_mean_m_s: if span_s > 0.0 { self.travelled_m / span_s } else { 0.0 },
-            speed_max_m_s: self.speed_max_m_s,
-            tagged_s: self.tagged_s,
-            outside_s: self.outside_s,
-            carrying_s: self.carrying_s,
-            agent_lost_s: self.agent_lost_s,
-            nav_lost_s: self.nav_lost_s,
             counts,
             navigation: navigation.map(|(rms_m, p95_m)| NavigationError { rms_m, p95_m }),
             steering: steering.map(|(heading_rad, speed_rms_m_s)| SteeringError {
@@ -165,6 +156,7 @@ impl BoatSums {
                 speed_rms_m_s,
                 steered_s,
             }),
+            ..self.sums
         }
     }
 }
@@ -201,19 +193,16 @@ mod tests {
     use crate::series::GameSeries;
     use messages::Order;
     use messages::picture::Nav;
-    use primitives::{FlagId, SimTime, VehicleId};
-    use rules::event::{Event, Logged, TagCause};
     use std::path::Path;
 
-    /// The statistics of a synthetic game, whose events happen at its start.
+    /// The statistics of a synthetic game.
     fn statistics(series: &GameSeries) -> Vec<BoatStatistics> {
         let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
         let scenario = scenario::load(&file).unwrap_or_else(|e| panic!("{e}"));
         let mut builder = StatisticsBuilder::new(&scenario);
         for (i, time_s) in series.times_s.iter().copied().enumerate() {
             let samples = series.boats.iter().map(|boat| boat.samples[i]).collect();
-            let events = if i == 0 { series.events.clone() } else { vec![] };
-            builder.add(&Step { time_s, samples, events, ..Step::default() });
+            builder.add(&Step { time_s, samples, ..Step::default() });
         }
         builder.end()
     }
@@ -228,17 +217,6 @@ mod tests {
             assert!((speed_m_s - round_m / 100.0).abs() < 1e-9, "{speed_m_s} m/s");
         }
         assert_eq!((statistics.navigation, statistics.steering), (None, None));
-    }
-
-    #[test]
-    fn an_estimate_off_by_3_and_4_is_off_by_5() {
-        let mut series = made_up::circle(20.0, 10.0);
-        for sample in &mut series.boats[0].samples {
-            let Nav { north_m, east_m, .. } = sample.truth;
-            sample.estimated = Some(Nav { north_m: north_m + 3.0, east_m: east_m - 4.0, ..sample.truth });
-        }
-        let error = statistics(&series)[0].navigation.expect("it was shown");
-        assert!((error.rms_m - 5.0).abs() < 1e-9 && (error.p95_m - 5.0).abs() < 1e-9, "{error:?}");
     }
 
     #[test]
@@ -272,19 +250,6 @@ mod tests {
         for none_s in [statistics.outside_s, statistics.agent_lost_s, statistics.nav_lost_s] {
             assert_eq!(format!("{none_s:.1}"), "0.0");
         }
-    }
-
-    #[test]
-    fn what_happened_is_counted() {
-        let mut series = made_up::circle(20.0, 1.0);
-        let vehicle = VehicleId(0);
-        let flag = FlagId(1);
-        let tagged = Event::Tagged { vehicle, cause: TagCause::Boundary };
-        for event in [Event::Grabbed { vehicle, flag }, tagged, Event::Grabbed { vehicle, flag }] {
-            series.events.push(Logged { tick: 1, at: SimTime::ZERO, event });
-        }
-        let counts = statistics(&series)[0].counts;
-        assert_eq!((counts.grabs, counts.tagged, counts.tags), (2, 1, 0));
     }
 
     #[test]

@@ -106,6 +106,16 @@ impl Sample {
     }
 }
 
+/// The ordered speed, m/s; unknown for thrusts.
+#[must_use]
+pub fn ordered_m_s(order: Order) -> Option<f64> {
+    match order {
+        Order::Hold => Some(0.0),
+        Order::Steer { speed_m_s, .. } | Order::Turn { speed_m_s, .. } => Some(speed_m_s),
+        Order::Thrust { .. } => None,
+    }
+}
+
 /// Assembles decisions from messages.
 struct Reader<'a, T> {
     scenario: &'a Scenario,

@@ -234,13 +234,6 @@ fn every_topic_is_a_table() {
     assert!(status[0].contains(",failsafes.1.cause,") && status[3].contains(",no orders,"), "{status:?}");
 }
 
-#[test]
-fn an_unknown_topic_is_refused_with_those_there_are() {
-    let refused =
-        table::write(recording().bag(), None, "picture/green", &mut |_| Ok(())).expect_err("there is none").to_string();
-    assert!(refused.contains("no topic \"picture/green\"") && refused.contains("events, frame, inputs, link/blue_one"));
-}
-
 /// The logs of a recording, with their names.
 fn logs(recording: &Recording, wants_vehicles: bool) -> Vec<(String, String)> {
     let dir = tempfile::tempdir().expect("a temporary directory");

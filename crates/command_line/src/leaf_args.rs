@@ -12,21 +12,31 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// The keys of a game.
+/// The keys and the token of a game.
 #[derive(clap::Args, Clone, Debug)]
-pub struct KeysArgs {
+pub struct AccessArgs {
     /// Folder with this node's keys, created by `squall keys new`; required if the game uses keys
     #[arg(long, value_name = "FOLDER")]
     keys: Option<PathBuf>,
+    /// File with the game's token, which `squall sim` prints [default: SQUALL_TOKEN, or the token of the game on this
+    /// machine]
+    #[arg(long, value_name = "FILE")]
+    token_file: Option<PathBuf>,
 }
 
-impl KeysArgs {
+impl AccessArgs {
     /// Loads the given keys.
     ///
     /// # Errors
     /// If they cannot be read.
-    pub fn load(&self) -> Result<Option<Arc<Bundle>>> {
+    pub fn keys(&self) -> Result<Option<Arc<Bundle>>> {
         Ok(self.keys.as_deref().map(Bundle::load).transpose()?.map(Arc::new))
+    }
+
+    /// The given token.
+    pub fn token(&self) -> Result<Option<Token>> {
+        let given = text_of(self.token_file.as_deref(), TOKEN_VARIABLE)?;
+        given.map(|(text, place)| text.parse().with_context(|| place)).transpose()
     }
 }
 
@@ -39,25 +49,8 @@ pub fn restart_with_threads_for_keys() -> Result<()> {
     Ok(())
 }
 
-/// The token of a game.
-#[derive(clap::Args, Clone, Debug)]
-pub struct TokenArgs {
-    /// File with the game's token, which `squall sim` prints [default: SQUALL_TOKEN, or the token of the game on this
-    /// machine]
-    #[arg(long, value_name = "FILE")]
-    token_file: Option<PathBuf>,
-}
-
 /// Size limit of a token file, bytes: it is one line of text, so a longer file is not a token file.
 const TOKEN_FILE_MAX: u64 = 4096;
-
-impl TokenArgs {
-    /// The given token.
-    pub fn token(&self) -> Result<Option<Token>> {
-        let given = text_of(self.token_file.as_deref(), TOKEN_VARIABLE)?;
-        given.map(|(text, place)| text.parse().with_context(|| place)).transpose()
-    }
-}
 
 /// Reads a secret from the file, or else from the environment variable; returns it with its place,
 /// for errors.
@@ -85,23 +78,12 @@ pub struct LeafArgs {
     /// Name of the game [default: the only game found]
     #[arg(long, value_name = "NAME", value_parser = GameName::new)]
     pub game: Option<GameName>,
+    /// Keys and token.
     #[command(flatten)]
-    keys: KeysArgs,
-    #[command(flatten)]
-    token: TokenArgs,
+    pub access: AccessArgs,
 }
 
 impl LeafArgs {
-    /// The given token.
-    pub fn token(&self) -> Result<Option<Token>> {
-        self.token.token()
-    }
-
-    /// The given keys.
-    pub fn keys(&self) -> Result<Option<Arc<Bundle>>> {
-        self.keys.load()
-    }
-
     /// The gateways on this machine that a command may address. For a game elsewhere, these are the
     /// gateways of that game. A stop errs on the side of addressing more.
     pub fn local_gateways(&self, stops: bool) -> Vec<bus::GatewayEntry> {
@@ -140,12 +122,12 @@ impl LeafArgs {
 
     /// Where to connect: the given endpoints, or those in this machine's local registry.
     pub fn net(&self) -> Result<Net> {
-        self.net_of(None, self.keys()?)
+        self.net_of(None, self.access.keys()?)
     }
 
     /// Like `net`, for nodes that outlive a game or start before it.
     pub fn place(&self) -> Result<Place> {
-        let (leaf, keys) = (self.clone(), self.keys()?);
+        let (leaf, keys) = (self.clone(), self.access.keys()?);
         Ok(Place::new(move |game| leaf.net_of(game, keys.clone()).map_err(|e| crate::explain::line(&e))))
     }
 
@@ -160,7 +142,7 @@ impl LeafArgs {
         }
         known.retain(|entry| connect.iter().any(|given| bus::is_same_place(given, &entry.endpoint)));
         let shown = || known.first().and_then(|entry| entry.token.as_ref()?.parse().ok());
-        let token = self.token.token()?.or_else(shown);
+        let token = self.access.token()?.or_else(shown);
         Ok(Net { listen: vec![], connect, lan: self.lan, config_file: self.zenoh_config.clone(), token, keys })
     }
 }

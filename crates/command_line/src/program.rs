@@ -2,34 +2,23 @@
 
 use std::sync::OnceLock;
 
-/// The name and command prefix of a program.
-#[derive(Debug)]
-pub struct Program {
-    /// Its name, the prefix of all error messages.
-    pub name: &'static str,
-    /// The prefix of a gateway command as the user types it.
-    pub gateway: &'static str,
-}
+/// The program's name, and the prefix of a gateway command as the user types it.
+static PROGRAM: OnceLock<[&str; 2]> = OnceLock::new();
 
-static PROGRAM: OnceLock<Program> = OnceLock::new();
-
-/// Sets the running program. `main` calls this first; later calls have no effect.
-pub fn set(program: Program) {
-    drop(PROGRAM.set(program));
-}
-
-fn this() -> &'static Program {
-    PROGRAM.get_or_init(|| Program { name: "squall", gateway: "squall gateway" })
+/// Sets the running program: its name, which begins all error messages, and the prefix of its
+/// gateway commands. `main` calls this first; later calls have no effect.
+pub fn set(name: &'static str, gateway: &'static str) {
+    let _ = PROGRAM.set([name, gateway]);
 }
 
 /// The program's name.
 pub fn name() -> &'static str {
-    this().name
+    PROGRAM.get().map_or("squall", |[name, _]| name)
 }
 
 /// The prefix of its gateway commands: `squall gateway` or `squall-gateway`.
 pub fn gateway() -> &'static str {
-    this().gateway
+    PROGRAM.get().map_or("squall gateway", |[_, gateway]| gateway)
 }
 
 /// Replaces `{gateway}` in a text by the prefix of gateway commands.

@@ -4,7 +4,7 @@
 use crate::program;
 use anyhow::{Result, anyhow, bail};
 use include_dir::{Dir, include_dir};
-use scenario::{Kind, ScenarioFile, built_in, did_you_mean, other_kind, set_built_in};
+use scenario::{Kind, built_in, did_you_mean, other_kind, set_built_in};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
@@ -113,23 +113,7 @@ fn name_of(path: &Path) -> Option<String> {
     is_toml.then(|| path.file_stem()?.to_str().map(str::to_owned))?
 }
 
-macro_rules! finders {
-    ($($name:ident $kind:expr,)*) => {
-        $(
-            /// Resolves an argument for a file of this kind.
-            pub fn $name(word: &str) -> Result<PathBuf> {
-                find(word, $kind)
-            }
-        )*
-    };
-}
-
-finders! { field Kind::FIELD, game Kind::GAME, sea Kind::SEA, strategy Kind::STRATEGY, }
-
-/// Resolves an argument for a file that is read as `F`.
-///
-/// # Errors
-/// If no such file exists.
-pub fn file_of<F: ScenarioFile>(word: &str) -> Result<PathBuf> {
-    find(word, Kind::of::<F>())
+/// Parses an argument that names a file of this kind.
+pub fn file_of(kind: Kind) -> impl Fn(&str) -> Result<PathBuf> + Clone {
+    move |word| find(word, kind)
 }

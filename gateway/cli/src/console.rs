@@ -262,7 +262,7 @@ impl Console {
     }
 
     fn read_registry(&self) {
-        let given = self.leaf.token().ok().flatten();
+        let given = self.leaf.access.token().ok().flatten();
         for entry in self.leaf.local_gateways(true) {
             let token = given.clone().or_else(|| entry.token?.parse().ok());
             // On failure the next round retries.

@@ -1,8 +1,7 @@
 //! `squall-gateway`: the gateway commands as a separate program, for the small computer on a boat.
 
 use clap::{ColorChoice, CommandFactory, FromArgMatches, Parser};
-use command_line::program::{self, Program};
-use command_line::{explain, leaf_args, number, scenario_files, terminal};
+use command_line::{explain, leaf_args, number, program, scenario_files, terminal};
 use std::process::ExitCode;
 
 /// The commit that the program was built from.
@@ -21,7 +20,7 @@ struct Cli {
 }
 
 fn main() -> ExitCode {
-    program::set(Program { name: "squall-gateway", gateway: "squall-gateway" });
+    program::set("squall-gateway", "squall-gateway");
     scenario_files::install(gateway_cli::KINDS);
     let matches = number::with_negative_numbers(Cli::command()).get_matches();
     let Cli { color, command } = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());

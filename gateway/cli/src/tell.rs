@@ -158,7 +158,7 @@ impl Port {
 
 /// The known control ports.
 fn ports(args: &Args) -> Result<Vec<Port>> {
-    let given = args.leaf.token()?;
+    let given = args.leaf.access.token()?;
     let mut ports: Vec<Port> = Vec::new();
     let stops = args.words.vehicle == ALL && matches!(args.words.command, CommandArg::Estop | CommandArg::Disarm);
     for entry in args.leaf.local_gateways(stops) {

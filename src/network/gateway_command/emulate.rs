@@ -37,7 +37,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
     declination_deg: Option<f64>,
     /// Time without a command after which the boat goes to standby, s, or none; the real boat's value is unknown
-    #[arg(long, value_name = "S", default_value = "none", value_parser = watchdog)]
+    #[arg(long, value_name = "S", default_value = "none", value_parser = or_none(seconds))]
     watchdog_s: OrNone,
     /// Ignores a set-point that is not a whole number and keeps the previous one, as one known simulator does
     #[arg(long)]
@@ -46,7 +46,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "KIND", value_delimiter = ',')]
     extra: Vec<ExtraArg>,
     /// Battery charge at the start, per cent, or none for a full battery that does not drain
-    #[arg(long, value_name = "PCT", default_value = "100", value_parser = charge)]
+    #[arg(long, value_name = "PCT", default_value = "100", value_parser = or_none(within(0.0, 100.0, "per cent")))]
     charge_pct: OrNone,
     /// How long to look for the game, s
     #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
@@ -77,19 +77,11 @@ enum ExtraArg {
 #[derive(Clone, Copy, Debug)]
 struct OrNone(Option<f64>);
 
-fn or_none(text: &str, number: impl Fn(&str) -> Result<f64, String>) -> Result<OrNone, String> {
-    match text {
+fn or_none(number: impl Fn(&str) -> Result<f64, String> + Clone) -> impl Fn(&str) -> Result<OrNone, String> + Clone {
+    move |text| match text {
         "none" => Ok(OrNone(None)),
         text => number(text).map(Some).map(OrNone).map_err(|e| format!("{e}, or none")),
     }
-}
-
-fn watchdog(text: &str) -> Result<OrNone, String> {
-    or_none(text, seconds)
-}
-
-fn charge(text: &str) -> Result<OrNone, String> {
-    or_none(text, within(0.0, 100.0, "per cent"))
 }
 
 fn address(option: &str, text: &str) -> Result<LinkAddress> {

@@ -4,13 +4,14 @@
 use crate::in_process;
 use crate::network::replay_command;
 use anyhow::{Context, Result, bail};
+use rayon::{ThreadPool, ThreadPoolBuilder};
 use recording::NewFile;
 use scenario::Scenario;
 use shore::page::{PreparingView, Showing, Shown};
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use tempfile::TempDir;
 
 /// Maximum number of open games: an unused one makes room for another.
@@ -41,8 +42,8 @@ pub(super) struct Games {
     folder: TempDir,
     /// Number of recordings created so far.
     recordings: AtomicU64,
-    /// Number of games being played now.
-    played: Arc<(Mutex<usize>, Condvar)>,
+    /// Plays the games.
+    players: ThreadPool,
     stop: Arc<AtomicBool>,
 }
 
@@ -65,13 +66,9 @@ impl Games {
     pub(super) fn new(stop: &Arc<AtomicBool>) -> Result<Games> {
         let folder =
             TempDir::with_prefix("squall-view-").context("cannot create a folder for the recordings of games")?;
-        Ok(Games {
-            open: Mutex::default(),
-            folder,
-            recordings: AtomicU64::new(0),
-            played: Arc::default(),
-            stop: Arc::clone(stop),
-        })
+        // A game that panics is reported by its thread, and must not end the others.
+        let players = ThreadPoolBuilder::new().num_threads(PLAYED_MAX).panic_handler(drop).build()?;
+        Ok(Games { open: Mutex::default(), folder, recordings: AtomicU64::new(0), players, stop: Arc::clone(stop) })
     }
 
     /// The view of the game with this name; `find` returns its source.
@@ -96,39 +93,15 @@ impl Games {
         let file = self.folder.path().join(format!("{}.mcap", self.recordings.fetch_add(1, Ordering::Relaxed)));
         let shown = showing.shown();
         open.push_back(Open { name: name.to_owned(), showing: Arc::clone(&showing), file: file.clone() });
-        let (played, stop) = (Arc::clone(&self.played), Arc::clone(&self.stop));
-        std::thread::spawn(move || {
-            let _place = Place::wait(&played);
-            match prepare(&game, &file, &stop, &preparing) {
-                Ok(view) => showing.show(Arc::new(view)),
-                Err(why) => showing.show(Arc::new(PreparingView::failed(&format!(
-                    "{}: {}",
-                    game.about,
-                    command_line::explain::line(&why)
-                )))),
+        let stop = Arc::clone(&self.stop);
+        self.players.spawn(move || match prepare(&game, &file, &stop, &preparing) {
+            Ok(view) => showing.show(Arc::new(view)),
+            Err(why) => {
+                let why = format!("{}: {}", game.about, command_line::explain::line(&why));
+                showing.show(Arc::new(PreparingView::failed(&why)));
             }
         });
         shown
-    }
-}
-
-/// A slot for playing a game.
-struct Place<'a>(&'a (Mutex<usize>, Condvar));
-
-impl Place<'_> {
-    fn wait(played: &(Mutex<usize>, Condvar)) -> Place<'_> {
-        let taken = played.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let mut taken =
-            played.1.wait_while(taken, |taken| *taken >= PLAYED_MAX).unwrap_or_else(PoisonError::into_inner);
-        *taken += 1;
-        Place(played)
-    }
-}
-
-impl Drop for Place<'_> {
-    fn drop(&mut self) {
-        *self.0.0.lock().unwrap_or_else(PoisonError::into_inner) -= 1;
-        self.0.1.notify_one();
     }
 }
 
@@ -140,7 +113,7 @@ fn prepare(
     preparing: &PreparingView,
 ) -> Result<shore::page::replay::ReplayView> {
     let (scenario, seed, digest) = match &game.source {
-        Source::Recorded(path) => return replay_command::show_about(path, Some(game.about.clone())),
+        Source::Recorded(path) => return replay_command::open(path, Some(game.about.clone())),
         Source::Played { scenario, seed, digest } => (scenario, *seed, digest),
     };
     let end_s = scenario.rules.time_limit.as_s();
@@ -159,5 +132,5 @@ fn prepare(
         Some(_) => format!("{}; rerun, NOT identical to the report: this program plays it differently", game.about),
         None => format!("{}; rerun", game.about),
     };
-    replay_command::show_about(file, Some(about))
+    replay_command::open(file, Some(about))
 }

@@ -15,7 +15,7 @@ const APART_M: f64 = 1.0;
 
 /// The relation between two boats.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Relation {
+enum Relation {
     /// Boats of one team.
     Mate,
     /// Boats of different teams.
@@ -44,36 +44,27 @@ pub struct Nearness {
     pub near_misses: u64,
 }
 
-impl Encounters {
-    /// The count for this relation.
-    #[must_use]
-    pub fn of(&self, relation: Relation) -> Nearness {
-        match relation {
-            Relation::Mate => self.mate,
-            Relation::Enemy => self.enemy,
-            Relation::TaggerAndTagged => self.tagger_and_tagged,
-        }
+impl Nearness {
+    fn merge(&mut self, other: Nearness) {
+        self.contacts += other.contacts;
+        self.near_misses += other.near_misses;
     }
+}
 
+impl Encounters {
     /// The sum over all relations.
     #[must_use]
     pub fn all(&self) -> Nearness {
-        let parts = [self.mate, self.enemy, self.tagger_and_tagged];
-        parts.into_iter().fold(Nearness::default(), |sum, part| Nearness {
-            contacts: sum.contacts + part.contacts,
-            near_misses: sum.near_misses + part.near_misses,
-        })
+        let mut sum = self.mate;
+        sum.merge(self.enemy);
+        sum.merge(self.tagger_and_tagged);
+        sum
     }
 
     pub(super) fn merge(&mut self, other: &Encounters) {
-        for (sum, part) in [
-            (&mut self.mate, other.mate),
-            (&mut self.enemy, other.enemy),
-            (&mut self.tagger_and_tagged, other.tagger_and_tagged),
-        ] {
-            sum.contacts += part.contacts;
-            sum.near_misses += part.near_misses;
-        }
+        self.mate.merge(other.mate);
+        self.enemy.merge(other.enemy);
+        self.tagger_and_tagged.merge(other.tagger_and_tagged);
     }
 
     fn count(&mut self, encounter: Encounter) {

@@ -9,16 +9,16 @@ mod encounter;
 mod orbit;
 mod text;
 
-pub use encounter::{Encounters, Relation};
+pub use encounter::Encounters;
 pub use orbit::ORBIT_MIN_S;
 
-use crate::step::{Sample, Step};
+use crate::step::{Sample, Step, ordered_m_s};
 use encounter::EncounterCounter;
 use messages::Order;
 use messages::helm::HelmReport;
 use orbit::OrbitDetector;
 use primitives::angle::wrap_pi;
-use primitives::{Ned, TeamId, VehicleId};
+use primitives::{TeamId, VehicleId};
 use scenario::Scenario;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -200,7 +200,7 @@ impl GameQuality {
 impl ModeQuality {
     /// Adds one step of a boat.
     fn add(&mut self, scenario: &Scenario, sample: &Sample, step_s: f64) {
-        let is_at_edge = inside_m(scenario, sample.truth.at()) < EDGE_M;
+        let is_at_edge = scenario.field.inside_by_m(sample.truth.at()) < EDGE_M;
         self.time_s += step_s;
         self.standing_s += if sample.truth.speed_m_s() < STANDING_M_S { step_s } else { 0.0 };
         self.edge_s += if is_at_edge { step_s } else { 0.0 };
@@ -216,7 +216,7 @@ impl ModeQuality {
         if let (Order::Steer { heading_rad: old_rad, .. }, Order::Steer { heading_rad, .. }) = (*before, order) {
             self.course_jumps += u64::from(wrap_pi(heading_rad - old_rad).abs() > COURSE_JUMP_RAD);
         }
-        let change_m_s = speed_m_s(order).zip(speed_m_s(*before)).map_or(0.0, |(new, old)| (new - old).abs());
+        let change_m_s = ordered_m_s(order).zip(ordered_m_s(*before)).map_or(0.0, |(new, old)| (new - old).abs());
         self.speed_jumps += u64::from(change_m_s > SPEED_JUMP_M_S);
     }
 
@@ -259,15 +259,6 @@ impl StrategyQuality {
     }
 }
 
-/// The speed of an order, m/s; unknown for thrusts.
-fn speed_m_s(order: Order) -> Option<f64> {
-    match order {
-        Order::Hold => Some(0.0),
-        Order::Steer { speed_m_s, .. } | Order::Turn { speed_m_s, .. } => Some(speed_m_s),
-        Order::Thrust { .. } => None,
-    }
-}
-
 /// The name of a vehicle's strategy.
 fn strategy_name(scenario: &Scenario, vehicle: usize) -> &str {
     &scenario.strategy_of(VehicleId::at(vehicle)).name
@@ -285,13 +276,6 @@ fn strategies_of(scenario: &Scenario, team: TeamId) -> Vec<&str> {
 /// Whether a boat attacks: it brings a flag home, or is beyond its own side and free to act.
 fn attacks(scenario: &Scenario, team: TeamId, sample: &Sample) -> bool {
     sample.carrying || (sample.is_free && !scenario.field.is_own_side(team, sample.truth.at()))
-}
-
-/// Distance inside the field, m; negative outside.
-fn inside_m(scenario: &Scenario, at: Ned) -> f64 {
-    let plan = &scenario.field.plan;
-    let (x, y) = scenario.field.along_across(at);
-    x.min(plan.width_m - x).min(y).min(plan.depth_m - y)
 }
 
 #[cfg(test)]

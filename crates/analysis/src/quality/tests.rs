@@ -132,13 +132,8 @@ fn encounters_are_told_by_nearness_and_relation() {
         }
     });
     let nearness = |contacts, near_misses| Nearness { contacts, near_misses };
-    for (relation, want) in [
-        (Relation::Mate, nearness(1, 1)),
-        (Relation::Enemy, nearness(2, 1)),
-        (Relation::TaggerAndTagged, nearness(1, 1)),
-    ] {
-        assert_eq!(got.encounters.of(relation), want, "{relation:?}");
-    }
+    let want = Encounters { mate: nearness(1, 1), enemy: nearness(2, 1), tagger_and_tagged: nearness(1, 1) };
+    assert_eq!(got.encounters, want);
     // Both sides are of the same strategy, and each counts; mates count once.
     assert_eq!(got.strategies["pav01"].encounters.all(), nearness(1 + 2 * 3, 1 + 2 * 2));
 }

@@ -19,13 +19,9 @@ impl Display for Quality {
 
 impl Quality {
     fn write_modes(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        writeln!(
-            f,
-            "\n{:NAME$}{:>8}{:>9}{:>9}{:>9}{:>10}{:>8}",
-            "", "time", "course", "speed", "entered", "stands", "at the"
-        )?;
-        writeln!(f, "{:NAME$}{:>8}{:>9}{:>9}{:>9}{:>10}{:>8}", "", "", "jumps", "jumps", "", "still", "edge")?;
-        writeln!(f, "{:NAME$}{:>8}{:>9}{:>9}{:>9}{:>10}{:>8}", "", "h", "per min", "per min", "per min", "%", "%")?;
+        writeln!(f, "\n{:NAME$}    time   course    speed  entered    stands  at the", "")?;
+        writeln!(f, "{:NAME$}            jumps    jumps              still    edge", "")?;
+        writeln!(f, "{:NAME$}       h  per min  per min  per min         %       %", "")?;
         for (strategy, quality) in &self.strategies {
             writeln!(f, "{strategy}")?;
             for (role, of_role) in &quality.roles {
@@ -42,7 +38,7 @@ impl Quality {
 
     fn write_encounters(&self, f: &mut Formatter<'_>) -> fmt::Result {
         writeln!(f, "\nper game: hull contacts / near misses (within the rules' collision distance)")?;
-        writeln!(f, "{:NAME$}{:>13}{:>13}{:>17}{:>13}", "", "mate", "enemy", "tagger, tagged", "all")?;
+        writeln!(f, "{:NAME$}         mate        enemy   tagger, tagged          all", "")?;
         for (strategy, quality) in &self.strategies {
             writeln!(f, "{}{}", name(strategy), encounters(&quality.encounters, quality.teams))?;
         }
@@ -50,8 +46,8 @@ impl Quality {
     }
 
     fn write_strategies(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        writeln!(f, "\n{:NAME$}{:>15}{:>15}{:>20}", "", "orbits", "in an orbit", "no attack")?;
-        writeln!(f, "{:NAME$}{:>15}{:>15}{:>20}", "", "per game", "s per game", "% of the game")?;
+        writeln!(f, "\n{:NAME$}         orbits    in an orbit           no attack", "")?;
+        writeln!(f, "{:NAME$}       per game     s per game       % of the game", "")?;
         for (strategy, quality) in &self.strategies {
             writeln!(f, "{}{}", name(strategy), team_row(quality))?;
         }

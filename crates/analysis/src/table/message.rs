@@ -16,38 +16,18 @@ use serde_json::Value;
 
 /// Columns shared by own boats and contacts; values known for only one of them are empty for the
 /// other.
-const SEEN: [&str; 23] = [
-    "seq",
-    "seen",
-    "vehicle",
-    "seen_s",
-    "north_m",
-    "east_m",
-    "psi_rad",
-    "surge_m_s",
-    "sway_m_s",
-    "yaw_rate_rad_s",
-    "velocity_north_m_s",
-    "velocity_east_m_s",
-    "tagged",
-    "carrying",
-    "disabled",
-    "outside",
-    "tag_ready_s",
-    "imu.roll_rate_rad_s",
-    "imu.pitch_rate_rad_s",
-    "imu.yaw_rate_rad_s",
-    "imu.ahead_m_s2",
-    "imu.starboard_m_s2",
-    "imu.down_m_s2",
-];
+const SEEN: &str = "\
+    seq seen vehicle seen_s north_m east_m psi_rad surge_m_s sway_m_s yaw_rate_rad_s \
+    velocity_north_m_s velocity_east_m_s tagged carrying disabled outside tag_ready_s \
+    imu.roll_rate_rad_s imu.pitch_rate_rad_s imu.yaw_rate_rad_s imu.ahead_m_s2 \
+    imu.starboard_m_s2 imu.down_m_s2";
 /// The columns of an order.
-const ORDER: [&str; 5] = ["heading_rad", "speed_m_s", "port", "starboard", "by_rad"];
+const ORDER: &str = "heading_rad speed_m_s port starboard by_rad";
 
 /// The columns for messages of a schema, without the time; none for an unsupported schema.
 pub(super) fn columns(schema: &str, scenario: &Scenario) -> Option<Vec<String>> {
-    let named = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<String>>();
-    let mut columns = named(&["seq"]);
+    let named = |names: &str| names.split(' ').map(str::to_owned).collect::<Vec<String>>();
+    let mut columns = named("seq");
     let flags = (0..scenario.field.flags.len()).map(|flag| format!("flag.{}.carrier", flag_word(scenario, flag)));
     let score = scenario.teams.iter().map(|team| format!("score.{}", team.name));
     match schema {
@@ -56,21 +36,21 @@ pub(super) fn columns(schema: &str, scenario: &Scenario) -> Option<Vec<String>> 
                 columns.extend(fields("VehicleTruth").iter().map(|field| format!("{}.{field}", vehicle.name)));
             }
             columns.extend(fields("SeaView").iter().map(|field| format!("sea.{field}")));
-            columns.extend(flags.chain(score).chain(named(&["events", "stopped", "over"])));
+            columns.extend(flags.chain(score).chain(named("events stopped over")));
         }
         Picture::SCHEMA => {
-            columns = named(&SEEN);
-            columns.extend(flags.chain(score).chain(named(&["over"])));
+            columns = named(SEEN);
+            columns.extend(flags.chain(score).chain(named("over")));
         }
         Inputs::SCHEMA => {
-            columns.extend(named(&["input", "vehicle"]).into_iter().chain(named(&ORDER)).chain(named(&["fix_s"])));
+            columns.extend(named(&format!("input vehicle {ORDER} fix_s")));
             columns.extend(fields("Nav"));
         }
         Say::SCHEMA => columns.extend(fields("Word")),
         PolicyProposal::SCHEMA => columns = fields("PolicyProposal"),
         NavReport::SCHEMA => columns = fields("NavReport"),
         ExternalOrder::SCHEMA => {
-            columns.extend(named(&["given_s", "vehicle", "order"]).into_iter().chain(named(&ORDER)));
+            columns.extend(named(&format!("given_s vehicle order {ORDER}")));
         }
         _ => return None,
     }

@@ -105,7 +105,7 @@ struct Watch<'a> {
     scenario: &'a Scenario,
     cursor: EventCursor,
     quality: GameQuality,
-    statistics: StatisticsBuilder<'a>,
+    statistics: StatisticsBuilder,
     /// The smallest distance between the centres of two boats, m.
     closest_m: f64,
     /// By team: the smallest distance of its boats to the edge of the field, m.
