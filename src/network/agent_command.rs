@@ -38,7 +38,7 @@ pub(crate) struct Args {
 
 /// Loads the strategy in a file; the error lists every problem.
 fn load_strategy(path: &Path) -> Result<Strategy> {
-    scenario::load_strategy(path).with_context(|| format!("cannot use the strategy {}", path.display()))
+    scenario::load_file(path).with_context(|| format!("cannot use the strategy {}", path.display()))
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {

@@ -29,7 +29,8 @@ fn game(name: &str) -> Scenario {
 }
 
 fn field(name: &str) -> rules::Field {
-    scenario::load_field(&shipped(&format!("fields/{name}.toml"))).unwrap_or_else(|problems| panic!("{problems}"))
+    scenario::load_file::<rules::Field>(&shipped(&format!("fields/{name}.toml")))
+        .unwrap_or_else(|problems| panic!("{problems}"))
 }
 
 fn stem(path: &Path) -> String {
@@ -40,10 +41,10 @@ fn stem(path: &Path) -> String {
 fn name_of(kind: Kind, path: &Path) -> Option<String> {
     let name = match kind.name() {
         "game" => scenario::load(path).map(|game| game.name),
-        "field" => scenario::load_field(path).map(|field| field.plan.name),
-        "boat" => scenario::load_boat(path).map(|boat| boat.name),
-        "sea" => scenario::draw_sea(path, 1).map(|(sea, _)| sea.name),
-        "strategy" => scenario::load_strategy(path).map(|strategy| strategy.name),
+        "field" => scenario::load_file::<rules::Field>(path).map(|field| field.plan.name),
+        "boat" => scenario::load_file::<scenario::Boat>(path).map(|boat| boat.name),
+        "sea" => scenario::draw_file::<scenario::sea::Sea>(path, 1).map(|(sea, _)| sea.name),
+        "strategy" => scenario::load_file::<scenario::strategy::Strategy>(path).map(|strategy| strategy.name),
         "tournament" => scenario::load_file::<Tournament>(path).map(|tournament| tournament.name),
         "sweep" => scenario::load_file::<Sweep>(path).map(|sweep| sweep.name),
         "gateway" => scenario::load_file::<Gateway>(path).map(|gateway| gateway.name),
@@ -189,7 +190,7 @@ fn a_scenario_knows_its_vehicles() {
 #[test]
 fn boats_reach_the_speed_they_are_named_for() {
     for (name, want_m_s) in [("otter", 3.086), ("surveyor_m1_8", 3.0), ("heron", 2.0)] {
-        let boat = scenario::load_boat(&shipped(&format!("boats/{name}.toml"))).unwrap();
+        let boat = scenario::load_file::<scenario::Boat>(&shipped(&format!("boats/{name}.toml"))).unwrap();
         let scenario::boat::Drive::Thrusters { thruster, .. } = &boat.drive else { panic!("{name} has no thrusters") };
         let thrust_newton = 2.0
             * match &thruster.curve {

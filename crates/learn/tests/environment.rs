@@ -16,7 +16,7 @@ fn scenarios() -> PathBuf {
 
 fn strategy(name: &str) -> Box<scenario::strategy::Strategy> {
     let path = scenarios().join(format!("strategies/{name}.toml"));
-    Box::new(scenario::load_strategy(&path).unwrap_or_else(|problems| panic!("{problems}")))
+    Box::new(scenario::load_file(&path).unwrap_or_else(|problems| panic!("{problems}")))
 }
 
 const SPACES: Spaces = Spaces {

@@ -31,7 +31,7 @@ fn model(spec: PolicySpec) -> PolicyModel {
 }
 
 fn strategy() -> Strategy {
-    scenario::load_strategy(&file("strategies/policy.toml")).unwrap_or_else(|problems| panic!("{problems}"))
+    scenario::load_file(&file("strategies/policy.toml")).unwrap_or_else(|problems| panic!("{problems}"))
 }
 
 fn with_model(mut strategy: Strategy, model: &PolicyModel) -> Strategy {

@@ -73,7 +73,7 @@ fn the_shielder_has_a_teammate_driven_by_a_strategy() {
 
 #[test]
 fn the_options_of_the_chooser_are_the_shipped_policies() {
-    let strategy = scenario::load_strategy(&file("strategies/primitives.toml"));
+    let strategy = scenario::load_file::<scenario::strategy::Strategy>(&file("strategies/primitives.toml"));
     let strategy = strategy.unwrap_or_else(|problems| panic!("{problems}"));
     let role = &strategy.roles[0];
     let policies = role.behaviours.iter().filter_map(|behaviour| match &behaviour.task {

@@ -9,7 +9,7 @@ fn file(path: &str) -> PathBuf {
 }
 
 fn strategy(name: &str) -> Strategy {
-    let strategy = scenario::load_strategy(&file(&format!("strategies/{name}.toml")));
+    let strategy = scenario::load_file::<scenario::strategy::Strategy>(&file(&format!("strategies/{name}.toml")));
     strategy.unwrap_or_else(|problems| panic!("{problems}"))
 }
 

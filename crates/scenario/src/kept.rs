@@ -10,8 +10,8 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Kind, path, and owner: for strategies, a team with its own values in it.
-type Key = (Kind, PathBuf, String);
+/// Name of the kind, path, and owner: for strategies, a team with its own values in it.
+type Key = (&'static str, PathBuf, String);
 
 /// The results of files without faults.
 #[derive(Clone, Debug, Default)]
@@ -29,7 +29,7 @@ pub(super) struct KeptDocument {
 }
 
 fn key(kind: Kind, path: &Path, owner: &str) -> Key {
-    (kind, path.to_owned(), if kind == Kind::STRATEGY { owner.to_owned() } else { String::new() })
+    (kind.name(), path.to_owned(), if kind == Kind::STRATEGY { owner.to_owned() } else { String::new() })
 }
 
 impl Kept {
@@ -63,7 +63,7 @@ impl Reading {
     /// The files whose values no setting overrides.
     pub(super) fn of_unchanged(mut diagnostics: Diagnostics) -> Reading {
         let kept = Arc::make_mut(&mut diagnostics.kept);
-        let is_unchanged = |(kind, ..): &Key| !diagnostics.overrides.has_settings(*kind);
+        let is_unchanged = |(kind, ..): &Key| !diagnostics.overrides.has_settings(kind);
         kept.documents.retain(|key, _| is_unchanged(key));
         kept.strategies.retain(|key, _| is_unchanged(key));
         Reading::of(diagnostics)

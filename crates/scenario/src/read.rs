@@ -64,19 +64,9 @@ const LONGEST_CHAIN: usize = 16;
 /// Keys that count only in a strategy file itself, not in its bases.
 const OWN: &[&str] = &["unsafe_i_know", "unsafe_because"];
 
-/// Reads the file of a kind at `path` with its bases. If it cannot be read, the problem is at
-/// `asked_at`, the reference.
+/// Reads the file of a kind at `path` with its bases, and draws its numbers for `owner`. If it cannot
+/// be read, the problem is at `asked_at`, the reference.
 pub(super) fn document<T: DeserializeOwned>(
-    diagnostics: &mut Diagnostics,
-    kind: Kind,
-    path: &Path,
-    asked_at: Option<usize>,
-) -> Option<Document<T>> {
-    document_of(diagnostics, kind, path, asked_at, kind.name())
-}
-
-/// The same, for an owner that draws its own numbers.
-pub(super) fn document_of<T: DeserializeOwned>(
     diagnostics: &mut Diagnostics,
     kind: Kind,
     path: &Path,
@@ -201,9 +191,10 @@ pub(super) fn tree(
 
 /// Reads one file into the virtual text.
 fn text_of(diagnostics: &mut Diagnostics, path: &Path, asked_at: Option<usize>) -> Option<(usize, Arc<str>)> {
-    let bytes = match bytes_of(diagnostics, path) {
+    let bytes = match diagnostics.files.read(path, LARGEST_BYTES) {
         Ok(bytes) => bytes,
-        Err(why) => {
+        Err(error) => {
+            let why = format!("cannot be read ({error}), expected a file");
             match asked_at {
                 Some(at) => diagnostics.note(at, format!("{} {why}", path.display())),
                 None => diagnostics.note_file(path.to_owned(), why),
@@ -211,40 +202,21 @@ fn text_of(diagnostics: &mut Diagnostics, path: &Path, asked_at: Option<usize>) 
             return None;
         }
     };
-    match String::from_utf8(bytes) {
-        Ok(text) => {
-            let text: Arc<str> = text.into();
-            Some((diagnostics.sources.add(path.to_owned(), text.clone()), text))
-        }
-        Err(error) => {
-            let good = error.utf8_error().valid_up_to();
-            let text = String::from_utf8_lossy(&error.as_bytes()[..good]).into_owned();
-            let start = diagnostics.sources.add(path.to_owned(), text.into());
-            diagnostics.note_syntax(start + good, "found invalid UTF-8, expected text");
-            None
-        }
+    let good = std::str::from_utf8(&bytes).map_or_else(|error| error.valid_up_to(), str::len);
+    let text: Arc<str> = String::from_utf8_lossy(&bytes[..good]).into();
+    let start = diagnostics.sources.add(path.to_owned(), text.clone());
+    if good < bytes.len() {
+        diagnostics.note_syntax(start + good, "found invalid UTF-8, expected text");
+        return None;
     }
+    Some((start, text))
 }
 
-fn bytes_of(diagnostics: &Diagnostics, path: &Path) -> Result<Vec<u8>, String> {
-    if let Some(texts) = &diagnostics.texts {
-        let kept = texts.iter().find(|(kept, _)| kept == path);
-        return kept.map(|(_, text)| text.clone().into_bytes()).ok_or_else(|| "is not among the stored files".into());
-    }
-    let bytes = diagnostics.files.read(path, LARGEST_BYTES);
-    bytes.map(|bytes| bytes.to_vec()).map_err(|error| format!("cannot be read ({error}), expected a file"))
-}
-
-/// Reads the file of a model, unless cached.
+/// Reads the file of a model.
 pub(super) fn model(diagnostics: &Diagnostics, path: &Path, said: PartialSpec) -> Result<PolicyModel, String> {
-    let name = path.display().to_string();
-    let kept = diagnostics.models.iter().find(|model| model.name == name && said.is_part_of(&model.spec));
-    if let Some(kept) = kept {
-        return Ok(kept.clone());
-    }
     let bytes = diagnostics.files.read(path, policy::BYTES_MAX);
     let bytes = bytes.map_err(|error| format!("it cannot be read ({error}), expected an ONNX file"))?;
-    PolicyModel::read(&name, &bytes, said).map_err(|error| error.to_string())
+    PolicyModel::read(&path.display().to_string(), &bytes, said).map_err(|error| error.to_string())
 }
 
 /// The tree of a text that begins at `start`, as far as its syntax is valid; reports syntax errors.

@@ -16,7 +16,7 @@ impl Setup {
     pub fn of_stage(training: &Training, stage: &Stage) -> Result<Setup, SetupError> {
         let overrides = Overrides { sea: stage.sea.clone(), ..Overrides::default() };
         let scenario = scenario::load_with(&stage.game, &overrides)?;
-        let strategy = |file| scenario::load_strategy(file).map(Box::new);
+        let strategy = |file| scenario::load_file::<scenario::strategy::Strategy>(file).map(Box::new);
         let plays_itself = stage.self_play > 0.0 || stage.past_selves > 0.0;
         let mut opponents = vec![];
         opponents.extend(plays_itself.then_some((0.0, Player::Policy)));
@@ -52,7 +52,7 @@ impl Setup {
 
     /// The teacher, with its modes mapped to the options.
     fn teacher_of(&self, said: &training::Teacher) -> Result<Teacher, SetupError> {
-        let strategy = Box::new(scenario::load_strategy(&said.strategy)?);
+        let strategy = Box::new(scenario::load_file::<scenario::strategy::Strategy>(&said.strategy)?);
         let modes: BTreeSet<String> =
             strategy.roles.iter().flat_map(|role| role.leaves().map(|mode| role.path(mode))).collect();
         let listed = |names: &mut dyn Iterator<Item = &String>| names.cloned().collect::<Vec<_>>().join(", ");

@@ -381,7 +381,7 @@ fn first_number(training: &Training, epoch: u64) -> u64 {
 fn judges(training: &Training, last: Option<&Setup>) -> Result<Vec<(String, Setup)>, SetupError> {
     let mut judges = vec![];
     for path in &training.evaluation.opponents {
-        let strategy = scenario::load_strategy(path)?;
+        let strategy = scenario::load_file::<scenario::strategy::Strategy>(path)?;
         let Some(last) = last else { break };
         let name = strategy.name.clone();
         let opponents = vec![(1.0, Player::Strategy(Box::new(strategy)))];

@@ -3,6 +3,7 @@
 use super::boat::estimate;
 use super::polygon::check_corners;
 use crate::diagnostics::Diagnostics;
+use crate::kind::ScenarioFile;
 use crate::raw;
 use crate::read::Document;
 use primitives::frame::Ned;
@@ -12,27 +13,33 @@ use rules::field::{Field, Flag, Obstacle};
 /// Maximum distance of a relevant obstacle outside the field, m.
 const NEAR_M: f64 = 50.0;
 
-pub(crate) fn field(diagnostics: &mut Diagnostics, document: &Document<raw::Field>) -> Option<Field> {
-    let raw = &document.raw;
-    let mut plan = raw.plan.clone();
-    estimate(&mut plan.flag_inset_m, || plan.width_m / 8.0);
-    let (flag_inset_m, half_m) = (plan.flag_inset_m, plan.width_m / 2.0);
-    if !(flag_inset_m > 0.0 && flag_inset_m < half_m) && document.is_sound("width_m") {
-        let message = format!("flag_inset_m is {flag_inset_m}, expected more than 0 and less than {half_m}");
-        diagnostics.note(document.at("flag_inset_m"), message);
+impl ScenarioFile for Field {
+    type Keys = raw::Field;
+    const NAME: &'static str = "field";
+    const FOLDER: &'static str = "fields";
+
+    fn check(diagnostics: &mut Diagnostics, document: &Document<raw::Field>) -> Option<Field> {
+        let raw = &document.raw;
+        let mut plan = raw.plan.clone();
+        estimate(&mut plan.flag_inset_m, || plan.width_m / 8.0);
+        let (flag_inset_m, half_m) = (plan.flag_inset_m, plan.width_m / 2.0);
+        if !(flag_inset_m > 0.0 && flag_inset_m < half_m) && document.is_sound("width_m") {
+            let message = format!("flag_inset_m is {flag_inset_m}, expected more than 0 and less than {half_m}");
+            diagnostics.note(document.at("flag_inset_m"), message);
+        }
+        let is_plane_sound =
+            ["corner", "along_deg", "width_m", "depth_m", "flag_inset_m"].iter().all(|key| document.is_sound(key));
+        if !is_plane_sound {
+            return None;
+        }
+        let empty = Field::new(plan.clone());
+        plan.extra_flags = extra_flags(diagnostics, document, &empty);
+        let field = Field::new(plan.clone());
+        for (i, raw) in raw.obstacle.iter().enumerate() {
+            plan.obstacles.extend(obstacle(diagnostics, document, &format!("obstacle.{i}"), raw, &field));
+        }
+        document.is_faultless(diagnostics).then(|| Field::new(plan))
     }
-    let is_plane_sound =
-        ["corner", "along_deg", "width_m", "depth_m", "flag_inset_m"].iter().all(|key| document.is_sound(key));
-    if !is_plane_sound {
-        return None;
-    }
-    let empty = Field::new(plan.clone());
-    plan.extra_flags = extra_flags(diagnostics, document, &empty);
-    let field = Field::new(plan.clone());
-    for (i, raw) in raw.obstacle.iter().enumerate() {
-        plan.obstacles.extend(obstacle(diagnostics, document, &format!("obstacle.{i}"), raw, &field));
-    }
-    document.is_faultless(diagnostics).then(|| Field::new(plan))
 }
 
 fn extra_flags(diagnostics: &mut Diagnostics, document: &Document<raw::Field>, field: &Field) -> Vec<Flag> {

@@ -7,6 +7,7 @@ pub use kinematic::check_thrust_map;
 
 use crate::boat::{Boat, Drive, Propeller, ThrustCurve};
 use crate::diagnostics::Diagnostics;
+use crate::kind::ScenarioFile;
 use crate::raw;
 use crate::read::Document;
 use crate::sensor::{Gps, MOST_PERIODS_LATE};
@@ -20,38 +21,44 @@ const USUAL_TICK_S: f64 = 0.05;
 /// Water density for the estimates, kg/m³.
 const RHO_KG_M3: f64 = 1000.0;
 
-pub(crate) fn boat(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>) -> Option<Boat> {
-    let raw = &document.raw;
-    let hull = &raw.hull;
-    if hull.crossflow_coefficient > 0.0 && !document.has("hull.crossflow_draught_m") {
-        let message = "hull.crossflow_draught_m is missing, expected 0 to 20 with a crossflow_coefficient";
-        diagnostics.note_if_intact(document.at("hull"), message);
+impl ScenarioFile for Boat {
+    type Keys = raw::Boat;
+    const NAME: &'static str = "boat";
+    const FOLDER: &'static str = "boats";
+
+    fn check(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>) -> Option<Boat> {
+        let raw = &document.raw;
+        let hull = &raw.hull;
+        if hull.crossflow_coefficient > 0.0 && !document.has("hull.crossflow_draught_m") {
+            let message = "hull.crossflow_draught_m is missing, expected 0 to 20 with a crossflow_coefficient";
+            diagnostics.note_if_intact(document.at("hull"), message);
+        }
+        if let Some(gps) = &raw.sensors.gps {
+            check_gps(diagnostics, document, gps);
+        }
+        let drive = drive(diagnostics, document);
+        if !document.is_faultless(diagnostics) {
+            return None;
+        }
+        let mut boat = Boat {
+            name: document.name.clone(),
+            length_m: raw.length_m,
+            beam_m: raw.beam_m,
+            draught_m: raw.draught_m.unwrap_or_else(|| match hull.crossflow_draught_m {
+                draught_m if draught_m > 0.0 => draught_m,
+                _ => raw.length_m / 12.0,
+            }),
+            hull: hull.clone(),
+            windage: raw.windage.clone(),
+            drive: drive?,
+            hold: raw.hold,
+            sensors: raw.sensors.clone(),
+        };
+        estimate_rest(&mut boat);
+        check_inertia(diagnostics, document, &boat);
+        check_decay(diagnostics, document, &boat);
+        document.is_faultless(diagnostics).then_some(boat)
     }
-    if let Some(gps) = &raw.sensors.gps {
-        check_gps(diagnostics, document, gps);
-    }
-    let drive = drive(diagnostics, document);
-    if !document.is_faultless(diagnostics) {
-        return None;
-    }
-    let mut boat = Boat {
-        name: document.name.clone(),
-        length_m: raw.length_m,
-        beam_m: raw.beam_m,
-        draught_m: raw.draught_m.unwrap_or_else(|| match hull.crossflow_draught_m {
-            draught_m if draught_m > 0.0 => draught_m,
-            _ => raw.length_m / 12.0,
-        }),
-        hull: hull.clone(),
-        windage: raw.windage.clone(),
-        drive: drive?,
-        hold: raw.hold,
-        sensors: raw.sensors.clone(),
-    };
-    estimate_rest(&mut boat);
-    check_inertia(diagnostics, document, &boat);
-    check_decay(diagnostics, document, &boat);
-    document.is_faultless(diagnostics).then_some(boat)
 }
 
 fn drive(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>) -> Option<Drive> {
