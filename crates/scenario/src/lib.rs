@@ -62,7 +62,7 @@ pub use read::Document;
 pub use real_boats::RealBoats;
 pub use reference::{file_reference, reference};
 pub use schema::schema;
-pub use setting::{Setting, SettingError};
+pub use setting::Setting;
 pub use source::tidied as tidied_path;
 
 use crate::fault::Fault;

@@ -216,7 +216,7 @@ fn text_of(diagnostics: &mut Diagnostics, path: &Path, asked_at: Option<usize>) 
 pub(super) fn model(diagnostics: &Diagnostics, path: &Path, said: PartialSpec) -> Result<PolicyModel, String> {
     let bytes = diagnostics.files.read(path, policy::BYTES_MAX);
     let bytes = bytes.map_err(|error| format!("it cannot be read ({error}), expected an ONNX file"))?;
-    PolicyModel::read(&path.display().to_string(), &bytes, said).map_err(|error| error.to_string())
+    PolicyModel::read(&path.display().to_string(), &bytes, said)
 }
 
 /// The tree of a text that begins at `start`, as far as its syntax is valid; reports syntax errors.
