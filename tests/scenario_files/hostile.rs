@@ -1,9 +1,9 @@
 //! No content of a scenario file crashes the program.
 
+use crate::files;
 use crate::kinds::KINDS;
 use proptest::prelude::*;
-use scenario::Kind;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Checks `bytes` as every kind of file. Any answer is allowed, but problems must have places.
 fn check_as_all_kinds(bytes: &[u8]) {
@@ -18,15 +18,6 @@ fn check_as_all_kinds(bytes: &[u8]) {
             assert!(problems.0.iter().all(|problem| problem.line > 0 && problem.column > 0));
         }
     }
-}
-
-fn shipped() -> Vec<PathBuf> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
-    let files = |kind: &Kind| std::fs::read_dir(root.join(kind.folder())).unwrap();
-    let mut paths: Vec<PathBuf> = KINDS.iter().flat_map(files).map(|entry| entry.unwrap().path()).collect();
-    paths.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
-    paths.sort();
-    paths
 }
 
 proptest! {
@@ -50,7 +41,7 @@ proptest! {
         place in any::<prop::sample::Index>(),
         byte in any::<u8>(),
     ) {
-        let paths = shipped();
+        let paths: Vec<PathBuf> = KINDS.iter().flat_map(|kind| files(*kind)).collect();
         let path = which.get(&paths);
         let mut bytes = std::fs::read(path).unwrap();
         *place.get_mut(&mut bytes) = byte;

@@ -1,6 +1,7 @@
 //! The shipped scenario files are all valid and contain what they should.
 
 use crate::kinds::KINDS;
+use crate::{files, shipped};
 use experiment::sweep::Sweep;
 use experiment::tournament::Tournament;
 use gateway::config::Gateway;
@@ -11,18 +12,6 @@ use scenario::{Kind, Scenario, StartPosition};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-
-fn shipped(path: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios").join(path)
-}
-
-fn files(kind: Kind) -> Vec<PathBuf> {
-    let folder = shipped(kind.folder());
-    let mut files: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
-    files.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
-    files.sort();
-    files
-}
 
 fn game(name: &str) -> Scenario {
     scenario::load(&shipped(&format!("games/{name}.toml"))).unwrap_or_else(|problems| panic!("{problems}"))
@@ -205,13 +194,15 @@ fn boats_reach_the_speed_they_are_named_for() {
 }
 
 #[test]
-fn the_schemas_beside_the_files_are_those_of_the_types() {
-    let bless = std::env::var_os("SQUALL_BLESS").is_some();
-    for &kind in KINDS {
-        let path = shipped(&format!("schema/{kind}.schema.json"));
-        let mut want = serde_json::to_string_pretty(&scenario::schema(kind)).unwrap();
-        want.push('\n');
-        if bless {
+fn the_schemas_and_pages_beside_the_files_are_those_of_the_types() {
+    let schema = |kind: &Kind| {
+        let schema = serde_json::to_string_pretty(&scenario::schema(*kind)).unwrap();
+        (format!("schema/{kind}.schema.json"), format!("{schema}\n"))
+    };
+    let pages = [("REFERENCE.md", scenario::file_reference(KINDS)), ("strategies/REFERENCE.md", scenario::reference())];
+    for (path, want) in KINDS.iter().map(schema).chain(pages.map(|(page, want)| (page.to_owned(), want))) {
+        let path = shipped(&path);
+        if std::env::var_os("SQUALL_BLESS").is_some() {
             std::fs::write(&path, &want).unwrap();
         }
         let found = std::fs::read_to_string(&path).unwrap_or_default();
