@@ -42,25 +42,23 @@ pub fn load_with_files(path: &Path, overrides: &Overrides, files: &Arc<Files>) -
 
 /// As [`load_with_files`], with some files already read with the same settings.
 fn load_knowing(known: &Reading, path: &Path, overrides: &Overrides, files: &Arc<Files>) -> Result<Scenario, Problems> {
-    let read = |drawing: Drawing| {
-        let mut diagnostics = Diagnostics::new(drawing);
-        diagnostics.resume(known);
-        diagnostics.overrides = overrides.clone();
-        diagnostics.files = Arc::clone(files);
-        game_of(&mut diagnostics, path).map(|scenario| (scenario, diagnostics))
-    };
-    let (mut least, diagnostics) = read(Drawing::Least)?;
+    let mut diagnostics = Diagnostics::new(Drawing::Least);
+    diagnostics.resume(known);
+    diagnostics.overrides = overrides.clone();
+    diagnostics.files = Arc::clone(files);
+    let mut least = game_of(&mut diagnostics, path)?;
     if least.drawn.is_empty() {
         return Ok(least);
     }
+    let files = diagnostics.sources.texts();
+    let reading = Reading::of(diagnostics);
+    let recipe = Recipe { game: path.to_owned(), overrides: overrides.clone(), files, reading, seed: None };
     // At both ends of every distribution, so that most mistakes are found before any game. The
     // combination of numbers is checked again for each seed, which takes a tenth of a millisecond.
     // Drawing on the checked types would be faster, but would leave estimates from a drawn number
     // at their nominal values.
-    read(Drawing::Greatest)?;
-    let files = diagnostics.sources.texts();
-    let reading = Reading::of(diagnostics);
-    least.recipe = Some(Recipe { game: path.to_owned(), overrides: overrides.clone(), files, reading, seed: None });
+    least.drawn_again(&recipe, Drawing::Greatest)?;
+    least.recipe = Some(recipe);
     least.of_seed(least.seed)
 }
 
@@ -78,7 +76,14 @@ impl Scenario {
         let Some(recipe) = self.recipe.as_ref().filter(|recipe| recipe.seed != Some(seed)) else {
             return Ok(Scenario { seed, ..self.clone() });
         };
-        let mut diagnostics = Diagnostics::new(Drawing::Seed(seed));
+        let (drawn, reading) = self.drawn_again(recipe, Drawing::Seed(seed))?;
+        let reading = if recipe.reading.0.is_some() { recipe.reading.clone() } else { reading };
+        Ok(Scenario { seed, recipe: Some(Recipe { reading, seed: Some(seed), ..recipe.clone() }), ..drawn })
+    }
+
+    /// The game of its recipe with numbers drawn like this, and what was read for it.
+    fn drawn_again(&self, recipe: &Recipe, drawing: Drawing) -> Result<(Scenario, Reading), Problems> {
+        let mut diagnostics = Diagnostics::new(drawing);
         diagnostics.overrides.clone_from(&recipe.overrides);
         if !diagnostics.resume(&recipe.reading) {
             let texts = recipe.files.iter().map(|(path, text)| (path.clone(), text.clone().into_bytes()));
@@ -86,11 +91,8 @@ impl Scenario {
             let models = models.map(|model| (model.name.clone().into(), model.bytes().to_vec()));
             diagnostics.files = Arc::new(Files::kept(texts.chain(models).collect()));
         }
-        let mut drawn = game_of(&mut diagnostics, &recipe.game)?;
-        drawn.seed = seed;
-        let reading = if recipe.reading.0.is_some() { recipe.reading.clone() } else { Reading::of(diagnostics) };
-        drawn.recipe = Some(Recipe { reading, seed: Some(seed), ..recipe.clone() });
-        Ok(drawn)
+        let scenario = game_of(&mut diagnostics, &recipe.game)?;
+        Ok((scenario, Reading::of(diagnostics)))
     }
 }
 
