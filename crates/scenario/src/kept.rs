@@ -11,13 +11,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Name of the kind, path, and owner: for strategies, a team with its own values in it.
-type Key = (&'static str, PathBuf, String);
+pub(super) type Key = (&'static str, PathBuf, String);
 
 /// The results of files without faults.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Kept {
-    documents: BTreeMap<Key, KeptDocument>,
-    strategies: BTreeMap<Key, Strategy>,
+    pub(super) documents: BTreeMap<Key, KeptDocument>,
+    pub(super) strategies: BTreeMap<Key, Strategy>,
 }
 
 /// A file merged with its bases.
@@ -28,26 +28,8 @@ pub(super) struct KeptDocument {
     pub(super) value: Option<Json>,
 }
 
-fn key(kind: Kind, path: &Path, owner: &str) -> Key {
+pub(super) fn key(kind: Kind, path: &Path, owner: &str) -> Key {
     (kind.name(), path.to_owned(), if kind == Kind::STRATEGY { owner.to_owned() } else { String::new() })
-}
-
-impl Kept {
-    pub(super) fn document(&self, kind: Kind, path: &Path, owner: &str) -> Option<&KeptDocument> {
-        self.documents.get(&key(kind, path, owner))
-    }
-
-    pub(super) fn keep_document(&mut self, kind: Kind, path: &Path, owner: &str, document: KeptDocument) {
-        self.documents.insert(key(kind, path, owner), document);
-    }
-
-    pub(super) fn strategy(&self, path: &Path, owner: &str) -> Option<&Strategy> {
-        self.strategies.get(&key(Kind::STRATEGY, path, owner))
-    }
-
-    pub(super) fn keep_strategy(&mut self, path: &Path, owner: &str, strategy: Strategy) {
-        self.strategies.insert(key(Kind::STRATEGY, path, owner), strategy);
-    }
 }
 
 /// The basis of a game, with the texts that its places refer to. It follows from the texts, so

@@ -1,7 +1,7 @@
 //! Reads a file by path: text, bases, merging, and validation by its schema.
 
 use super::diagnostics::Diagnostics;
-use super::kept::KeptDocument;
+use super::kept::{self, KeptDocument};
 use super::kind::Kind;
 use super::schema::declared;
 use super::source::tidied;
@@ -51,6 +51,13 @@ impl<T> Document<T> {
         !self.wrong.iter().any(|wrong| is_below(wrong, path) || is_below(path, wrong))
     }
 
+    /// Reports a missing value at `path`, unless a value of another type is there.
+    pub(super) fn note_missing(&self, diagnostics: &mut Diagnostics, path: &str, expected: &str) {
+        if self.is_sound(path) {
+            diagnostics.note_missing(self.at(path), path, expected);
+        }
+    }
+
     /// Whether no fault was found in it, or in anything checked since it was read.
     #[must_use]
     pub fn is_faultless(&self, diagnostics: &Diagnostics) -> bool {
@@ -74,9 +81,8 @@ pub(super) fn document<T: DeserializeOwned>(
     owner: &str,
 ) -> Option<Document<T>> {
     let faults = diagnostics.faults();
-    let kept = Arc::clone(&diagnostics.kept);
-    if let Some(kept) = kept.document(kind, path, owner) {
-        return document_of_tree(diagnostics, kind, path, kept.clone(), (owner, faults));
+    if let Some(kept) = diagnostics.kept.documents.get(&kept::key(kind, path, owner)).cloned() {
+        return document_of_tree(diagnostics, kind, path, kept, (owner, faults));
     }
     let own = if kind == Kind::STRATEGY { OWN } else { &[] };
     let mut tree = tree(diagnostics, path, asked_at, own)?;
@@ -118,11 +124,11 @@ fn document_of_tree<T: DeserializeOwned>(
         let drawn = diagnostics.drawn.len();
         let (mut value, wrong) = validated(diagnostics, &tree, declared(kind), owner);
         value["name"] = name.clone().into();
-        let is_known = diagnostics.kept.document(kind, path, owner).is_some();
-        if !is_known && diagnostics.faults() == faults {
+        let key = kept::key(kind, path, owner);
+        if !diagnostics.kept.documents.contains_key(&key) && diagnostics.faults() == faults {
             let value = (diagnostics.drawn.len() == drawn).then(|| value.clone());
             let document = KeptDocument { tree: Arc::clone(&tree), value };
-            Arc::make_mut(&mut diagnostics.kept).keep_document(kind, path, owner, document);
+            Arc::make_mut(&mut diagnostics.kept).documents.insert(key, document);
         }
         (value, wrong)
     };

@@ -13,6 +13,7 @@ mod variable;
 use super::file_cache::FileCache;
 use crate::Kind;
 use crate::diagnostics::Diagnostics;
+use crate::kept;
 use crate::kind::ScenarioFile;
 use crate::raw;
 use crate::read::{self, Document};
@@ -29,11 +30,12 @@ pub(crate) fn strategy_file(
     asked_at: Option<usize>,
     owner: &str,
 ) -> Option<Strategy> {
-    if let Some(kept) = diagnostics.kept.strategy(path, owner) {
+    let key = kept::key(Kind::STRATEGY, path, owner);
+    if let Some(kept) = diagnostics.kept.strategies.get(&key) {
         return Some(kept.clone());
     }
     let strategy: Strategy = diagnostics.read(path, asked_at, owner)?;
-    Arc::make_mut(&mut diagnostics.kept).keep_strategy(path, owner, strategy.clone());
+    Arc::make_mut(&mut diagnostics.kept).strategies.insert(key, strategy.clone());
     Some(strategy)
 }
 
