@@ -110,8 +110,10 @@ impl Diagnostics {
         }
     }
 
-    /// Reports that `key` is missing from the table at `at`.
-    pub(super) fn note_missing(&mut self, at: usize, key: &str, expected: &str) {
+    /// Reports that the value at `path` of a file is missing from the table at `at`.
+    pub(super) fn note_missing(&mut self, at: usize, path: &str, expected: &str) {
+        let parts: Vec<&str> = path.split('.').filter(|part| part.parse::<usize>().is_err()).collect();
+        let key = parts[parts.len().saturating_sub(2)..].join(".");
         self.note_if_intact(at, format!("{key} is missing, expected {expected}"));
     }
 

@@ -367,7 +367,7 @@ impl Fleet<'_> {
             (Some(given), _) => (given, own_path.as_str()),
             (None, Some(given)) => (given, "boat"),
             (None, None) => {
-                self.missing(diagnostics, &own_path, "the path of a boat file here or for the game");
+                self.document.note_missing(diagnostics, &own_path, "the path of a boat file here or for the game");
                 return None;
             }
         };
@@ -404,7 +404,7 @@ impl Fleet<'_> {
             }
             (None, Some(team)) if is_replaced || states_one(team) => self.strategy_of_team(diagnostics, team.index()),
             (None, Some(_)) => {
-                self.missing(diagnostics, &path, "the path of a strategy file here or for the team");
+                self.document.note_missing(diagnostics, &path, "the path of a strategy file here or for the team");
                 None
             }
             (None, None) => None,
@@ -426,15 +426,6 @@ impl Fleet<'_> {
         }
         let place = self.document.at(&format!("team.{team}.strategy"));
         self.strategies.index(diagnostics, &strategy_path(&strategy.as_ref()?.0), place, owner)
-    }
-
-    /// Reports a key missing from a vehicle or fleet and from its game or team.
-    fn missing(&self, diagnostics: &mut Diagnostics, path: &str, expected: &str) {
-        if self.document.is_sound(path) {
-            let key: Vec<&str> = path.split('.').filter(|part| part.parse::<usize>().is_err()).collect();
-            let message = format!("{} is missing, expected {expected}", key.join("."));
-            diagnostics.note_if_intact(self.document.at(path), message);
-        }
     }
 }
 

@@ -30,8 +30,8 @@ impl ScenarioFile for Boat {
         let raw = &document.raw;
         let hull = &raw.hull;
         if hull.crossflow_coefficient > 0.0 && !document.has("hull.crossflow_draught_m") {
-            let message = "hull.crossflow_draught_m is missing, expected 0 to 20 with a crossflow_coefficient";
-            diagnostics.note_if_intact(document.at("hull"), message);
+            let expected = "0 to 20 with a crossflow_coefficient";
+            document.note_missing(diagnostics, "hull.crossflow_draught_m", expected);
         }
         if let Some(gps) = &raw.sensors.gps {
             check_gps(diagnostics, document, gps);
@@ -71,8 +71,7 @@ fn drive(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>) -> Optio
     }
     for key in ["thruster", "autopilot"] {
         if !document.has(key) && !document.has("kinematic") {
-            let message = format!("{key} is missing, expected thruster and autopilot, or kinematic");
-            diagnostics.note_if_intact(document.at(""), message);
+            document.note_missing(diagnostics, key, "thruster and autopilot, or kinematic");
         }
     }
     let thruster = thruster::thruster(diagnostics, document, raw.thruster.as_ref()?)?;

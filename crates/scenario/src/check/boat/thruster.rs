@@ -23,9 +23,8 @@ pub(super) fn thruster(
             return None;
         }
         (None, None) => {
-            if document.is_sound("thruster.propeller") && document.is_sound("thruster.table_pct_newton") {
-                let message = "thruster.propeller is missing, expected propeller or table_pct_newton";
-                diagnostics.note_if_intact(document.at("thruster"), message);
+            if document.is_sound("thruster.table_pct_newton") {
+                document.note_missing(diagnostics, "thruster.propeller", "propeller or table_pct_newton");
             }
             return None;
         }
