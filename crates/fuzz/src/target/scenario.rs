@@ -121,7 +121,8 @@ fn accepted(kind: Kind, path: &Path) {
         }
         "gateway" => {
             let gateway = scenario::load_file::<Gateway>(path).expect("the file was accepted");
-            let field = scenario::load_file::<rules::Field>(&scenarios().join("fields/open_800x400.toml")).expect("a field");
+            let field =
+                scenario::load_file::<rules::Field>(&scenarios().join("fields/open_800x400.toml")).expect("a field");
             let vehicle = "blue_one".to_owned();
             let site = Some(Site { field, length_m: 2.0, declination_rad: 0.1, coasting: None });
             let plan =
