@@ -24,3 +24,11 @@ fn files(kind: Kind) -> Vec<PathBuf> {
     files.sort();
     files
 }
+
+/// Writes a file below `folder`; returns its path.
+fn written(folder: &Path, name: &str, text: impl AsRef<[u8]>) -> PathBuf {
+    let path = folder.join(name);
+    std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+    std::fs::write(&path, text).unwrap();
+    path
+}

@@ -1,7 +1,7 @@
 //! The shipped scenario files are all valid and contain what they should.
 
 use crate::kinds::KINDS;
-use crate::{files, shipped};
+use crate::{files, shipped, written};
 use experiment::sweep::Sweep;
 use experiment::tournament::Tournament;
 use gateway::config::Gateway;
@@ -250,9 +250,8 @@ fn a_number_beyond_the_range_of_its_schema_is_refused() {
                     (true, false) => format!("{value:.0}"),
                     (false, _) => format!("{value:?}"),
                 };
-                let file = folder.path().join(kind.folder()).join("x.toml");
-                std::fs::create_dir_all(file.parent().unwrap()).unwrap();
-                std::fs::write(&file, format!("base = {:?}\n{path} = {value}\n", base.display().to_string())).unwrap();
+                let text = format!("base = {:?}\n{path} = {value}\n", base.display().to_string());
+                let file = written(folder.path(), &format!("{}/x.toml", kind.folder()), &text);
                 let problems = scenario::check_file(KINDS, &file).unwrap_err().to_string();
                 let expected = format!("expected {} to {}", number(&low), number(&high));
                 assert!(is_whole || problems.contains(&expected), "{kind} {path} = {value}: {problems}");
@@ -300,14 +299,6 @@ fn keys(schema: &Value) -> Vec<String> {
         Value::Array(items) => items.iter().flat_map(keys).collect(),
         _ => vec![],
     }
-}
-
-/// Writes a file below `folder`; returns its path.
-fn written(folder: &Path, name: &str, text: &str) -> PathBuf {
-    let path = folder.join(name);
-    std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-    std::fs::write(&path, text).unwrap();
-    path
 }
 
 /// A folder with the files that examples extend, and the model that one of them names.
