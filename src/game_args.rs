@@ -90,8 +90,8 @@ impl GameArgs {
     pub(crate) fn overrides(&self) -> Result<Overrides> {
         let mut settings = self.settings.clone();
         if let Some(field) = &self.field {
-            settings
-                .push(Setting::parse(&format!("game.field={}", serde_json::Value::from(field.display().to_string())))?);
+            let field = format!("game.field={}", serde_json::Value::from(field.display().to_string()));
+            settings.push(Setting::parse(&field).map_err(anyhow::Error::msg)?);
         }
         let mut overrides = Overrides {
             sea: self.sea.clone(),

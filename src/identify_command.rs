@@ -66,7 +66,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     screen::print(&table(&boat.name, &named, &fit));
     let text = identify::written(&fit, &base_of(&out, &path), &named);
     output_file::write(&out, "the boat", text)?;
-    scenario::load_boat(&out).with_context(|| format!("{} was written, but is not a valid boat", out.display()))?;
+    scenario::load_file::<scenario::Boat>(&out)
+        .with_context(|| format!("{} was written, but is not a valid boat", out.display()))?;
     screen::print(&format!("fitted boat: {}\n", out.display()));
     Ok(ExitCode::SUCCESS)
 }

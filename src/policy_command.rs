@@ -46,9 +46,10 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let name = args.file.display().to_string();
     let network = Network::read(&bytes).with_context(|| format!("{name} is not a usable model"))?;
     let model = PolicyModel::read(&name, &bytes, PartialSpec::default());
-    let spec = model.as_ref().map(|model| model.spec).map_err(ToString::to_string);
+    let spec = model.as_ref().map(|model| model.spec).map_err(Clone::clone);
     screen::print(&about(&name, bytes.len(), &network, spec));
     if let (Some(game), Some(vehicle), Some(at_s)) = (&args.game, &args.vehicle, args.at) {
+        let model = model.map_err(anyhow::Error::msg);
         let model = model.with_context(|| format!("{name} does not declare its inputs and actions"))?;
         screen::print(&explained(&model, game, vehicle, at_s, args.inputs)?);
     }

@@ -26,7 +26,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         return Ok(ExitCode::SUCCESS);
     }
     let file = args.file.as_ref().ok_or_else(|| anyhow!("expected a strategy"))?;
-    match scenario::load_strategy(file) {
+    match scenario::load_file::<scenario::strategy::Strategy>(file) {
         Ok(strategy) if args.dot => screen::print(&graph(&strategy)),
         Ok(strategy) => screen::print(&tables(&strategy)),
         Err(problems) => {

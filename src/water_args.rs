@@ -41,7 +41,7 @@ impl WaterArgs {
 
 /// Loads the sea in a file and prints its randomised values.
 pub(crate) fn sea(path: &Path, seed: u64) -> Result<Sea> {
-    let drawn = scenario::draw_sea(path, seed);
+    let drawn = scenario::draw_file::<scenario::sea::Sea>(path, seed);
     let (sea, drawn) = drawn.with_context(|| format!("cannot load the sea {}", path.display()))?;
     tell_drawn(seed, &drawn);
     Ok(sea)
@@ -51,7 +51,7 @@ pub(crate) fn sea(path: &Path, seed: u64) -> Result<Sea> {
 /// randomised values.
 pub(crate) fn boat(named: &str, seed: u64) -> Result<(Boat, PathBuf, Vec<Drawn>)> {
     let path = scenario_files::find(named, Kind::BOAT)?;
-    let drawn = scenario::draw_boat(&path, seed);
+    let drawn = scenario::draw_file::<scenario::Boat>(&path, seed);
     let (boat, drawn) = drawn.with_context(|| format!("cannot load the boat {}", path.display()))?;
     Ok((boat, path, drawn))
 }

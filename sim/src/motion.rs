@@ -342,7 +342,7 @@ mod tests {
     /// The shipped Otter in salt water.
     fn model() -> HullModel {
         let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/boats/otter.toml");
-        let boat = scenario::load_boat(&file).unwrap_or_else(|e| panic!("{e}"));
+        let boat = scenario::load_file::<scenario::Boat>(&file).unwrap_or_else(|e| panic!("{e}"));
         HullModel::new(&boat.hull, 1025.0)
     }
 

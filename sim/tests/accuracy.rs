@@ -59,7 +59,7 @@ fn whatever_water_a_hull_carries_along_it_stays_stable_in_a_gale() {
     for (surge, sway, yaw) in [(3.0, 1.0, 1.0), (0.1, 3.0, 1.0), (0.1, 1.0, 3.0), (3.0, 3.0, 3.0)] {
         for order in [Order::Steer { heading_rad: 1.0, speed_m_s: 1.5 }, Order::Thrust { port: 0.8, starboard: 0.5 }] {
             let mut scenario = alone("surveyor_m1_8", "calm");
-            let gale = scenario::draw_sea(&scenarios().join("seas/bay_gale.toml"), 1);
+            let gale = scenario::draw_file::<scenario::sea::Sea>(&scenarios().join("seas/bay_gale.toml"), 1);
             scenario.sea = gale.unwrap_or_else(|e| panic!("{e}")).0;
             let hull = &mut scenario.boats[0].hull;
             hull.added_surge_kg = surge * hull.mass_kg;

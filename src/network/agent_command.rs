@@ -40,7 +40,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     stop::exit_when_late(&stop, None);
     let names = args.vehicle.join(", ");
     let load = |path: &PathBuf| {
-        scenario::load_strategy(path).with_context(|| format!("cannot use the strategy {}", path.display()))
+        scenario::load_file::<scenario::strategy::Strategy>(path)
+            .with_context(|| format!("cannot use the strategy {}", path.display()))
     };
     let strategy = args.strategy.as_ref().map(load).transpose()?;
     let settings = Settings {

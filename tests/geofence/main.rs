@@ -15,7 +15,7 @@ use primitives::frame::Ned;
 use primitives::stream::Stream;
 use scenario::boat::Boat;
 use scenario::sea::Sea;
-use scenario::{draw_sea, load_boat};
+use scenario::{draw_file, load_file};
 use sim::hull::Planar;
 use std::collections::{BTreeMap, VecDeque};
 use std::path::{Path, PathBuf};
@@ -133,7 +133,7 @@ fn drawn(i: u64, seas: usize) -> Approach {
 #[test]
 fn no_approach_to_the_geofence_crosses_it() {
     let count = std::env::var("SQUALL_APPROACHES").map_or(1000, |text| text.parse().expect("a number"));
-    let boat = load_boat(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/boats/surveyor_m1_8.toml"))
+    let boat = load_file::<Boat>(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/boats/surveyor_m1_8.toml"))
         .unwrap_or_else(|problems| panic!("{problems}"));
     let seas = seas();
     let workers = std::thread::available_parallelism().map_or(1, usize::from) as u64;
@@ -141,7 +141,7 @@ fn no_approach_to_the_geofence_crosses_it() {
         let mut ended = vec![];
         for i in (worker..count).step_by(workers as usize) {
             let drawn = drawn(i, seas.len());
-            let (sea, _) = draw_sea(&seas[drawn.sea], i).unwrap_or_else(|problems| panic!("{problems}"));
+            let (sea, _) = draw_file::<Sea>(&seas[drawn.sea], i).unwrap_or_else(|problems| panic!("{problems}"));
             ended.push((i, approach(&drawn, &boat, &sea)));
         }
         ended

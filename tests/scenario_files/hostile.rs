@@ -1,32 +1,21 @@
 //! No content of a scenario file crashes the program.
 
 use crate::kinds::KINDS;
+use crate::{files, written};
 use proptest::prelude::*;
-use scenario::Kind;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Checks `bytes` as every kind of file. Any answer is allowed, but problems must have places.
 fn check_as_all_kinds(bytes: &[u8]) {
     let folder = tempfile::tempdir().unwrap();
-    let in_folders: Vec<PathBuf> = KINDS.iter().map(|kind| folder.path().join(kind.folder()).join("x.toml")).collect();
-    let anywhere = folder.path().join("x.toml");
-    for path in in_folders.iter().chain([&anywhere]) {
-        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-        std::fs::write(path, bytes).unwrap();
-        if let Err(problems) = scenario::check_file(KINDS, path) {
+    let in_folders = KINDS.iter().map(|kind| format!("{}/x.toml", kind.folder()));
+    for name in in_folders.chain(["x.toml".to_owned()]) {
+        let path = written(folder.path(), &name, bytes);
+        if let Err(problems) = scenario::check_file(KINDS, &path) {
             assert!(!problems.0.is_empty());
             assert!(problems.0.iter().all(|problem| problem.line > 0 && problem.column > 0));
         }
     }
-}
-
-fn shipped() -> Vec<PathBuf> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
-    let files = |kind: &Kind| std::fs::read_dir(root.join(kind.folder())).unwrap();
-    let mut paths: Vec<PathBuf> = KINDS.iter().flat_map(files).map(|entry| entry.unwrap().path()).collect();
-    paths.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
-    paths.sort();
-    paths
 }
 
 proptest! {
@@ -50,7 +39,7 @@ proptest! {
         place in any::<prop::sample::Index>(),
         byte in any::<u8>(),
     ) {
-        let paths = shipped();
+        let paths: Vec<PathBuf> = KINDS.iter().flat_map(|kind| files(*kind)).collect();
         let path = which.get(&paths);
         let mut bytes = std::fs::read(path).unwrap();
         *place.get_mut(&mut bytes) = byte;

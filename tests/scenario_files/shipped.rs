@@ -1,6 +1,7 @@
 //! The shipped scenario files are all valid and contain what they should.
 
 use crate::kinds::KINDS;
+use crate::{files, shipped, written};
 use experiment::sweep::Sweep;
 use experiment::tournament::Tournament;
 use gateway::config::Gateway;
@@ -12,24 +13,13 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-fn shipped(path: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios").join(path)
-}
-
-fn files(kind: Kind) -> Vec<PathBuf> {
-    let folder = shipped(kind.folder());
-    let mut files: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
-    files.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
-    files.sort();
-    files
-}
-
 fn game(name: &str) -> Scenario {
     scenario::load(&shipped(&format!("games/{name}.toml"))).unwrap_or_else(|problems| panic!("{problems}"))
 }
 
 fn field(name: &str) -> rules::Field {
-    scenario::load_field(&shipped(&format!("fields/{name}.toml"))).unwrap_or_else(|problems| panic!("{problems}"))
+    scenario::load_file::<rules::Field>(&shipped(&format!("fields/{name}.toml")))
+        .unwrap_or_else(|problems| panic!("{problems}"))
 }
 
 fn stem(path: &Path) -> String {
@@ -40,10 +30,10 @@ fn stem(path: &Path) -> String {
 fn name_of(kind: Kind, path: &Path) -> Option<String> {
     let name = match kind.name() {
         "game" => scenario::load(path).map(|game| game.name),
-        "field" => scenario::load_field(path).map(|field| field.plan.name),
-        "boat" => scenario::load_boat(path).map(|boat| boat.name),
-        "sea" => scenario::draw_sea(path, 1).map(|(sea, _)| sea.name),
-        "strategy" => scenario::load_strategy(path).map(|strategy| strategy.name),
+        "field" => scenario::load_file::<rules::Field>(path).map(|field| field.plan.name),
+        "boat" => scenario::load_file::<scenario::Boat>(path).map(|boat| boat.name),
+        "sea" => scenario::draw_file::<scenario::sea::Sea>(path, 1).map(|(sea, _)| sea.name),
+        "strategy" => scenario::load_file::<scenario::strategy::Strategy>(path).map(|strategy| strategy.name),
         "tournament" => scenario::load_file::<Tournament>(path).map(|tournament| tournament.name),
         "sweep" => scenario::load_file::<Sweep>(path).map(|sweep| sweep.name),
         "gateway" => scenario::load_file::<Gateway>(path).map(|gateway| gateway.name),
@@ -189,7 +179,7 @@ fn a_scenario_knows_its_vehicles() {
 #[test]
 fn boats_reach_the_speed_they_are_named_for() {
     for (name, want_m_s) in [("otter", 3.086), ("surveyor_m1_8", 3.0), ("heron", 2.0)] {
-        let boat = scenario::load_boat(&shipped(&format!("boats/{name}.toml"))).unwrap();
+        let boat = scenario::load_file::<scenario::Boat>(&shipped(&format!("boats/{name}.toml"))).unwrap();
         let scenario::boat::Drive::Thrusters { thruster, .. } = &boat.drive else { panic!("{name} has no thrusters") };
         let thrust_newton = 2.0
             * match &thruster.curve {
@@ -204,13 +194,15 @@ fn boats_reach_the_speed_they_are_named_for() {
 }
 
 #[test]
-fn the_schemas_beside_the_files_are_those_of_the_types() {
-    let bless = std::env::var_os("SQUALL_BLESS").is_some();
-    for &kind in KINDS {
-        let path = shipped(&format!("schema/{kind}.schema.json"));
-        let mut want = serde_json::to_string_pretty(&scenario::schema(kind)).unwrap();
-        want.push('\n');
-        if bless {
+fn the_schemas_and_pages_beside_the_files_are_those_of_the_types() {
+    let schema = |kind: &Kind| {
+        let schema = serde_json::to_string_pretty(&scenario::schema(*kind)).unwrap();
+        (format!("schema/{kind}.schema.json"), format!("{schema}\n"))
+    };
+    let pages = [("REFERENCE.md", scenario::file_reference(KINDS)), ("strategies/REFERENCE.md", scenario::reference())];
+    for (path, want) in KINDS.iter().map(schema).chain(pages.map(|(page, want)| (page.to_owned(), want))) {
+        let path = shipped(&path);
+        if std::env::var_os("SQUALL_BLESS").is_some() {
             std::fs::write(&path, &want).unwrap();
         }
         let found = std::fs::read_to_string(&path).unwrap_or_default();
@@ -258,9 +250,8 @@ fn a_number_beyond_the_range_of_its_schema_is_refused() {
                     (true, false) => format!("{value:.0}"),
                     (false, _) => format!("{value:?}"),
                 };
-                let file = folder.path().join(kind.folder()).join("x.toml");
-                std::fs::create_dir_all(file.parent().unwrap()).unwrap();
-                std::fs::write(&file, format!("base = {:?}\n{path} = {value}\n", base.display().to_string())).unwrap();
+                let text = format!("base = {:?}\n{path} = {value}\n", base.display().to_string());
+                let file = written(folder.path(), &format!("{}/x.toml", kind.folder()), &text);
                 let problems = scenario::check_file(KINDS, &file).unwrap_err().to_string();
                 let expected = format!("expected {} to {}", number(&low), number(&high));
                 assert!(is_whole || problems.contains(&expected), "{kind} {path} = {value}: {problems}");
@@ -308,14 +299,6 @@ fn keys(schema: &Value) -> Vec<String> {
         Value::Array(items) => items.iter().flat_map(keys).collect(),
         _ => vec![],
     }
-}
-
-/// Writes a file below `folder`; returns its path.
-fn written(folder: &Path, name: &str, text: &str) -> PathBuf {
-    let path = folder.join(name);
-    std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-    std::fs::write(&path, text).unwrap();
-    path
 }
 
 /// A folder with the files that examples extend, and the model that one of them names.

@@ -218,7 +218,7 @@ mod tests {
 
     fn motion(boat: &str) -> OwnMotion {
         let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../scenarios/boats/{boat}.toml"));
-        let boat = scenario::load_boat(&file).unwrap_or_else(|e| panic!("{e}"));
+        let boat = scenario::load_file::<scenario::Boat>(&file).unwrap_or_else(|e| panic!("{e}"));
         OwnMotion::new(&boat, boat.speed_max_m_s(), true)
     }
 

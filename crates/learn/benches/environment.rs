@@ -37,7 +37,8 @@ fn setup(game: &str, opponent: Player) -> Setup {
 fn steps(c: &mut Criterion) {
     let mut group = c.benchmark_group("environment");
     let strategy = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/strategies/strategy_4.toml");
-    let strategy = scenario::load_strategy(&strategy).unwrap_or_else(|problems| panic!("{problems}"));
+    let strategy =
+        scenario::load_file::<scenario::strategy::Strategy>(&strategy).unwrap_or_else(|problems| panic!("{problems}"));
     let games = [
         ("calm", "pyquaticus_2v2", Player::Policy),
         ("sea and sensors", "surveyor_2v2", Player::Policy),

@@ -72,7 +72,8 @@ impl Message for LinkBytes {
 
 /// A gateway report for other nodes. The sim forwards it if it carries the ticket of the boat's
 /// gateway. No other node may publish it: it cannot be forged, and the ticket stays secret.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, strum::Display)]
+#[strum(serialize_all = "snake_case")]
 pub enum Reported {
     /// [`GatewayStatus`], as JSON.
     Status,
@@ -109,15 +110,6 @@ impl Reported {
     }
 }
 
-impl fmt::Display for Reported {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Reported::Status => "status",
-            Reported::Link => "link",
-        })
-    }
-}
-
 /// An operator's command to a gateway.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
@@ -145,10 +137,12 @@ pub enum OperatorCommand {
 
 /// A mode of a Surveyor's own controller beyond station keeping, recovery and missions. Only the
 /// first is documented by the vendor.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, strum::Display)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum BoatMode {
     /// `C`: holds a heading at a thrust.
+    #[strum(to_string = "heading {heading_deg:03.0} at {thrust_pct:.0} %")]
     Heading {
         /// True heading, degrees.
         heading_deg: f64,
@@ -156,30 +150,18 @@ pub enum BoatMode {
         thrust_pct: f64,
     },
     /// `N`: river navigation.
+    #[strum(to_string = "river navigation")]
     RiverNav,
     /// `I`: autopilot.
     Autopilot,
     /// `3`: calibration of the compass.
+    #[strum(to_string = "compass calibration")]
     CompassCalibration,
     /// `D`: depth.
     Depth,
     /// `S`: direction of gravity.
+    #[strum(to_string = "direction of gravity")]
     GravityVector,
-}
-
-impl fmt::Display for BoatMode {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            BoatMode::Heading { heading_deg, thrust_pct } => {
-                return write!(f, "heading {heading_deg:03.0} at {thrust_pct:.0} %");
-            }
-            BoatMode::RiverNav => "river navigation",
-            BoatMode::Autopilot => "autopilot",
-            BoatMode::CompassCalibration => "compass calibration",
-            BoatMode::Depth => "depth",
-            BoatMode::GravityVector => "direction of gravity",
-        })
-    }
 }
 
 impl fmt::Display for OperatorCommand {

@@ -12,7 +12,6 @@ pub mod instructions;
 pub mod math;
 pub mod near;
 mod normal;
-pub mod omitted;
 pub mod output_file;
 pub mod printable;
 pub mod reseed;

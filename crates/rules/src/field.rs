@@ -13,13 +13,13 @@ mod own;
 
 use primitives::frame::{LatLon, Ned};
 use primitives::id::TeamId;
-use primitives::omitted::number_or_nan;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// The content of a field file; [`Field::new`] derives the rest.
+/// The content of a field file; [`Field::new`] derives the rest. `E` is `Option<f64>` in a file,
+/// where a number that is estimated may be omitted.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct Plan {
+pub struct Plan<E = f64> {
     /// The field file's stem.
     #[schemars(skip)]
     pub name: String,
@@ -39,9 +39,7 @@ pub struct Plan {
     #[schemars(range(min = 10, max = 20000))]
     pub depth_m: f64,
     /// Distance of the flags from the ends, m, above 0 and below half the width. Default: width / 8.
-    #[serde(deserialize_with = "number_or_nan")]
-    #[schemars(with = "Option<f64>", extend("x-estimated" = true))]
-    pub flag_inset_m: f64,
+    pub flag_inset_m: E,
     /// Flags in addition to each team's default flag.
     #[serde(default)]
     #[schemars(skip)]

@@ -4,10 +4,10 @@
 //! starboard, yaw clockwise. `sim::hull` contains the equation with these numbers.
 //!
 //! These types also declare the keys of boat files. For a key in another unit, `rename` sets the
-//! key's name, the description gives that unit, and `x-field` names the field.
+//! key's name, the description gives that unit, and `x-field` names the field. A number that is
+//! estimated where a file omits it has the type `E`: `Option<f64>` in a file, `f64` once checked.
 
 use crate::sensor::Sensors;
-use primitives::omitted::number_or_nan;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -75,19 +75,16 @@ impl Boat {
 /// Wind force (Fossen 2021, ch. 10): X = −½ρ V² C_x A_F cos γ, Y = ½ρ V² C_y A_L sin γ, N = ½ρ V²
 /// C_n A_L L sin 2γ, with relative wind V at angle γ off the bow.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct Windage {
+pub struct Windage<E = f64> {
     /// A_F: frontal area, m². Default: 0.36 beam².
-    #[serde(deserialize_with = "number_or_nan")]
-    #[schemars(with = "Option<f64>", range(min = 0, max = 1000), extend("x-estimated" = true))]
-    pub frontal_area_m2: f64,
+    #[schemars(range(min = 0, max = 1000))]
+    pub frontal_area_m2: E,
     /// A_L: lateral area, m². Default: 0.16 L².
-    #[serde(deserialize_with = "number_or_nan")]
-    #[schemars(with = "Option<f64>", range(min = 0, max = 5000), extend("x-estimated" = true))]
-    pub lateral_area_m2: f64,
+    #[schemars(range(min = 0, max = 5000))]
+    pub lateral_area_m2: E,
     /// Height of the reference wind, m. Default: 0.25 L.
-    #[serde(deserialize_with = "number_or_nan")]
-    #[schemars(with = "Option<f64>", range(min = 0.05, max = 100), extend("x-estimated" = true))]
-    pub height_m: f64,
+    #[schemars(range(min = 0.05, max = 100))]
+    pub height_m: E,
     /// C_x.
     #[schemars(range(min = 0, max = 2), extend("default" = 0.6))]
     pub surge_coefficient: f64,
@@ -166,51 +163,44 @@ pub struct Pid {
 
 /// Inertia and resistance. Omitted values are estimated from length L, beam, mass m and thrust.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct Hull {
+pub struct Hull<E = f64> {
     /// Mass including payload, kg.
     #[schemars(range(min = 0.1, max = 1000000))]
     pub mass_kg: f64,
     /// Moment of inertia about midships, kg m². Default: m (L/4)² + m x_g².
-    #[serde(deserialize_with = "number_or_nan")]
-    #[schemars(with = "Option<f64>", range(min = 0.0001, max = 1000000000), extend("x-estimated" = true))]
-    pub yaw_inertia_kg_m2: f64,
+    #[schemars(range(min = 0.0001, max = 1000000000))]
+    pub yaw_inertia_kg_m2: E,
     /// Centre of gravity ahead of midships, m, within the hull.
     #[schemars(range(min = -50, max = 50), extend("default" = 0))]
     pub x_g_m: f64,
     /// Added mass in surge A11, kg. Default: 2.7 ρ (m/ρ)^(5/3) / L², ρ = 1000 (Söding).
-    #[serde(deserialize_with = "number_or_nan")]
-    #[schemars(with = "Option<f64>", range(min = 0, max = 1000000), extend("x-estimated" = true))]
-    pub added_surge_kg: f64,
+    #[schemars(range(min = 0, max = 1000000))]
+    pub added_surge_kg: E,
     /// Added mass in sway A22, kg. Default: m.
-    #[serde(deserialize_with = "number_or_nan")]
-    #[schemars(with = "Option<f64>", range(min = 0, max = 10000000), extend("x-estimated" = true))]
-    pub added_sway_kg: f64,
+    #[schemars(range(min = 0, max = 10000000))]
+    pub added_sway_kg: E,
     /// Added moment of inertia in yaw A66, kg m². Default: the moment of inertia.
-    #[serde(deserialize_with = "number_or_nan")]
-    #[schemars(with = "Option<f64>", range(min = 0, max = 1000000000), extend("x-estimated" = true))]
-    pub added_yaw_kg_m2: f64,
+    #[schemars(range(min = 0, max = 1000000000))]
+    pub added_yaw_kg_m2: E,
     /// Added sway-yaw coupling A26, kg m.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub added_sway_yaw_kg_m: f64,
     /// Linear surge resistance -X_u, kg/s. Default: such that both thrusters full
     /// ahead give the autopilot's `speed_max_m_s` (at least 0).
-    #[serde(deserialize_with = "number_or_nan")]
-    #[schemars(with = "Option<f64>", range(min = 0, max = 1000000), extend("x-estimated" = true))]
-    pub surge_linear_kg_s: f64,
+    #[schemars(range(min = 0, max = 1000000))]
+    pub surge_linear_kg_s: E,
     /// Quadratic surge resistance -X_|u|u, kg/m.
     #[schemars(range(min = 0, max = 1000000), extend("default" = 0))]
     pub surge_quadratic_kg_m: f64,
     /// Linear sway resistance -Y_v, kg/s. Default: (m + A22) / 1 s.
-    #[serde(deserialize_with = "number_or_nan")]
-    #[schemars(with = "Option<f64>", range(min = 0, max = 10000000), extend("x-estimated" = true))]
-    pub sway_linear_kg_s: f64,
+    #[schemars(range(min = 0, max = 10000000))]
+    pub sway_linear_kg_s: E,
     /// Lift-like sway resistance -Y_|u|v, kg/m.
     #[schemars(range(min = 0, max = 1000000), extend("default" = 0))]
     pub sway_lift_kg_m: f64,
     /// Linear yaw resistance -N_r, kg m²/s. Default: (inertia + A66) / 1 s.
-    #[serde(deserialize_with = "number_or_nan")]
-    #[schemars(with = "Option<f64>", range(min = 0, max = 1000000000), extend("x-estimated" = true))]
-    pub yaw_linear_kg_m2_s: f64,
+    #[schemars(range(min = 0, max = 1000000000))]
+    pub yaw_linear_kg_m2_s: E,
     /// Quadratic yaw resistance -N_|r|r, kg m².
     #[schemars(range(min = 0, max = 1000000000), extend("default" = 0))]
     pub yaw_quadratic_kg_m2: f64,
@@ -221,13 +211,11 @@ pub struct Hull {
     #[schemars(range(min = 0, max = 3), extend("default" = 0))]
     pub crossflow_coefficient: f64,
     /// Draught for cross-flow, m. Required with a coefficient. Default: 0.
-    #[serde(deserialize_with = "number_or_nan")]
-    #[schemars(with = "Option<f64>", range(min = 0, max = 20), extend("x-estimated" = true))]
-    pub crossflow_draught_m: f64,
+    #[schemars(range(min = 0, max = 20))]
+    pub crossflow_draught_m: E,
     /// Length for cross-flow, m. Default: L.
-    #[serde(deserialize_with = "number_or_nan")]
-    #[schemars(with = "Option<f64>", range(min = 0, max = 200), extend("x-estimated" = true))]
-    pub crossflow_length_m: f64,
+    #[schemars(range(min = 0, max = 200))]
+    pub crossflow_length_m: E,
     /// Share of the Munk moment (A22 - A11) u v; 1: bare hull in ideal flow.
     #[schemars(range(min = 0, max = 1), extend("default" = 0.5))]
     pub munk_factor: f64,
@@ -348,21 +336,19 @@ pub enum ThrustCurve {
 
 /// Thrust k n |n| newtons at n rad/s.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct Propeller {
+pub struct Propeller<E = f64> {
     /// k ahead, N s²/rad².
     #[schemars(range(min = 0.00000001, max = 1000))]
     pub k_ahead: f64,
     /// k astern, N s²/rad². Default: `k_ahead`.
-    #[serde(deserialize_with = "number_or_nan")]
-    #[schemars(with = "Option<f64>", range(min = 0.00000001, max = 1000), extend("x-estimated" = true))]
-    pub k_astern: f64,
+    #[schemars(range(min = 0.00000001, max = 1000))]
+    pub k_astern: E,
     /// Shaft speed at full ahead, rad/s.
     #[schemars(range(min = 0.1, max = 10000))]
     pub n_max_rad_s: f64,
     /// Shaft speed at full astern, rad/s, positive. Default: `n_max_rad_s`.
-    #[serde(deserialize_with = "number_or_nan")]
-    #[schemars(with = "Option<f64>", range(min = 0.1, max = 10000), extend("x-estimated" = true))]
-    pub n_min_rad_s: f64,
+    #[schemars(range(min = 0.1, max = 10000))]
+    pub n_min_rad_s: E,
 }
 
 /// The front seat: follows a heading and a speed.

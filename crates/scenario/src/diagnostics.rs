@@ -8,7 +8,6 @@ use super::overrides::Overrides;
 use super::problem::{Problem, Problems};
 use super::read::{self, Document};
 use super::source::Sources;
-use crate::policy::PolicyModel;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -20,9 +19,6 @@ pub struct Diagnostics {
     pub(super) drawing: Drawing,
     pub(super) drawn: Vec<Drawn>,
     pub(super) files: Arc<Files>,
-    /// If any, the only texts to read from.
-    pub(super) texts: Option<Vec<(PathBuf, String)>>,
-    pub(super) models: Vec<PolicyModel>,
     pub(super) kept: Arc<Kept>,
     pub(super) overrides: Overrides,
     problems: Vec<Problem>,
@@ -36,8 +32,6 @@ impl Diagnostics {
             drawing,
             drawn: vec![],
             files: Arc::default(),
-            texts: None,
-            models: vec![],
             kept: Arc::default(),
             overrides: Overrides::default(),
             problems: vec![],
@@ -85,8 +79,27 @@ impl Diagnostics {
         }
         let place = document.at(key);
         let path = self.resolve(place, given);
-        let document = read::document(self, Kind::of::<F>(), &path, Some(place))?;
+        self.read(&path, Some(place), F::NAME)
+    }
+
+    /// Reads and checks the file at `path`, with numbers drawn for `owner`. If it cannot be read, the
+    /// problem is at `asked_at`, the reference.
+    pub(super) fn read<F: ScenarioFile>(&mut self, path: &Path, asked_at: Option<usize>, owner: &str) -> Option<F> {
+        let document = read::document(self, Kind::of::<F>(), path, asked_at, owner)?;
         F::check(self, &document)
+    }
+
+    /// Reads and checks the file at `path`; its value and the drawn numbers, if there are no faults.
+    pub(super) fn faultless<F: ScenarioFile>(&mut self, path: &Path) -> Result<(F, Vec<Drawn>), Problems> {
+        match self.read(path, None, F::NAME) {
+            Some(value) if self.problems.is_empty() => Ok((value, std::mem::take(&mut self.drawn))),
+            _ => {
+                assert!(!self.problems.is_empty(), "a check failed without saying why");
+                self.problems.sort();
+                self.problems.dedup();
+                Err(Problems(std::mem::take(&mut self.problems)))
+            }
+        }
     }
 
     /// Reports a problem that broken syntax in the file may have caused, unless there is some.
@@ -97,8 +110,10 @@ impl Diagnostics {
         }
     }
 
-    /// Reports that `key` is missing from the table at `at`.
-    pub(super) fn note_missing(&mut self, at: usize, key: &str, expected: &str) {
+    /// Reports that the value at `path` of a file is missing from the table at `at`.
+    pub(super) fn note_missing(&mut self, at: usize, path: &str, expected: &str) {
+        let parts: Vec<&str> = path.split('.').filter(|part| part.parse::<usize>().is_err()).collect();
+        let key = parts[parts.len().saturating_sub(2)..].join(".");
         self.note_if_intact(at, format!("{key} is missing, expected {expected}"));
     }
 
@@ -122,19 +137,6 @@ impl Diagnostics {
     /// The number of faults so far: checks that combine values run only if it has not grown.
     pub(super) fn faults(&self) -> usize {
         self.faults
-    }
-
-    /// The value, if there were no faults.
-    pub(super) fn close<T>(&mut self, value: Option<T>) -> Result<T, Problems> {
-        match value {
-            Some(value) if self.problems.is_empty() => Ok(value),
-            _ => {
-                assert!(!self.problems.is_empty(), "a check failed without saying why");
-                self.problems.sort();
-                self.problems.dedup();
-                Err(Problems(std::mem::take(&mut self.problems)))
-            }
-        }
     }
 
     /// Whether `name` is valid: at most 40 of `a` to `z`, `0` to `9` and `_`.

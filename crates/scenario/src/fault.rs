@@ -210,14 +210,10 @@ mod tests {
         // independent.
         assert!((160..240).contains(&counts[1]), "{counts:?}");
         // All share the past of `first`, whose last span ends earlier.
-        assert!(first[until_last(&first, half)].to < half, "the seed of this test leaves no span open");
+        let last = first.iter().rfind(|span| span.from <= half).expect("there is one");
+        assert!(last.to < half, "the seed of this test leaves no span open");
         // Starting without a fault, a minute has 60/50 waits, less the duration of the spans: 1.03
         // on average.
         assert!((165..245).contains(&counts[0]), "{counts:?}");
-    }
-
-    /// The last span that begins by this time.
-    fn until_last(spans: &[FaultSpan], at: SimTime) -> usize {
-        spans.iter().rposition(|span| span.from <= at).expect("there is one")
     }
 }

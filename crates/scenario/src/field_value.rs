@@ -10,16 +10,11 @@ use serde_json::{Map, Value, json};
 
 /// The mark of a key whose field has another name or unit.
 const FIELD: &str = "x-field";
-/// The mark of a number that is estimated if a file omits it.
-const ESTIMATED: &str = "x-estimated";
 
 /// Converts a table's values by key to values by field.
 pub(super) fn by_fields(mut values: Map<String, Value>, properties: &Value) -> Value {
-    let keys = || properties.as_object().into_iter().flatten();
-    for (key, _) in keys().filter(|(_, about)| about.get(ESTIMATED).is_some()) {
-        values.entry(key).or_insert(Value::Null);
-    }
-    let marked = keys().filter_map(|(key, about)| Some((key, about.get(FIELD)?.as_str()?)));
+    let keys = properties.as_object().into_iter().flatten();
+    let marked = keys.filter_map(|(key, about)| Some((key, about.get(FIELD)?.as_str()?)));
     let moved: Vec<_> = marked.filter_map(|(key, field)| Some((key, field, values.remove(key)?))).collect();
     let mut table = Value::Object(values);
     for (key, field, value) in moved {

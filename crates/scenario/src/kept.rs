@@ -10,14 +10,14 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Kind, path, and owner: for strategies, a team with its own values in it.
-type Key = (Kind, PathBuf, String);
+/// Name of the kind, path, and owner: for strategies, a team with its own values in it.
+pub(super) type Key = (&'static str, PathBuf, String);
 
 /// The results of files without faults.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Kept {
-    documents: BTreeMap<Key, KeptDocument>,
-    strategies: BTreeMap<Key, Strategy>,
+    pub(super) documents: BTreeMap<Key, KeptDocument>,
+    pub(super) strategies: BTreeMap<Key, Strategy>,
 }
 
 /// A file merged with its bases.
@@ -28,26 +28,8 @@ pub(super) struct KeptDocument {
     pub(super) value: Option<Json>,
 }
 
-fn key(kind: Kind, path: &Path, owner: &str) -> Key {
-    (kind, path.to_owned(), if kind == Kind::STRATEGY { owner.to_owned() } else { String::new() })
-}
-
-impl Kept {
-    pub(super) fn document(&self, kind: Kind, path: &Path, owner: &str) -> Option<&KeptDocument> {
-        self.documents.get(&key(kind, path, owner))
-    }
-
-    pub(super) fn keep_document(&mut self, kind: Kind, path: &Path, owner: &str, document: KeptDocument) {
-        self.documents.insert(key(kind, path, owner), document);
-    }
-
-    pub(super) fn strategy(&self, path: &Path, owner: &str) -> Option<&Strategy> {
-        self.strategies.get(&key(Kind::STRATEGY, path, owner))
-    }
-
-    pub(super) fn keep_strategy(&mut self, path: &Path, owner: &str, strategy: Strategy) {
-        self.strategies.insert(key(Kind::STRATEGY, path, owner), strategy);
-    }
+pub(super) fn key(kind: Kind, path: &Path, owner: &str) -> Key {
+    (kind.name(), path.to_owned(), if kind == Kind::STRATEGY { owner.to_owned() } else { String::new() })
 }
 
 /// The basis of a game, with the texts that its places refer to. It follows from the texts, so
@@ -63,7 +45,7 @@ impl Reading {
     /// The files whose values no setting overrides.
     pub(super) fn of_unchanged(mut diagnostics: Diagnostics) -> Reading {
         let kept = Arc::make_mut(&mut diagnostics.kept);
-        let is_unchanged = |(kind, ..): &Key| !diagnostics.overrides.has_settings(*kind);
+        let is_unchanged = |(kind, ..): &Key| !diagnostics.overrides.has_settings(kind);
         kept.documents.retain(|key, _| is_unchanged(key));
         kept.strategies.retain(|key, _| is_unchanged(key));
         Reading::of(diagnostics)

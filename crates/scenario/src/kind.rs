@@ -1,25 +1,24 @@
 //! A kind of scenario file: its keys, its folder, and its check.
 
 use super::diagnostics::Diagnostics;
+use super::load::draw_file;
 use super::problem::Problems;
 use super::read::Document;
 use super::schema::{declared, generated};
-use super::{load, raw};
+use crate::Scenario;
 use crate::boat::Boat;
 use crate::sea::Sea;
 use crate::strategy::Strategy;
-use crate::{Scenario, check};
 use rules::{Field, Rules};
 use schemars::JsonSchema;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
-use std::cmp::Ordering;
 use std::collections::BTreeSet;
 use std::fmt;
 use std::path::Path;
 
-/// The checked form of a kind of scenario file, implemented by the crate that uses it; here for the
-/// files of a game.
+/// The checked form of a kind of scenario file, implemented by the crate that uses it; for the files
+/// of a game in `check`.
 pub trait ScenarioFile: Sized + 'static {
     /// The keys of the file; `schema.rs` describes their declaration.
     type Keys: DeserializeOwned + JsonSchema;
@@ -37,7 +36,7 @@ pub trait ScenarioFile: Sized + 'static {
     /// # Errors
     /// All faults of any of them, by file, line and column.
     fn load(path: &Path) -> Result<Self, Problems> {
-        let (value, _) = load::of_seed::<Self>(path, 1)?;
+        let (value, _) = draw_file::<Self>(path, 1)?;
         value.check_games().map(|()| value)
     }
 
@@ -75,7 +74,7 @@ impl Kind {
     /// The kind of files read as `F`.
     #[must_use]
     pub const fn of<F: ScenarioFile>() -> Kind {
-        Kind { name: F::NAME, folder: F::FOLDER, keys: generated::<F::Keys>, check: check_as::<F> }
+        Kind { name: F::NAME, folder: F::FOLDER, keys: generated::<F::Keys>, check: |path| F::load(path).map(drop) }
     }
 
     /// Its name, also that of its schema file.
@@ -126,10 +125,6 @@ impl Kind {
     }
 }
 
-fn check_as<F: ScenarioFile>(path: &Path) -> Result<(), Problems> {
-    F::load(path).map(drop)
-}
-
 // By name only: two kinds with the same name would have the same folder.
 impl PartialEq for Kind {
     fn eq(&self, other: &Kind) -> bool {
@@ -138,18 +133,6 @@ impl PartialEq for Kind {
 }
 
 impl Eq for Kind {}
-
-impl PartialOrd for Kind {
-    fn partial_cmp(&self, other: &Kind) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Kind {
-    fn cmp(&self, other: &Kind) -> Ordering {
-        self.name.cmp(other.name)
-    }
-}
 
 impl fmt::Debug for Kind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -160,69 +143,5 @@ impl fmt::Debug for Kind {
 impl fmt::Display for Kind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(self.name)
-    }
-}
-
-impl ScenarioFile for Scenario {
-    type Keys = raw::Game;
-    const NAME: &'static str = "game";
-    const FOLDER: &'static str = "games";
-
-    fn check(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) -> Option<Scenario> {
-        check::game(diagnostics, document)
-    }
-
-    fn load(path: &Path) -> Result<Scenario, Problems> {
-        load::load(path)
-    }
-}
-
-impl ScenarioFile for Field {
-    type Keys = raw::Field;
-    const NAME: &'static str = "field";
-    const FOLDER: &'static str = "fields";
-
-    fn check(diagnostics: &mut Diagnostics, document: &Document<raw::Field>) -> Option<Field> {
-        check::field(diagnostics, document)
-    }
-}
-
-impl ScenarioFile for Rules {
-    type Keys = Rules;
-    const NAME: &'static str = "rules";
-    const FOLDER: &'static str = "rules";
-
-    fn check(diagnostics: &mut Diagnostics, document: &Document<Rules>) -> Option<Rules> {
-        check::rules(diagnostics, document)
-    }
-}
-
-impl ScenarioFile for Boat {
-    type Keys = raw::Boat;
-    const NAME: &'static str = "boat";
-    const FOLDER: &'static str = "boats";
-
-    fn check(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>) -> Option<Boat> {
-        check::boat(diagnostics, document)
-    }
-}
-
-impl ScenarioFile for Sea {
-    type Keys = raw::Sea;
-    const NAME: &'static str = "sea";
-    const FOLDER: &'static str = "seas";
-
-    fn check(diagnostics: &mut Diagnostics, document: &Document<raw::Sea>) -> Option<Sea> {
-        check::sea(diagnostics, document)
-    }
-}
-
-impl ScenarioFile for Strategy {
-    type Keys = raw::Strategy;
-    const NAME: &'static str = "strategy";
-    const FOLDER: &'static str = "strategies";
-
-    fn check(diagnostics: &mut Diagnostics, document: &Document<raw::Strategy>) -> Option<Strategy> {
-        check::strategy(diagnostics, document)
     }
 }

@@ -53,8 +53,7 @@ pub use files::Files;
 pub use guess::did_you_mean;
 pub use kind::{Kind, ScenarioFile};
 pub use load::{
-    GameVariants, check_file, default_of, draw_boat, draw_sea, load, load_boat, load_field, load_file, load_strategy,
-    load_with, load_with_files, other_kind,
+    GameVariants, check_file, default_of, draw_file, load, load_file, load_with, load_with_files, other_kind,
 };
 pub use outcome::Outcome;
 pub use overrides::Overrides;
@@ -63,7 +62,7 @@ pub use read::Document;
 pub use real_boats::RealBoats;
 pub use reference::{file_reference, reference};
 pub use schema::schema;
-pub use setting::{Setting, SettingError};
+pub use setting::Setting;
 pub use source::tidied as tidied_path;
 
 use crate::fault::Fault;

@@ -1,5 +1,6 @@
 //! Entry points: load a file by path, or return all its faults.
 
+use super::Scenario;
 use super::diagnostics::Diagnostics;
 use super::draw::{Drawing, Drawn, Recipe};
 use super::files::Files;
@@ -9,11 +10,7 @@ use super::overrides::Overrides;
 use super::problem::Problems;
 use super::read;
 use super::tree::Node;
-use super::{Scenario, check};
-use crate::boat::Boat;
-use crate::sea::Sea;
 use crate::strategy::Strategy;
-use rules::field::Field;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -45,34 +42,29 @@ pub fn load_with_files(path: &Path, overrides: &Overrides, files: &Arc<Files>) -
 
 /// As [`load_with_files`], with some files already read with the same settings.
 fn load_knowing(known: &Reading, path: &Path, overrides: &Overrides, files: &Arc<Files>) -> Result<Scenario, Problems> {
-    let read = |drawing: Drawing| {
-        let mut diagnostics = Diagnostics::new(drawing);
-        diagnostics.resume(known);
-        diagnostics.overrides = overrides.clone();
-        diagnostics.files = Arc::clone(files);
-        game_of(&mut diagnostics, path).map(|scenario| (scenario, diagnostics))
-    };
-    let (mut least, diagnostics) = read(Drawing::Least)?;
+    let mut diagnostics = Diagnostics::new(Drawing::Least);
+    diagnostics.resume(known);
+    diagnostics.overrides = overrides.clone();
+    diagnostics.files = Arc::clone(files);
+    let mut least = game_of(&mut diagnostics, path)?;
     if least.drawn.is_empty() {
         return Ok(least);
     }
+    let files = diagnostics.sources.texts();
+    let reading = Reading::of(diagnostics);
+    let recipe = Recipe { game: path.to_owned(), overrides: overrides.clone(), files, reading, seed: None };
     // At both ends of every distribution, so that most mistakes are found before any game. The
     // combination of numbers is checked again for each seed, which takes a tenth of a millisecond.
     // Drawing on the checked types would be faster, but would leave estimates from a drawn number
     // at their nominal values.
-    read(Drawing::Greatest)?;
-    let files = diagnostics.sources.texts();
-    let reading = Reading::of(diagnostics);
-    least.recipe = Some(Recipe { game: path.to_owned(), overrides: overrides.clone(), files, reading, seed: None });
+    least.drawn_again(&recipe, Drawing::Greatest)?;
+    least.recipe = Some(recipe);
     least.of_seed(least.seed)
 }
 
 fn game_of(diagnostics: &mut Diagnostics, path: &Path) -> Result<Scenario, Problems> {
-    let value =
-        read::document(diagnostics, Kind::GAME, path, None).and_then(|document| check::game(diagnostics, &document));
-    let mut scenario = diagnostics.close(value)?;
-    scenario.drawn = std::mem::take(&mut diagnostics.drawn);
-    Ok(scenario)
+    let (scenario, drawn) = diagnostics.faultless::<Scenario>(path)?;
+    Ok(Scenario { drawn, ..scenario })
 }
 
 impl Scenario {
@@ -84,17 +76,23 @@ impl Scenario {
         let Some(recipe) = self.recipe.as_ref().filter(|recipe| recipe.seed != Some(seed)) else {
             return Ok(Scenario { seed, ..self.clone() });
         };
-        let mut diagnostics = Diagnostics::new(Drawing::Seed(seed));
+        let (drawn, reading) = self.drawn_again(recipe, Drawing::Seed(seed))?;
+        let reading = if recipe.reading.0.is_some() { recipe.reading.clone() } else { reading };
+        Ok(Scenario { seed, recipe: Some(Recipe { reading, seed: Some(seed), ..recipe.clone() }), ..drawn })
+    }
+
+    /// The game of its recipe with numbers drawn like this, and what was read for it.
+    fn drawn_again(&self, recipe: &Recipe, drawing: Drawing) -> Result<(Scenario, Reading), Problems> {
+        let mut diagnostics = Diagnostics::new(drawing);
         diagnostics.overrides.clone_from(&recipe.overrides);
         if !diagnostics.resume(&recipe.reading) {
-            diagnostics.texts = Some(recipe.files.clone());
-            diagnostics.models = self.strategies.iter().flat_map(Strategy::models).cloned().collect();
+            let texts = recipe.files.iter().map(|(path, text)| (path.clone(), text.clone().into_bytes()));
+            let models = self.strategies.iter().flat_map(Strategy::models);
+            let models = models.map(|model| (model.name.clone().into(), model.bytes().to_vec()));
+            diagnostics.files = Arc::new(Files::kept(texts.chain(models).collect()));
         }
-        let mut drawn = game_of(&mut diagnostics, &recipe.game)?;
-        drawn.seed = seed;
-        let reading = if recipe.reading.0.is_some() { recipe.reading.clone() } else { Reading::of(diagnostics) };
-        drawn.recipe = Some(Recipe { reading, seed: Some(seed), ..recipe.clone() });
-        Ok(drawn)
+        let scenario = game_of(&mut diagnostics, &recipe.game)?;
+        Ok((scenario, Reading::of(diagnostics)))
     }
 }
 
@@ -106,44 +104,19 @@ pub fn load_file<F: ScenarioFile>(path: &Path) -> Result<F, Problems> {
     F::load(path)
 }
 
-/// Reads and checks the strategy file at `path` and the files of its roles.
+/// Reads and checks the file at `path` as one of its kind, and draws its numbers as in the game with
+/// this seed.
 ///
 /// # Errors
-/// All faults of any of them and their bases.
-pub fn load_strategy(path: &Path) -> Result<Strategy, Problems> {
-    Strategy::load(path)
-}
-
-/// Reads and checks the field file at `path`.
-///
-/// # Errors
-/// All faults of it and its bases.
-pub fn load_field(path: &Path) -> Result<Field, Problems> {
-    Field::load(path)
-}
-
-/// Reads and checks the boat file at `path`. Distributions are drawn with seed 1.
-///
-/// # Errors
-/// All faults of it and its bases.
-pub fn load_boat(path: &Path) -> Result<Boat, Problems> {
-    Boat::load(path)
-}
-
-/// Reads and checks the boat file at `path`, and draws its numbers with this seed.
-///
-/// # Errors
-/// All faults of it and its bases.
-pub fn draw_boat(path: &Path, seed: u64) -> Result<(Boat, Vec<Drawn>), Problems> {
-    of_seed(path, seed)
-}
-
-/// Reads and checks the sea file at `path`, and draws its numbers as in the game with this seed.
-///
-/// # Errors
-/// All faults of it and its bases.
-pub fn draw_sea(path: &Path, seed: u64) -> Result<(Sea, Vec<Drawn>), Problems> {
-    of_seed(path, seed)
+/// All faults of it, its bases and the files it refers to, by file, line and column.
+pub fn draw_file<F: ScenarioFile>(path: &Path, seed: u64) -> Result<(F, Vec<Drawn>), Problems> {
+    let read = |drawing: Drawing| Diagnostics::new(drawing).faultless::<F>(path);
+    let (value, drawn) = read(Drawing::Least)?;
+    if drawn.is_empty() {
+        return Ok((value, drawn));
+    }
+    read(Drawing::Greatest)?;
+    read(Drawing::Seed(seed))
 }
 
 /// A game that is loaded repeatedly with different values. Files without changed values are read
@@ -182,10 +155,8 @@ impl GameVariants {
 pub fn default_of<F: ScenarioFile>() -> Result<F, Problems> {
     let path = Path::new("default.toml");
     let mut diagnostics = Diagnostics::new(Drawing::Least);
-    diagnostics.texts = Some(vec![(path.to_owned(), String::new())]);
-    let document = read::document(&mut diagnostics, Kind::of::<F>(), path, None);
-    let value = document.and_then(|document| F::check(&mut diagnostics, &document));
-    diagnostics.close(value)
+    diagnostics.files = Arc::new(Files::kept(vec![(path.to_owned(), vec![])]));
+    diagnostics.faultless(path).map(|(value, _)| value)
 }
 
 /// Reads and checks a scenario file of any of these kinds, and returns its kind.
@@ -207,22 +178,6 @@ pub fn other_kind(kinds: &[Kind], path: &Path, expected: Kind) -> Option<Kind> {
         Some(kind) => (kind != expected).then_some(kind),
         None => expected.other_by_keys(kinds, &top_keys(path)),
     }
-}
-
-/// A file of one kind with its numbers drawn with this seed, and the drawn numbers.
-pub(super) fn of_seed<F: ScenarioFile>(path: &Path, seed: u64) -> Result<(F, Vec<Drawn>), Problems> {
-    let read = |drawing: Drawing| {
-        let mut diagnostics = Diagnostics::new(drawing);
-        let value = read::document(&mut diagnostics, Kind::of::<F>(), path, None)
-            .and_then(|document| F::check(&mut diagnostics, &document));
-        diagnostics.close(value).map(|value| (value, std::mem::take(&mut diagnostics.drawn)))
-    };
-    let (value, drawn) = read(Drawing::Least)?;
-    if drawn.is_empty() {
-        return Ok((value, drawn));
-    }
-    read(Drawing::Greatest)?;
-    read(Drawing::Seed(seed))
 }
 
 /// The top-level keys of a file and its bases; the check reports their faults later.

@@ -132,32 +132,18 @@ impl EventOutcome {
     }
 }
 
-/// The result of a game before indices are replaced by names.
-pub struct Played<'a> {
-    /// The scenario of the game.
-    pub scenario: &'a Scenario,
-    /// Digest of the final state and all events.
-    pub digest: u128,
-    /// Physics ticks played.
-    pub ticks: u64,
-    /// Points, by team index.
-    pub score: &'a [u32],
-    /// All events.
-    pub events: &'a [Logged],
-}
-
 impl Outcome {
-    /// The outcome of a played game.
+    /// The outcome of a game with this digest of its final state and all events, after this many
+    /// physics ticks, with these points by team index.
     #[must_use]
-    pub fn new(played: &Played<'_>) -> Outcome {
-        let scenario = played.scenario;
+    pub fn new(scenario: &Scenario, digest: u128, ticks: u64, score: &[u32], events: &[Logged]) -> Outcome {
         let mut tally = Tally::new(scenario.vehicles.len());
-        played.events.iter().for_each(|logged| tally.add(logged.event));
+        events.iter().for_each(|logged| tally.add(logged.event));
         let team_counts = |team: usize| tally.team(TeamId(team as u8), |i| scenario.vehicles[i].team);
         let team_names = || scenario.teams.iter().map(|team| team.name.clone());
         let boats = || scenario.vehicles.iter().map(|vehicle| vehicle.name.clone()).zip(&tally.vehicles);
         let team_of = |vehicle: &Vehicle| (vehicle.name.clone(), scenario.teams[vehicle.team.index()].name.clone());
-        let winner = played.events.iter().rev().find_map(|logged| match logged.event {
+        let winner = events.iter().rev().find_map(|logged| match logged.event {
             Event::Ended { winner } => winner,
             _ => None,
         });
@@ -165,23 +151,23 @@ impl Outcome {
             scenario: scenario.name.clone(),
             seed: scenario.seed,
             version: primitives::VERSION.to_owned(),
-            digest: format!("{:032x}", played.digest),
-            duration_s: (scenario.tick * played.ticks as i64).as_s(),
-            ticks: played.ticks,
+            digest: format!("{:032x}", digest),
+            duration_s: (scenario.tick * ticks as i64).as_s(),
+            ticks,
             drawn: scenario.drawn.iter().map(|drawn| (drawn.parameter.clone(), drawn.value)).collect(),
             random: scenario.is_random(),
             ends_differ: !scenario.sea.is_at_rest(),
             winner: winner.map(|team| scenario.teams[team.index()].name.clone()),
             boats: scenario.vehicles.iter().map(team_of).collect(),
             score: Standings {
-                teams: team_names().zip(played.score.iter().copied()).collect(),
+                teams: team_names().zip(score.iter().copied()).collect(),
                 boats: boats().map(|(name, counts)| (name, scenario.rules.points.of(counts))).collect(),
             },
             counts: Standings {
                 teams: team_names().enumerate().map(|(i, name)| (name, team_counts(i))).collect(),
                 boats: boats().map(|(name, counts)| (name, *counts)).collect(),
             },
-            events: played.events.iter().map(|logged| EventOutcome::new(scenario, logged)).collect(),
+            events: events.iter().map(|logged| EventOutcome::new(scenario, logged)).collect(),
         }
     }
 }

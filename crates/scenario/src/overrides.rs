@@ -1,6 +1,5 @@
 //! Overrides of a game's content: other files, single values, and simulation of real boats.
 
-use super::kind::Kind;
 use super::setting::Setting;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -24,9 +23,9 @@ pub struct Overrides {
 }
 
 impl Overrides {
-    /// Whether a setting overrides a value in files of this kind.
-    pub(super) fn has_settings(&self, kind: Kind) -> bool {
-        self.settings.iter().any(|setting| setting.target().is_some_and(|(target, _)| target == kind))
+    /// Whether a setting overrides a value in files of the kind with this name.
+    pub(super) fn has_settings(&self, kind: &str) -> bool {
+        self.settings.iter().any(|setting| setting.target().is_some_and(|(target, _)| target.name() == kind))
     }
 
     /// The name of this team if a setting overrides a value of its strategy, otherwise an empty

@@ -4,13 +4,12 @@ use crate::action::ActionSpace;
 use crate::observation::ObservationSpace;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD as BASE64;
-use onnx::{Network, NetworkError, Port};
+use onnx::{Network, Port};
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::fmt;
 use std::ops::RangeInclusive;
 use std::sync::Arc;
-use thiserror::Error;
 
 /// Maximum size of a model file, bytes: every agent receives it with the scenario.
 pub const BYTES_MAX: u64 = 1 << 20;
@@ -47,16 +46,6 @@ pub struct PartialSpec {
     pub period_s: Option<f64>,
 }
 
-impl PartialSpec {
-    /// Whether all given fields agree with a spec.
-    #[must_use]
-    pub fn is_part_of(&self, spec: &PolicySpec) -> bool {
-        self.observation.is_none_or(|observation| observation == spec.observation)
-            && self.action.is_none_or(|action| action == spec.action)
-            && self.period_s.is_none_or(|period_s| period_s == spec.period_s)
-    }
-}
-
 /// A policy ready for evaluation. Clones share the network's weights.
 #[derive(Clone)]
 pub struct PolicyModel {
@@ -70,66 +59,14 @@ pub struct PolicyModel {
     bytes: Arc<[u8]>,
 }
 
-/// Why a file is not a valid policy. Each message gives the value found and the allowed values.
-#[derive(Clone, Debug, Error, PartialEq)]
-pub enum PolicyError {
-    /// The network cannot be evaluated.
-    #[error(transparent)]
-    Network(#[from] NetworkError),
-    /// A metadata entry is invalid.
-    #[error("its metadata has {key} = {found:?}, expected {expected}")]
-    Metadata {
-        /// The entry's key.
-        key: &'static str,
-        /// Its value.
-        found: String,
-        /// The allowed values.
-        expected: String,
-    },
-    /// Neither the metadata nor the user specifies a field.
-    #[error("its metadata has no {key}, expected it there, or {said_by} here")]
-    Unsaid {
-        /// The key of the missing entry.
-        key: &'static str,
-        /// The alternative source of the field.
-        said_by: &'static str,
-    },
-    /// The metadata contradicts the user's specification.
-    #[error("its metadata has {key} = {found}, expected {expected}, as stated here")]
-    Contradiction {
-        /// The entry's key.
-        key: &'static str,
-        /// Its value.
-        found: String,
-        /// The value specified elsewhere.
-        expected: String,
-    },
-    /// It does not have exactly one input, or its size is wrong.
-    #[error("its inputs are {found}, expected {expected}")]
-    Input {
-        /// Its inputs.
-        found: String,
-        /// The allowed inputs.
-        expected: String,
-    },
-    /// None of its outputs is suitable for an action, or several are.
-    #[error("its outputs are {found}, expected {expected}")]
-    Output {
-        /// Its outputs.
-        found: String,
-        /// The allowed outputs.
-        expected: String,
-    },
-}
-
 impl PolicyModel {
     /// Reads an ONNX file as a policy. Its metadata must supply the fields missing from `said`.
     ///
     /// # Errors
-    /// [`PolicyError`]: if the network is invalid, a field is missing or contradicts `said`, or the
-    /// inputs and outputs do not match.
-    pub fn read(name: &str, bytes: &[u8], said: PartialSpec) -> Result<PolicyModel, PolicyError> {
-        let network = Network::read(bytes)?;
+    /// If the network is invalid, a field is missing or contradicts `said`, or the inputs and outputs
+    /// do not match: the value found and the allowed values.
+    pub fn read(name: &str, bytes: &[u8], said: PartialSpec) -> Result<PolicyModel, String> {
+        let network = Network::read(bytes).map_err(|error| error.to_string())?;
         let spec = spec_of(&network, said)?;
         check_input(&network, spec.observation)?;
         let output = output_of(&network, spec.action)?;
@@ -204,13 +141,10 @@ pub fn options_metadata(names: &[String]) -> (String, String) {
 }
 
 /// The spec of a network from `said` and its metadata.
-fn spec_of(network: &Network, said: PartialSpec) -> Result<PolicySpec, PolicyError> {
+fn spec_of(network: &Network, said: PartialSpec) -> Result<PolicySpec, String> {
     let entry = |key: &str| network.metadata().get(key);
-    let wrong = |key: &'static str, found: &str, expected: String| PolicyError::Metadata {
-        key,
-        found: found.to_owned(),
-        expected,
-    };
+    let wrong =
+        |key: &str, found: &str, expected: String| format!("its metadata has {key} = {found:?}, expected {expected}");
     let observation = entry(OBSERVATION).map(|text| {
         serde_json::from_str::<ObservationSpace>(text).map_err(|error| {
             let example = json(&ObservationSpace::Squall { mates: 1, enemies: 2, frames: 1 });
@@ -236,42 +170,43 @@ fn spec_of(network: &Network, said: PartialSpec) -> Result<PolicySpec, PolicyErr
     // The only field that may differ from the metadata.
     let period_s = match (said.period_s, period_s.transpose()?) {
         (Some(period_s), _) | (None, Some(period_s)) => period_s,
-        (None, None) => return Err(PolicyError::Unsaid { key: PERIOD_S, said_by: "period_s" }),
+        (None, None) => return Err(unsaid(PERIOD_S, "period_s")),
     };
     Ok(PolicySpec { observation, action, period_s })
 }
 
 /// The value from the metadata or from `said`, if at least one gives it and they do not differ.
-fn agreed<T: PartialEq + Serialize>(
-    key: &'static str,
-    said_by: &'static str,
-    found: Option<T>,
-    said: Option<T>,
-) -> Result<T, PolicyError> {
+fn agreed<T: PartialEq + Serialize>(key: &str, said_by: &str, found: Option<T>, said: Option<T>) -> Result<T, String> {
     match (found, said) {
         (Some(found), Some(said)) if found != said => {
-            Err(PolicyError::Contradiction { key, found: json(&found), expected: json(&said) })
+            let (found, said) = (json(&found), json(&said));
+            Err(format!("its metadata has {key} = {found}, expected {said}, as stated here"))
         }
         (_, Some(one)) | (Some(one), None) => Ok(one),
-        (None, None) => Err(PolicyError::Unsaid { key, said_by }),
+        (None, None) => Err(unsaid(key, said_by)),
     }
 }
 
-fn check_input(network: &Network, observation: ObservationSpace) -> Result<(), PolicyError> {
-    let wrong = |expected: String| PolicyError::Input { found: listed(network.inputs()), expected };
-    let [input] = network.inputs() else { return Err(wrong("one input".to_owned())) };
+/// Neither the metadata nor the user specifies a field.
+fn unsaid(key: &str, said_by: &str) -> String {
+    format!("its metadata has no {key}, expected it there, or {said_by} here")
+}
+
+fn check_input(network: &Network, observation: ObservationSpace) -> Result<(), String> {
+    let wrong = |expected: &str| Err(format!("its inputs are {}, expected {expected}", listed(network.inputs())));
+    let [input] = network.inputs() else { return wrong("one input") };
     match observation {
         // The size for a game of 1 against 1, and the size per other boat.
         ObservationSpace::Pyquaticus => {
             let (least, other) = (observation.size(0, 1), observation.size(1, 1) - observation.size(0, 1));
             if input.size < least || !(input.size - least).is_multiple_of(other) {
-                return Err(wrong(format!("{least} numbers, or {other} more for each other boat")));
+                return wrong(&format!("{least} numbers, or {other} more for each other boat"));
             }
         }
         ObservationSpace::Squall { .. } => {
             let size = observation.size(0, 0);
             if input.size != size {
-                return Err(wrong(format!("{size} numbers for {}", json(&observation))));
+                return wrong(&format!("{size} numbers for {}", json(&observation)));
             }
         }
     }
@@ -281,16 +216,16 @@ fn check_input(network: &Network, observation: ObservationSpace) -> Result<(), P
 /// The index of the output with the action: the only one of the right size, or else the only one
 /// for an action index, which is an integer if a value is beside it. The number of options is the
 /// output's size.
-fn output_of(network: &Network, action: ActionSpace) -> Result<usize, PolicyError> {
+fn output_of(network: &Network, action: ActionSpace) -> Result<usize, String> {
     let of_size = |size: usize| -> Vec<usize> {
         let outputs = network.outputs().iter().enumerate();
         outputs.filter(|(_, port)| port.size == size).map(|(i, _)| i).collect()
     };
+    let wrong = |expected: &str| Err(format!("its outputs are {}, expected {expected}", listed(network.outputs())));
     if action == ActionSpace::Options {
         let several: Vec<usize> = (0..network.outputs().len()).filter(|i| network.outputs()[*i].size > 1).collect();
-        let expected = "one output with a number for each of two options or more".to_owned();
         let [output] = several[..] else {
-            return Err(PolicyError::Output { found: listed(network.outputs()), expected });
+            return wrong("one output with a number for each of two options or more");
         };
         return Ok(output);
     }
@@ -304,8 +239,7 @@ fn output_of(network: &Network, action: ActionSpace) -> Result<usize, PolicyErro
         ([output], _) | ([], [output]) => Ok(*output),
         _ => {
             let or_index = if action.count().is_some() { ", or else one with the number of the action" } else { "" };
-            let expected = format!("one output of {numbers} numbers for the action space {}{or_index}", json(&action));
-            Err(PolicyError::Output { found: listed(network.outputs()), expected })
+            wrong(&format!("one output of {numbers} numbers for the action space {}{or_index}", json(&action)))
         }
     }
 }

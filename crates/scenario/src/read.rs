@@ -1,7 +1,7 @@
 //! Reads a file by path: text, bases, merging, and validation by its schema.
 
 use super::diagnostics::Diagnostics;
-use super::kept::KeptDocument;
+use super::kept::{self, KeptDocument};
 use super::kind::Kind;
 use super::schema::declared;
 use super::source::tidied;
@@ -51,6 +51,13 @@ impl<T> Document<T> {
         !self.wrong.iter().any(|wrong| is_below(wrong, path) || is_below(path, wrong))
     }
 
+    /// Reports a missing value at `path`, unless a value of another type is there.
+    pub(super) fn note_missing(&self, diagnostics: &mut Diagnostics, path: &str, expected: &str) {
+        if self.is_sound(path) {
+            diagnostics.note_missing(self.at(path), path, expected);
+        }
+    }
+
     /// Whether no fault was found in it, or in anything checked since it was read.
     #[must_use]
     pub fn is_faultless(&self, diagnostics: &Diagnostics) -> bool {
@@ -64,19 +71,9 @@ const LONGEST_CHAIN: usize = 16;
 /// Keys that count only in a strategy file itself, not in its bases.
 const OWN: &[&str] = &["unsafe_i_know", "unsafe_because"];
 
-/// Reads the file of a kind at `path` with its bases. If it cannot be read, the problem is at
-/// `asked_at`, the reference.
+/// Reads the file of a kind at `path` with its bases, and draws its numbers for `owner`. If it cannot
+/// be read, the problem is at `asked_at`, the reference.
 pub(super) fn document<T: DeserializeOwned>(
-    diagnostics: &mut Diagnostics,
-    kind: Kind,
-    path: &Path,
-    asked_at: Option<usize>,
-) -> Option<Document<T>> {
-    document_of(diagnostics, kind, path, asked_at, kind.name())
-}
-
-/// The same, for an owner that draws its own numbers.
-pub(super) fn document_of<T: DeserializeOwned>(
     diagnostics: &mut Diagnostics,
     kind: Kind,
     path: &Path,
@@ -84,9 +81,8 @@ pub(super) fn document_of<T: DeserializeOwned>(
     owner: &str,
 ) -> Option<Document<T>> {
     let faults = diagnostics.faults();
-    let kept = Arc::clone(&diagnostics.kept);
-    if let Some(kept) = kept.document(kind, path, owner) {
-        return document_of_tree(diagnostics, kind, path, kept.clone(), (owner, faults));
+    if let Some(kept) = diagnostics.kept.documents.get(&kept::key(kind, path, owner)).cloned() {
+        return document_of_tree(diagnostics, kind, path, kept, (owner, faults));
     }
     let own = if kind == Kind::STRATEGY { OWN } else { &[] };
     let mut tree = tree(diagnostics, path, asked_at, own)?;
@@ -128,11 +124,11 @@ fn document_of_tree<T: DeserializeOwned>(
         let drawn = diagnostics.drawn.len();
         let (mut value, wrong) = validated(diagnostics, &tree, declared(kind), owner);
         value["name"] = name.clone().into();
-        let is_known = diagnostics.kept.document(kind, path, owner).is_some();
-        if !is_known && diagnostics.faults() == faults {
+        let key = kept::key(kind, path, owner);
+        if !diagnostics.kept.documents.contains_key(&key) && diagnostics.faults() == faults {
             let value = (diagnostics.drawn.len() == drawn).then(|| value.clone());
             let document = KeptDocument { tree: Arc::clone(&tree), value };
-            Arc::make_mut(&mut diagnostics.kept).keep_document(kind, path, owner, document);
+            Arc::make_mut(&mut diagnostics.kept).documents.insert(key, document);
         }
         (value, wrong)
     };
@@ -201,9 +197,10 @@ pub(super) fn tree(
 
 /// Reads one file into the virtual text.
 fn text_of(diagnostics: &mut Diagnostics, path: &Path, asked_at: Option<usize>) -> Option<(usize, Arc<str>)> {
-    let bytes = match bytes_of(diagnostics, path) {
+    let bytes = match diagnostics.files.read(path, LARGEST_BYTES) {
         Ok(bytes) => bytes,
-        Err(why) => {
+        Err(error) => {
+            let why = format!("cannot be read ({error}), expected a file");
             match asked_at {
                 Some(at) => diagnostics.note(at, format!("{} {why}", path.display())),
                 None => diagnostics.note_file(path.to_owned(), why),
@@ -211,40 +208,21 @@ fn text_of(diagnostics: &mut Diagnostics, path: &Path, asked_at: Option<usize>) 
             return None;
         }
     };
-    match String::from_utf8(bytes) {
-        Ok(text) => {
-            let text: Arc<str> = text.into();
-            Some((diagnostics.sources.add(path.to_owned(), text.clone()), text))
-        }
-        Err(error) => {
-            let good = error.utf8_error().valid_up_to();
-            let text = String::from_utf8_lossy(&error.as_bytes()[..good]).into_owned();
-            let start = diagnostics.sources.add(path.to_owned(), text.into());
-            diagnostics.note_syntax(start + good, "found invalid UTF-8, expected text");
-            None
-        }
+    let good = std::str::from_utf8(&bytes).map_or_else(|error| error.valid_up_to(), str::len);
+    let text: Arc<str> = String::from_utf8_lossy(&bytes[..good]).into();
+    let start = diagnostics.sources.add(path.to_owned(), text.clone());
+    if good < bytes.len() {
+        diagnostics.note_syntax(start + good, "found invalid UTF-8, expected text");
+        return None;
     }
+    Some((start, text))
 }
 
-fn bytes_of(diagnostics: &Diagnostics, path: &Path) -> Result<Vec<u8>, String> {
-    if let Some(texts) = &diagnostics.texts {
-        let kept = texts.iter().find(|(kept, _)| kept == path);
-        return kept.map(|(_, text)| text.clone().into_bytes()).ok_or_else(|| "is not among the stored files".into());
-    }
-    let bytes = diagnostics.files.read(path, LARGEST_BYTES);
-    bytes.map(|bytes| bytes.to_vec()).map_err(|error| format!("cannot be read ({error}), expected a file"))
-}
-
-/// Reads the file of a model, unless cached.
+/// Reads the file of a model.
 pub(super) fn model(diagnostics: &Diagnostics, path: &Path, said: PartialSpec) -> Result<PolicyModel, String> {
-    let name = path.display().to_string();
-    let kept = diagnostics.models.iter().find(|model| model.name == name && said.is_part_of(&model.spec));
-    if let Some(kept) = kept {
-        return Ok(kept.clone());
-    }
     let bytes = diagnostics.files.read(path, policy::BYTES_MAX);
     let bytes = bytes.map_err(|error| format!("it cannot be read ({error}), expected an ONNX file"))?;
-    PolicyModel::read(&name, &bytes, said).map_err(|error| error.to_string())
+    PolicyModel::read(&path.display().to_string(), &bytes, said)
 }
 
 /// The tree of a text that begins at `start`, as far as its syntax is valid; reports syntax errors.

@@ -20,7 +20,6 @@
 //!   enough.
 //! * `rename` with `extend("x-field" = "…")` gives the key another name, and thereby another unit,
 //!   than the field.
-//! * `extend("x-estimated" = true)` leaves the value of an omitted number to the check of the file.
 //! * `extend("x-drawn" = true)` allows distributions in place of all numbers in a table.
 //!
 //! [`declared`] is the schema in this form, used for reading files (see `validate`); [`schema`] is

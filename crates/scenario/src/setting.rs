@@ -4,7 +4,6 @@
 use super::kind::Kind;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
-use thiserror::Error;
 
 /// An override of a value in all files of a kind in a game, checked as if it were in the file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -23,31 +22,28 @@ pub struct Setting {
     pub column: usize,
 }
 
-/// Why a text is not a valid setting.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum SettingError {
-    /// The key or the value is missing.
-    #[error("{0:?} is not a setting, expected KEY=VALUE, for example sea.waves.hs_m=0.3")]
-    Form(String),
-    /// The key does not begin with a kind of file.
-    #[error("the key {0:?} does not begin with a kind of file, expected one of {list}, then a key, for example sea.waves.hs_m", list = PREFIXES.join(", "))]
-    Kind(String),
-}
-
-/// The allowed first parts of keys.
-const PREFIXES: [&str; 8] = ["sea", "boat", "rules", "field", "game", "link", "fault", "strategy"];
+/// The allowed first parts of keys, with the kind of file.
+const PREFIXES: [(&str, Kind); 8] = [
+    ("sea", Kind::SEA),
+    ("boat", Kind::BOAT),
+    ("rules", Kind::RULES),
+    ("field", Kind::FIELD),
+    ("game", Kind::GAME),
+    ("link", Kind::GAME),
+    ("fault", Kind::GAME),
+    ("strategy", Kind::STRATEGY),
+];
 
 impl Setting {
     /// Parses a setting from the command line. A value that is not TOML is a string.
     ///
     /// # Errors
-    /// [`SettingError`]: not of the form `KEY=VALUE`, or an unknown kind of file.
-    pub fn parse(text: &str) -> Result<Setting, SettingError> {
-        let (key, value) = text.split_once('=').ok_or_else(|| SettingError::Form(text.to_owned()))?;
-        let (key, value) = (key.trim(), value.trim());
-        if value.is_empty() {
-            return Err(SettingError::Form(text.to_owned()));
-        }
+    /// If it is not of the form `KEY=VALUE`, or of an unknown kind of file.
+    pub fn parse(text: &str) -> Result<Setting, String> {
+        let parts = text.split_once('=').map(|(key, value)| (key.trim(), value.trim()));
+        let Some((key, value)) = parts.filter(|(_, value)| !value.is_empty()) else {
+            return Err(format!("{text:?} is not a setting, expected KEY=VALUE, for example sea.waves.hs_m=0.3"));
+        };
         let is_toml = format!("key = {value}").parse::<toml::Table>().is_ok_and(|table| table.len() == 1);
         let value = if is_toml { value.to_owned() } else { serde_json::Value::from(value).to_string() };
         Setting::new(key, value, PathBuf::from(format!("--set {key}")), (1, 1))
@@ -56,18 +52,16 @@ impl Setting {
     /// A setting at a line and column of a file.
     ///
     /// # Errors
-    /// [`SettingError`]: unknown kind of file.
-    pub fn new(
-        key: &str,
-        value: String,
-        path: PathBuf,
-        (line, column): (usize, usize),
-    ) -> Result<Setting, SettingError> {
+    /// If the kind of file is unknown.
+    pub fn new(key: &str, value: String, path: PathBuf, (line, column): (usize, usize)) -> Result<Setting, String> {
         let setting = Setting { key: key.to_owned(), value, path, line, column };
-        match setting.target() {
-            Some(_) => Ok(setting),
-            None => Err(SettingError::Kind(key.to_owned())),
-        }
+        setting.target().is_some().then_some(setting).ok_or_else(|| {
+            let kinds = PREFIXES.map(|(prefix, _)| prefix).join(", ");
+            format!(
+                "the key {key:?} does not begin with a kind of file, expected one of {kinds}, then a key, for example \
+                 sea.waves.hs_m"
+            )
+        })
     }
 
     /// The kind of file, and the key in it.
@@ -77,16 +71,13 @@ impl Setting {
             return None;
         }
         let (first, rest) = self.key.split_once('.')?;
-        Some(match first {
-            "sea" => (Kind::SEA, rest),
-            "boat" => (Kind::BOAT, rest),
-            "rules" => (Kind::RULES, rest),
-            "field" => (Kind::FIELD, rest),
-            "game" => (Kind::GAME, rest),
-            "link" | "fault" => (Kind::GAME, self.key.as_str()),
-            "strategy" => (Kind::STRATEGY, rest.split_once('.')?.1),
-            _ => return None,
-        })
+        let (_, kind) = PREFIXES.iter().find(|(prefix, _)| *prefix == first)?;
+        let key = match first {
+            "link" | "fault" => self.key.as_str(),
+            "strategy" => rest.split_once('.')?.1,
+            _ => rest,
+        };
+        Some((*kind, key))
     }
 
     /// The name of the team whose strategy it changes, if any.

@@ -245,9 +245,7 @@ impl<'a> Validator<'a> {
     }
 
     fn missing(&mut self, owner: &Node, expected: &str) -> Option<Json> {
-        let parts: Vec<&str> = self.path.split('.').filter(|part| part.parse::<usize>().is_err()).collect();
-        let key = parts[parts.len().saturating_sub(2)..].join(".");
-        self.diagnostics.note_if_intact(owner.at, format!("{key} is missing, expected {expected}"));
+        self.diagnostics.note_missing(owner.at, &self.path, expected);
         self.wrong.push(self.path.clone());
         None
     }

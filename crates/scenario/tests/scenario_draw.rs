@@ -81,7 +81,7 @@ fn whole_numbers_are_drawn_by_choice_and_a_lone_file_by_its_seed() {
     std::fs::write(&path, sea).unwrap();
     let mut heights = vec![];
     for seed in 1..=20 {
-        let (sea, drawn) = scenario::draw_sea(&path, seed).unwrap();
+        let (sea, drawn) = scenario::draw_file::<scenario::sea::Sea>(&path, seed).unwrap();
         let waves = sea.waves.unwrap();
         assert!([16, 32].contains(&waves.components));
         let named = |key: &str| drawn.iter().find(|drawn| drawn.parameter == key).unwrap().value;
@@ -91,7 +91,7 @@ fn whole_numbers_are_drawn_by_choice_and_a_lone_file_by_its_seed() {
     heights.dedup();
     assert_eq!(heights.len(), 20);
     std::fs::write(&path, sea.replace("choice = [16, 32]", "uniform = [16, 33]")).unwrap();
-    let said = scenario::draw_sea(&path, 1).unwrap_err().to_string();
+    let said = scenario::draw_file::<scenario::sea::Sea>(&path, 1).unwrap_err().to_string();
     assert!(said.contains("components") && said.contains("expected a whole number"), "{said}");
 }
 

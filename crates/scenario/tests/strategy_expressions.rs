@@ -55,7 +55,8 @@ fn program(text: &str) -> Result<Program, Problems> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("x.toml");
     std::fs::write(&path, text).unwrap();
-    scenario::load_strategy(&path).map(|strategy| strategy.roles.into_iter().next().unwrap())
+    scenario::load_file::<scenario::strategy::Strategy>(&path)
+        .map(|strategy| strategy.roles.into_iter().next().unwrap())
 }
 
 fn quoted(expression: &str) -> String {

@@ -18,7 +18,7 @@ fn strategy_of(text: &str, others: &[(&str, &str)]) -> Result<Strategy, Problems
     for (name, text) in others.iter().chain([&("x.toml", text), &("safe.toml", SAFE)]) {
         std::fs::write(folder.path().join(name), text).unwrap();
     }
-    scenario::load_strategy(&folder.path().join("x.toml"))
+    scenario::load_file(&folder.path().join("x.toml"))
 }
 
 fn program(text: &str) -> Program {

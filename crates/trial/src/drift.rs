@@ -63,7 +63,8 @@ mod tests {
         let boats = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/boats");
         let tick = SimTime::from_s(0.05);
         for (name, wind_m_s) in [("surveyor_m1_8", 4.0), ("surveyor_m1_8", 12.0), ("otter", 8.0), ("heron", 8.0)] {
-            let boat = scenario::load_boat(&boats.join(format!("{name}.toml"))).expect("it is shipped");
+            let boat =
+                scenario::load_file::<scenario::Boat>(&boats.join(format!("{name}.toml"))).expect("it is shipped");
             let from_rad = 2.0;
             let gusts = Gusts::None;
             let wind = Wind { speed_10m_m_s: wind_m_s, from_rad, profile_exponent: 0.12, gusts };

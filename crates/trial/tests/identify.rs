@@ -15,7 +15,7 @@ const NOISE: [f64; 6] = [0.3, 0.3, 1.0, 0.05, 0.05, 0.5];
 
 fn boat() -> Boat {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/boats/surveyor_m1_8.toml");
-    scenario::load_boat(&path).unwrap_or_else(|e| panic!("{e}"))
+    scenario::load_file(&path).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// The initial guess of the search: 15 to 60 % off in every parameter.

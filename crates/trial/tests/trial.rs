@@ -26,8 +26,8 @@ fn a_trial_sails_as_a_game_does() {
     let mut sea = trial::still_sea();
     trial::set_mean_current(&mut sea, 0.3, 120.0);
     for (name, tick_s) in [("surveyor_m1_8", 0.05), ("surveyor_kinematic", 0.1), ("heron_kinematic", 0.1)] {
-        let boat =
-            scenario::load_boat(&scenarios().join(format!("boats/{name}.toml"))).unwrap_or_else(|e| panic!("{e}"));
+        let boat = scenario::load_file::<scenario::Boat>(&scenarios().join(format!("boats/{name}.toml")))
+            .unwrap_or_else(|e| panic!("{e}"));
         let tick = SimTime::from_s(tick_s);
         let mut world = World::of_game(&game_of(&boat, &sea, tick), 1).expect("there is room");
         let mut trial_boat = TrialBoat::new(&boat, &sea, tick, 1, &Start::default());
@@ -51,7 +51,8 @@ fn a_trial_sails_as_a_game_does() {
 
 #[test]
 fn a_trial_does_not_end_at_the_edge_of_the_field() {
-    let boat = scenario::load_boat(&scenarios().join("boats/surveyor_m1_8.toml")).unwrap_or_else(|e| panic!("{e}"));
+    let boat = scenario::load_file::<scenario::Boat>(&scenarios().join("boats/surveyor_m1_8.toml"))
+        .unwrap_or_else(|e| panic!("{e}"));
     let mut trial_boat = TrialBoat::new(&boat, &trial::still_sea(), SimTime::from_s(0.05), 1, &Start::default());
     for _ in 0..20_000 {
         trial_boat.step(Command::Steer { heading_rad: 0.0, speed_m_s: 2.0 });

@@ -185,7 +185,7 @@ mod tests {
         let base = base.canonicalize().expect("it is there");
         let file = folder.path().join("boat.toml");
         std::fs::write(&file, format!("base = {base:?}\n\n{toml}")).expect("written");
-        let boat = scenario::load_boat(&file).unwrap_or_else(|problems| panic!("{problems}"));
+        let boat = scenario::load_file::<scenario::Boat>(&file).unwrap_or_else(|problems| panic!("{problems}"));
         let compass = boat.sensors.compass.expect("it has one");
         assert!((compass.deviation_rad[2].to_degrees() + 3.0).abs() < 0.01, "{compass:?}");
     }

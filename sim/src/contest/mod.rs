@@ -30,7 +30,7 @@ use rules::event::{EventCursor, Logged};
 use rules::{Acting, Asks, Event, Look, Notes, Referee};
 use scenario::boat::Drive;
 use scenario::fault::FaultSpan;
-use scenario::outcome::{Outcome, Played};
+use scenario::outcome::Outcome;
 use scenario::{Scenario, Source};
 use state::{ContestState, OrderInForce};
 use std::sync::Arc;
@@ -427,13 +427,7 @@ impl Contest {
     #[must_use]
     pub fn outcome(&self) -> Outcome {
         self.assert_score();
-        Outcome::new(&Played {
-            scenario: &self.scenario,
-            digest: self.digest(),
-            ticks: self.world.state().tick,
-            score: self.score(),
-            events: &self.state.events,
-        })
+        Outcome::new(&self.scenario, self.digest(), self.world.state().tick, self.score(), &self.state.events)
     }
 
     fn log(&mut self, event: Event) {

@@ -82,7 +82,7 @@ mod tests {
     #[test]
     fn those_of_a_table_are_the_waves_on_its_headings() {
         let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/boats/surveyor_m1_8.toml");
-        let boat = scenario::load_boat(&file).unwrap_or_else(|e| panic!("{e}"));
+        let boat = scenario::load_file::<scenario::Boat>(&file).unwrap_or_else(|e| panic!("{e}"));
         let field = WaveField::new(&waves_from(0.7, 0.3, 2.5, 20), None, 3);
         let patches = Patches::new(&field, &boat);
         for bin in 0..BINS {

@@ -111,7 +111,7 @@ mod tests {
     #[test]
     fn it_is_the_surface_less_the_hull_at_that_place() {
         let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/boats/surveyor_m1_8.toml");
-        let boat = scenario::load_boat(&file).unwrap_or_else(|e| panic!("{e}"));
+        let boat = scenario::load_file::<scenario::Boat>(&file).unwrap_or_else(|e| panic!("{e}"));
         let field = WaveField::new(&waves_from(0.7, 0.3, 2.5, 64), None, 3);
         let places = [-0.33, 0.33].map(|starboard| Body { ahead: -0.7, starboard });
         let (submergence, response) = (Submergence::new(&field, &boat, places), WaveResponse::new(&field, &boat));

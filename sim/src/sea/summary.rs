@@ -141,7 +141,8 @@ mod tests {
     #[test]
     fn the_surveyor_drifts_as_its_published_balance_says() {
         let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios");
-        let boat = scenario::load_boat(&root.join("boats/surveyor_m1_8.toml")).unwrap_or_else(|e| panic!("{e}"));
+        let boat = scenario::load_file::<scenario::Boat>(&root.join("boats/surveyor_m1_8.toml"))
+            .unwrap_or_else(|e| panic!("{e}"));
         let game = scenario::load(&root.join("games/attack_1v1.toml")).unwrap_or_else(|e| panic!("{e}"));
         let mut sea = Sea::at_rest();
         // 0.128 m/s at 5 and 0.340 m/s at 10 m/s of wind at the boat; the estimate had a little

@@ -186,7 +186,7 @@ pub(crate) fn surveyor_on(change: impl FnOnce(&mut Sea)) -> Scenario {
 
 /// A shipped kind of boat.
 pub(crate) fn boat(name: &str) -> Boat {
-    scenario::load_boat(&scenarios().join(format!("boats/{name}.toml"))).unwrap_or_else(|e| panic!("{e}"))
+    scenario::load_file(&scenarios().join(format!("boats/{name}.toml"))).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// An empty field of 160 m by 80 m from this corner.

@@ -3,6 +3,7 @@
 //! The cases are data: `README.md` beside this file says how to read and add them.
 
 use crate::kinds::KINDS;
+use crate::written;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -32,9 +33,7 @@ fn sound() -> Vec<(String, String)> {
 fn problems(asked: &str, files: &[(String, String)]) -> Vec<String> {
     let folder = tempfile::tempdir().unwrap();
     for (path, text) in sound().iter().chain(files) {
-        let path = folder.path().join(path);
-        fs::create_dir_all(path.parent().unwrap()).unwrap();
-        fs::write(path, text).unwrap();
+        written(folder.path(), path, text);
     }
     let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("crates/onnx/tests/network");
     fs::create_dir(folder.path().join("models")).unwrap();

@@ -1,6 +1,6 @@
 //! The axes of a sweep: what changes from point to point, and its values.
 
-use scenario::{Setting, SettingError};
+use scenario::Setting;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -120,7 +120,7 @@ impl Axis {
     ///
     /// # Errors
     /// If the key of the axis does not begin with a kind of file.
-    pub(super) fn setting(&self, team: &str, value: &AxisValue, path: &Path) -> Result<Setting, SettingError> {
+    pub(super) fn setting(&self, team: &str, value: &AxisValue, path: &Path) -> Result<Setting, String> {
         Setting::new(&self.setting_key(team), value.toml(), path.to_owned(), self.place)
     }
 

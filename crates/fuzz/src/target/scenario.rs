@@ -111,7 +111,7 @@ fn accepted(kind: Kind, path: &Path) {
     match kind.name() {
         "game" => playable(&scenario::load(path).expect("the file was accepted")),
         "strategy" => {
-            let strategy = scenario::load_strategy(path).expect("the file was accepted");
+            let strategy = scenario::load_file::<scenario::strategy::Strategy>(path).expect("the file was accepted");
             let json = serde_json::to_string(&strategy).expect("JSON");
             assert_eq!(serde_json::from_str::<scenario::strategy::Strategy>(&json).expect("JSON"), strategy);
             for role in &strategy.roles {
@@ -121,7 +121,8 @@ fn accepted(kind: Kind, path: &Path) {
         }
         "gateway" => {
             let gateway = scenario::load_file::<Gateway>(path).expect("the file was accepted");
-            let field = scenario::load_field(&scenarios().join("fields/open_800x400.toml")).expect("a field");
+            let field =
+                scenario::load_file::<rules::Field>(&scenarios().join("fields/open_800x400.toml")).expect("a field");
             let vehicle = "blue_one".to_owned();
             let site = Some(Site { field, length_m: 2.0, declination_rad: 0.1, coasting: None });
             let plan =

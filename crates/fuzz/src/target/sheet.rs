@@ -15,7 +15,7 @@ pub(super) const TARGET: Target = Target { name: "sheet", seeds, change: texts, 
 static BOATS: LazyLock<[Boat; 3]> = LazyLock::new(|| {
     ["otter", "heron", "surveyor_kinematic"].map(|name| {
         let file = scenarios().join("boats").join(name).with_extension("toml");
-        scenario::load_boat(&file).unwrap_or_else(|e| panic!("{e}"))
+        scenario::load_file(&file).unwrap_or_else(|e| panic!("{e}"))
     })
 });
 

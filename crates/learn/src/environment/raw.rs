@@ -116,7 +116,7 @@ impl RawObservation {
 }
 
 fn strategy(file: &Path) -> Result<Box<Strategy>, SetupError> {
-    Ok(Box::new(scenario::load_strategy(file)?))
+    Ok(Box::new(scenario::load_file::<scenario::strategy::Strategy>(file)?))
 }
 
 fn team(scenario: &Scenario, name: &str) -> Result<TeamId, SetupError> {

@@ -39,7 +39,7 @@ impl Setup {
 
     /// The teacher, with its modes mapped to the options.
     fn teacher_of(&self, said: &training::Teacher) -> Result<Teacher, SetupError> {
-        let strategy = Box::new(scenario::load_strategy(&said.strategy)?);
+        let strategy = Box::new(scenario::load_file::<scenario::strategy::Strategy>(&said.strategy)?);
         let modes: BTreeSet<String> =
             strategy.roles.iter().flat_map(|role| role.leaves().map(|mode| role.path(mode))).collect();
         let listed = |names: &mut dyn Iterator<Item = &String>| names.cloned().collect::<Vec<_>>().join(", ");

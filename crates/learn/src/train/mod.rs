@@ -357,7 +357,7 @@ fn first_number(training: &Training, epoch: u64) -> u64 {
 fn judges(training: &Training, last: &Setup) -> Result<Vec<(String, Setup)>, SetupError> {
     let base = Setup { teacher: None, critic: CriticInput::Observation, starts: None, steps_max: None, ..last.clone() };
     let judge = |path: &PathBuf| {
-        let strategy = scenario::load_strategy(path)?;
+        let strategy = scenario::load_file::<scenario::strategy::Strategy>(path)?;
         let (name, player) = (strategy.name.clone(), Player::Strategy(Box::new(strategy)));
         Ok((name, Setup { opponents: vec![(1.0, player)], ..base.clone() }))
     };

@@ -17,7 +17,7 @@ pub(crate) fn game(name: &str) -> Scenario {
 }
 
 pub(crate) fn strategy(name: &str) -> Box<Strategy> {
-    let strategy = scenario::load_strategy(&file(&format!("strategies/{name}.toml")));
+    let strategy = scenario::load_file::<scenario::strategy::Strategy>(&file(&format!("strategies/{name}.toml")));
     Box::new(strategy.unwrap_or_else(|problems| panic!("{problems}")))
 }
 

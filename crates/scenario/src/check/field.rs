@@ -1,38 +1,46 @@
 //! Checks a field file.
 
-use super::boat::estimate;
 use super::polygon::check_corners;
 use crate::diagnostics::Diagnostics;
+use crate::kind::ScenarioFile;
 use crate::raw;
 use crate::read::Document;
 use primitives::frame::Ned;
 use primitives::id::TeamId;
-use rules::field::{Field, Flag, Obstacle};
+use rules::field::{Field, Flag, Obstacle, Plan};
 
 /// Maximum distance of a relevant obstacle outside the field, m.
 const NEAR_M: f64 = 50.0;
 
-pub(crate) fn field(diagnostics: &mut Diagnostics, document: &Document<raw::Field>) -> Option<Field> {
-    let raw = &document.raw;
-    let mut plan = raw.plan.clone();
-    estimate(&mut plan.flag_inset_m, || plan.width_m / 8.0);
-    let (flag_inset_m, half_m) = (plan.flag_inset_m, plan.width_m / 2.0);
-    if !(flag_inset_m > 0.0 && flag_inset_m < half_m) && document.is_sound("width_m") {
-        let message = format!("flag_inset_m is {flag_inset_m}, expected more than 0 and less than {half_m}");
-        diagnostics.note(document.at("flag_inset_m"), message);
+impl ScenarioFile for Field {
+    type Keys = raw::Field;
+    const NAME: &'static str = "field";
+    const FOLDER: &'static str = "fields";
+
+    fn check(diagnostics: &mut Diagnostics, document: &Document<raw::Field>) -> Option<Field> {
+        let raw = &document.raw;
+        let Plan { name, datum, corner, along_deg, width_m, depth_m, walls, .. } = raw.plan.clone();
+        let (flag_inset_m, half_m) = (raw.plan.flag_inset_m.unwrap_or(width_m / 8.0), width_m / 2.0);
+        if !(flag_inset_m > 0.0 && flag_inset_m < half_m) && document.is_sound("width_m") {
+            let message = format!("flag_inset_m is {flag_inset_m}, expected more than 0 and less than {half_m}");
+            diagnostics.note(document.at("flag_inset_m"), message);
+        }
+        let is_plane_sound =
+            ["corner", "along_deg", "width_m", "depth_m", "flag_inset_m"].iter().all(|key| document.is_sound(key));
+        if !is_plane_sound {
+            return None;
+        }
+        let (extra_flags, obstacles) = (vec![], vec![]);
+        let mut plan =
+            Plan { name, datum, corner, along_deg, width_m, depth_m, flag_inset_m, extra_flags, obstacles, walls };
+        let empty = Field::new(plan.clone());
+        plan.extra_flags = self::extra_flags(diagnostics, document, &empty);
+        let field = Field::new(plan.clone());
+        for (i, raw) in raw.obstacle.iter().enumerate() {
+            plan.obstacles.extend(obstacle(diagnostics, document, &format!("obstacle.{i}"), raw, &field));
+        }
+        document.is_faultless(diagnostics).then(|| Field::new(plan))
     }
-    let is_plane_sound =
-        ["corner", "along_deg", "width_m", "depth_m", "flag_inset_m"].iter().all(|key| document.is_sound(key));
-    if !is_plane_sound {
-        return None;
-    }
-    let empty = Field::new(plan.clone());
-    plan.extra_flags = extra_flags(diagnostics, document, &empty);
-    let field = Field::new(plan.clone());
-    for (i, raw) in raw.obstacle.iter().enumerate() {
-        plan.obstacles.extend(obstacle(diagnostics, document, &format!("obstacle.{i}"), raw, &field));
-    }
-    document.is_faultless(diagnostics).then(|| Field::new(plan))
 }
 
 fn extra_flags(diagnostics: &mut Diagnostics, document: &Document<raw::Field>, field: &Field) -> Vec<Flag> {

@@ -3,9 +3,12 @@
 use super::boat::{FASTEST_PER_TICK, fastest_decay};
 use super::file_cache::FileCache;
 use super::start_position;
+use super::strategy::strategy_file;
 use crate::boat::Boat;
 use crate::diagnostics::{Diagnostics, is_name};
+use crate::kind::ScenarioFile;
 use crate::link::Link;
+use crate::problem::Problems;
 use crate::raw;
 use crate::read::{self, Document};
 use crate::sea::Sea;
@@ -43,73 +46,80 @@ struct Fleet<'a> {
     entries: Vec<Entry>,
 }
 
-pub(crate) fn game(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) -> Option<Scenario> {
-    let raw = &document.raw;
-    let field = diagnostics.referenced::<Field, _>(document, "field", &raw.field.0);
-    let rules = diagnostics.referenced::<Rules, _>(document, "rules", &raw.rules.0);
-    let sea = sea(diagnostics, document);
-    let (tick, ticks_per_decision) = clock(diagnostics, document);
-    check_teams(diagnostics, document);
-    let mut fleet = Fleet {
-        document,
-        field: field.as_ref(),
-        boats: FileCache::new(|diagnostics, path, place, owner| {
-            let document = read::document_of(diagnostics, Kind::BOAT, path, place, owner)?;
-            super::boat(diagnostics, &document)
-        }),
-        strategies: FileCache::by_owner(super::strategy_file),
-        names: BTreeSet::new(),
-        entries: vec![],
-    };
-    fleet.fill(diagnostics);
-    check_tick(diagnostics, document, tick, &fleet.boats.items);
-    check_looks(diagnostics, document, tick, rules.as_ref());
-    check_reseed(diagnostics, document);
-    let Fleet { boats, strategies, entries, .. } = fleet;
-    let (field, mut rules, sea) = (field?, rules?, sea?);
-    if !document.is_faultless(diagnostics) {
-        return None;
+impl ScenarioFile for Scenario {
+    type Keys = raw::Game;
+    const NAME: &'static str = "game";
+    const FOLDER: &'static str = "games";
+
+    fn check(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) -> Option<Scenario> {
+        let raw = &document.raw;
+        let field = diagnostics.referenced::<Field, _>(document, "field", &raw.field.0);
+        let rules = diagnostics.referenced::<Rules, _>(document, "rules", &raw.rules.0);
+        let sea = sea(diagnostics, document);
+        let (tick, ticks_per_decision) = clock(diagnostics, document);
+        check_teams(diagnostics, document);
+        let mut fleet = Fleet {
+            document,
+            field: field.as_ref(),
+            boats: FileCache::new(Diagnostics::read),
+            strategies: FileCache::by_owner(strategy_file),
+            names: BTreeSet::new(),
+            entries: vec![],
+        };
+        fleet.fill(diagnostics);
+        check_tick(diagnostics, document, tick, &fleet.boats.items);
+        check_looks(diagnostics, document, tick, rules.as_ref());
+        check_reseed(diagnostics, document);
+        let Fleet { boats, strategies, entries, .. } = fleet;
+        let (field, mut rules, sea) = (field?, rules?, sea?);
+        if !document.is_faultless(diagnostics) {
+            return None;
+        }
+        let start_positions = start_position::all(&entries, &field);
+        start_position::check_clear(diagnostics, &entries, &start_positions, &boats.items, &field);
+        check_models(diagnostics, &entries, &strategies.items);
+        check_duration(diagnostics, document);
+        rules.time_limit = raw.duration_s.map_or(rules.time_limit, SimTime::from_s);
+        let vehicles = entries.into_iter().zip(start_positions).map(|(entry, start_position)| Vehicle {
+            name: entry.name,
+            team: entry.team,
+            boat: entry.boat,
+            strategy: entry.strategy,
+            start_position,
+            source: entry.source,
+        });
+        let vehicles: Vec<Vehicle> = vehicles.collect();
+        let faults = super::fault::faults(diagnostics, document, &vehicles, &boats.items);
+        let link = link(document, &field);
+        let scenario = Scenario {
+            name: document.name.clone(),
+            seed: raw.seed,
+            reseed: raw.reseed.clone(),
+            tick,
+            ticks_per_decision,
+            patience_s: raw.patience_s,
+            order_ttl_s: raw.order_ttl_s,
+            link,
+            field,
+            rules,
+            sea,
+            teams: raw.team.iter().map(|team| Team { name: team.name.0.clone() }).collect(),
+            boats: boats.items,
+            strategies: strategies.items,
+            vehicles,
+            faults,
+            drawn: vec![],
+            recipe: None,
+        };
+        if let Err(problem) = scenario.check_sizes() {
+            diagnostics.note(document.at("team"), problem);
+        }
+        document.is_faultless(diagnostics).then_some(scenario)
     }
-    let start_positions = start_position::all(&entries, &field);
-    start_position::check_clear(diagnostics, &entries, &start_positions, &boats.items, &field);
-    check_models(diagnostics, &entries, &strategies.items);
-    check_duration(diagnostics, document);
-    rules.time_limit = raw.duration_s.map_or(rules.time_limit, SimTime::from_s);
-    let vehicles = entries.into_iter().zip(start_positions).map(|(entry, start_position)| Vehicle {
-        name: entry.name,
-        team: entry.team,
-        boat: entry.boat,
-        strategy: entry.strategy,
-        start_position,
-        source: entry.source,
-    });
-    let vehicles: Vec<Vehicle> = vehicles.collect();
-    let faults = super::fault::faults(diagnostics, document, &vehicles, &boats.items);
-    let link = link(document, &field);
-    let scenario = Scenario {
-        name: document.name.clone(),
-        seed: raw.seed,
-        reseed: raw.reseed.clone(),
-        tick,
-        ticks_per_decision,
-        patience_s: raw.patience_s,
-        order_ttl_s: raw.order_ttl_s,
-        link,
-        field,
-        rules,
-        sea,
-        teams: raw.team.iter().map(|team| Team { name: team.name.0.clone() }).collect(),
-        boats: boats.items,
-        strategies: strategies.items,
-        vehicles,
-        faults,
-        drawn: vec![],
-        recipe: None,
-    };
-    if let Err(problem) = scenario.check_sizes() {
-        diagnostics.note(document.at("team"), problem);
+
+    fn load(path: &Path) -> Result<Scenario, Problems> {
+        crate::load(path)
     }
-    document.is_faultless(diagnostics).then_some(scenario)
 }
 
 /// The radio links; the station stands in the middle of the field if the file names no other place.
@@ -146,15 +156,14 @@ fn check_reseed(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) {
 /// The game's sea, or its override.
 fn sea(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) -> Option<Sea> {
     if let Some(path) = diagnostics.overrides.sea.clone() {
-        let document = read::document(diagnostics, Kind::SEA, &path, None)?;
-        return super::sea(diagnostics, &document);
+        return diagnostics.read(&path, None, Sea::NAME);
     }
     match &document.raw.sea {
         Some(given) => diagnostics.referenced::<Sea, _>(document, "sea", &given.0),
-        None if diagnostics.overrides.has_settings(Kind::SEA) => {
+        None if diagnostics.overrides.has_settings(Sea::NAME) => {
             let path = Path::new("at_rest.toml");
             let document = read::document_of_text(diagnostics, Kind::SEA, path, "water_density_kg_m3 = 1000")?;
-            super::sea(diagnostics, &document)
+            Sea::check(diagnostics, &document)
         }
         None => Some(Sea::at_rest()),
     }
@@ -358,7 +367,7 @@ impl Fleet<'_> {
             (Some(given), _) => (given, own_path.as_str()),
             (None, Some(given)) => (given, "boat"),
             (None, None) => {
-                self.missing(diagnostics, &own_path, "the path of a boat file here or for the game");
+                self.document.note_missing(diagnostics, &own_path, "the path of a boat file here or for the game");
                 return None;
             }
         };
@@ -395,7 +404,7 @@ impl Fleet<'_> {
             }
             (None, Some(team)) if is_replaced || states_one(team) => self.strategy_of_team(diagnostics, team.index()),
             (None, Some(_)) => {
-                self.missing(diagnostics, &path, "the path of a strategy file here or for the team");
+                self.document.note_missing(diagnostics, &path, "the path of a strategy file here or for the team");
                 None
             }
             (None, None) => None,
@@ -417,15 +426,6 @@ impl Fleet<'_> {
         }
         let place = self.document.at(&format!("team.{team}.strategy"));
         self.strategies.index(diagnostics, &strategy_path(&strategy.as_ref()?.0), place, owner)
-    }
-
-    /// Reports a key missing from a vehicle or fleet and from its game or team.
-    fn missing(&self, diagnostics: &mut Diagnostics, path: &str, expected: &str) {
-        if self.document.is_sound(path) {
-            let key: Vec<&str> = path.split('.').filter(|part| part.parse::<usize>().is_err()).collect();
-            let message = format!("{} is missing, expected {expected}", key.join("."));
-            diagnostics.note_if_intact(self.document.at(path), message);
-        }
     }
 }
 

@@ -15,16 +15,9 @@ mod sea;
 mod start_position;
 mod strategy;
 
-pub(super) use boat::boat;
-pub(super) use field::field;
-
 pub use boat::check_thrust_map;
-pub(super) use game::game;
 pub use polygon::check_corners;
-pub(super) use rules::rules;
-pub(super) use sea::sea;
 pub use strategy::StrategyFiles;
-pub(super) use strategy::{strategy, strategy_file};
 
 #[cfg(doc)]
 use super::diagnostics::Diagnostics;

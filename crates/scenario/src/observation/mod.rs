@@ -41,9 +41,10 @@ impl ObservationSpace {
     #[must_use]
     pub fn size(self, mates: usize, enemies: usize) -> usize {
         match self {
-            ObservationSpace::Pyquaticus => pyquaticus::size(mates + enemies),
+            ObservationSpace::Pyquaticus => pyquaticus::OWN_NAMES.len() + (mates + enemies) * pyquaticus::OTHER,
             ObservationSpace::Squall { mates, enemies, frames } => {
-                usize::from(frames) * squall::size(usize::from(mates), usize::from(enemies))
+                let others = usize::from(mates) + usize::from(enemies);
+                usize::from(frames) * (squall::OWN_NAMES.len() + others * squall::OTHER)
             }
         }
     }
@@ -53,9 +54,9 @@ impl ObservationSpace {
     #[must_use]
     pub fn names(self, mates: usize, enemies: usize) -> Vec<String> {
         match self {
-            ObservationSpace::Pyquaticus => pyquaticus::names(mates, enemies),
+            ObservationSpace::Pyquaticus => names_of(&pyquaticus::OWN_NAMES, &pyquaticus::OTHER_NAMES, mates, enemies),
             ObservationSpace::Squall { mates, enemies, frames } => {
-                let newest = squall::names(usize::from(mates), usize::from(enemies));
+                let newest = names_of(&squall::OWN_NAMES, &squall::OTHER_NAMES, mates.into(), enemies.into());
                 let older = (1..frames).flat_map(|ago| newest.iter().map(move |name| format!("t-{ago}.{name}")));
                 newest.iter().cloned().chain(older).collect()
             }
@@ -64,7 +65,7 @@ impl ObservationSpace {
 }
 
 /// The names of the own boat's values, then of each other boat's: `mate_1_speed`, `enemy_2_speed`.
-pub(super) fn names_of(own: &[&str], other: &[&str], (mates, enemies): (usize, usize)) -> Vec<String> {
+fn names_of(own: &[&str], other: &[&str], mates: usize, enemies: usize) -> Vec<String> {
     let mates = (1..=mates).map(|i| format!("mate_{i}"));
     let others = mates.chain((1..=enemies).map(|i| format!("enemy_{i}")));
     let of_others = others.flat_map(|boat| other.iter().map(move |name| format!("{boat}_{name}")));

@@ -1,15 +1,12 @@
 //! The names of the values in the observation space `pyquaticus`.
 
-use super::names_of;
-
 /// Incremented when the meaning of a value changes: models from another version are rejected.
 pub(super) const VERSION: u32 = 1;
 
-const OWN: usize = 21;
 /// Number of values of another boat.
 pub const OTHER: usize = 8;
 
-const OWN_NAMES: [&str; OWN] = [
+pub(super) const OWN_NAMES: [&str; 21] = [
     "enemy_flag_bearing",
     "enemy_flag_distance",
     "own_flag_bearing",
@@ -32,13 +29,5 @@ const OWN_NAMES: [&str; OWN] = [
     "score",
     "enemy_score",
 ];
-const OTHER_NAMES: [&str; OTHER] =
+pub(super) const OTHER_NAMES: [&str; OTHER] =
     ["bearing", "distance", "relative_heading", "speed", "has_flag", "on_own_side", "time_since_tag", "tagged"];
-
-pub(super) fn names(mates: usize, enemies: usize) -> Vec<String> {
-    names_of(&OWN_NAMES, &OTHER_NAMES, (mates, enemies))
-}
-
-pub(super) fn size(others: usize) -> usize {
-    OWN + others * OTHER
-}

@@ -1,16 +1,13 @@
 //! The names of the values in the observation space `squall`.
 
-use super::names_of;
-
 /// Incremented when the meaning of a value changes: models from another version are rejected.
 pub(super) const VERSION: u32 = 1;
 
-/// Number of values of the own boat, its goals and the game.
-const OWN: usize = 44;
 /// Number of values of another boat: presence, position, motion, state.
 pub const OTHER: usize = 16;
 
-const OWN_NAMES: [&str; OWN] = [
+/// Values of the own boat, its goals and the game.
+pub(super) const OWN_NAMES: [&str; 44] = [
     "position_ahead",
     "position_port",
     "heading_ahead",
@@ -56,7 +53,7 @@ const OWN_NAMES: [&str; OWN] = [
     "time_left",
     "rank",
 ];
-const OTHER_NAMES: [&str; OTHER] = [
+pub(super) const OTHER_NAMES: [&str; OTHER] = [
     "known",
     "ahead",
     "starboard",
@@ -74,11 +71,3 @@ const OTHER_NAMES: [&str; OTHER] = [
     "age",
     "near_own_flag",
 ];
-
-pub(super) fn names(mates: usize, enemies: usize) -> Vec<String> {
-    names_of(&OWN_NAMES, &OTHER_NAMES, (mates, enemies))
-}
-
-pub(super) fn size(mates: usize, enemies: usize) -> usize {
-    OWN + (mates + enemies) * OTHER
-}

@@ -20,9 +20,9 @@ pub struct Boat {
     #[schemars(range(min = 0.01, max = 20))]
     pub(crate) draught_m: Option<f64>,
     /// Inertia and resistance.
-    pub(crate) hull: Hull,
+    pub(crate) hull: Hull<Option<f64>>,
     /// Wind force.
-    pub(crate) windage: Windage,
+    pub(crate) windage: Windage<Option<f64>>,
     /// The two thrusters. Required unless the boat is kinematic.
     pub(crate) thruster: Option<Thruster>,
     /// Heading and speed loops of the front seat. Required unless the boat is kinematic.
@@ -43,7 +43,7 @@ pub(crate) struct Thruster {
     #[schemars(range(min = 0.01, max = 25))]
     pub(crate) arm_m: f64,
     /// Propeller with thrust k n |n|.
-    pub(crate) propeller: Option<Propeller>,
+    pub(crate) propeller: Option<Propeller<Option<f64>>>,
     /// Pairs of setting (-100 to 100 %) and thrust of one thruster (N), both ascending, including
     /// [0, 0].
     pub(crate) table_pct_newton: Option<Vec<SettingAndThrust>>,

@@ -9,7 +9,7 @@ use serde::Deserialize;
 #[derive(Debug, Deserialize, JsonSchema)]
 pub struct Field {
     #[serde(flatten)]
-    pub(crate) plan: Plan,
+    pub(crate) plan: Plan<Option<f64>>,
     /// Obstacles.
     pub(crate) obstacle: Vec<Obstacle>,
     /// Flags in addition to each team's default flag.

@@ -37,20 +37,17 @@ pub struct Policy {
 
 /// The keys for a model.
 #[derive(JsonSchema)]
+#[expect(dead_code, reason = "only the schema is used")]
 struct ModelKeys {
     /// ONNX file. Default: an external source proposes.
     #[schemars(extend("minLength" = 1, "x-expected" = "the path of a file"))]
-    #[expect(dead_code, reason = "only the schema is used")]
     model: Option<String>,
     /// The model's inputs. Default: as in its metadata.
-    #[expect(dead_code, reason = "only the schema is used")]
     observation: Option<ObservationSpace>,
     /// The model's actions. Default: as in its metadata.
-    #[expect(dead_code, reason = "only the schema is used")]
     action: Option<ActionSpace>,
     /// Time between the model's decisions, s. Default: as in its metadata.
     #[schemars(range(min = 0.01, max = 10))]
-    #[expect(dead_code, reason = "only the schema is used")]
     period_s: Option<f64>,
 }
 

@@ -112,13 +112,12 @@ pub enum Shape {
 
 /// The keys for a shape: one of them is required.
 #[derive(JsonSchema)]
+#[expect(dead_code, reason = "only the schema is used")]
 struct ShapeKeys {
     /// Corners, in order. Required without `ellipse`.
     #[schemars(length(min = 3, max = 1000), extend("x-expected" = "3 to 1000 places"))]
-    #[expect(dead_code, reason = "only the schema is used")]
     polygon: Option<Vec<Place>>,
     /// Instead of `polygon`.
-    #[expect(dead_code, reason = "only the schema is used")]
     ellipse: Option<Ellipse>,
 }
 

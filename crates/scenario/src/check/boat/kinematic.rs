@@ -6,10 +6,8 @@ use crate::raw;
 use crate::read::Document;
 
 pub(super) fn check_kinematic(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, kinematic: &Kinematic) {
-    let needs_pid = kinematic.speed_factor == 0.0 && !document.has("kinematic.speed_pid");
-    if needs_pid && document.is_sound("kinematic.speed_pid") {
-        let message = "kinematic.speed_pid is missing, expected speed_pid or speed_factor";
-        diagnostics.note_if_intact(document.at("kinematic"), message);
+    if kinematic.speed_factor == 0.0 && !document.has("kinematic.speed_pid") {
+        document.note_missing(diagnostics, "kinematic.speed_pid", "speed_pid or speed_factor");
     }
     check_thrust_map(diagnostics, document, "kinematic.thrust_map", &kinematic.thrust_map);
 }

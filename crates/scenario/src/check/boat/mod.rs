@@ -5,8 +5,9 @@ mod thruster;
 
 pub use kinematic::check_thrust_map;
 
-use crate::boat::{Boat, Drive, Propeller, ThrustCurve};
+use crate::boat::{Boat, Drive, Hull, Propeller, ThrustCurve, Windage};
 use crate::diagnostics::Diagnostics;
+use crate::kind::ScenarioFile;
 use crate::raw;
 use crate::read::Document;
 use crate::sensor::{Gps, MOST_PERIODS_LATE};
@@ -20,38 +21,42 @@ const USUAL_TICK_S: f64 = 0.05;
 /// Water density for the estimates, kg/m³.
 const RHO_KG_M3: f64 = 1000.0;
 
-pub(crate) fn boat(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>) -> Option<Boat> {
-    let raw = &document.raw;
-    let hull = &raw.hull;
-    if hull.crossflow_coefficient > 0.0 && !document.has("hull.crossflow_draught_m") {
-        let message = "hull.crossflow_draught_m is missing, expected 0 to 20 with a crossflow_coefficient";
-        diagnostics.note_if_intact(document.at("hull"), message);
+impl ScenarioFile for Boat {
+    type Keys = raw::Boat;
+    const NAME: &'static str = "boat";
+    const FOLDER: &'static str = "boats";
+
+    fn check(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>) -> Option<Boat> {
+        let raw = &document.raw;
+        let hull = &raw.hull;
+        if hull.crossflow_coefficient > 0.0 && !document.has("hull.crossflow_draught_m") {
+            let expected = "0 to 20 with a crossflow_coefficient";
+            document.note_missing(diagnostics, "hull.crossflow_draught_m", expected);
+        }
+        if let Some(gps) = &raw.sensors.gps {
+            check_gps(diagnostics, document, gps);
+        }
+        let drive = drive(diagnostics, document);
+        if !document.is_faultless(diagnostics) {
+            return None;
+        }
+        let drive = drive?;
+        let draught_m = hull.crossflow_draught_m.filter(|draught_m| *draught_m > 0.0);
+        let boat = Boat {
+            name: document.name.clone(),
+            length_m: raw.length_m,
+            beam_m: raw.beam_m,
+            draught_m: raw.draught_m.or(draught_m).unwrap_or(raw.length_m / 12.0),
+            hull: self::hull(raw, &drive),
+            windage: windage(raw),
+            drive,
+            hold: raw.hold,
+            sensors: raw.sensors.clone(),
+        };
+        check_inertia(diagnostics, document, &boat);
+        check_decay(diagnostics, document, &boat);
+        document.is_faultless(diagnostics).then_some(boat)
     }
-    if let Some(gps) = &raw.sensors.gps {
-        check_gps(diagnostics, document, gps);
-    }
-    let drive = drive(diagnostics, document);
-    if !document.is_faultless(diagnostics) {
-        return None;
-    }
-    let mut boat = Boat {
-        name: document.name.clone(),
-        length_m: raw.length_m,
-        beam_m: raw.beam_m,
-        draught_m: raw.draught_m.unwrap_or_else(|| match hull.crossflow_draught_m {
-            draught_m if draught_m > 0.0 => draught_m,
-            _ => raw.length_m / 12.0,
-        }),
-        hull: hull.clone(),
-        windage: raw.windage.clone(),
-        drive: drive?,
-        hold: raw.hold,
-        sensors: raw.sensors.clone(),
-    };
-    estimate_rest(&mut boat);
-    check_inertia(diagnostics, document, &boat);
-    check_decay(diagnostics, document, &boat);
-    document.is_faultless(diagnostics).then_some(boat)
 }
 
 fn drive(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>) -> Option<Drive> {
@@ -66,8 +71,7 @@ fn drive(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>) -> Optio
     }
     for key in ["thruster", "autopilot"] {
         if !document.has(key) && !document.has("kinematic") {
-            let message = format!("{key} is missing, expected thruster and autopilot, or kinematic");
-            diagnostics.note_if_intact(document.at(""), message);
+            document.note_missing(diagnostics, key, "thruster and autopilot, or kinematic");
         }
     }
     let thruster = thruster::thruster(diagnostics, document, raw.thruster.as_ref()?)?;
@@ -83,43 +87,62 @@ fn check_gps(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, gps:
     }
 }
 
-/// Replaces a number that the file omits.
-pub(super) fn estimate(number: &mut f64, estimated: impl FnOnce() -> f64) {
-    if number.is_nan() {
-        *number = estimated();
-    }
-}
-
-/// Estimates the values that the file omits, by the formulas in the keys' descriptions.
-fn estimate_rest(boat: &mut Boat) {
-    let (thrust_max_newton, speed_max_m_s) = match &boat.drive {
+/// The hull, with estimates of the values that the file omits, by the formulas in the keys'
+/// descriptions.
+fn hull(raw: &raw::Boat, drive: &Drive) -> Hull {
+    let (thrust_max_newton, speed_max_m_s) = match drive {
         Drive::Thrusters { thruster, autopilot } => (2.0 * full_ahead_newton(&thruster.curve), autopilot.speed_max_m_s),
         Drive::Kinematic(kinematic) => (0.0, kinematic.speed_max_m_s),
     };
-    let Boat { length_m, beam_m, hull, windage, .. } = boat;
-    let (length_m, beam_m, mass_kg) = (*length_m, *beam_m, hull.mass_kg);
-    estimate(&mut windage.frontal_area_m2, || 0.36 * beam_m * beam_m);
-    estimate(&mut windage.lateral_area_m2, || 0.16 * length_m * length_m);
-    estimate(&mut windage.height_m, || 0.25 * length_m);
+    let (hull, length_m) = (&raw.hull, raw.length_m);
+    let Hull { mass_kg, x_g_m, surge_quadratic_kg_m, .. } = *hull;
     // A radius of gyration of a quarter of the length, shifted from the centre of gravity to
     // midships.
-    estimate(&mut hull.yaw_inertia_kg_m2, || mass_kg * (length_m * length_m / 16.0 + hull.x_g_m * hull.x_g_m));
-    // Söding (1982), as in MSS addedMassSurge.m: 2.7 ρ ∇^(5/3) / L².
-    estimate(&mut hull.added_surge_kg, || {
-        let displaced_m3 = mass_kg / RHO_KG_M3;
-        let cube_root = libm::cbrt(displaced_m3);
-        2.7 * RHO_KG_M3 * displaced_m3 * cube_root * cube_root / (length_m * length_m)
-    });
-    estimate(&mut hull.added_sway_kg, || mass_kg);
-    estimate(&mut hull.added_yaw_kg_m2, || hull.yaw_inertia_kg_m2);
-    estimate(&mut hull.surge_linear_kg_s, || {
-        let quadratic_kg_s = hull.surge_quadratic_kg_m * speed_max_m_s;
-        (thrust_max_newton / speed_max_m_s - quadratic_kg_s).max(0.0)
-    });
-    estimate(&mut hull.sway_linear_kg_s, || mass_kg + hull.added_sway_kg);
-    estimate(&mut hull.yaw_linear_kg_m2_s, || hull.yaw_inertia_kg_m2 + hull.added_yaw_kg_m2);
-    estimate(&mut hull.crossflow_draught_m, || 0.0);
-    estimate(&mut hull.crossflow_length_m, || length_m);
+    let estimate_kg_m2 = || mass_kg * (length_m * length_m / 16.0 + x_g_m * x_g_m);
+    let yaw_inertia_kg_m2 = hull.yaw_inertia_kg_m2.unwrap_or_else(estimate_kg_m2);
+    let added_sway_kg = hull.added_sway_kg.unwrap_or(mass_kg);
+    let added_yaw_kg_m2 = hull.added_yaw_kg_m2.unwrap_or(yaw_inertia_kg_m2);
+    Hull {
+        mass_kg,
+        yaw_inertia_kg_m2,
+        x_g_m,
+        // Söding (1982), as in MSS addedMassSurge.m: 2.7 ρ ∇^(5/3) / L².
+        added_surge_kg: hull.added_surge_kg.unwrap_or_else(|| {
+            let displaced_m3 = mass_kg / RHO_KG_M3;
+            let cube_root = libm::cbrt(displaced_m3);
+            2.7 * RHO_KG_M3 * displaced_m3 * cube_root * cube_root / (length_m * length_m)
+        }),
+        added_sway_kg,
+        added_yaw_kg_m2,
+        added_sway_yaw_kg_m: hull.added_sway_yaw_kg_m,
+        surge_linear_kg_s: hull.surge_linear_kg_s.unwrap_or_else(|| {
+            let quadratic_kg_s = surge_quadratic_kg_m * speed_max_m_s;
+            (thrust_max_newton / speed_max_m_s - quadratic_kg_s).max(0.0)
+        }),
+        surge_quadratic_kg_m,
+        sway_linear_kg_s: hull.sway_linear_kg_s.unwrap_or(mass_kg + added_sway_kg),
+        sway_lift_kg_m: hull.sway_lift_kg_m,
+        yaw_linear_kg_m2_s: hull.yaw_linear_kg_m2_s.unwrap_or(yaw_inertia_kg_m2 + added_yaw_kg_m2),
+        yaw_quadratic_kg_m2: hull.yaw_quadratic_kg_m2,
+        yaw_lift_kg_m: hull.yaw_lift_kg_m,
+        crossflow_coefficient: hull.crossflow_coefficient,
+        crossflow_draught_m: hull.crossflow_draught_m.unwrap_or(0.0),
+        crossflow_length_m: hull.crossflow_length_m.unwrap_or(length_m),
+        munk_factor: hull.munk_factor,
+    }
+}
+
+/// The windage, with estimates like those of the hull.
+fn windage(raw: &raw::Boat) -> Windage {
+    let (windage, length_m, beam_m) = (&raw.windage, raw.length_m, raw.beam_m);
+    Windage {
+        frontal_area_m2: windage.frontal_area_m2.unwrap_or(0.36 * beam_m * beam_m),
+        lateral_area_m2: windage.lateral_area_m2.unwrap_or(0.16 * length_m * length_m),
+        height_m: windage.height_m.unwrap_or(0.25 * length_m),
+        surge_coefficient: windage.surge_coefficient,
+        sway_coefficient: windage.sway_coefficient,
+        yaw_coefficient: windage.yaw_coefficient,
+    }
 }
 
 /// A singular mass matrix would give unbounded acceleration.

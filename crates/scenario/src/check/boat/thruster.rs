@@ -1,7 +1,6 @@
 //! Checks thrusters and their flaws.
 
-use super::estimate;
-use crate::boat::{ThrustCurve, Thruster};
+use crate::boat::{Propeller, ThrustCurve, Thruster};
 use crate::diagnostics::Diagnostics;
 use crate::raw;
 use crate::read::Document;
@@ -13,10 +12,9 @@ pub(super) fn thruster(
 ) -> Option<Thruster> {
     let curve = match (&raw.propeller, &raw.table_pct_newton) {
         (Some(propeller), None) => {
-            let mut propeller = *propeller;
-            estimate(&mut propeller.k_astern, || propeller.k_ahead);
-            estimate(&mut propeller.n_min_rad_s, || propeller.n_max_rad_s);
-            ThrustCurve::Propeller(propeller)
+            let Propeller { k_ahead, k_astern, n_max_rad_s, n_min_rad_s } = *propeller;
+            let (k_astern, n_min_rad_s) = (k_astern.unwrap_or(k_ahead), n_min_rad_s.unwrap_or(n_max_rad_s));
+            ThrustCurve::Propeller(Propeller { k_ahead, k_astern, n_max_rad_s, n_min_rad_s })
         }
         (None, Some(rows)) => table(diagnostics, document, rows),
         (Some(_), Some(_)) => {
@@ -25,9 +23,8 @@ pub(super) fn thruster(
             return None;
         }
         (None, None) => {
-            if document.is_sound("thruster.propeller") && document.is_sound("thruster.table_pct_newton") {
-                let message = "thruster.propeller is missing, expected propeller or table_pct_newton";
-                diagnostics.note_if_intact(document.at("thruster"), message);
+            if document.is_sound("thruster.table_pct_newton") {
+                document.note_missing(diagnostics, "thruster.propeller", "propeller or table_pct_newton");
             }
             return None;
         }

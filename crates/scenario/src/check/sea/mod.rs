@@ -4,21 +4,28 @@ mod current;
 mod waves;
 
 use crate::diagnostics::Diagnostics;
+use crate::kind::ScenarioFile;
 use crate::raw;
 use crate::read::Document;
 use crate::sea::{Gusts, Sea, Wind};
 
-pub(crate) fn sea(diagnostics: &mut Diagnostics, document: &Document<raw::Sea>) -> Option<Sea> {
-    let raw = &document.raw;
-    let sea = Sea {
-        name: document.name.clone(),
-        water_density_kg_m3: raw.water_density_kg_m3,
-        depth_m: raw.depth_m,
-        waves: raw.waves.as_ref().and_then(|waves| waves::waves(diagnostics, document, waves)),
-        wind: raw.wind.as_ref().map(wind),
-        current: current::current(diagnostics, document, &raw.current),
-    };
-    document.is_faultless(diagnostics).then_some(sea)
+impl ScenarioFile for Sea {
+    type Keys = raw::Sea;
+    const NAME: &'static str = "sea";
+    const FOLDER: &'static str = "seas";
+
+    fn check(diagnostics: &mut Diagnostics, document: &Document<raw::Sea>) -> Option<Sea> {
+        let raw = &document.raw;
+        let sea = Sea {
+            name: document.name.clone(),
+            water_density_kg_m3: raw.water_density_kg_m3,
+            depth_m: raw.depth_m,
+            waves: raw.waves.as_ref().and_then(|waves| waves::waves(diagnostics, document, waves)),
+            wind: raw.wind.as_ref().map(wind),
+            current: current::current(diagnostics, document, &raw.current),
+        };
+        document.is_faultless(diagnostics).then_some(sea)
+    }
 }
 
 fn wind(raw: &raw::Wind) -> Wind {

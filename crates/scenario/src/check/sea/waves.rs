@@ -23,8 +23,8 @@ pub(super) fn waves(diagnostics: &mut Diagnostics, document: &Document<raw::Sea>
         diagnostics.note(document.at("waves.spread_s"), message);
     }
     let from_deg = raw.from_deg.or(wind.map(|wind| wind.from_deg));
-    if from_deg.is_none() && document.is_sound("waves.from_deg") {
-        diagnostics.note_if_intact(document.at("waves"), "waves.from_deg is missing, expected -360 to 360, or a wind");
+    if from_deg.is_none() {
+        document.note_missing(diagnostics, "waves.from_deg", "-360 to 360, or a wind");
     }
     let (hs_m, tp_s) = height_and_period(diagnostics, document, raw)?;
     let steepness = hs_m / peak_length_m(tp_s, depth_m);

@@ -209,8 +209,9 @@ fn model(
         period_s: period_s.as_ref().and_then(Json::as_f64),
     };
     let path = scope.diagnostics.resolve(scope.document.at(&at), file);
-    let read = read::model(scope.diagnostics, &path, said).map_err(|why| why.to_string());
-    match read.and_then(|model| misfit(scope, &model, sets).map_or(Ok(model), Err)) {
+    match read::model(scope.diagnostics, &path, said)
+        .and_then(|model| misfit(scope, &model, sets).map_or(Ok(model), Err))
+    {
         Ok(model) => Some(Some(model)),
         Err(why) => scope.refuse(&at, &format!("is {file:?}: {why}")),
     }

@@ -13,6 +13,8 @@ mod variable;
 use super::file_cache::FileCache;
 use crate::Kind;
 use crate::diagnostics::Diagnostics;
+use crate::kept;
+use crate::kind::ScenarioFile;
 use crate::raw;
 use crate::read::{self, Document};
 use crate::strategy::{Program, Strategy};
@@ -28,33 +30,39 @@ pub(crate) fn strategy_file(
     asked_at: Option<usize>,
     owner: &str,
 ) -> Option<Strategy> {
-    if let Some(kept) = diagnostics.kept.strategy(path, owner) {
+    let key = kept::key(Kind::STRATEGY, path, owner);
+    if let Some(kept) = diagnostics.kept.strategies.get(&key) {
         return Some(kept.clone());
     }
-    let document = read::document_of(diagnostics, Kind::STRATEGY, path, asked_at, owner)?;
-    let strategy = strategy(diagnostics, &document)?;
-    Arc::make_mut(&mut diagnostics.kept).keep_strategy(path, owner, strategy.clone());
+    let strategy: Strategy = diagnostics.read(path, asked_at, owner)?;
+    Arc::make_mut(&mut diagnostics.kept).strategies.insert(key, strategy.clone());
     Some(strategy)
 }
 
-pub(crate) fn strategy(diagnostics: &mut Diagnostics, document: &Document<raw::Strategy>) -> Option<Strategy> {
-    let raw = &document.raw;
-    let roles = match &raw.roles {
-        Some(given) => {
-            refuse_program(diagnostics, document);
-            roles(diagnostics, document, given)
-        }
-        None => {
-            if document.has("assignment") {
-                let message = "assignment is given without roles, expected only with them";
-                diagnostics.note(document.at("assignment"), message);
+impl ScenarioFile for Strategy {
+    type Keys = raw::Strategy;
+    const NAME: &'static str = "strategy";
+    const FOLDER: &'static str = "strategies";
+
+    fn check(diagnostics: &mut Diagnostics, document: &Document<raw::Strategy>) -> Option<Strategy> {
+        let raw = &document.raw;
+        let roles = match &raw.roles {
+            Some(given) => {
+                refuse_program(diagnostics, document);
+                roles(diagnostics, document, given)
             }
-            vec![program::program(diagnostics, document)?]
-        }
-    };
-    let strategy =
-        Strategy { name: document.name.clone(), about: raw.about.clone(), roles, assignment: raw.assignment };
-    document.is_faultless(diagnostics).then_some(strategy)
+            None => {
+                if document.has("assignment") {
+                    let message = "assignment is given without roles, expected only with them";
+                    diagnostics.note(document.at("assignment"), message);
+                }
+                vec![program::program(diagnostics, document)?]
+            }
+        };
+        let strategy =
+            Strategy { name: document.name.clone(), about: raw.about.clone(), roles, assignment: raw.assignment };
+        document.is_faultless(diagnostics).then_some(strategy)
+    }
 }
 
 /// Strategy files that a file refers to, each read once.
@@ -108,7 +116,7 @@ fn roles(diagnostics: &mut Diagnostics, document: &Document<raw::Strategy>, give
 }
 
 fn one_role(diagnostics: &mut Diagnostics, at: usize, role: &str, path: &Path) -> Option<Program> {
-    let document = read::document::<raw::Strategy>(diagnostics, Kind::STRATEGY, path, Some(at))?;
+    let document = read::document::<raw::Strategy>(diagnostics, Kind::STRATEGY, path, Some(at), Strategy::NAME)?;
     if document.raw.roles.is_some() {
         let message = format!("roles has {role:?}, which has roles itself, expected a program file");
         diagnostics.note(at, message);

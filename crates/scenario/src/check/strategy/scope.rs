@@ -35,11 +35,7 @@ impl<'a> Scope<'a> {
 
     /// Reports a missing value at `path`, unless a value of another type is there.
     pub(super) fn note_missing(&mut self, path: &str, expected: &str) {
-        if self.document.is_sound(path) {
-            let parts: Vec<&str> = path.split('.').filter(|part| part.parse::<usize>().is_err()).collect();
-            let key = parts[parts.len().saturating_sub(2)..].join(".");
-            self.diagnostics.note_missing(self.document.at(path), &key, expected);
-        }
+        self.document.note_missing(self.diagnostics, path, expected);
     }
 
     /// Reports a fault of a mode.
