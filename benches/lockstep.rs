@@ -89,7 +89,8 @@ fn median(values: impl Iterator<Item = f64>) -> f64 {
 fn squall(case: &Case, options: &[&str]) -> f64 {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
     let dir = tempfile::tempdir().expect("a temporary directory");
-    let (game, json) = (dir.path().join("bench.toml"), dir.path().join("result.json"));
+    let game = dir.path().join("bench.toml");
+    let json = dir.path().join("result.json");
     let fleet = |team: &str| {
         format!("[[fleet]]\nteam = \"{team}\"\nname = \"{team}_{{}}\"\ncount = {}\nspawn = {{}}\n", case.vehicles / 2)
     };
@@ -208,7 +209,8 @@ fn bare(case: &Case) -> f64 {
     while alive() < case.processes {
         std::thread::sleep(Duration::from_millis(10));
     }
-    let (start, mut rounds) = (Instant::now(), 0);
+    let start = Instant::now();
+    let mut rounds = 0;
     while start.elapsed().as_secs_f64() < RUN_S {
         for publisher in &out {
             publisher.put(vec![0_u8; out_size]).wait().expect("a session");

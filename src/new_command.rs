@@ -70,7 +70,8 @@ pub(crate) fn copy(args: &CopyArgs) -> Result<ExitCode> {
             bail!("there is no file {}{}; list all files with: squall files", args.name, did_you_mean(name, &known));
         }
         [(one, _), (other, _), ..] => {
-            let (one, other) = (one.folder(), other.folder());
+            let one = one.folder();
+            let other = other.folder();
             return Err(anyhow!("several files have the name {name}, expected {one}/{name} or {other}/{name}"));
         }
     };

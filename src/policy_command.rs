@@ -136,7 +136,8 @@ fn explained(model: &PolicyModel, game: &Path, vehicle: &str, at_s: f64, inputs:
         bail!("{vehicle} uses no policy in {}: its strategy is {}", game.display(), report.program);
     };
     if policy.observed.len() != model.input_size() {
-        let (found, expected) = (policy.observed.len(), model.input_size());
+        let found = policy.observed.len();
+        let expected = model.input_size();
         bail!("the policy of {vehicle} has {found} inputs, expected {expected}, as {} has", model.name);
     }
     let (mates, enemies) = scenario.sides_of(of);

@@ -79,7 +79,8 @@ impl Progress {
             self.bar.set_message(words());
         } else if self.told.elapsed() >= LINE_EVERY {
             self.told = clock::now();
-            let (done, noun) = (self.bar.position(), self.noun);
+            let done = self.bar.position();
+            let noun = self.noun;
             let of = self.bar.length().map_or(String::new(), |count| format!(" of {count}"));
             let line = format!("{done}{of} {noun}, {:.1} {noun}/s  {}", self.rate(), words());
             screen::remark(line.trim_end());
@@ -98,7 +99,9 @@ impl Progress {
 
     /// Removes the bar and prints the rate with this many threads; returns the games per second.
     pub(crate) fn end_of_games(&self, jobs: usize) -> f64 {
-        let (played, rate, wall_s) = (self.bar.position(), self.rate(), self.bar.elapsed().as_secs_f64());
+        let played = self.bar.position();
+        let rate = self.rate();
+        let wall_s = self.bar.elapsed().as_secs_f64();
         self.end();
         let threads = if jobs == 1 { "1 thread".to_owned() } else { format!("{jobs} threads") };
         screen::remark(&format!("{played} games in {wall_s:.1} s on {threads}: {rate:.1} games/s"));

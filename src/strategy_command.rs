@@ -75,7 +75,9 @@ fn program(text: &mut String, program: &Program) {
             text.push_str("    nothing runs\n");
         }
         let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
-        let (name, kind, weight) = (width(0), width(1), width(2));
+        let name = width(0);
+        let kind = width(1);
+        let weight = width(2);
         for row in &rows {
             let line = format!("    {:name$}  {:kind$}  {:weight$}  {}", row[0], row[1], row[2], row[3]);
             let _ = writeln!(text, "{}", line.trim_end());

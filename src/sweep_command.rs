@@ -57,7 +57,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         return find(args, &plan, condition, &folder);
     }
     let mut study = if args.resume { Study::resume(&folder, &plan)? } else { Study::begin(&folder, &plan)? };
-    let (points, per_point) = (plan.points().len(), plan.games_per_point());
+    let points = plan.points().len();
+    let per_point = plan.games_per_point();
     screen::remark(&format!("{points} points with {per_point} games each; tables and report in {}", folder.display()));
     if study.done() > 0 {
         screen::remark(&format!("{} of {} games already played", study.done(), plan.games()));
@@ -92,7 +93,9 @@ fn until(args: &Args, plan: &Plan, text: &str, folder: &Path) -> Result<ExitCode
     let result = sweep::breaking_point(plan, &condition, args.along.as_deref(), &mut journal, (jobs, &stop), |tried| {
         let half = tried.mean.half_width().map_or("?".to_owned(), |half| format!("{half:.3}"));
         let verdict = tried.holds.map_or("is undecided", |holds| if holds { "holds" } else { "does not hold" });
-        let (value, games, mean) = (tried.value, tried.games, tried.mean.mean);
+        let value = tried.value;
+        let games = tried.games;
+        let mean = tried.mean.mean;
         screen::remark(&format!("at {value:.4}: {mean:.3} ± {half} in {games} games, {condition} {verdict}"));
     });
     let point = match result {
@@ -101,7 +104,9 @@ fn until(args: &Args, plan: &Plan, text: &str, folder: &Path) -> Result<ExitCode
     };
     let path = folder.join("until.json");
     output_file::write_json(&path, "the breaking point", &point)?;
-    let (entry, axis, condition) = (&point.entry, &point.axis, &point.condition);
+    let entry = &point.entry;
+    let axis = &point.axis;
+    let condition = &point.condition;
     screen::print(&match (point.low, point.high) {
         (Some(low), Some(high)) => {
             let at = point.at.map_or(String::new(), |at| format!(", about {at:.4}"));

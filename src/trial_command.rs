@@ -155,7 +155,8 @@ fn manoeuvre(args: &Args, named: Manoeuvre, boat: &Boat, trial_boat: &mut TrialB
     let file = |given: &Option<PathBuf>, ending: &str| {
         given.clone().unwrap_or_else(|| PathBuf::from(format!("{}_{}.{ending}", boat.name, named.name())))
     };
-    let (csv, plot) = (file(&args.csv, "csv"), file(&args.plot, "svg"));
+    let csv = file(&args.csv, "csv");
+    let plot = file(&args.plot, "svg");
     write_track(&csv, &sailed.samples, args.with_orders)?;
     let title = format!("{}: {}", boat.name, named.name().replace('_', " "));
     plot::write(&plot, &title, &sailed.samples)?;

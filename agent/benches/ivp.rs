@@ -14,7 +14,8 @@ const SCENES: usize = 64;
 fn scenes(contacts: usize) -> Vec<(Vec<(f64, Objective<'static>)>, Preference)> {
     let mut stream = Stream::new(1, "bench/ivp");
     let scene = |_| {
-        let (bearing_rad, course_rad) = (stream.between(0.0, TAU), stream.between(0.0, TAU));
+        let bearing_rad = stream.between(0.0, TAU);
+        let course_rad = stream.between(0.0, TAU);
         let waypoint = Objective::Coupled {
             course: Peak::tent(bearing_rad, PI),
             speed: Peak { peak_width: 1.25, summit_delta: 20.0, ..Peak::tent(2.5, 1.6) },

@@ -78,7 +78,8 @@ impl BoardPolicy {
         let observer = self.observer.get_or_insert_with(|| Observer::new(spec.observation, situation));
         let observation = observer.observe(situation);
         if observation.len() != self.model.input_size() {
-            let (expected, found) = (self.model.input_size(), observation.len());
+            let expected = self.model.input_size();
+            let found = observation.len();
             return Err(PolicyFault::Size { expected, found });
         }
         self.network.evaluate(observation);
@@ -107,7 +108,8 @@ impl Chosen {
         match (space, action) {
             (ActionSpace::Options, Action::Discrete(option)) => Chosen::Option(option),
             _ => {
-                let (heading_rad, speed_max_m_s) = (situation.own.nav.psi_rad, situation.model.speed_max_m_s);
+                let heading_rad = situation.own.nav.psi_rad;
+                let speed_max_m_s = situation.model.speed_max_m_s;
                 Chosen::SetPoint(space.set_point(action, heading_rad, speed_max_m_s))
             }
         }

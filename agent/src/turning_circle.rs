@@ -26,7 +26,8 @@ fn of_boat(scenario: &Scenario, vehicle: VehicleId) -> Vec<String> {
     let program = role_of(scenario, vehicle);
     let boat = scenario.boat_of(vehicle);
     let situation = Situation::new(scenario, vehicle, program, program.helm.compensates_drift);
-    let (turn_rad_s, most_m_s) = (situation.motion.handling().turn_rad_s, situation.model.speed_max_m_s);
+    let turn_rad_s = situation.motion.handling().turn_rad_s;
+    let most_m_s = situation.model.speed_max_m_s;
     let warning = |behaviour: &Behaviour| {
         let (points, again, speed_m_s, capture_m) = way(&behaviour.task, &situation)?;
         let speed_m_s = speed_m_s.constant().unwrap_or(most_m_s).min(most_m_s);
@@ -85,8 +86,10 @@ fn beyond_reach(points: &[Ned], again: bool, circle_m: f64, capture_m: f64) -> V
     let count = points.len();
     let is_missed = |i: &usize| {
         let [from, at, to] = [count + i - 2, count + i - 1, *i].map(|i| points[i % count]);
-        let (came, goes) = (at - from, to - at);
-        let (came_m, goes_m) = (came.length(), goes.length());
+        let came = at - from;
+        let goes = to - at;
+        let came_m = came.length();
+        let goes_m = goes.length();
         if came_m < 1e-6 || goes_m < 1e-6 {
             return false;
         }

@@ -153,17 +153,21 @@ impl CompassCheck {
         if heading.length() > MEAN_HEADING_MAX {
             return None;
         }
-        let (ordered, velocity) = (mean(|run| run.ordered), mean(|run| run.velocity));
-        let (mut share, mut spread) = (Ned::default(), 0.0);
+        let ordered = mean(|run| run.ordered);
+        let velocity = mean(|run| run.velocity);
+        let mut share = Ned::default();
+        let mut spread = 0.0;
         for run in &self.runs {
             // Subtracting the means removes the drift c, whatever it is.
-            let (z, v) = (run.ordered - ordered, run.velocity - velocity);
+            let z = run.ordered - ordered;
+            let v = run.velocity - velocity;
             share = share + over(v, z);
             spread += z.dot(z);
         }
         let share = share.scaled(1.0 / spread);
         let rest = self.runs.iter().map(|run| {
-            let (z, v) = (run.ordered - ordered, run.velocity - velocity);
+            let z = run.ordered - ordered;
+            let v = run.velocity - velocity;
             let left = v - times(share, z);
             left.dot(left)
         });

@@ -35,7 +35,8 @@ pub enum DeclinationError {
 pub fn declination_deg(at: LatLon, date: Date) -> Result<f64, DeclinationError> {
     let day = day(date).ok_or(DeclinationError::Date(date))?;
     // The model uses single precision: 1 m of position, far below its own error.
-    let (lat, lon) = (Angle::new::<degree>(at.lat_deg as f32), Angle::new::<degree>(at.lon_deg as f32));
+    let lat = Angle::new::<degree>(at.lat_deg as f32);
+    let lon = Angle::new::<degree>(at.lon_deg as f32);
     let field = GeomagneticField::new(Length::new::<meter>(0.0), lat, lon, day);
     let field = field.map_err(|_| DeclinationError::Position(at))?;
     Ok(f64::from(field.declination().get::<degree>()))

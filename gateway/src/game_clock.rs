@@ -54,7 +54,8 @@ impl GameClock {
 
     /// Checks the time of an order that arrived at `now`.
     pub(crate) fn check(&mut self, now: SimTime, order: &ExternalOrder) -> OrderTime {
-        let (stamp, given) = (order.stamp.valid_ns, order.given_ns);
+        let stamp = order.stamp.valid_ns;
+        let given = order.given_ns;
         let Some(joined) = &mut self.joined else { return OrderTime::BeforeJoining };
         if stamp < joined.since {
             return OrderTime::BeforeJoining;

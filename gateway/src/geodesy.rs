@@ -30,7 +30,8 @@ impl LocalFrame {
     /// Metres from the datum; non-finite for a position off the globe.
     #[must_use]
     pub fn ned(&self, at: LatLon) -> Ned {
-        let (LatLon { lat_deg, lon_deg }, datum) = (at, self.datum);
+        let LatLon { lat_deg, lon_deg } = at;
+        let datum = self.datum;
         let (distance_m, azimuth_deg, _, _): (f64, f64, f64, f64) =
             self.earth.inverse(datum.lat_deg, datum.lon_deg, lat_deg, lon_deg);
         Ned::toward_deg(azimuth_deg).scaled(distance_m)
@@ -58,7 +59,8 @@ mod tests {
 
     /// A point in the plane that touches the ellipsoid at the datum, by way of earth-centred coordinates.
     fn tangent(datum: LatLon, at: LatLon) -> Ned {
-        let (equator_m, flattening) = (6_378_137.0, 1.0 / 298.257_223_563);
+        let equator_m = 6_378_137.0;
+        let flattening = 1.0 / 298.257_223_563;
         let e2 = flattening * (2.0 - flattening);
         let sin_cos = |at: LatLon| (math::sin_cos_deg(at.lat_deg), math::sin_cos_deg(at.lon_deg));
         let from_centre = |at: LatLon| {
@@ -67,7 +69,8 @@ mod tests {
             [normal_m * cos_lat * cos_lon, normal_m * cos_lat * sin_lon, normal_m * (1.0 - e2) * sin_lat]
         };
         let ((sin_lat, cos_lat), (sin_lon, cos_lon)) = sin_cos(datum);
-        let (there, here) = (from_centre(at), from_centre(datum));
+        let there = from_centre(at);
+        let here = from_centre(datum);
         let [x, y, z] = std::array::from_fn(|i| there[i] - here[i]);
         let north = -sin_lat * cos_lon * x - sin_lat * sin_lon * y + cos_lat * z;
         Ned { north, east: -sin_lon * x + cos_lon * y }
@@ -75,11 +78,13 @@ mod tests {
 
     /// `CMOOSGeodesy::LatLong2LocalGrid`, as boats with a MOOS back seat compute their position.
     fn moos(datum: LatLon, at: LatLon) -> Ned {
-        let (a, b) = (6_378_137.0_f64, 6_356_752.0_f64);
+        let a = 6_378_137.0_f64;
+        let b = 6_356_752.0_f64;
         let (sin_lat, cos_lat) = math::sin_cos_deg(at.lat_deg);
         let tan2 = (sin_lat / cos_lat) * (sin_lat / cos_lat);
         let radius_m = b * (1.0 + tan2).sqrt() / ((b * b) / (a * a) + tan2).sqrt();
-        let (north, east) = (at.lat_deg - datum.lat_deg, at.lon_deg - datum.lon_deg);
+        let north = at.lat_deg - datum.lat_deg;
+        let east = at.lon_deg - datum.lon_deg;
         let sin = |angle_deg: f64| math::sin_cos_deg(angle_deg).0;
         Ned { north: radius_m * sin(north), east: radius_m * sin(east) * cos_lat }
     }

@@ -94,7 +94,8 @@ impl MotionCheck {
     /// Velocity over the ground from positions alone, m/s: from the centre of the older ones to
     /// that of the newer.
     pub(crate) fn velocity_m_s(&self) -> Option<Ned> {
-        let ((first, _), (last, _)) = (self.fixes.front()?, self.fixes.back()?);
+        let (first, _) = self.fixes.front()?;
+        let (last, _) = self.fixes.back()?;
         if (*last - *first).as_s() < WINDOW_MIN_S {
             return None;
         }
@@ -102,7 +103,9 @@ impl MotionCheck {
         // count as a speed.
         let half = self.fixes.len() / 2;
         let middle = |fixes: &mut dyn Iterator<Item = &(SimTime, Ned)>| {
-            let (mut count, mut time_s, mut place) = (0.0, 0.0, Ned::default());
+            let mut count = 0.0;
+            let mut time_s = 0.0;
+            let mut place = Ned::default();
             for (at, fix) in fixes {
                 (count, time_s, place) = (count + 1.0, time_s + (*at - *first).as_s(), place + *fix);
             }
@@ -135,7 +138,8 @@ mod tests {
         compass: impl Fn(f64) -> f64,
         log: impl Fn(Ned) -> Option<Ned>,
     ) -> Option<NavFault> {
-        let (mut check, mut place) = (MotionCheck::default(), Ned::default());
+        let mut check = MotionCheck::default();
+        let mut place = Ned::default();
         (0..200).find_map(|i| {
             let now = SimTime::from_s(0.1 * f64::from(i));
             let course_deg = turn_deg_s * 0.1 * f64::from(i);

@@ -80,10 +80,13 @@ pub fn replay(bag: &Bag) -> Result<Replay, RecordingError> {
         return Err(RecordingError::Kind { wanted: Kind::Gateway, found: bag.kind });
     }
     let plan = plan_of(bag.fact("plan")).map_err(|e| RecordingError::Foreign(format!("cannot parse its plan: {e}")))?;
-    let (steps, is_cut) = (steps(bag, &link_topic(&plan.vehicle))?, bag.is_cut);
+    let steps = steps(bag, &link_topic(&plan.vehicle))?;
+    let is_cut = bag.is_cut;
     let mut bridge = Bridge::new(plan.clone());
-    let (mut bytes_in, mut bytes_out) = (0, 0);
-    let (mut events, mut difference) = (Vec::new(), None);
+    let mut bytes_in = 0;
+    let mut bytes_out = 0;
+    let mut events = Vec::new();
+    let mut difference = None;
     for (i, step) in steps.iter().enumerate() {
         let mut out = Output::default();
         bridge.process(step.at, &step.input, &mut out);

@@ -172,7 +172,8 @@ fn thrust_for(map: &[(f64, f64)], speed_m_s: f64) -> f64 {
 /// `to`, or as far towards it as `growth` allows; towards zero there is no limit.
 fn slewed(from: f64, to: f64, growth: f64) -> f64 {
     // Growth is limited, decay is not: zero is always within reach, so a stop is never slewed.
-    let (least, most) = (from.min(0.0) - growth, from.max(0.0) + growth);
+    let least = from.min(0.0) - growth;
+    let most = from.max(0.0) + growth;
     to.clamp(least, most)
 }
 

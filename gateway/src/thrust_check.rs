@@ -111,7 +111,8 @@ impl Turn {
         if self.piece_s < PIECE_S {
             return None;
         }
-        let (x, y) = (self.difference, self.turned_rad / self.piece_s);
+        let x = self.difference;
+        let y = self.turned_rad / self.piece_s;
         // Exponential memory in six sums: the same regression over a window would store hundreds of
         // pieces.
         let keep = 1.0 - (self.piece_s / TURN_MEMORY_S).min(1.0);
@@ -261,7 +262,8 @@ mod tests {
         turn_deg_s: impl Fn(f64) -> f64,
         ahead_m_s: f64,
     ) -> Option<(f64, ThrustFault)> {
-        let (mut check, mut psi_deg) = (ThrustCheck::default(), 0.0);
+        let mut check = ThrustCheck::default();
+        let mut psi_deg = 0.0;
         (0..1000).find_map(|i| {
             let time_s = 0.1 * f64::from(i);
             psi_deg += 0.1 * turn_deg_s(time_s);

@@ -38,7 +38,8 @@ struct Arrays {
 impl Arrays {
     fn new(py: Python<'_>, rows: usize, setup: &Setup) -> Arrays {
         let table = |numbers: usize| PyArray2::zeros(py, [rows, numbers], false).unbind();
-        let (numbers, truths) = (setup.observation_size(), setup.truth_size());
+        let numbers = setup.observation_size();
+        let truths = setup.truth_size();
         let flags = || PyArray1::zeros(py, [rows], false).unbind();
         Arrays {
             observations: table(numbers),
@@ -72,7 +73,8 @@ impl Arrays {
         self.write_states(py, games)?;
         let mut terminated = self.terminated.bind(py).try_readwrite()?;
         let mut truncated = self.truncated.bind(py).try_readwrite()?;
-        let (terminated, truncated) = (terminated.as_slice_mut()?, truncated.as_slice_mut()?);
+        let terminated = terminated.as_slice_mut()?;
+        let truncated = truncated.as_slice_mut()?;
         terminated.fill(false);
         truncated.fill(false);
         let per_game = games.rows().1;

@@ -10,7 +10,8 @@ use pyo3::types::PyDict;
 pub(crate) fn dict<'py>(py: Python<'py>, games: &Games, game: usize) -> PyResult<Bound<'py, PyDict>> {
     let contest = games.contest(game);
     let scenario = contest.scenario();
-    let (field, frame) = (&scenario.field, contest.frame(&mut Default::default()));
+    let field = &scenario.field;
+    let frame = contest.frame(&mut Default::default());
     let along_rad = field.plan.along_deg.to_radians();
     let boats: Vec<Vec<f64>> = frame
         .vehicles

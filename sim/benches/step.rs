@@ -47,7 +47,8 @@ fn step(c: &mut Criterion) {
         [("2v2", "pav01_vs_pav01.toml"), ("20v20", "swarm_20v20.toml"), ("500v500", "swarm_500v500.toml")]
     {
         let mut world = World::of_game(&shipped(game), 1).unwrap_or_else(|e| panic!("{e}"));
-        let (start, mut orders) = (world.state().clone(), circling(&world, 0));
+        let start = world.state().clone();
+        let mut orders = circling(&world, 0);
         group.throughput(Throughput::Elements(world.state().boats.len() as u64));
         group.bench_function(name, |b| b.iter(|| sail(&mut world, &start, &mut orders)));
     }
@@ -73,10 +74,12 @@ fn rough(c: &mut Criterion) {
             scenario.boats[0] = afloat.boats[0].clone();
         }
         let mut world = World::of_game(&scenario, 1).unwrap_or_else(|e| panic!("{e}"));
-        let (start, mut orders) = (world.state().clone(), circling(&world, 0));
+        let start = world.state().clone();
+        let mut orders = circling(&world, 0);
         let boats = world.state().boats.len() as u64;
         group.throughput(Throughput::Elements(boats));
-        let (mut ticks, mut spent) = (0, std::time::Duration::ZERO);
+        let mut ticks = 0;
+        let mut spent = std::time::Duration::ZERO;
         group.bench_function(name, |b| {
             b.iter_custom(|count| {
                 let begin = std::time::Instant::now();

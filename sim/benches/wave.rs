@@ -31,7 +31,8 @@ fn one_boat(c: &mut Criterion) {
     let mut group = c.benchmark_group("wave");
     for components in [16, 64, 256] {
         let field = WaveField::new(&waves(components), None, 1);
-        let (hull, response) = (HullWaves::new(&field, boat, 1000.0), WaveResponse::new(&field, boat));
+        let hull = HullWaves::new(&field, boat, 1000.0);
+        let response = WaveResponse::new(&field, boat);
         let velocity_m_s = Ned { north: 1.0, east: 0.5 };
         let mut i = 0;
         let mut next = || {
@@ -59,12 +60,14 @@ fn one_boat(c: &mut Criterion) {
     }
     for set in Instructions::of_this_machine() {
         let field = WaveField::new(&waves(64), None, 1).with_instructions(set);
-        let (hull, response) = (HullWaves::new(&field, boat, 1000.0), WaveResponse::new(&field, boat));
+        let hull = HullWaves::new(&field, boat, 1000.0);
+        let response = WaveResponse::new(&field, boat);
         let mut i = 0;
         group.bench_function(BenchmarkId::new("hull_and_response_64", format!("{set:?}")), |b| {
             b.iter(|| {
                 i = (i + 1) % poses.len();
-                let (pose, time_s) = (black_box(poses[i]), black_box(3000.0 + 0.05 * i as f64));
+                let pose = black_box(poses[i]);
+                let time_s = black_box(3000.0 + 0.05 * i as f64);
                 (hull.at(pose, time_s), response.at(pose, Ned { north: 1.0, east: 0.5 }, 0.1, time_s))
             });
         });

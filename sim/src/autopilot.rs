@@ -27,7 +27,8 @@ impl AutopilotModel {
     /// The loops for this hull with ticks of `dt_s`.
     #[must_use]
     pub fn new(autopilot: &Autopilot, hull: &HullModel, dt_s: f64) -> AutopilotModel {
-        let (inertia, omega) = (hull.m_yaw, autopilot.heading_bandwidth_rad_s);
+        let inertia = hull.m_yaw;
+        let omega = autopilot.heading_bandwidth_rad_s;
         // Pole placement for a second-order system: the hull's own damping need not be repeated by
         // the thrusters.
         let wanted_damping = 2.0 * autopilot.heading_damping * omega * inertia;
@@ -64,7 +65,8 @@ impl AutopilotModel {
         // Yaw first; surge gets the rest of the range.
         let reach = 0.5 * (thruster.newton_max - thruster.newton_min);
         let difference = (0.5 * yaw / thruster.arm_m).clamp(-reach, reach);
-        let (least, most) = (thruster.newton_min + difference.abs(), thruster.newton_max - difference.abs());
+        let least = thruster.newton_min + difference.abs();
+        let most = thruster.newton_max - difference.abs();
         let each = (0.5 * surge).clamp(least, most);
         // Anti-windup: at the thrust limit the integral would grow without effect.
         if each == 0.5 * surge {

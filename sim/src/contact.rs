@@ -148,7 +148,8 @@ impl ContactModel {
         // Without prediction rapier sees a contact only after hulls overlap, and separates them
         // with a spurious velocity.
         let look_ahead_m = CLOSING_MAX_M_S * dt_s;
-        let (hulls, close_m) = (hulls.map(hull).collect(), look_ahead_m + SPARE_M);
+        let hulls = hulls.map(hull).collect();
+        let close_m = look_ahead_m + SPARE_M;
         ContactModel { hulls, fixed, hulls_are_solid, dt_s, look_ahead_m, close_m }
     }
 
@@ -183,13 +184,16 @@ impl ContactModel {
     fn touches(&self, displacements: &[Displacement], near: &[Pair]) -> Vec<Touch> {
         let mut touches = Vec::new();
         for pair in near.iter().filter(|_| self.hulls_are_solid) {
-            let (a, b) = (usize::from(pair.a), usize::from(pair.b));
-            let (kind_a, kind_b) = (displacements[a].kind, displacements[b].kind);
+            let a = usize::from(pair.a);
+            let b = usize::from(pair.b);
+            let kind_a = displacements[a].kind;
+            let kind_b = displacements[b].kind;
             let reach_m = self.hulls[kind_a].half_length_m + self.hulls[kind_b].half_length_m + self.close_m;
             if pair.distance_squared > reach_m * reach_m {
                 continue;
             }
-            let (shape_a, shape_b) = (&self.hulls[kind_a].capsule, &self.hulls[kind_b].capsule);
+            let shape_a = &self.hulls[kind_a].capsule;
+            let shape_b = &self.hulls[kind_b].capsule;
             if let Some((distance_m, normal)) =
                 self.close(&displacements[a], shape_a, displacements[b].start(), shape_b)
             {
@@ -366,7 +370,8 @@ fn leave(world: &PhysicsWorld, entry: &Entry, model: &HullModel, displacement: &
     if !touched || displacement.role != ContactRole::Dynamic {
         return;
     }
-    let (at, rotation) = (body.translation(), body.rotation());
+    let at = body.translation();
+    let rotation = body.rotation();
     displacement.to.at = Ned { north: at.x, east: at.y };
     displacement.to.psi_rad = math::atan2(rotation.im, rotation.re);
     // Not rapier's sine and cosine, because a snapshot contains only the angle.

@@ -278,7 +278,8 @@ mod tests {
         let drift = Ned { north: 0.3, east: -0.2 };
         let model = KinematicModel::new(&plain());
         let command = Order::Steer { heading_rad: 1.0, speed_m_s: 0.8 };
-        let (mut still, mut adrift) = (KinematicState::default(), KinematicState::default());
+        let mut still = KinematicState::default();
+        let mut adrift = KinematicState::default();
         for _ in 0..50 {
             let a = model.step(&mut still, command, Ned::default(), 0.1);
             let b = model.step(&mut adrift, command, drift, 0.1);
@@ -349,7 +350,8 @@ mod tests {
         let mut boat = plain();
         boat.heading_pid = Pid { d: 0.1, ..boat.heading_pid };
         let turn = Order::Steer { heading_rad: 0.2, speed_m_s: 1.0 };
-        let (mut rested, mut sailing) = (KinematicState::at_rest(0.0), KinematicState::under_way(0.0, 1.0, 100.0));
+        let mut rested = KinematicState::at_rest(0.0);
+        let mut sailing = KinematicState::under_way(0.0, 1.0, 100.0);
         step(&boat, &mut rested, turn);
         step(&boat, &mut sailing, turn);
         assert!((sailing.rudder - 2.0 * rested.rudder).abs() < 1e-9, "{} and {}", sailing.rudder, rested.rudder);

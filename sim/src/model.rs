@@ -89,7 +89,8 @@ impl Model {
         // for nothing.
         let is_sensed = plan.vehicles.iter().map(|v| !v.is_external && *sensors(v.kind) != Sensors::default());
         let sensed = numbered(is_sensed).into_iter().zip(&plan.vehicles).map(|(place, vehicle)| {
-            let (sensors, faults) = (sensors(vehicle.kind), &vehicle.faults);
+            let sensors = sensors(vehicle.kind);
+            let faults = &vehicle.faults;
             let model = || SensorModel::new(sensors, plan.sensor_period, &plan.seeds, vehicle.name, faults);
             place.map(|place| (place, model()))
         });
@@ -353,7 +354,8 @@ mod tests {
     #[test]
     fn a_heading_turned_by_the_series_is_the_heading_turned() {
         for i in -400..=400 {
-            let (psi_rad, by_rad) = (f64::from(i) * 0.0231, f64::from(i) * 0.0007);
+            let psi_rad = f64::from(i) * 0.0231;
+            let by_rad = f64::from(i) * 0.0007;
             let want = Rotation::from_heading(psi_rad + by_rad);
             let got = Rotation::from_heading(psi_rad).turned(small_rotation(by_rad));
             assert!((want.sin - got.sin).abs() < 2e-15 && (want.cos - got.cos).abs() < 2e-15, "{i}: {want:?} {got:?}");

@@ -284,7 +284,9 @@ impl<const N: usize> Row<N> {
         let number = Lanes::<f64, N>::splat;
         let half = self.crossflow_half_m;
         let s = r * half;
-        let (v_2, s_2, half_2) = (v * v, s * s, half * half);
+        let v_2 = v * v;
+        let s_2 = s * s;
+        let half_2 = half * half;
         let same_side = (s.abs(), v.abs());
         let from = v / where_at_most(same_side, number(1.0), r);
         // Strips would be slower, and the result would depend on their number.
@@ -371,7 +373,8 @@ mod tests {
             let x = i as f64;
             let push = |n: f64| Planar { surge: 40.0 + n * x, sway: n, yaw: 5.0 - n * x };
             let nu_r = Planar { surge: x, sway: 0.3 - 0.2 * x, yaw: 0.4 * x - 0.5 };
-            let (water, water_rate) = (push(0.01), push(0.1));
+            let water = push(0.01);
+            let water_rate = push(0.1);
             Forcing { nu_r, tau: [0.0, 1.0, 2.0].map(push), water, water_rate }
         };
         let forcings: Vec<Forcing> = (0..kinds.len()).map(forcing).collect();
@@ -399,7 +402,8 @@ mod tests {
         {
             let n = 20_000;
             let dx = 2.0 * half / f64::from(n);
-            let (mut sway, mut yaw) = (0.0, 0.0);
+            let mut sway = 0.0;
+            let mut yaw = 0.0;
             for i in 0..n {
                 let x = -half + (f64::from(i) + 0.5) * dx;
                 let s: f64 = v + x * r;

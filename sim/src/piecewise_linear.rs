@@ -30,11 +30,13 @@ impl PiecewiseLinear {
     pub(crate) fn new(points: &[(f64, f64)]) -> PiecewiseLinear {
         assert!(points.len() >= 2, "expected at least two points");
         let piece = |ends: &[(f64, f64)]| {
-            let (a, b) = (ends[0], ends[1]);
+            let a = ends[0];
+            let b = ends[1];
             Piece { at: a, slope: (b.1 - a.1) / (b.0 - a.0), end: b.0 }
         };
         let pieces: Vec<Piece> = points.windows(2).map(piece).collect();
-        let (first, last) = (points[0], points[points.len() - 1]);
+        let first = points[0];
+        let last = points[points.len() - 1];
         let width = last.0 - first.0;
         let narrowest = pieces.iter().map(|piece| piece.end - piece.at.0).fold(width, f64::min);
         // As fine as the narrowest piece, so that a cell contains at most one border.
@@ -87,7 +89,8 @@ mod tests {
                 points.push((x, y));
             }
             let line = PiecewiseLinear::new(&points);
-            let (lo, hi) = (points[0].0, points[points.len() - 1].0);
+            let lo = points[0].0;
+            let hi = points[points.len() - 1].0;
             let borders = points.iter().map(|p| p.0);
             for x in share.into_iter().map(|share| lo + share * (hi - lo)).chain(borders) {
                 prop_assert!((line.at(x) - interpolate(points.iter().copied(), x)).abs() < 1e-12, "at {}", x);

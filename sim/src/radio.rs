@@ -167,7 +167,8 @@ impl Radio {
     /// Sends a message of the open decision unless it is lost.
     fn sent<T>(&self, vehicle: usize, way: Direction, message: T, at: Ned, now: SimTime) -> Option<Sent<T>> {
         let decision = self.state.decision;
-        let (link, noise) = (&self.model.link, self.model.noises[vehicle].at(now));
+        let link = &self.model.link;
+        let noise = self.model.noises[vehicle].at(now);
         let draw = DRAWS * decision + way as u64;
         let share = if self.state.lines[vehicle].is_bad { link.loss.bad } else { link.loss.good };
         let is_out_of_range = link.range_m.is_some_and(|range_m| at.distance(link.station) > range_m);
@@ -216,7 +217,9 @@ mod tests {
         let loss = Loss { good: 0.01, bad: 0.6, good_time_s: 8.0, bad_time_s: 2.0 };
         let mut radio = radio(Link { loss, ..link() });
         let n = 400_000_i64;
-        let (mut lost, mut bad, mut turns) = ([0.0; 2], 0.0, 0.0);
+        let mut lost = [0.0; 2];
+        let mut bad = 0.0;
+        let mut turns = 0.0;
         let mut was_bad = false;
         for k in 0..n {
             for (lost, way) in lost.iter_mut().zip([Direction::Out, Direction::In]) {
@@ -242,7 +245,8 @@ mod tests {
     #[test]
     fn an_order_that_is_overtaken_never_arrives() {
         let mut radio = radio(Link { jitter_s: 0.5, ..link() });
-        let (mut last, mut overtaken) = (-1.0, 0);
+        let mut last = -1.0;
+        let mut overtaken = 0;
         for k in 0..2_000_i64 {
             let now = TENTH * k;
             radio.send_order(0, course(k as f64), Ned::default(), now);

@@ -98,7 +98,8 @@ impl GameRecorder {
             scenario: contest.scenario().clone(),
         };
         let water = contest.world().sea().water();
-        let (commit, game) = (self.commit.clone(), self.game.clone());
+        let commit = self.commit.clone();
+        let game = self.game.clone();
         let header = Header { commit, game, began_utc_ns: utc::now_ns(), info, water };
         self.stage = match std::mem::replace(&mut self.stage, Stage::Failed(String::new())) {
             Stage::Waiting(file) => {

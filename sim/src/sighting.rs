@@ -52,7 +52,8 @@ impl Sightings {
         if sharing == Sharing::default() {
             return None;
         }
-        let (decision, seeds) = (scenario.decision(), scenario.seeds());
+        let decision = scenario.decision();
+        let seeds = scenario.seeds();
         let noise = |name: &str| seeds.noise(&format!("contact/{name}"));
         Some(Sightings {
             late: (sharing.delay_s / decision.as_s()).round() as u64,
@@ -89,7 +90,8 @@ impl Sightings {
             return;
         };
         let boats = &past[place].boats;
-        let (own, teams) = (&boats[seer], known.len() as u64);
+        let own = &boats[seer];
+        let teams = known.len() as u64;
         let known = &mut known[own.team.index()];
         // By team, not by seer: two boats that see the same one do not average out its noise.
         let draw = 4 * (decision * teams + own.team.index() as u64);

@@ -176,11 +176,13 @@ impl ThrusterModel {
         settings: [f64; 2],
         water_above_m: [f64; 2],
     ) -> [Planar; 3] {
-        let (least, most) = (-self.astern * flaws.saturation, self.ahead * flaws.saturation);
+        let least = -self.astern * flaws.saturation;
+        let most = self.ahead * flaws.saturation;
         let arrived = state.pass(settings);
         let factors = flaws.thrust_factors(state, water_above_m);
         // Power drawn from the battery, and force on the hull.
-        let (mut taken, mut given) = ([0.0; 2], [[0.0; 3]; 2]);
+        let mut taken = [0.0; 2];
+        let mut given = [[0.0; 3]; 2];
         for (side, shaft) in shafts.into_iter().enumerate() {
             shaft.newton = self.newton(shaft.setting);
             let nominal = self.respond(shaft, arrived[side].max(least).min(most));
@@ -235,7 +237,8 @@ mod tests {
     }
 
     fn propeller() -> Thruster {
-        let (n_max_rad_s, n_min_rad_s) = (100.0, 90.0);
+        let n_max_rad_s = 100.0;
+        let n_min_rad_s = 90.0;
         thruster(ThrustCurve::Propeller(Propeller { k_ahead: 0.011, k_astern: 0.006, n_max_rad_s, n_min_rad_s }))
     }
 
@@ -291,7 +294,8 @@ mod tests {
     fn voyage(thruster: &Thruster) -> (u64, f64, f64) {
         let model = ThrusterModel::new(thruster, 0.05);
         let mut state = model.start();
-        let (mut port, mut starboard) = (Shaft::default(), Shaft::default());
+        let mut port = Shaft::default();
+        let mut starboard = Shaft::default();
         let mut bytes = Vec::new();
         let mut last = (0.0, 0.0);
         for tick in 0..400_u32 {
@@ -399,7 +403,9 @@ mod tests {
         (quick.lag_s, quick.slew_per_s) = (0.0, 1e9);
         quick.flaws.battery = Some(battery);
         let model = ThrusterModel::new(&quick, 0.05);
-        let (mut state, mut port, mut starboard) = (model.start(), Shaft::default(), Shaft::default());
+        let mut state = model.start();
+        let mut port = Shaft::default();
+        let mut starboard = Shaft::default();
         // One thruster full astern, one at half ahead, which is a third of full thrust.
         let mut charge = 0.9;
         let (mut sag, mut last): (f64, Planar) = (1.0, Planar::default());

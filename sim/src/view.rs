@@ -55,7 +55,8 @@ impl Scene<'_> {
     }
 
     fn truth(&self, i: usize) -> VehicleTruth {
-        let (boat, standing) = (&self.world.state().boats[i], &self.standing.vehicles[i]);
+        let boat = &self.world.state().boats[i];
+        let standing = &self.standing.vehicles[i];
         let attitude = self.world.truth(VehicleId::at(i)).attitude;
         VehicleTruth {
             nav: self.nav(i),
@@ -74,8 +75,10 @@ impl Scene<'_> {
     }
 
     fn sea(&self) -> SeaView {
-        let (middle, sea) = (self.scenario.field.middle(), self.world.sea());
-        let (wind, current) = (sea.wind_at(middle), sea.current_at(middle));
+        let middle = self.scenario.field.middle();
+        let sea = self.world.sea();
+        let wind = sea.wind_at(middle);
+        let current = sea.current_at(middle);
         SeaView {
             wind_north_m_s: wind.north,
             wind_east_m_s: wind.east,
@@ -121,7 +124,8 @@ impl Scene<'_> {
 
     /// A boat's report about itself.
     pub(crate) fn own_boat(&self, i: usize) -> OwnBoat {
-        let (vehicle, standing) = (VehicleId::at(i), &self.standing.vehicles[i]);
+        let vehicle = VehicleId::at(i);
+        let standing = &self.standing.vehicles[i];
         let (nav, fix_ns, imu) = match self.world.reading(vehicle) {
             // Sensor readings, even for the boat's own team: agents never see the true state unless
             // the boat's file omits sensors.
@@ -143,7 +147,8 @@ impl Scene<'_> {
 
     /// The true state of a boat as in a node report: perfect sharing, as Aquaticus has ashore.
     pub(crate) fn contact(&self, i: usize) -> Contact {
-        let (state, standing) = (self.world.state(), &self.standing.vehicles[i]);
+        let state = self.world.state();
+        let standing = &self.standing.vehicles[i];
         let boat = &state.boats[i];
         let velocity = boat.nu.in_ned(boat.pose.rotation());
         Contact {

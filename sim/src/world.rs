@@ -341,7 +341,8 @@ impl World {
         work.displacements.clear();
         work.velocities.clear();
         for (i, boat) in state.boats.iter().enumerate() {
-            let (from, rotation) = (boat.pose, work.rotations[i]);
+            let from = boat.pose;
+            let rotation = work.rotations[i];
             let (to, rotation_to, nu) = match model.point(i) {
                 _ if model.is_external(i) => {
                     let to = external::dead_reckoned(from, boat.nu, model.dt_s);
@@ -353,7 +354,8 @@ impl World {
                 }
                 None => model.hull_moved(from, rotation, &work.forcings[i], &work.motions[i], work.currents_m_s[i]),
             };
-            let (kind, role) = (model.kinds[i], model.role(i, boat));
+            let kind = model.kinds[i];
+            let role = model.role(i, boat);
             let velocity_change = Planar::default();
             work.displacements.push(Displacement { kind, from, to, rotation, rotation_to, role, velocity_change });
             work.velocities.push(nu);
@@ -365,7 +367,8 @@ impl World {
         let World { model, state, work } = self;
         let sea = model.sea.at_time(state.now);
         for (i, boat) in state.boats.iter_mut().enumerate() {
-            let (displacement, mut nu) = (&work.displacements[i], work.velocities[i]);
+            let displacement = &work.displacements[i];
+            let mut nu = work.velocities[i];
             nu = nu.plus(1.0, displacement.velocity_change);
             if is_sound(displacement.to, nu) {
                 boat.nu_change = nu.plus(-1.0, boat.nu);

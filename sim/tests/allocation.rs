@@ -45,7 +45,10 @@ fn a_step_leaves_nothing_on_the_heap_and_takes_nothing_unless_hulls_are_close() 
         let scenario = shipped(game);
         let mut world = World::of_game(&scenario, 1).expect("the boats fit");
         let mut plan = vec![Order::Hold; scenario.vehicles.len()];
-        let (mut free, mut busy, mut collisions, mut touching) = (0, 0, 0, Vec::new());
+        let mut free = 0;
+        let mut busy = 0;
+        let mut collisions = 0;
+        let mut touching = Vec::new();
         for tick in 0..6_000 {
             orders(&world, scenario.field.middle(), &mut plan);
             // Two Surveyors bow to bow, plus the distance they may close in a tick.
@@ -83,10 +86,13 @@ fn a_decision_over_the_air_takes_nothing_unless_hulls_are_close_or_something_hap
     common::hamper(&mut scenario);
     let mut contest = started(&scenario);
     let middle = scenario.field.middle();
-    let (mut free, mut busy, mut contacts) = (0, 0, 0);
+    let mut free = 0;
+    let mut busy = 0;
+    let mut contacts = 0;
     while !contest.is_over() && contest.decision() < 6_000 {
         let crowded = crowded(contest.world(), 1.83 + 1.0);
-        let (events, decision) = (contest.events().len(), contest.decision());
+        let events = contest.events().len();
+        let decision = contest.decision();
         let heap = Region::new(HEAP);
         contacts += contest.pictures().iter().map(|picture| picture.contacts.len()).sum::<usize>();
         for i in 0..scenario.vehicles.len() {

@@ -21,7 +21,8 @@ fn blowing(speed_10m_m_s: f64) -> Wind {
 /// The speed at which a boat drifts beam to the wind:
 /// ½ρ_a C_y A_L (W − V)² = Y_v V + ½ρ C_d L T V².
 fn beam_drift_m_s(scenario: &Scenario, wind_m_s: f64) -> f64 {
-    let (boat, water_kg_m3) = (&scenario.boats[0], scenario.sea.water_density_kg_m3);
+    let boat = &scenario.boats[0];
+    let water_kg_m3 = scenario.sea.water_density_kg_m3;
     let air = 0.5 * 1.225 * boat.windage.sway_coefficient * boat.windage.lateral_area_m2;
     let hull = &boat.hull;
     let water = 0.5 * water_kg_m3 * hull.crossflow_coefficient * hull.crossflow_length_m * hull.crossflow_draught_m;
@@ -105,10 +106,13 @@ impl Accounts {
 
     /// Power from the thrusters, and power lost to resistance strip by strip, W.
     fn powers_watt(&self) -> (f64, f64) {
-        let (boat, kind) = (self.world.state().boats[0], &self.scenario.boats[0]);
-        let (Planar { surge: u, sway: v, yaw: r }, hull) = (self.through_water(), &kind.hull);
+        let boat = self.world.state().boats[0];
+        let kind = &self.scenario.boats[0];
+        let Planar { surge: u, sway: v, yaw: r } = self.through_water();
+        let hull = &kind.hull;
         let scenario::boat::Drive::Thrusters { thruster, .. } = &kind.drive else { panic!("expected thrusters") };
-        let (port, starboard) = (boat.port.newton, boat.starboard.newton);
+        let port = boat.port.newton;
+        let starboard = boat.starboard.newton;
         let given = (port + starboard) * u + thruster.arm_m * (port - starboard) * r;
         let plain = (hull.surge_linear_kg_s + hull.surge_quadratic_kg_m * u.abs()) * u * u
             + (hull.sway_linear_kg_s + hull.sway_lift_kg_m * u.abs()) * v * v
@@ -142,7 +146,8 @@ fn the_energy_changes_by_what_thrust_puts_in_and_resistance_takes_out() {
         for order in ORDERS {
             let mut boat = Accounts::of(kind, TICK_S, current, order);
             let start_joule = boat.energy_joule();
-            let (mut put_in, mut taken_out) = (0.0, 0.0);
+            let mut put_in = 0.0;
+            let mut taken_out = 0.0;
             for pair in 0..2_000 {
                 if pair == 1_000 {
                     boat.order = Order::Thrust { port: -0.3, starboard: 0.8 };

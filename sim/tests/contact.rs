@@ -55,13 +55,15 @@ fn a_boat_that_rams_anothers_side_pushes_it_away() {
 /// Places two boats at random, one aimed roughly at the other.
 fn collision_course(world: &mut World, seed: u64) {
     let mut stream = Stream::new(seed, "collision");
-    let (bearing_deg, distance_m) = (stream.between(0.0, 360.0), stream.between(2.5, 3.5));
+    let bearing_deg = stream.between(0.0, 360.0);
+    let distance_m = stream.between(2.5, 3.5);
     let (sin, cos) = primitives::math::sin_cos_deg(bearing_deg);
     let aim_deg = bearing_deg + 180.0 + stream.between(-15.0, 15.0);
     let mut nu = |ahead: f64, across: f64, turn: f64| {
         (stream.between(ahead, ahead + 2.0), stream.between(-across, across), stream.between(-turn, turn))
     };
-    let (rammer, rammed) = (nu(1.5, 0.5, 0.3), nu(-1.0, 1.0, 1.0));
+    let rammer = nu(1.5, 0.5, 0.3);
+    let rammed = nu(-1.0, 1.0, 1.0);
     let heading_deg = stream.between(0.0, 360.0);
     place_boat(world, 0, (100.0 + distance_m * sin, 100.0 + distance_m * cos, aim_deg), rammer);
     place_boat(world, 1, (100.0, 100.0, heading_deg), rammed);
@@ -71,7 +73,8 @@ fn collision_course(world: &mut World, seed: u64) {
 fn no_collision_makes_energy() {
     for boat in BOATS {
         let scenario = among(boat, Vec::new());
-        let (start, hulls) = (World::of_game(&scenario, 1).unwrap(), hulls(&scenario));
+        let start = World::of_game(&scenario, 1).unwrap();
+        let hulls = hulls(&scenario);
         let mut met = 0;
         for seed in 0..400 {
             let mut world = start.clone();
@@ -197,7 +200,9 @@ fn asking_rapier_only_about_close_hulls_changes_no_byte() {
         let mut world = World::of_game(&scenario, 7).unwrap();
         let mut all = world.clone();
         all.widen_contact(1_000.0);
-        let (mut orders, mut touching, mut collisions) = (Vec::new(), Vec::new(), 0);
+        let mut orders = Vec::new();
+        let mut touching = Vec::new();
+        let mut collisions = 0;
         for tick in 0..ticks {
             crowd(&world, &mut orders);
             world.step(&orders);
@@ -220,7 +225,8 @@ fn mirrored_orders_make_a_mirrored_course() {
         let mut orders = [Order::Hold; 2];
         for tick in 0..800 {
             if tick % 40 == 0 {
-                let (a, b) = (stream.between(-1.0, 1.0), stream.between(-1.0, 1.0));
+                let a = stream.between(-1.0, 1.0);
+                let b = stream.between(-1.0, 1.0);
                 let steer = |side: f64| Order::Steer { heading_rad: side * 0.5 * a, speed_m_s: 2.0 * b.abs() };
                 orders = if tick % 80 == 0 {
                     [Order::Thrust { port: a, starboard: b }, Order::Thrust { port: b, starboard: a }]

@@ -34,7 +34,8 @@ fn water_of_which_nothing_is_said_lies_still_to_the_bit() {
 #[test]
 fn a_tide_is_a_sine_of_time_on_top_of_the_mean() {
     const PERIOD_S: f64 = 12.42 * 3600.0;
-    let (mean_m_s, flood_m_s) = (Ned::from_xy(0.1, 0.0), Ned::from_xy(0.0, 0.5));
+    let mean_m_s = Ned::from_xy(0.1, 0.0);
+    let flood_m_s = Ned::from_xy(0.0, 0.5);
     for phase in [0.0, 0.3, 1.0] {
         let tide = Some(Tide { flood_m_s, period_s: PERIOD_S, phase });
         let model = model(&Current { mean_m_s, tide, ..Current::default() }, 1);
@@ -110,7 +111,8 @@ fn an_eddy_has_its_circulation_no_divergence_and_the_vorticity_of_a_gaussian() {
             let ahead = at(&model, place + along.scaled(STEP_M), 0.0);
             (ahead - at(&model, place - along.scaled(STEP_M), 0.0)).scaled(0.5 / STEP_M)
         };
-        let (by_north, by_east) = (slope(Ned { north: 1.0, east: 0.0 }), slope(Ned { north: 0.0, east: 1.0 }));
+        let by_north = slope(Ned { north: 1.0, east: 0.0 });
+        let by_east = slope(Ned { north: 0.0, east: 1.0 });
         let divergence = by_north.north + by_east.east;
         let vorticity = by_north.east - by_east.north;
         let s = place.distance_squared(centre) / (CORE_M * CORE_M);

@@ -91,7 +91,8 @@ fn a_game_goes_on_from_a_snapshot_taken_while_hulls_touch() {
     place_boat(&mut world, 1, (103.0, 100.3, 250.0), (2.0, 0.0, 0.0));
     let ahead = [Order::Thrust { port: 1.0, starboard: 0.9 }; 2];
     for tick in 0..100 {
-        let (mut on, mut other) = (world.clone(), world.clone());
+        let mut on = world.clone();
+        let mut other = world.clone();
         let bytes = postcard::to_stdvec(world.state()).unwrap();
         other.set_state(postcard::from_bytes(&bytes).unwrap());
         for world in [&mut on, &mut other] {
@@ -162,7 +163,8 @@ fn an_order_with_bad_numbers_is_refused_and_the_boat_holds() {
 #[test]
 fn a_boat_with_bad_numbers_is_removed_and_the_others_continue() {
     let mut scenario = shipped("pav01_vs_pav01.toml");
-    let (victim, flag) = (VehicleId(1), primitives::FlagId(1));
+    let victim = VehicleId(1);
+    let flag = primitives::FlagId(1);
     let pose = Pose { at: scenario.field.flags[1].home, psi_rad: 0.0 };
     scenario.vehicles[1].start_position = StartPosition::At(pose);
     let mut contest = started(&scenario, 1);

@@ -170,7 +170,8 @@ fn between_reports_a_real_boat_goes_on_as_it_did_and_then_it_is_lost() {
         "at rest at its start position"
     );
 
-    let (u, r) = (2.0, 0.25);
+    let u = 2.0;
+    let r = 0.25;
     let fix = Nav { yaw_rate_rad_s: r, ..nav(50.0, 40.0, 0.0, u) };
     contest.advance();
     // Taken 0.1 s ago and delayed since.
@@ -180,7 +181,8 @@ fn between_reports_a_real_boat_goes_on_as_it_did_and_then_it_is_lost() {
     order(&mut contest, REAL, Order::Thrust { port: 1.0, starboard: 1.0 });
     for decisions in 0..30 {
         let since_s = (contest.now() - fix_at).as_s();
-        let (turn, boat) = (primitives::math::sin_cos(r * since_s.min(1.0)), contest.world().state().boats[0]);
+        let turn = primitives::math::sin_cos(r * since_s.min(1.0));
+        let boat = contest.world().state().boats[0];
         let want = Ned::from_xy(50.0 + u / r * (1.0 - turn.1), 40.0 + u / r * turn.0);
         assert!(boat.pose.at.distance(want) < 1e-9, "after {since_s} s: {:?} is not {want:?}", boat.pose.at);
         assert!(since_s > 0.999 || boat.nu.surge == u);

@@ -109,7 +109,8 @@ fn a_receiver_freezes_falls_silent_and_errs_at_its_time() {
 
 #[test]
 fn a_compass_is_off_by_what_is_said_at_its_time() {
-    let (with, without) = (scenario("compass_offset", ", offset_deg = 30"), scenario("agent_lost", ""));
+    let with = scenario("compass_offset", ", offset_deg = 30");
+    let without = scenario("agent_lost", "");
     let [mut with, mut without] = [with, without].map(|scenario| Contest::new(&scenario, 3).unwrap());
     for contest in [&mut with, &mut without] {
         play_to(contest, 20.1);

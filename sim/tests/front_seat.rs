@@ -45,7 +45,8 @@ fn a_change_of_speed_settles_at_the_speed_ordered() {
         let mut world = afloat(boat);
         for wanted_m_s in [speed_m_s, 0.5 * speed_m_s, speed_m_s] {
             steer(&mut world, 0.0, wanted_m_s, 60, |_| ());
-            let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
+            let mut least = f64::INFINITY;
+            let mut most = 0.0_f64;
             steer(&mut world, 0.0, wanted_m_s, 20, |boat| {
                 (least, most) = (least.min(boat.nu.surge), most.max(boat.nu.surge));
             });

@@ -67,8 +67,10 @@ fn the_acceleration_at_the_surface_is_minus_g_times_its_gradient() {
 fn a_hull_feels_the_mean_and_the_first_moment_over_its_length_and_beam() {
     let boat = boat(1.8, 0.9, 1e-6);
     let field = sea(0.3, 1.8, Spreading::CosineSquared);
-    let (hull, point) = (HullWaves::new(&field, &boat, DENSITY_KG_M3), HullWaves::new(&field, &cork(), DENSITY_KG_M3));
-    let (n_x, n_y) = (60, 30);
+    let hull = HullWaves::new(&field, &boat, DENSITY_KG_M3);
+    let point = HullWaves::new(&field, &cork(), DENSITY_KG_M3);
+    let n_x = 60;
+    let n_y = 30;
     // Headings with an entry in the tables, so that the entry itself is tested.
     for (psi_deg, t) in [(0.0, 1.0), (35.0, 2.0), (90.0, 5.0), (-145.0, 8.0)] {
         let psi_rad = f64::to_radians(psi_deg);
@@ -96,9 +98,11 @@ fn a_hull_feels_the_mean_and_the_first_moment_over_its_length_and_beam() {
 /// Interpolation errors between the headings of the table, in surge, sway and yaw velocity and
 /// drift force: root mean squares over headings and times, relative to the values.
 fn off_between_headings(field: &WaveField, boat: &Boat) -> [f64; 4] {
-    let (steps, bin_rad) = (10, TAU / 72.0);
+    let steps = 10;
+    let bin_rad = TAU / 72.0;
     let hull = HullWaves::new(field, boat, DENSITY_KG_M3);
-    let (mut off, mut size) = ([0.0; 4], [0.0; 4]);
+    let mut off = [0.0; 4];
+    let mut size = [0.0; 4];
     for step in 0..steps {
         // The same sea in axes rotated by a fraction of a bin: there the heading has an entry.
         let by_rad = bin_rad * (f64::from(step) + 0.5) / f64::from(steps);
@@ -106,7 +110,8 @@ fn off_between_headings(field: &WaveField, boat: &Boat) -> [f64; 4] {
             field.components().map(|c| Component { toward_rad: c.toward_rad - by_rad, ..*c }).collect();
         let exact = HullWaves::new(&WaveField::of(&turned, None, 1.0), boat, DENSITY_KG_M3);
         for i in 0..720 {
-            let (psi_rad, t) = (bin_rad * f64::from(i % 72), f64::from(i) * 1.3);
+            let psi_rad = bin_rad * f64::from(i % 72);
+            let t = f64::from(i) * 1.3;
             let got = hull.at(pose(0.0, 0.0, psi_rad + by_rad), t);
             let want = exact.at(pose(0.0, 0.0, psi_rad), t);
             let parts = |s: WaveSample| {
@@ -126,7 +131,8 @@ fn between_the_headings_of_the_table_the_error_is_a_small_part_of_the_motion() {
     // For the shipped boats at most 0.4 %, in yaw. The response of a long hull to waves several
     // times shorter varies faster with heading than the table, but is small.
     let heron = (boat(1.35, 1.0, 0.1), 0.005);
-    let (surveyor, otter) = ((surveyor(), 0.005), (boat(2.0, 1.08, 0.195), 0.005));
+    let surveyor = (surveyor(), 0.005);
+    let otter = (boat(2.0, 1.08, 0.195), 0.005);
     for (hs_m, tp_s, ten_metres) in [(0.1, 1.5, 0.03), (0.3, 2.0, 0.012), (0.5, 3.0, 0.006), (1.0, 5.0, 0.005)] {
         for spreading in [Spreading::None, Spreading::CosineSquared] {
             for (boat, within) in [&heron, &surveyor, &otter, &(boat(10.0, 3.0, 0.6), ten_metres)] {
@@ -153,7 +159,8 @@ fn the_acceleration_is_the_rate_of_change_of_the_velocity() {
 
 #[test]
 fn the_drift_force_of_a_regular_wave_is_steady_and_points_where_it_goes() {
-    let (toward_rad, length_m) = (0.9, 6.0);
+    let toward_rad = 0.9;
+    let length_m = 6.0;
     let k = TAU / length_m;
     let boat = surveyor();
     for depth_m in [None, Some(0.8)] {
@@ -272,7 +279,8 @@ fn a_wave_at_the_natural_frequency_rolls_the_boat_by_the_springs_amplification()
 fn the_rates_of_the_attitude_are_its_changes_along_a_turning_track() {
     let field = sea(0.5, 2.5, Spreading::CosineSquared);
     let response = WaveResponse::new(&field, &surveyor());
-    let (velocity, turn_rad_s) = (Ned { north: 1.4, east: -0.9 }, 0.4);
+    let velocity = Ned { north: 1.4, east: -0.9 };
+    let turn_rad_s = 0.4;
     let along = |t: f64| {
         let here = pose(10.0 + velocity.north * t, 4.0 + velocity.east * t, 1.0 + turn_rad_s * t);
         response.at(here, velocity, turn_rad_s, 500.0 + t)

@@ -20,13 +20,15 @@ fn bits_of_waves(components: u32, instructions: Instructions) -> Vec<u64> {
     let field = WaveField::new(&sea, None, 3).with_instructions(instructions);
     let places = [-0.33, 0.33].map(|starboard| Body { ahead: -0.7, starboard });
     let submergence = Submergence::new(&field, &boat, places);
-    let (hull, response) = (HullWaves::new(&field, &boat, 1000.0), WaveResponse::new(&field, &boat));
+    let hull = HullWaves::new(&field, &boat, 1000.0);
+    let response = WaveResponse::new(&field, &boat);
     let mut stream = Stream::new(1, "test");
     let mut bits = Vec::new();
     for _ in 0..500 {
         let at = Ned { north: stream.between(-500.0, 500.0), east: stream.between(-500.0, 500.0) };
         let pose = Pose { at, psi_rad: stream.between(-7.0, 7.0) };
-        let (time_s, turn_rad_s) = (stream.between(0.0, 90_000.0), stream.between(-1.0, 1.0));
+        let time_s = stream.between(0.0, 90_000.0);
+        let turn_rad_s = stream.between(-1.0, 1.0);
         let velocity_m_s = Ned { north: stream.between(-3.0, 3.0), east: stream.between(-3.0, 3.0) };
         let (sample, depths_m) = hull.at_with(&submergence, pose, time_s);
         assert_eq!(sample, hull.at(pose, time_s), "{components}: with and without propellers");

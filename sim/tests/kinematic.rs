@@ -36,7 +36,8 @@ struct Row {
 
 impl Afloat {
     fn new(boat: &Kinematic) -> Afloat {
-        let (model, state) = (KinematicModel::new(boat), KinematicState::default());
+        let model = KinematicModel::new(boat);
+        let state = KinematicState::default();
         Afloat { model, state, at: Ned::default(), rate_deg_s: 0.0 }
     }
 
@@ -169,7 +170,8 @@ fn its_accelerations_have_the_reference_numbers() {
 fn its_turns_have_the_reference_numbers() {
     for name in BOATS {
         let boat = shipped(name);
-        let (top_m_s, half_m_s) = (boat.speed_max_m_s, 0.5 * boat.speed_max_m_s);
+        let top_m_s = boat.speed_max_m_s;
+        let half_m_s = 0.5 * boat.speed_max_m_s;
         let past = |rows: &[Row], angle_deg: f64| first(rows, |row| row.state.heading_deg.abs() >= angle_deg);
         let rows = Afloat::under_way(&boat, top_m_s).sail(90.0, |_| steer(90.0, top_m_s));
         let off = rows.iter().rev().find(|row| (row.state.heading_deg - 90.0).abs() > 2.0);
@@ -193,7 +195,8 @@ fn its_stops_have_the_reference_numbers() {
             let rows = afloat.sail(120.0, |_| Order::Hold);
             (first(&rows, |row| row.state.speed_m_s <= 0.05 * speed_m_s), rows[1199].at.north)
         };
-        let (full, half) = (stop(1.0), stop(0.5));
+        let full = stop(1.0);
+        let half = stop(0.5);
         compare(name, "stops", &[full.0, full.1, half.0, half.1]);
     }
 }
@@ -205,7 +208,8 @@ fn its_tightest_turn_has_the_reference_numbers() {
         let top_m_s = boat.speed_max_m_s;
         let mut afloat = Afloat::under_way(&boat, top_m_s);
         afloat.sail(200.0, |state| steer(state.heading_deg + 90.0, top_m_s));
-        let (rate_deg_s, speed_m_s) = (afloat.rate_deg_s, afloat.state.speed_m_s);
+        let rate_deg_s = afloat.rate_deg_s;
+        let speed_m_s = afloat.state.speed_m_s;
         compare(name, "held turn", &[rate_deg_s, speed_m_s, speed_m_s / rate_deg_s.to_radians()]);
     }
 }

@@ -65,7 +65,8 @@ fn every_order_of_the_longest_delay_and_a_short_decision_arrives() {
     (scenario.tick, scenario.ticks_per_decision) = (SimTime(20_000_000), 1);
     let mut contest = started(&scenario);
     for k in 0..1_500_u64 {
-        let (now, reported) = (contest.now(), contest.pictures()[0].own[0].fix_ns);
+        let now = contest.now();
+        let reported = contest.pictures()[0].own[0].fix_ns;
         assert_eq!(reported, SimTime((now - SimTime::from_s(10.0)).0.max(0)), "decision {k}");
         play(&mut contest);
         assert_eq!(contest.order_in_force(BLUE), k.checked_sub(500).map_or(Order::Hold, labelled), "decision {k}");
@@ -76,7 +77,8 @@ fn every_order_of_the_longest_delay_and_a_short_decision_arrives() {
 fn orders_sent_beyond_the_range_do_not_arrive() {
     let station = Ned::from_xy(150.0, 200.0);
     let mut contest = started(&over(Link { range_m: Some(30.0), station, ..link() }));
-    let (mut inside, mut outside) = (0, 0);
+    let mut inside = 0;
+    let mut outside = 0;
     let mut want = Order::Hold;
     for k in 0..400_u32 {
         // East, and the decision at which it was given.
@@ -97,7 +99,8 @@ fn orders_sent_beyond_the_range_do_not_arrive() {
 #[test]
 fn a_mind_that_is_silent_or_talks_much_changes_the_fate_of_no_other_message() {
     let link = Link { delay_s: 0.12, jitter_s: 0.1, loss: BURSTS, ..link() };
-    let (silence, loquacity) = (200..300, 600..700);
+    let silence = 200..300;
+    let loquacity = 600..700;
     // What arrived, by decision: orders in force, and when the known reports were sent.
     let record = |says: &dyn Fn(u64) -> u32| {
         let mut contest = started(&over(link.clone()));
@@ -166,8 +169,12 @@ fn a_watchdog_stops_the_thrusters_when_the_link_is_silent_and_the_next_order_sta
     }
     let mut contest = started(&scenario);
     let thrust = |k: u32| Order::Thrust { port: 0.3 + 1e-6 * f64::from(k), starboard: 0.3 };
-    let (mut last, mut running, mut stopped, mut started_again) = (0, 0, 0, 0);
-    let (mut before_newton, mut least_newton) = (0.0, f64::INFINITY);
+    let mut last = 0;
+    let mut running = 0;
+    let mut stopped = 0;
+    let mut started_again = 0;
+    let mut before_newton = 0.0;
+    let mut least_newton = f64::INFINITY;
     for k in 0..1_000_u32 {
         order(&mut contest, BLUE, thrust(k));
         contest.advance();
@@ -205,7 +212,8 @@ fn a_digest_tells_games_apart_that_differ_in_what_is_under_way() {
         contest.advance();
         (contest.world().state().clone(), contest.digest())
     };
-    let (first, second) = (digest(labelled(1)), digest(labelled(2)));
+    let first = digest(labelled(1));
+    let second = digest(labelled(2));
     assert_eq!(first.0, second.0, "the worlds are still equal");
     assert_ne!(first.1, second.1);
     assert_eq!(first, digest(labelled(1)));

@@ -45,7 +45,8 @@ fn sail(rows: &[Row], sea: &str, mut order_at: impl FnMut(f64, f64, &Row) -> Ord
         let boat = world.state().boats[0];
         track.push((boat.pose.at - start, boat.pose.psi_rad, [boat.nu.surge, boat.nu.sway, boat.nu.yaw]));
         for _ in 0..2 {
-            let (now, psi) = (world.state().now.as_s(), world.state().boats[0].pose.psi_rad);
+            let now = world.state().now.as_s();
+            let psi = world.state().boats[0].pose.psi_rad;
             let order = order_at(now, psi, row);
             world.step(&[order, Order::Hold]);
         }

@@ -64,7 +64,9 @@ fn a_boat_that_leaves_at_the_side_comes_back_as_soon_as_in_the_competition() {
         scenario.rules.tag_look_period = SimTime::from_s(looks_s);
         scenario.rules.flag_look_period = SimTime::from_s(looks_s);
         let mut contest = started(&scenario);
-        let (mut left_s, mut back_s, mut freed_s) = (0.0, 0.0, 0.0);
+        let mut left_s = 0.0;
+        let mut back_s = 0.0;
+        let mut freed_s = 0.0;
         while freed_s == 0.0 && contest.now().as_s() < 120.0 {
             let known = contest.events().len();
             // Ahead on its present heading, like the actions of Pyquaticus.

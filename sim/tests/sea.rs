@@ -24,7 +24,8 @@ fn adrift(hs_m: f64, seed: u64) -> (Ned, f64) {
     let mut world = afloat(&scenario, seed, (300.0, 200.0, 20.0), (0.0, 0.0, 0.0));
     sail(&mut world, &DRIFTING, 1_200);
     let start = world.state().boats[0].pose.at;
-    let (mut sum, n) = (0.0, 12_000);
+    let mut sum = 0.0;
+    let n = 12_000;
     for _ in 0..n {
         world.step(&DRIFTING);
         let nu = world.state().boats[0].nu;
@@ -52,12 +53,14 @@ fn a_drifter_in_waves_goes_to_and_fro_and_only_second_order_takes_it_anywhere() 
 fn boats_in_waves_heave_at_the_frequency_of_encounter() {
     // One long-crested wave of about 2.5 s from ahead, abeam and astern, at held speeds: ω − k V
     // cos, with the resulting V.
-    let (samples, dt_s) = (2_048_usize, 0.05);
+    let samples = 2_048_usize;
+    let dt_s = 0.05;
     let resolution = TAU / (samples as f64 * dt_s);
     for (from_deg, speed_m_s) in [(0.0, 0.8), (0.0, 1.5), (90.0, 1.5), (180.0, 0.8), (180.0, 1.5)] {
         let from_rad = f64::to_radians(from_deg);
         let scenario = surveyor_on(|sea| {
-            let (components, spreading) = (1, Spreading::None);
+            let components = 1;
+            let spreading = Spreading::None;
             sea.waves = Some(Waves { components, spreading, from_rad, drift_factor: 0.0, ..waves(0.1, 2.5) });
         });
         let mut world = afloat(&scenario, 1, (300.0, 50.0, 0.0), (speed_m_s, 0.0, 0.0));
@@ -132,7 +135,8 @@ fn point_boats_collide_in_a_current_as_they_do_in_still_water() {
         sail(&mut world, &[ahead, Order::Hold], 600);
         [0, 1].map(|i| world.state().boats[i].pose.at - mean_m_s.scaled(30.0))
     };
-    let (still, drifting) = (after(Ned::default()), after(current));
+    let still = after(Ned::default());
+    let drifting = after(current);
     assert!((still[0].north - 200.0).abs() > 1.0, "blue did not hit red: {still:?}");
     for (still, drifting) in still.into_iter().zip(drifting) {
         assert!(still.distance(drifting) < 1e-3, "{still:?}, in a current {drifting:?}");

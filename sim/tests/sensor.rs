@@ -146,7 +146,8 @@ fn a_fix_says_where_the_boat_was_and_comes_out_after_its_latency_whatever_the_pe
                     let what = format!("decision {decision}, period {period_s}, latency {latency_s}, at {now}");
                     assert_eq!(reading.fix_at, want_at, "{what}");
                     assert_eq!(reading.nav.at(), sailing(want_at).pose.at, "{what}");
-                    let (surge_m_s, sway_m_s) = (reading.nav.surge_m_s, reading.nav.sway_m_s);
+                    let surge_m_s = reading.nav.surge_m_s;
+                    let sway_m_s = reading.nav.sway_m_s;
                     assert!((surge_m_s - 2.0).abs() < 1e-12 && (sway_m_s - 0.5).abs() < 1e-12, "{what}");
                 }
             }
@@ -261,7 +262,8 @@ fn a_frozen_receiver_repeats_itself_with_new_times() {
         }
     }
     // The first fix of each of the 10 000 s / (10 + 3) s freezes is true and does not count.
-    let (share, want) = (f64::from(frozen) / fixes.len() as f64, 3.0 / 13.0 - 0.2 / 13.0);
+    let share = f64::from(frozen) / fixes.len() as f64;
+    let want = 3.0 / 13.0 - 0.2 / 13.0;
     assert!((share / want - 1.0).abs() < 0.12, "share {share}, not {want}");
 }
 
@@ -398,7 +400,9 @@ fn a_gyro_feels_the_turning_of_its_attitude() {
         std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| a[i][k] * b[k][j]).sum()))
     };
     let attitude = |roll: f64, pitch: f64, yaw: f64| {
-        let ((sr, cr), (sp, cp), (sy, cy)) = (math::sin_cos(roll), math::sin_cos(pitch), math::sin_cos(yaw));
+        let (sr, cr) = math::sin_cos(roll);
+        let (sp, cp) = math::sin_cos(pitch);
+        let (sy, cy) = math::sin_cos(yaw);
         let about_z = [[cy, -sy, 0.0], [sy, cy, 0.0], [0.0, 0.0, 1.0]];
         let about_y = [[cp, 0.0, sp], [0.0, 1.0, 0.0], [-sp, 0.0, cp]];
         let about_x = [[1.0, 0.0, 0.0], [0.0, cr, -sr], [0.0, sr, cr]];
@@ -418,7 +422,9 @@ fn a_gyro_feels_the_turning_of_its_attitude() {
     };
     const STEP_S: f64 = 1e-5;
     let at = |t: f64| attitude(0.4 + 0.7 * t, -0.25 - 0.5 * t, 1.1 + 0.3 * t);
-    let (before, middle, after) = (at(-STEP_S), at(0.0), at(STEP_S));
+    let before = at(-STEP_S);
+    let middle = at(0.0);
+    let after = at(STEP_S);
     let transposed: Matrix = std::array::from_fn(|i| std::array::from_fn(|j| middle[j][i]));
     let rate: Matrix = std::array::from_fn(|i| std::array::from_fn(|j| (after[i][j] - before[i][j]) / (2.0 * STEP_S)));
     let spin = times(transposed, rate);
@@ -435,8 +441,8 @@ fn a_gyro_feels_the_turning_of_its_attitude() {
 #[test]
 fn the_same_seed_reads_the_same_and_another_boat_or_seed_otherwise() {
     let read = |seed: u64, vehicle: &str| -> Vec<Reading> {
-        let (model, mut state) =
-            (SensorModel::new(&faulty(), TICK, &seed.into(), vehicle, &[]), SensorState::default());
+        let model = SensorModel::new(&faulty(), TICK, &seed.into(), vehicle, &[]);
+        let mut state = SensorState::default();
         (0..600).map(|i| model.read(&mut state, &sailing(TICK * i), TICK * i)).collect()
     };
     let one = read(1, "blue_one");
@@ -460,7 +466,8 @@ fn sensors_go_on_from_a_snapshot_to_the_bit() {
             assert_eq!(back, state, "tick {i}");
             assert!(bytes.len() < 500, "only fixes in transit are stored: {} bytes", bytes.len());
             // A state restored from bytes continues like the original.
-            let (mut one, mut other) = (state.clone(), back);
+            let mut one = state.clone();
+            let mut other = back;
             for j in i..i + 30 {
                 let readings = [&mut one, &mut other].map(|state| model.read(state, &sailing(TICK * j), TICK * j));
                 assert_eq!(readings[0], readings[1], "tick {j}");
@@ -483,8 +490,8 @@ fn the_front_seat_steers_by_the_heading_that_the_compass_shows() {
         world.read_sensors();
     }
     // A compass needle 0.2 rad too far east reads 0.2 rad too low.
-    let (psi_rad, reading) =
-        (world.state().boats[0].pose.psi_rad, world.reading(VehicleId::at(0)).unwrap().nav.psi_rad);
+    let psi_rad = world.state().boats[0].pose.psi_rad;
+    let reading = world.reading(VehicleId::at(0)).unwrap().nav.psi_rad;
     assert!((reading - 1.0).abs() < 0.01, "the compass reads {reading}");
     assert!((psi_rad - 1.2).abs() < 0.01, "the heading is {psi_rad}");
 }

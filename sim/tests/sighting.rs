@@ -100,7 +100,8 @@ fn a_report_tells_the_truth_of_as_long_ago_as_stated() {
 #[test]
 fn reports_err_by_the_stated_noise_and_anew_each_time() {
     const REPORTS: usize = 20_000;
-    let (noise_m, velocity_noise_m_s) = (3.0, 0.5);
+    let noise_m = 3.0;
+    let velocity_noise_m_s = 0.5;
     let sharing = Sharing { noise_m, velocity_noise_m_s, ..clear_sight() };
     let mut contest = started(&facing(sharing, (300.0, 200.0, 0.0), (500.0, 200.0, 90.0)));
     // Errors in standard deviations.
@@ -148,7 +149,9 @@ fn a_contact_is_remembered_as_long_as_stated() {
     let memory_s = 4.05;
     let sharing = Sharing { range_m: Some(100.0), memory_s, ..clear_sight() };
     let mut contest = started(&facing(sharing, (300.0, 200.0, 0.0), (395.0, 200.0, 90.0)));
-    let (mut last_seen, mut remembered, mut forgotten) = (SimTime::ZERO, 0, 0);
+    let mut last_seen = SimTime::ZERO;
+    let mut remembered = 0;
+    let mut forgotten = 0;
     for k in 0..300 {
         let now = contest.now();
         let is_near = place(&contest, BLUE).distance(place(&contest, RED)) <= 100.0;
@@ -172,7 +175,8 @@ fn sightings_are_late_or_lost_with_the_report_of_the_boat_that_saw() {
     let mut scenario = facing(clear_sight(), (300.0, 200.0, 0.0), (500.0, 200.0, 90.0));
     scenario.link = Some(Link { delay_s: 0.25, jitter_s: 0.3, loss, range_m: None, station: Ned::default() });
     let mut contest = started(&scenario);
-    let (mut seen, mut stale) = (0, 0);
+    let mut seen = 0;
+    let mut stale = 0;
     for k in 0..5_000 {
         let reported = contest.pictures()[0].own[0].fix_ns;
         match shown(&mut contest) {

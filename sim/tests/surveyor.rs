@@ -72,7 +72,8 @@ fn it_coasts_as_the_closed_form_says() {
     // 5.87 m; the distance to rest is (58.1 / 13) ln(32 / 6) = 7.48 m.
     let mut world = afloat((2.0, 0.0, 0.0));
     let start = world.state().boats[0].pose.at;
-    let (mut ticks, mut boat) = (0, world.state().boats[0]);
+    let mut ticks = 0;
+    let mut boat = world.state().boats[0];
     while boat.nu.surge > 0.2 && ticks < 1_000 {
         world.step(&[Order::Hold; 2]);
         (ticks, boat) = (ticks + 1, world.state().boats[0]);

@@ -34,14 +34,17 @@ fn with_all_turned(mut scenario: Scenario, by_rad: f64) -> Scenario {
         *from_rad += by_rad;
     }
     let current = &mut sea.current;
-    let (shear, tide) = (current.shear.as_mut().unwrap(), current.tide.as_mut().unwrap());
-    let (wander, eddy) = (current.wander.as_mut().unwrap(), &mut current.eddies[0]);
+    let shear = current.shear.as_mut().unwrap();
+    let tide = current.tide.as_mut().unwrap();
+    let wander = current.wander.as_mut().unwrap();
+    let eddy = &mut current.eddies[0];
     let vectors = [&mut current.mean_m_s, &mut shear.toward, &mut shear.across, &mut shear.origin, &mut tide.flood_m_s];
     for vector in vectors.into_iter().chain([&mut wander.toward, &mut eddy.centre]) {
         *vector = turned(*vector, by_rad);
     }
     let plan = &scenario.field.plan;
-    let (corner, along_deg) = (turned(plan.corner, by_rad), plan.along_deg + by_rad.to_degrees());
+    let corner = turned(plan.corner, by_rad);
+    let along_deg = plan.along_deg + by_rad.to_degrees();
     scenario.field = Field::new(Plan { corner, along_deg, ..plan.clone() });
     scenario
 }
@@ -88,7 +91,8 @@ fn it_does_not_matter_where_north_is() {
         let other = with_all_turned(scenario.clone(), by_rad);
         let within_m = if by_deg % 5.0 == 0.0 { 1e-4 } else { 0.05 };
         for order_of in [&steer as &dyn Fn(f64) -> Order, &thrust] {
-            let (here, there) = (track(&scenario, order_of, 0.0), track(&other, order_of, by_rad));
+            let here = track(&scenario, order_of, 0.0);
+            let there = track(&other, order_of, by_rad);
             let off_m = here
                 .iter()
                 .zip(&there)
@@ -148,7 +152,8 @@ fn a_uniform_current_carries_everything_along_and_changes_nothing_else() {
     // changes.
     let current = Ned { north: 0.35, east: -0.2 };
     let orders = [Order::Thrust { port: 0.8, starboard: 0.5 }, Order::Hold];
-    let (at_rest, streaming) = (surveyor_on(|_| ()), surveyor_on(|sea| sea.current.mean_m_s = current));
+    let at_rest = surveyor_on(|_| ());
+    let streaming = surveyor_on(|sea| sea.current.mean_m_s = current);
     // The same velocity through the water; over the ground the current is added, as seen from the
     // boat at 0°.
     let mut carried = afloat(&streaming, 1, (200.0, 200.0, 0.0), (1.0 + current.north, current.east, 0.1));
@@ -156,7 +161,8 @@ fn a_uniform_current_carries_everything_along_and_changes_nothing_else() {
     for tick in 1..=12_000 {
         still.step(&orders);
         carried.step(&orders);
-        let (a, b) = (still.state().boats[0].pose, carried.state().boats[0].pose);
+        let a = still.state().boats[0].pose;
+        let b = carried.state().boats[0].pose;
         let off_m = (b.at - current.scaled(f64::from(tick) * 0.05)).distance(a.at);
         let off_rad = primitives::angle::wrap_pi(a.psi_rad - b.psi_rad).abs();
         // The state stores the velocity over the ground, so every tick adds and subtracts the
@@ -177,7 +183,8 @@ const NOTHINGS: [Change; 9] = [
         sea.current.tide = Some(Tide { flood_m_s: Ned::default(), period_s: 300.0, phase: 0.3 });
     }),
     ("a shear of zero strength", |sea| {
-        let (toward, across) = (Ned::toward_deg(30.0), Ned::toward_deg(120.0));
+        let toward = Ned::toward_deg(30.0);
+        let across = Ned::toward_deg(120.0);
         sea.current.shear = Some(Shear { toward, across, per_s: 0.0, origin: Ned { north: 10.0, east: 20.0 } });
     }),
     ("a wander of zero size", |sea| {

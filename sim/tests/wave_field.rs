@@ -69,7 +69,8 @@ fn the_components_have_the_mean_periods_of_the_spectrum() {
     for (components, within) in [(16, 0.08), (64, 0.04), (256, 0.03)] {
         for seed in 0..20 {
             let [m0, m1, m2] = moments(&WaveField::new(&Waves { tp_s: 1.0, ..sea(components) }, None, seed));
-            let (zero_up, mean) = (TAU * (m0 / m2).sqrt(), TAU * m0 / m1);
+            let zero_up = TAU * (m0 / m2).sqrt();
+            let mean = TAU * m0 / m1;
             assert!((zero_up / 0.778 - 1.0).abs() < within, "{components} components, seed {seed}: Tz {zero_up}");
             assert!((mean / 0.834 - 1.0).abs() < within, "{components} components, seed {seed}: T1 {mean}");
         }
@@ -159,7 +160,8 @@ fn a_regular_wave_has_the_length_and_speed_of_its_depth() {
         let field = regular(period_s, toward_rad, depth_m);
         let first_m = rise_after_m(&field, toward_rad, 0.0, 7.0);
         let next_m = rise_after_m(&field, toward_rad, first_m + 0.5, 7.0);
-        let (omega, k) = (TAU / period_s, TAU / (next_m - first_m));
+        let omega = TAU / period_s;
+        let k = TAU / (next_m - first_m);
         let tanh = depth_m.map_or(1.0, |h| libm::tanh(k * h));
         let residue = omega * omega / (GRAVITY_M_S2 * k * tanh) - 1.0;
         assert!(residue.abs() < 1e-7, "{period_s} s, {depth_m:?} m: off by {residue}");
@@ -224,7 +226,9 @@ fn phase_rad(c: &Component, at: Ned, time_s: f64) -> f64 {
 
 #[test]
 fn stokes_drift_is_the_closed_form_at_the_surface_and_its_mean_over_the_draught() {
-    let (a, omega, toward_rad) = (0.3_f64, TAU / 3.0, 2.3);
+    let a = 0.3_f64;
+    let omega = TAU / 3.0;
+    let toward_rad = 2.3;
     for depth_m in [None, Some(1.0), Some(30.0)] {
         let field = regular(3.0, toward_rad, depth_m);
         let k = wavenumber_rad_m(omega, depth_m.unwrap_or(f64::INFINITY));

@@ -81,7 +81,8 @@ fn a_gust_comes_to_a_boat_downwind_as_it_was() {
         let mut field = WindField::new(&wind(from_deg, ornstein_uhlenbeck()), HEIGHT_M, &field(), &7.into());
         let mean_m_s = field.mean_m_s(HEIGHT_M);
         let upwind = Ned::from_xy(80.0, 40.0);
-        let (downwind, abreast) = (Ned::toward_deg(from_deg + 180.0), Ned::toward_deg(from_deg + 90.0));
+        let downwind = Ned::toward_deg(from_deg + 180.0);
+        let abreast = Ned::toward_deg(from_deg + 90.0);
         let mut differ = 0;
         for i in 0..200_u32 {
             let now = SimTime::from_s(f64::from(i) * 0.73);
@@ -163,7 +164,8 @@ fn the_force_is_fossen_s_at_every_angle() {
     for i in 0..720_u32 {
         let angle = f64::from(i) * TAU / 720.0;
         let (sin, cos) = math::sin_cos(angle);
-        let (u_rw, v_rw) = (7.0 * cos, 7.0 * sin);
+        let u_rw = 7.0 * cos;
+        let v_rw = 7.0 * sin;
         let gamma = -math::atan2(v_rw, u_rw);
         let (sin_gamma, cos_gamma) = math::sin_cos(gamma);
         let pressure = 0.5 * 1.225 * 49.0;
@@ -182,7 +184,8 @@ fn the_force_is_fossen_s_at_every_angle() {
 #[test]
 fn the_mirror_image_of_a_wind_gives_the_mirror_image_of_the_force_to_the_bit() {
     for (ahead, starboard) in [(3.1, 4.7), (-8.3, 0.1), (0.3, -11.9), (-5.5, -5.5)] {
-        let (one, other) = (force(ahead, starboard), force(ahead, -starboard));
+        let one = force(ahead, starboard);
+        let other = force(ahead, -starboard);
         let bits = |force: Planar| (force.surge.to_bits(), force.sway.to_bits(), force.yaw.to_bits());
         assert_eq!(bits(one), bits(Planar { surge: other.surge, sway: -other.sway, yaw: -other.yaw }));
     }

@@ -186,7 +186,8 @@ fn changes(indices: &[u8], before: Option<&[u8]>, (wide, high): (usize, usize)) 
     });
     // A picture has at least one pixel.
     let [left, top, right, bottom] = bounds.unwrap_or([0; 4]);
-    let (right, bottom) = (right.min(wide - 1), bottom.min(high - 1));
+    let right = right.min(wide - 1);
+    let bottom = bottom.min(high - 1);
     let of_row = |y: usize| (left..=right).map(move |x| y * wide + x);
     let pixel = |i: usize| if is_changed(i) { indices[i] } else { UNCHANGED };
     gif::Frame {

@@ -84,7 +84,8 @@ impl LoopArgs {
         let mut water = pace.sim(args, place.0, place.1)?;
         water.arg("--afloat").args(&names);
         let water = ChildProcess::start("the water", water, Stdio::null())?;
-        let (mut emulators, mut gateways) = (Vec::new(), Vec::new());
+        let mut emulators = Vec::new();
+        let mut gateways = Vec::new();
         for vehicle in names {
             let (emulator, link) = start_emulator(vehicle, &gateway, place)?;
             emulators.push(emulator);

@@ -48,7 +48,8 @@ fn write_csv(path: &Path, scenario: &Scenario, report: &HelmReport) -> Result<()
     csv.write_record(["behaviour", "contact", "weight", "course_deg", "speed_m_s", "utility"])?;
     let mut write = |behaviour: &str, contact: &str, weight: f64, utilities: &mut dyn Iterator<Item = f64>| {
         for (i, utility) in utilities.enumerate() {
-            let (k, j) = ((i / report.speeds) as f64, (i % report.speeds) as f64);
+            let k = (i / report.speeds) as f64;
+            let j = (i % report.speeds) as f64;
             let course_deg = 360.0 * k / report.courses as f64;
             let speed_m_s = report.speed_max_m_s * j / (report.speeds - 1) as f64;
             let numbers = [weight, course_deg, speed_m_s, utility].map(|number| number.to_string());

@@ -53,7 +53,9 @@ impl PageArgs {
 
     fn settings(&self, listen: SocketAddr, stop: &Arc<AtomicBool>) -> Result<PageSettings> {
         let background = self.chart.as_deref().map(Background::read).transpose()?;
-        let (token, hosts, stop) = (self.token()?, self.host.clone(), Arc::clone(stop));
+        let token = self.token()?;
+        let hosts = self.host.clone();
+        let stop = Arc::clone(stop);
         Ok(PageSettings { listen, token, hosts, background, stop })
     }
 

@@ -50,7 +50,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     };
     let net = args.hub.net()?;
     let token = net.token.clone();
-    let (mut screen, for_parent, shown) = (Screen::new(Names::of(&scenario)), args.for_parent, token.clone());
+    let mut screen = Screen::new(Names::of(&scenario));
+    let for_parent = args.for_parent;
+    let shown = token.clone();
     let printer = Printer::start(move |message| {
         if for_parent {
             screen::print(&(serde_json::to_string(message).expect("a message is JSON") + "\n"));
@@ -93,7 +95,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     drop(registration);
     report.run.recording_problem = recorder.and_then(|recorder| recorder.end(&report).problem());
     let written = args.play.write_result(&report);
-    let (cut_short, problem) = (report.run.cut_short, report.run.recording_problem.clone());
+    let cut_short = report.run.cut_short;
+    let problem = report.run.recording_problem.clone();
     printer.end(ProgressMessage::Done(Box::new(report)));
     written?;
     // The parent reads it from the report and prints it itself.

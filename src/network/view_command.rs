@@ -46,7 +46,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
             screen::remark(problem);
         }
     });
-    let (place, game) = (args.leaf.place()?, args.leaf.game.clone());
+    let place = args.leaf.place()?;
+    let game = args.leaf.game.clone();
     let live = LiveView::open(place, game, tell, gateway_cli::read_mission).context("cannot search for games")?;
     let live = Arc::new(live);
     page.show(Arc::clone(&live) as Arc<dyn View>);

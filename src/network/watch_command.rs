@@ -78,7 +78,8 @@ impl Seen {
 fn watch_field(observer: &Observer, pause: Duration, stop: &AtomicBool) -> Result<()> {
     let Observer { bus, game, info } = observer;
     let seen = Arc::new(Watched::new(Seen::default()));
-    let (incoming, scenario) = (Arc::clone(&seen), info.scenario.clone());
+    let incoming = Arc::clone(&seen);
+    let scenario = info.scenario.clone();
     let take = move |bytes: &[u8]| incoming.visit(|seen| seen.take(&scenario, bytes));
     let _frames = bus.subscribe(topic::frame(game), take)?;
     let mut meter = Meter::new();

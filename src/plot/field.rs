@@ -90,7 +90,8 @@ impl View {
         let places = corners.chain(chart.tracks.iter().flat_map(|track| &track.places));
         let (low, high) = bounds(places.filter(|place| is_drawn(place)));
         let margin_m = 0.04 * (high - low).length();
-        let (wide_m, high_m) = (high.east - low.east + 2.0 * margin_m, high.north - low.north + 2.0 * margin_m);
+        let wide_m = high.east - low.east + 2.0 * margin_m;
+        let high_m = high.north - low.north + 2.0 * margin_m;
         let pixels_per_m = f64::min(WATER_MAX.0 / wide_m, WATER_MAX.1 / high_m);
         // The legend needs a minimum width, however narrow the field is.
         let wide = (wide_m * pixels_per_m).max(560.0);
@@ -149,8 +150,8 @@ fn draw_axes(root: &Area<'_>, view: &View) -> Drawn {
         .build_cartesian_2d(view.east_m.0..view.east_m.1, view.north_m.0..view.north_m.1)?;
     // The view places everything that is drawn: the axes must agree with it.
     for (east_m, north_m) in [(view.east_m.0, view.north_m.0), (view.east_m.1, view.north_m.1)] {
-        let (on_axes, drawn) =
-            (axes.backend_coord(&(east_m, north_m)), view.pixel(Ned { north: north_m, east: east_m }));
+        let on_axes = axes.backend_coord(&(east_m, north_m));
+        let drawn = view.pixel(Ned { north: north_m, east: east_m });
         let off = on_axes.0.abs_diff(drawn.0).max(on_axes.1.abs_diff(drawn.1));
         assert!(off <= 2, "the axes are not where the field is: {on_axes:?} instead of {drawn:?}");
     }
@@ -342,8 +343,11 @@ mod tests {
                 let (x, y) = view.pixel(*place);
                 assert!((0..wide as i32).contains(&x) && (0..high as i32).contains(&y), "{place:?} at {along_deg}");
             }
-            let (a, b, c) = (Ned::default(), Ned::from_xy(100.0, 0.0), Ned::from_xy(0.0, 100.0));
-            let (east, north) = (view.pixel(b).0 - view.pixel(a).0, view.pixel(a).1 - view.pixel(c).1);
+            let a = Ned::default();
+            let b = Ned::from_xy(100.0, 0.0);
+            let c = Ned::from_xy(0.0, 100.0);
+            let east = view.pixel(b).0 - view.pixel(a).0;
+            let north = view.pixel(a).1 - view.pixel(c).1;
             assert!((east - north).abs() <= 3, "{east} and {north} pixels at {along_deg}");
         }
     }

@@ -39,11 +39,12 @@ impl<'a> Stage<'a> {
     /// A stage with a field of this width, pixels.
     pub(crate) fn new(title: String, scenario: &'a Scenario, width: u32) -> Stage<'a> {
         let (low, high) = bounds(scenario.field.corners.iter());
-        let (east_m, north_m) =
-            ((low.east - MARGIN_M, high.east + MARGIN_M), (low.north - MARGIN_M, high.north + MARGIN_M));
+        let east_m = (low.east - MARGIN_M, high.east + MARGIN_M);
+        let north_m = (low.north - MARGIN_M, high.north + MARGIN_M);
         let pixels_per_m = f64::from(width) / (east_m.1 - east_m.0);
         // Scale a tall field so that it is no higher than the picture is wide.
-        let (wide, high) = (f64::from(width), (north_m.1 - north_m.0) * pixels_per_m);
+        let wide = f64::from(width);
+        let high = (north_m.1 - north_m.0) * pixels_per_m;
         let scale = f64::min(1.0, wide / high);
         let water = ((wide * scale).round().max(1.0) as u32, (high * scale).round().max(1.0) as u32);
         Stage { title, scenario, view: View { east_m, north_m, water, corner: (0, 0) } }
@@ -82,7 +83,8 @@ impl Drawing for Moment<'_> {
 impl Moment<'_> {
     fn draw_head(&self, head: &Area<'_>) -> Drawn {
         let style = |colour: RGBColor, side| (FONT, 18).into_font().color(&colour).pos(Pos::new(side, VPos::Center));
-        let (wide, y) = (head.dim_in_pixel().0 as i32, HEAD as i32 / 2);
+        let wide = head.dim_in_pixel().0 as i32;
+        let y = HEAD as i32 / 2;
         head.draw(&Text::new(self.stage.title.clone(), (12, y), style(BLACK, HPos::Left)))?;
         let tenths = (10.0 * self.frame.stamp.valid_ns.as_s().max(0.0)).round() as u64;
         let clock = format!("{:02}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10);
@@ -100,12 +102,14 @@ impl Moment<'_> {
     /// Draws a hull with a pointed bow; for a tagged boat, only the outline.
     fn draw_boat(&self, water: &Area<'_>, vehicle: &Vehicle, truth: &VehicleTruth) -> Drawn {
         let Stage { scenario, view, .. } = self.stage;
-        let (centre, colour) = (view.pixel(truth.nav.at()), colour::of_team(vehicle.team.index()));
+        let centre = view.pixel(truth.nav.at());
+        let colour = colour::of_team(vehicle.team.index());
         let pixels_per_m = f64::from(view.water.0) / (view.east_m.1 - view.east_m.0);
         let half = 0.5 * (scenario.boats[vehicle.boat].length_m * pixels_per_m).max(HULL_LEAST);
         let (sin, cos) = math::sin_cos(truth.nav.psi_rad);
         let corner = |(ahead, aside): (f64, f64)| {
-            let (north, east) = (half * (ahead * cos - aside * sin), half * (ahead * sin + aside * cos));
+            let north = half * (ahead * cos - aside * sin);
+            let east = half * (ahead * sin + aside * cos);
             (centre.0 + east.round() as i32, centre.1 - north.round() as i32)
         };
         let hull = [(1.2, 0.0), (0.4, 0.5), (-1.0, 0.5), (-1.0, -0.5), (0.4, -0.5), (1.2, 0.0)].map(corner);

@@ -38,7 +38,8 @@ fn title(header: &Header, what: &str) -> String {
 fn shades(series: &GameSeries) -> Vec<RGBColor> {
     let shade = |(i, boat): (usize, &BoatSeries)| {
         let mates = |boats: &[BoatSeries]| boats.iter().filter(|other| other.team == boat.team).count();
-        let (place, all) = (mates(&series.boats[..i]), mates(&series.boats));
+        let place = mates(&series.boats[..i]);
+        let all = mates(&series.boats);
         let white = if all > 1 { 0.5 * place as f64 / (all - 1) as f64 } else { 0.0 };
         let mix = |part: u8| (f64::from(part) + white * (255.0 - f64::from(part))).round() as u8;
         let RGBColor(red, green, blue) = colour::of_team(boat.team);

@@ -198,8 +198,10 @@ impl Drawing for Page {
 fn draw_lines(area: &Area<'_>, panel: &Panel) -> Drawn {
     let area = draw_header(area, panel)?;
     let ((x0, x1), (y0, y1)) = ranges(panel, area.dim_in_pixel());
-    let (x_axis, y_axis) = (Axis::new(panel.x, (x0, x1)), Axis::new(panel.y, (y0, y1)));
-    let (x_places, y_places) = (x_axis.places, y_axis.places);
+    let x_axis = Axis::new(panel.x, (x0, x1));
+    let y_axis = Axis::new(panel.y, (y0, y1));
+    let x_places = x_axis.places;
+    let y_places = y_axis.places;
     let mut chart = ChartBuilder::on(&area)
         .margin(12)
         .margin_top(0)
@@ -241,9 +243,11 @@ fn draw_lines(area: &Area<'_>, panel: &Panel) -> Drawn {
 /// area.
 fn draw_header<'a>(area: &Area<'a>, panel: &Panel) -> Drawn<Area<'a>> {
     let style = (FONT, 12).into_font().into_text_style(area).pos(Pos::new(HPos::Left, VPos::Center));
-    let (left, right) = (HEADER_LEFT, area.dim_in_pixel().0 as i32 - 24);
+    let left = HEADER_LEFT;
+    let right = area.dim_in_pixel().0 as i32 - 24;
     let title = CAPTION.into_font().into_text_style(area).pos(Pos::new(HPos::Left, VPos::Center));
-    let (mut at, mut rows) = (left + area.estimate_text_size(panel.title, &title)?.0 as i32 + 32, 0);
+    let mut at = left + area.estimate_text_size(panel.title, &title)?.0 as i32 + 32;
+    let mut rows = 0;
     let mut places = vec![];
     let named = || panel.coloured().filter(|(line, _)| !line.name.is_empty() && !pieces(&line.points).is_empty());
     for (line, _) in named() {
@@ -274,10 +278,12 @@ fn draw_absent(area: &Area<'_>, panel: &Panel) -> Drawn {
 
 /// The horizontal and vertical range of a panel.
 fn ranges(panel: &Panel, size: (u32, u32)) -> ((f64, f64), (f64, f64)) {
-    let ((mut x0, mut x1), (mut y0, mut y1)) = (extent(panel, panel.x, |p| p.0), extent(panel, panel.y, |p| p.1));
+    let (mut x0, mut x1) = extent(panel, panel.x, |p| p.0);
+    let (mut y0, mut y1) = extent(panel, panel.y, |p| p.1);
     if panel.equal {
         // The size of the panel without the labels.
-        let (wide, high) = (f64::from(size.0) - 100.0, f64::from(size.1) - 52.0);
+        let wide = f64::from(size.0) - 100.0;
+        let high = f64::from(size.1) - 52.0;
         let metres_per_pixel = f64::max((x1 - x0) / wide, (y1 - y0) / high);
         (x0, x1) = about_middle(x0, x1, wide * metres_per_pixel);
         (y0, y1) = about_middle(y0, y1, high * metres_per_pixel);

@@ -21,9 +21,11 @@ pub(super) struct Verdict {
 /// Reruns the game; calls `tell` after every frame.
 pub(super) fn check(recording: &Recording, mut tell: impl FnMut()) -> Result<Verdict> {
     let scenario = recording.scenario();
-    let (mut contest, mut shown) = (Contest::new(scenario, scenario.seed)?, EventCursor::default());
+    let mut contest = Contest::new(scenario, scenario.seed)?;
+    let mut shown = EventCursor::default();
     let mut inputs = Vec::new();
-    let (mut frames, mut end_s) = (0, 0.0);
+    let mut frames = 0;
+    let mut end_s = 0.0;
     let ticks = u64::from(scenario.ticks_per_decision);
     for message in recording.bag().messages().filter(|message| [FRAME, INPUTS].contains(&message.topic)) {
         if message.topic == INPUTS {
@@ -45,7 +47,8 @@ pub(super) fn check(recording: &Recording, mut tell: impl FnMut()) -> Result<Ver
         if codec::encode(&again) != message.bytes {
             let recorded: Frame = message.read()?;
             let [what, then, now] = first_difference(&recorded, &again, scenario)?;
-            let (tick, at_s) = (recorded.stamp.seq * ticks, recorded.stamp.valid_ns.as_s());
+            let tick = recorded.stamp.seq * ticks;
+            let at_s = recorded.stamp.valid_ns.as_s();
             let from = format!("DIFFERENT from tick {tick} on ({at_s:.1} s)");
             let text = format!("{from}: {what} was {then}, in the rerun it is {now}\n");
             return Ok(Verdict { is_same: false, text });
@@ -66,7 +69,8 @@ pub(super) fn check(recording: &Recording, mut tell: impl FnMut()) -> Result<Ver
     if ending.outcome.ticks != outcome.ticks {
         bail!("the game ended at tick {}, but the recording at {}", ending.outcome.ticks, outcome.ticks);
     }
-    let (recorded, again) = (&ending.outcome.digest, &outcome.digest);
+    let recorded = &ending.outcome.digest;
+    let again = &outcome.digest;
     let is_same = recorded == again;
     let text = if is_same {
         format!("{same}, digest {again}\n")
@@ -80,7 +84,8 @@ pub(super) fn check(recording: &Recording, mut tell: impl FnMut()) -> Result<Ver
 
 /// The first difference between two frames: its name and both values.
 fn first_difference(recorded: &Frame, again: &Frame, scenario: &Scenario) -> Result<[String; 3]> {
-    let (a, b) = (serde_json::to_value(recorded)?, serde_json::to_value(again)?);
+    let a = serde_json::to_value(recorded)?;
+    let b = serde_json::to_value(again)?;
     let [path, a, b] = differing("", &a, &b).unwrap_or_else(|| ["a number's last bit".into(), "?".into(), "?".into()]);
     // Replace a boat's index with its name.
     let name = path.strip_prefix(".vehicles.").and_then(|rest| {

@@ -125,7 +125,8 @@ impl Files {
                 .concat()
         );
         for (name, played) in progress.evaluated.iter().flat_map(|evaluated| &evaluated.played) {
-            let ([won, drawn, lost], [own, theirs]) = (played.results, played.points);
+            let [won, drawn, lost] = played.results;
+            let [own, theirs] = played.points;
             let _ = writeln!(
                 lines[1],
                 "{samples},{stage},{name},{won},{drawn},{lost},{own},{theirs},{}",
@@ -133,8 +134,10 @@ impl Files {
             );
         }
         for (one, opponent) in &progress.finished {
-            let ([own, theirs], side) = (one.standing.score, one.standing.side);
-            let (seed, steps) = (one.standing.seed, one.standing.steps);
+            let [own, theirs] = one.standing.score;
+            let side = one.standing.side;
+            let seed = one.standing.seed;
+            let steps = one.standing.steps;
             let _ = writeln!(
                 lines[2],
                 "{samples},{stage},{seed},{},{opponent},{own},{theirs},{steps},{},{}",
@@ -158,7 +161,8 @@ impl Files {
         }
         // Write the checksums first: the state depends on them.
         append(&self.folder.join(SUMS), sums)?;
-        let (path, new) = (Files::state(&self.folder), self.folder.join("state.new"));
+        let path = Files::state(&self.folder);
+        let new = self.folder.join("state.new");
         output_file::write(&new, "the state", state)?;
         std::fs::rename(&new, &path).with_context(|| format!("cannot write the state to {}", path.display()))
     }

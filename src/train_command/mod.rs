@@ -126,7 +126,8 @@ fn record(trainer: &mut Trainer, folder: &Path, every: NonZeroU64) -> Result<Arc
     let folder = Files::games(folder);
     let log = Arc::<RecordingLog>::default();
     check_recording_folder(&folder).with_context(|| format!("cannot record to {}", folder.display()))?;
-    let (names, commit) = (RecordingNames::ByNumber, env!("SQUALL_COMMIT").to_owned());
+    let names = RecordingNames::ByNumber;
+    let commit = env!("SQUALL_COMMIT").to_owned();
     trainer.watch(Recordings { folder, names, every: every.get(), commit }.watches(Arc::clone(&log)))?;
     Ok(log)
 }
@@ -134,7 +135,8 @@ fn record(trainer: &mut Trainer, folder: &Path, every: NonZeroU64) -> Result<Arc
 /// An evaluation in one line.
 fn line(evaluated: &Evaluated, is_best: bool) -> String {
     let against = |(name, played): &(String, Played)| {
-        let ([won, drawn, lost], [own, theirs]) = (played.results, played.points);
+        let [won, drawn, lost] = played.results;
+        let [own, theirs] = played.points;
         format!("{name} {won}-{drawn}-{lost}, {own:.1} : {theirs:.1}, out {:.1}", played.left_field)
     };
     let all: Vec<String> = evaluated.played.iter().map(against).collect();
@@ -149,7 +151,8 @@ fn line(evaluated: &Evaluated, is_best: bool) -> String {
 
 /// The command that plays the best policy in the game of the last stage.
 fn play_command(trainer: &Trainer, folder: &Path) -> Option<String> {
-    let (strategy, stage) = (folder.join("best.toml"), trainer.training().stage.last()?);
+    let strategy = folder.join("best.toml");
+    let stage = trainer.training().stage.last()?;
     let command = || format!("squall run {} --blue {}", stage.game.display(), strategy.display());
     strategy.exists().then(command)
 }
@@ -157,7 +160,8 @@ fn play_command(trainer: &Trainer, folder: &Path) -> Option<String> {
 fn finish(trainer: &Trainer, folder: &Path) -> Result<ExitCode> {
     let Some(best) = trainer.best() else { return Ok(ExitCode::SUCCESS) };
     let digest = onnx::Network::read(&best.onnx).context("cannot export the policy")?.digest();
-    let (samples, won) = (best.samples, 100.0 * best.won);
+    let samples = best.samples;
+    let won = 100.0 * best.won;
     let mut text = format!("best after {samples} samples: won {won:.0} %, digest {digest:032x}\n");
     if let Some(how) = play_command(trainer, folder) {
         text += &format!("play it with: {how}\n");

@@ -75,7 +75,8 @@ fn nested_json(target: &Target) -> Box<dyn Any> {
 /// Keys of up to 80 kB, more than zenoh can send at once: the hub receives them in two parts and
 /// must forward the whole.
 fn long_keys(target: &Target) -> Box<dyn Any> {
-    let (intruder, listener) = (Intruder::of(target), Intruder::of(target));
+    let intruder = Intruder::of(target);
+    let listener = Intruder::of(target);
     let mut kept: Vec<Box<dyn Any>> = Vec::new();
     for topic in ["say", "policy", "status", "order", "helm", "operate", "join", "alive/agent"] {
         for pattern in ["*", "*/*", "**"].map(|rest| listener.topic(&format!("{topic}/{rest}"))) {
@@ -219,7 +220,8 @@ fn crowding_the_port_keeps_no_client_out_and_does_not_disturb_the_game() {
     for files in FILES {
         let endpoint = free_endpoint();
         let sim = Sim::start_with(squall_with_files(files), "long", &["--listen", &endpoint, "--pace", "20x"]);
-        let (agents, operator) = (FOUR.map(|name| sim.agent(&[name])), sim.bus());
+        let agents = FOUR.map(|name| sim.agent(&[name]));
+        let operator = sim.bus();
         is_withstood(sim, agents.into(), files, &operator, &|sim| Target::of(sim).open("client").is_some());
     }
 }

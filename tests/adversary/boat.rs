@@ -55,9 +55,11 @@ fn serve(mut stream: TcpStream, datum: LatLon, commands: &Sender<(Instant, Mode)
         began,
         charge: Some(1.0),
     };
-    let (mut emulator, mut framer) = (Emulator::new(plan), Framer::new());
+    let mut emulator = Emulator::new(plan);
+    let mut framer = Framer::new();
     let nav = Nav { north_m: 40.0, east_m: 80.0, ..Nav::default() };
-    let (start, mut due) = (Instant::now(), Instant::now());
+    let start = Instant::now();
+    let mut due = Instant::now();
     let mut bytes = [0; 4096];
     stream.set_nodelay(true).expect("a socket");
     loop {

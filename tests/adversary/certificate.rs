@@ -36,7 +36,8 @@ fn sim(keys: &TempDir, scenario: &str, args: &[&str]) -> Sim {
 /// Starts a sim with keys, using this program.
 fn sim_by(mut program: Command, keys: &TempDir, scenario: &str, args: &[&str]) -> Sim {
     program.env_remove(TOKEN_VARIABLE);
-    let (endpoint, folder) = (free_endpoint(), keys.path().join("sim").display().to_string());
+    let endpoint = free_endpoint();
+    let folder = keys.path().join("sim").display().to_string();
     Sim::start_with(program, scenario, &[&["--listen", &endpoint, "--keys", &folder], args].concat())
 }
 
@@ -86,7 +87,8 @@ fn join_request(role: &str, vehicles: &Value) -> Vec<u8> {
 
 #[test]
 fn a_client_without_a_certificate_gets_no_session() {
-    let (own, foreign) = (keys(DAY), keys(DAY));
+    let own = keys(DAY);
+    let foreign = keys(DAY);
     let sim = sim(&own, "patient", &["--join-s", "600"]);
     let target = Target::of(&sim);
     let [trusted, forged] = [&own, &foreign].map(|keys| keys.path().join("operator"));
@@ -112,7 +114,8 @@ fn who_crowds_the_port_keeps_nobody_with_keys_out_and_disturbs_nobody() {
     let own = keys(DAY);
     for files in FILES {
         let sim = sim_by(squall_with_files(files), &own, "long", &["--pace", "20x"]);
-        let (agents, operator) = (agents(&sim, &own), node(&sim, &own, "operator").expect("good keys"));
+        let agents = agents(&sim, &own);
+        let operator = node(&sim, &own, "operator").expect("good keys");
         is_withstood(sim, agents, files, &operator, &|sim| node(sim, &own, "observer").is_ok());
     }
 }
@@ -120,7 +123,8 @@ fn who_crowds_the_port_keeps_nobody_with_keys_out_and_disturbs_nobody() {
 /// Existing links are kept: nobody is disconnected in the middle of a game.
 #[test]
 fn an_expired_certificate_is_rejected_but_open_links_continue() {
-    let (valid, start) = (Duration::from_secs(20), Instant::now());
+    let valid = Duration::from_secs(20);
+    let start = Instant::now();
     let own = keys(valid);
     let folder = own.path().join("team-blue");
     let sim = sim(&own, "patient", &[]);
@@ -184,7 +188,8 @@ fn an_observer_can_stop_boats_but_controls_nothing() {
     let sim = sim(&own, "long", &["--pace", "20x"]);
     let _agents = agents(&sim, &own);
     sim.wait_for_kind("started");
-    let (observer, traitor) = (node(&sim, &own, "observer").expect("good keys"), traitor(&sim, &own, "observer"));
+    let observer = node(&sim, &own, "observer").expect("good keys");
+    let traitor = traitor(&sim, &own, "observer");
     for control in ["pause", "stop", "release", "go_on", "step"] {
         let payload = json!({ "body": control }).to_string();
         assert_eq!(traitor.ask("control", payload.clone().into_bytes()).len(), 0, "{control}");

@@ -110,9 +110,11 @@ impl Rig {
 fn an_e_stop_is_on_the_wire_in_time_whatever_happens_to_the_game() {
     let mut rig = Rig::start(&[]);
     rig.measure("undisturbed");
-    let (sent, start) = (Arc::new(AtomicU64::new(0)), Instant::now());
+    let sent = Arc::new(AtomicU64::new(0));
+    let start = Instant::now();
     let flood = ["control", "order/x"].map(|topic| {
-        let (intruder, sent) = (Intruder::at(&rig.sim), Arc::clone(&sent));
+        let intruder = Intruder::at(&rig.sim);
+        let sent = Arc::clone(&sent);
         Repeated::start(move || {
             intruder.publish(topic, "garbage");
             sent.fetch_add(1, Ordering::Relaxed);
@@ -164,7 +166,8 @@ fn orders_ahead_of_the_game_are_refused_and_the_sims_orders_still_count() {
             intruder.publish("external/blue_one", codec::encode(&forged));
             count("orders ahead of the game") > before
         });
-        let (sound, old) = (count("orders"), count("old orders"));
+        let sound = count("orders");
+        let old = count("old orders");
         wait_until("the sim's are obeyed", || count("orders") > sound + 10);
         assert_eq!(count("old orders"), old, "{stamp}");
     }

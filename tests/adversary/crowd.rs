@@ -65,7 +65,8 @@ impl Drop for Repeated {
 
 /// New connections, opened as fast as the port accepts them; the newest ones stay open.
 fn stream(target: &Target, count: usize) -> Repeated {
-    let (at, mut newest) = (target.address().to_owned(), VecDeque::new());
+    let at = target.address().to_owned();
+    let mut newest = VecDeque::new();
     let stream = Repeated::start(move || {
         newest.extend(TcpStream::connect(&at));
         if newest.len() > count {

@@ -64,7 +64,8 @@ fn nobody_passes_for_the_sim_or_receives_orders_and_navigation() {
     let listen = |intruder: &Intruder| -> Vec<Heard> {
         ["**", "*/*", "order/*", "order/**", "nav/*"].map(|topic| intruder.listen(topic)).into()
     };
-    let (mut heard, heard_by_router) = (listen(&listener), listen(&intruders[1]));
+    let mut heard = listen(&listener);
+    let heard_by_router = listen(&intruders[1]);
     heard.push(listener.listen_anywhere("**"));
     let open = listener.listen("picture/blue");
     for _ in 0..200 {

@@ -19,7 +19,8 @@ const A_WHILE: Duration = Duration::from_secs(2);
 fn forged_messages_of_the_sim_reach_nobody() {
     let (sim, mut agents) = Sim::start_with_agents("patient", &[]);
     let observer = sim.bus();
-    let (name, scenario) = (sim.name(), sim.info(&observer).scenario);
+    let name = sim.name();
+    let scenario = sim.info(&observer).scenario;
     let forged = Arc::new(AtomicUsize::new(0));
     let count = |is_forged: fn(&[u8]) -> bool| {
         let forged = Arc::clone(&forged);

@@ -44,17 +44,20 @@ fn a_stranger_who_answers_operators_cannot_swallow_commands() {
     let rig = Rig::start(&[]);
     let operator = session(&rig.sim, Some(token()));
     let intruder = Intruder::at(&rig.sim);
-    let (forged, asked) = (forged_reply(), Arc::new(Mutex::new(Vec::<Query>::new())));
+    let forged = forged_reply();
+    let asked = Arc::new(Mutex::new(Vec::<Query>::new()));
     let lies = answer(&intruder, move |query| (0..3).for_each(|_| reply(&query, &forged)));
     // A second stranger keeps each query open, as if it were about to answer.
-    let (second, kept) = (Intruder::at(&rig.sim), Arc::clone(&asked));
+    let second = Intruder::at(&rig.sim);
+    let kept = Arc::clone(&asked);
     let silence = answer(&second, move |query| kept.lock().push(query));
     for command in [OperatorCommand::EStop, OperatorCommand::Release, OperatorCommand::Disarm] {
         for _ in 0..6 {
             rig.arm();
             let reply = operate(&operator, &rig.sim, &command).expect("it is the gateway that answers");
             let reply = reply.expect("the gateway answers");
-            let (state, at_port) = (reply.status.state, rig.tell(OperatorCommand::Status).status.state);
+            let state = reply.status.state;
+            let at_port = rig.tell(OperatorCommand::Status).status.state;
             assert!(at_port.starts_with(&state[..5]), "the reply says {state:?}, the gateway {at_port:?}");
             let expected = if command == OperatorCommand::Release { "armed" } else { "" };
             assert_eq!(at_port == "armed", expected == "armed", "{command:?}: {at_port}");
@@ -112,8 +115,10 @@ fn gateway_reports_cannot_be_forged() {
     let record = folder.path().join("game.mcap");
     let rig = Rig::start(&["--record", record.to_str().expect("UTF-8")]);
     let observer = session(&rig.sim, None);
-    let (told, forged) = (Arc::new(Mutex::new(0)), Arc::new(Mutex::new(0)));
-    let (count, count_forged) = (Arc::clone(&told), Arc::clone(&forged));
+    let told = Arc::new(Mutex::new(0));
+    let forged = Arc::new(Mutex::new(0));
+    let count = Arc::clone(&told);
+    let count_forged = Arc::clone(&forged);
     let take = move |bytes: &[u8]| {
         let is_forged = bytes.windows(6).any(|word| word == b"FORGED");
         *(if is_forged { &count_forged } else { &count }).lock() += 1;

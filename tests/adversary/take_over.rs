@@ -21,7 +21,8 @@ const FULL_AHEAD: Order = Order::Thrust { port: 1.0, starboard: 1.0 };
 
 /// The reply to a request to join as the boat's agent; `None` if the token is refused.
 fn join((game, scenario): (&GameName, &Scenario), bus: &Bus) -> Option<JoinReply> {
-    let (version, vehicles) = (primitives::VERSION.to_owned(), vec![BOAT.to_owned()]);
+    let version = primitives::VERSION.to_owned();
+    let vehicles = vec![BOAT.to_owned()];
     let request = JoinRequest { version, role: Role::Agent, node: bus.id(), vehicles };
     let key = topic::join(game, scenario, Role::Agent, &request.vehicles);
     bus.request(&key, &request, Duration::from_secs(10)).ok()?
@@ -106,7 +107,8 @@ fn the_ticket_of_the_dead_is_void_once_somebody_else_has_the_boat() {
 fn nobody_without_a_ticket_can_take_over_a_steered_boat() {
     let mut game = DisturbedGame::start();
     let sim = &game.sim;
-    let (intruder, stranger) = (Intruder::at(sim), session(sim, None));
+    let intruder = Intruder::at(sim);
+    let stranger = session(sim, None);
     let info = sim.info(&stranger);
     let agents = session(sim, None);
     let proof = json!({ "challenge": "00".repeat(16), "mac": "ff".repeat(32) });

@@ -18,7 +18,8 @@ fn game() -> &'static Game {
     static GAME: OnceLock<Game> = OnceLock::new();
     GAME.get_or_init(|| {
         let dir = tempfile::tempdir().unwrap();
-        let (runs, json) = (text(dir.path().join("runs")), text(dir.path().join("result.json")));
+        let runs = text(dir.path().join("runs"));
+        let json = text(dir.path().join("result.json"));
         let game = "scenarios/games/attack_1v1.toml";
         program::printed(program::project(), &["run", game, "--in-process", "--record", &runs, "--json", &json]);
         let result = serde_json::from_str(&std::fs::read_to_string(json).unwrap()).unwrap();
@@ -106,7 +107,9 @@ fn a_film_has_a_picture_for_each_tenth_of_a_second_that_it_is_looked_at() {
         let mut options = gif::DecodeOptions::new();
         options.set_color_output(gif::ColorOutput::RGBA);
         let mut film = options.read_info(std::fs::File::open(&path).unwrap()).unwrap();
-        let (size, mut delays, mut pixels) = ((film.width(), film.height()), vec![], vec![]);
+        let size = (film.width(), film.height());
+        let mut delays = vec![];
+        let mut pixels = vec![];
         while let Some(picture) = film.read_next_frame().unwrap() {
             let is_whole = (picture.width, picture.height) == size;
             assert_eq!(is_whole, delays.is_empty(), "the first is whole, the others are what changed");

@@ -22,7 +22,8 @@ const MATTERS: &str = "goal_ahead";
 
 fn model() -> Vec<u8> {
     let names = SPEC.observation.names(0, 1);
-    let (inputs, outputs) = (names.len(), SPEC.action.outputs());
+    let inputs = names.len();
+    let outputs = SPEC.action.outputs();
     let mut layer = Layer { inputs, outputs, weights: vec![0.0; inputs * outputs], biases: vec![0.0; outputs] };
     layer.biases[ACTION] = 3.0;
     layer.weights[ACTION * inputs + names.iter().position(|name| name == MATTERS).unwrap()] = 2.0;
@@ -94,7 +95,9 @@ fn what_a_helm_reports_of_a_policy_is_told_in_words() {
     let mut probabilities = vec![0.0; 17];
     (probabilities[ACTION], probabilities[0]) = (0.75, 0.25);
     let model = game.strategy_of(blue).models().next().unwrap().name.clone();
-    let (course_deg, speed_m_s, fault) = (Some(0.0), Some(1.0), None);
+    let course_deg = Some(0.0);
+    let speed_m_s = Some(1.0);
+    let fault = None;
     let behaviour = "learned".to_owned();
     let mut report =
         PolicyReport { behaviour, model, course_deg, speed_m_s, option: None, fault, probabilities, observed };

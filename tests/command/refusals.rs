@@ -5,7 +5,10 @@ use crate::program::{command, project, refusal, scenario, words};
 /// Runs the commands of one case; returns the texts missing from their output.
 fn missing(case: &str) -> Vec<String> {
     let dir = tempfile::tempdir().unwrap();
-    let (mut file, mut commands, mut missing, mut looked_for) = (None, vec![], vec![], 0);
+    let mut file = None;
+    let mut commands = vec![];
+    let mut missing = vec![];
+    let mut looked_for = 0;
     for line in case.lines().filter(|line| !line.is_empty()) {
         let line = line.replace("SCENARIOS", &project().join("scenarios").display().to_string());
         if let Some(path) = line.strip_prefix("--- ") {

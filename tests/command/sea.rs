@@ -59,14 +59,16 @@ fn every_sea_has_its_numbers_and_a_page_of_four_panels() {
 #[test]
 fn the_page_is_named_after_the_sea_and_changes_with_the_seed() {
     let dir = tempfile::tempdir().unwrap();
-    let (file, boat) = (dir.path().join("own_gale.toml"), scenario("boats/otter.toml"));
+    let file = dir.path().join("own_gale.toml");
+    let boat = scenario("boats/otter.toml");
     std::fs::write(&file, format!("base = {:?}\n", scenario("seas/gale.toml"))).unwrap();
     let page = |seed: &str| {
         let text = printed(&dir, &["sea", "own_gale.toml", "--boat", &boat, "--seed", seed]);
         assert!(text.ends_with("plot: own_gale.svg\n"), "{text}");
         std::fs::read_to_string(dir.path().join("own_gale.svg")).unwrap()
     };
-    let (one, two) = (page("1"), page("2"));
+    let one = page("1");
+    let two = page("2");
     assert_well_formed(&one);
     assert!(one.lines().any(|line| line == "own_gale: otter, seed 1"));
     assert!(one == page("1") && one != two);
@@ -76,7 +78,8 @@ fn the_page_is_named_after_the_sea_and_changes_with_the_seed() {
 fn the_free_boat_is_that_of_the_trial() {
     for (name, seed) in [("fresh_breeze", "1"), ("bay_gale", "3"), ("tidal", "1")] {
         let dir = tempfile::tempdir().unwrap();
-        let (file, boat) = (scenario(&format!("seas/{name}.toml")), scenario("boats/surveyor_m1_8.toml"));
+        let file = scenario(&format!("seas/{name}.toml"));
+        let boat = scenario("boats/surveyor_m1_8.toml");
         let (text, _) = sea(&dir, &file, &["--seed", seed]);
         let trial = printed(&dir, &["trial", &boat, "--manoeuvre", "drift", "--sea", &file, "--seed", seed]);
         let want = ["drift speed", "drift toward", "mean heading"].map(|name| numbers(value(&trial, name))[0]);

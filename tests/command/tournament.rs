@@ -57,7 +57,8 @@ fn keys(value: &Value) -> Vec<&str> {
 #[test]
 fn a_game_of_a_tournament_is_played_again_by_run_byte_for_byte() {
     let dir = tempfile::tempdir().unwrap();
-    let (report, result) = (place(&dir, "report.json"), place(&dir, "result.json"));
+    let report = place(&dir, "report.json");
+    let result = place(&dir, "result.json");
     let how = format!("tournament {TOURNAMENT} --games 2 --seed 11 --jobs 2 --json {report}");
     let text = printed(project(), &words(&how));
     let how = format!("squall run {GAME} --sea {SEA} --blue A --red B --seed 11 --in-process");
@@ -71,7 +72,9 @@ fn a_game_of_a_tournament_is_played_again_by_run_byte_for_byte() {
         row["strategy"].as_str().unwrap().to_owned()
     };
     for game in matches {
-        let (blue, red, seed) = (strategy(&game["blue"]), strategy(&game["red"]), game["seed"].to_string());
+        let blue = strategy(&game["blue"]);
+        let red = strategy(&game["red"]);
+        let seed = game["seed"].to_string();
         let how = format!("--sea {SEA} --blue {blue} --red {red} --seed {seed} --in-process --json {result}");
         printed(project(), &words(&format!("run {GAME} --no-record {how}")));
         let played = json(&result);
@@ -103,7 +106,8 @@ fn a_challenger_is_told_against_whom_it_won_how_many_of_the_decided_games() {
 fn the_report_has_every_number_and_is_the_same_on_one_thread_and_on_four() {
     let dir = tempfile::tempdir().unwrap();
     let tournament = short_tournament(&dir, "self_play = true");
-    let (path, table) = (place(&dir, "report.json"), place(&dir, "table.csv"));
+    let path = place(&dir, "report.json");
+    let table = place(&dir, "table.csv");
     let play = |jobs: &str| {
         let how = format!("tournament {tournament} --games 4 --jobs {jobs} --json {path} --csv {table}");
         let text = printed(project(), &words(&how));
@@ -159,7 +163,8 @@ fn the_quality_of_a_tournament_is_that_of_its_recorded_games() {
     let settings = "games = 2\nseed = 5\nself_play = false";
     let tournament = tournament_of(&dir, settings, &[("strategy_4", "strategy_4"), ("pav01", "pav01")]);
     let game = place(&dir, "short.toml");
-    let (report, quality) = (place(&dir, "report.json"), place(&dir, "quality.json"));
+    let report = place(&dir, "report.json");
+    let quality = place(&dir, "quality.json");
     let said = printed(project(), &["tournament", &tournament, "--quality", "--jobs", "2", "--json", &report]);
 
     let mut recordings = vec![];
@@ -182,7 +187,8 @@ fn the_quality_of_a_tournament_is_that_of_its_recorded_games() {
 #[test]
 fn an_odd_number_of_games_is_rounded_up_with_a_note() {
     let dir = tempfile::tempdir().unwrap();
-    let (tournament, report) = (short_tournament(&dir, "games = 5\nseed = 9"), place(&dir, "report.json"));
+    let tournament = short_tournament(&dir, "games = 5\nseed = 9");
+    let report = place(&dir, "report.json");
     let output = output(&["tournament", &tournament, "--json", &report]);
     let note = String::from_utf8(output.stderr).unwrap();
     assert!(output.status.success() && note.contains("5 games per pairing become 6"), "{note}");
@@ -213,7 +219,8 @@ fn games_that_cannot_start_are_explained() {
 #[test]
 fn who_joins_a_league_plays_its_own_games_alone_and_a_torn_line_is_played_again() {
     let dir = tempfile::tempdir().unwrap();
-    let (league, whole) = (place(&dir, "league"), place(&dir, "whole.json"));
+    let league = place(&dir, "league");
+    let whole = place(&dir, "whole.json");
     let results = format!("{league}/results.jsonl");
     let play = |entries: &[(&str, &str)], options: &[&str]| {
         let tournament = tournament_of(&dir, "games = 4", entries);
@@ -231,7 +238,8 @@ fn who_joins_a_league_plays_its_own_games_alone_and_a_torn_line_is_played_again(
     assert!(said.contains("3 of 12 games already played") && said.contains("9 games in"), "{said}");
     // The result equals that of a tournament that plays all games.
     play(&[four, pav01, idle], &["--json", &whole]);
-    let (mut known, mut anew) = (json(&format!("{league}/report.json")), json(&whole));
+    let mut known = json(&format!("{league}/report.json"));
+    let mut anew = json(&whole);
     (known["rate"], anew["rate"]) = (Value::Null, Value::Null);
     assert_eq!(known, anew);
     // A renamed file is the same player; a different file is not.

@@ -55,10 +55,12 @@ fn otter(name: &str, more: &[&str]) -> (Columns, Columns) {
 /// The largest distance from the reference, divided by the distance sailed (at least one metre).
 fn position_error(want: &Columns, got: &Columns) -> f64 {
     assert_eq!(want["t"].len(), got["t_s"].len());
-    let (mut sailed_m, mut worst) = (0.0, 0.0_f64);
+    let mut sailed_m = 0.0;
+    let mut worst = 0.0_f64;
     for i in 0..want["t"].len() {
         assert!((want["t"][i] - got["t_s"][i]).abs() < 1e-9);
-        let (x, y) = (want["y_east"][i], want["x_north"][i]);
+        let x = want["y_east"][i];
+        let y = want["x_north"][i];
         if i > 0 {
             sailed_m += (x - want["y_east"][i - 1]).hypot(y - want["x_north"][i - 1]);
         }
@@ -118,7 +120,9 @@ fn the_otter_zigzags_swing_by_swing_where_the_switches_are_known() {
     let dir = tempfile::tempdir().unwrap();
     let want = reference("otter/zigzag10_n80_d10.csv");
     let switch = |i: usize| {
-        let (told, before, now) = (want["n1_cmd"][i], want["n1"][i - 1], want["n1"][i]);
+        let told = want["n1_cmd"][i];
+        let before = want["n1"][i - 1];
+        let now = want["n1"][i];
         // Since the switch, a first-order lag of 0.1 s has moved from `before` towards `told`, if
         // it has moved at all.
         let left = (now - told) / (before - told);

@@ -33,7 +33,9 @@ fn the_tutorial_holds_what_it_promises() {
         let output = program::squall(&folder, args);
         (output.status.success(), String::from_utf8([output.stdout, output.stderr].concat()).unwrap())
     };
-    let (mut files, mut shown, mut command) = (Vec::new(), 0, None);
+    let mut files = Vec::new();
+    let mut shown = 0;
+    let mut command = None;
     for (language, text) in blocks(&page) {
         match language {
             "toml" => {

@@ -65,8 +65,10 @@ impl MemoryLink {
             state.is_connected = false;
             state.links
         });
-        let (wire, on_event) = (Arc::clone(wire), Arc::new(on_event));
-        let (read_from, tell) = (Arc::clone(&wire), Arc::clone(&on_event));
+        let wire = Arc::clone(wire);
+        let on_event = Arc::new(on_event);
+        let read_from = Arc::clone(&wire);
+        let tell = Arc::clone(&on_event);
         let reader = NodeThread::start(move || read(&read_from, link, &**tell));
         MemoryLink { wire, on_event, _reader: reader.expect("a thread of the simulation") }
     }

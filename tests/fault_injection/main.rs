@@ -83,7 +83,8 @@ fn games_keep_their_guarantees_under_any_network_faults() {
     }
     let games = number("SQUALL_FAULT_GAMES").unwrap_or(GAMES);
     let from = number("SQUALL_FAULT_FROM").unwrap_or(0);
-    let (next, start) = (AtomicU64::new(from), Instant::now());
+    let next = AtomicU64::new(from);
+    let start = Instant::now();
     let failures = parking_lot::Mutex::new(SELDOM.into_iter().filter_map(failure).collect::<Vec<_>>());
     let work = || {
         while failures.lock().len() < FAILURES {

@@ -151,7 +151,8 @@ impl Operator<'_> {
 
     /// Stops all boats through the sim, for a while.
     fn stop_all(&mut self, stream: &mut Stream) {
-        let (asked, was_undisturbed) = (clock::now(), self.is_undisturbed());
+        let asked = clock::now();
+        let was_undisturbed = self.is_undisturbed();
         if bus::control(&self.bus, &self.game, Control::EStop).is_ok() {
             let on_its_way = self.plan.on_its_way();
             let since = if was_undisturbed && self.is_undisturbed() {

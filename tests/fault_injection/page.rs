@@ -21,7 +21,8 @@ const LATE: Duration = Duration::from_secs(3);
 
 /// Polls the page until the game is over.
 pub(crate) fn look(plan: &Plan, wire: &Wire, over: &Watched<bool>) {
-    let (began, stream) = (clock::now(), &mut Stream::new(plan.seed, "page"));
+    let began = clock::now();
+    let stream = &mut Stream::new(plan.seed, "page");
     let view =
         LiveView::open(net(false).into(), Some(name()), Box::new(|_| ()), |_| Err(String::new())).expect("a thread");
     let mut viewer = view.open_viewer(Access::Control);

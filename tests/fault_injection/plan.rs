@@ -205,7 +205,8 @@ impl Plan {
             }
         }
         spans.sort();
-        let (mut longest, mut open) = (Duration::ZERO, (Duration::ZERO, Duration::ZERO));
+        let mut longest = Duration::ZERO;
+        let mut open = (Duration::ZERO, Duration::ZERO);
         for (from, to) in spans {
             // Faults in quick succession add up: the answer may not have got through in between.
             open = if from <= open.1 + GAP { (open.0, open.1.max(to)) } else { (from, to) };

@@ -121,7 +121,8 @@ impl<F: FnMut()> Drop for AtExit<F> {
 fn add_real_boat(network: &SimulatedNetwork, plan: &Plan, scenario: &Scenario, over: &Arc<Watched<bool>>) {
     let vehicle = scenario.externals().next().expect("there is a real boat");
     let vehicle = scenario.vehicles[vehicle.index()].name.clone();
-    let (wire, stop) = (Arc::new(Wire::new(plan.forges())), Arc::<AtomicBool>::default());
+    let wire = Arc::new(Wire::new(plan.forges()));
+    let stop = Arc::<AtomicBool>::default();
     let taken = Arc::clone(&wire);
     network.on_take(move |published| {
         if published.node == "gateway" && published.key.contains("/external/") {
@@ -129,17 +130,27 @@ fn add_real_boat(network: &SimulatedNetwork, plan: &Plan, scenario: &Scenario, o
             order.into_iter().for_each(|order| taken.note_order(order.given_ns, published.at));
         }
     });
-    let (to_boat, ends, name) = (Arc::clone(&wire), Arc::clone(&stop), vehicle.clone());
+    let to_boat = Arc::clone(&wire);
+    let ends = Arc::clone(&stop);
+    let name = vehicle.clone();
     network.node(Duration::from_millis(200), "gateway", move || gateway_node::connect(&to_boat, &name, &ends));
     let over_for_page = Arc::clone(over);
-    let (watched, ends, plan_of, over) = (Arc::clone(&wire), Arc::clone(&stop), plan.clone(), Arc::clone(over));
-    let (seed, name, game_over) = (plan.seed, vehicle.clone(), Arc::clone(&over_for_page));
+    let watched = Arc::clone(&wire);
+    let ends = Arc::clone(&stop);
+    let plan_of = plan.clone();
+    let over = Arc::clone(over);
+    let seed = plan.seed;
+    let name = vehicle.clone();
+    let game_over = Arc::clone(&over_for_page);
     let intrude = move || stranger::intrude(seed, &self::name(), &name, &game_over);
     let operate = move || operator::operate(&plan_of, &watched, &vehicle, &over, &ends);
     network.node(operator::BEGINS, "operator", operate);
-    let (watched, plan_of, over) = (Arc::clone(&wire), plan.clone(), Arc::clone(&over_for_page));
+    let watched = Arc::clone(&wire);
+    let plan_of = plan.clone();
+    let over = Arc::clone(&over_for_page);
     network.node(page::BEGINS, "page", move || page::look(&plan_of, &watched, &over));
-    let (datum, cuts) = (scenario.field.plan.datum, plan.wire_cuts.clone());
+    let datum = scenario.field.plan.datum;
+    let cuts = plan.wire_cuts.clone();
     if plan.has_stranger() {
         network.node(stranger::BEGINS, "stranger", intrude);
     }
@@ -153,8 +164,12 @@ fn add_sim(
     results: &Arc<Mutex<Results>>,
     over: &Arc<Watched<bool>>,
 ) {
-    let (scenario, results, over) = (scenario.clone(), Arc::clone(results), Arc::clone(over));
-    let (pace, speed, game_seed) = (plan.pace, plan.speed, plan.game_seed);
+    let scenario = scenario.clone();
+    let results = Arc::clone(results);
+    let over = Arc::clone(over);
+    let pace = plan.pace;
+    let speed = plan.speed;
+    let game_seed = plan.game_seed;
     network.node(Duration::ZERO, "sim", move || {
         let _says_over = AtExit(|| over.visit(|over| *over = true));
         let stop = Arc::new(AtomicBool::new(false));

@@ -150,7 +150,9 @@ pub(crate) fn sail(wire: &Wire, datum: LatLon, cuts: &[(Duration, Duration)], st
     let plan = emulated(datum, DECLINATION_RAD);
     let mut emulator = Emulator::new(emulator::Plan { watchdog_s: Some(WATCHDOG_S), ..plan });
     let mut boat = Boat { at: Ned::from_xy(60.0, 40.0), ..Boat::default() };
-    let (start, mut moves, mut steps) = (clock::now(), 0_u64, 0_u64);
+    let start = clock::now();
+    let mut moves = 0_u64;
+    let mut steps = 0_u64;
     wire.visit(|_, now| assert_eq!(now, SimTime::ZERO));
     while !stop.load(Ordering::Relaxed) {
         clock::rest(MOVES);

@@ -40,8 +40,10 @@ pub(crate) fn intrude(seed: u64, game: &GameName, vehicle: &str, over: &Watched<
 }
 
 fn stay(bus: &Bus, (game, vehicle): (&GameName, &str), is_silent: bool, stream: &mut Stream, over: &Watched<bool>) {
-    let (operate, proofs) = (topic::operate(game, vehicle), Arc::new(Proofs::default()));
-    let (kept, forged) = (Arc::clone(&proofs), forged_reply(vehicle));
+    let operate = topic::operate(game, vehicle);
+    let proofs = Arc::new(Proofs::default());
+    let kept = Arc::clone(&proofs);
+    let forged = forged_reply(vehicle);
     // An unanswered query keeps its sender waiting.
     let open = Mutex::new(Vec::new());
     let take = move |query: Query| {

@@ -124,7 +124,8 @@ impl Boat {
             match stream.below(10) {
                 0 => self.order = Order::Hold,
                 1 => {
-                    let (port, starboard) = (stream.between(-0.5, 0.9), stream.between(-0.5, 0.9));
+                    let port = stream.between(-0.5, 0.9);
+                    let starboard = stream.between(-0.5, 0.9);
                     self.order = Order::Thrust { port, starboard };
                     self.until = now + SimTime::from_s(10.0);
                 }

@@ -74,7 +74,8 @@ fn approach(approach: &Approach, boat: &Boat, sea: &Sea) -> Option<Ended> {
     let begin = Ned { north: EDGE_M - from_m, east: 0.0 };
     let mut fixes = VecDeque::new();
     let mut farthest_m = f64::NEG_INFINITY;
-    let (mut command, mut stopped) = (Command::Hold, None::<(u32, Ned)>);
+    let mut command = Command::Hold;
+    let mut stopped = None::<(u32, Ned)>;
     for tick in 0.. {
         let sample = afloat.sample(0.0, command);
         let at = begin + sample.at;

@@ -163,7 +163,8 @@ impl Wire {
         };
         let settings = LinkSettings { silence: None, ..LinkSettings::default() };
         let link = Arc::new(Link::open(&address, settings, take).expect("it listens"));
-        let (stop, sender) = (Arc::<AtomicBool>::default(), Arc::clone(&link));
+        let stop = Arc::<AtomicBool>::default();
+        let sender = Arc::clone(&link);
         let ended = Arc::clone(&stop);
         std::thread::spawn(move || {
             while !ended.load(Ordering::Relaxed) {
@@ -202,7 +203,8 @@ impl Drop for Wire {
 #[test]
 fn the_guard_stops_a_boat_on_every_kind_of_link_when_its_gateway_is_killed_or_suspended() {
     // Thrust zero comes first: a gateway that sends only standby omits it.
-    let (zero, standby) = ("$PSEAC,T,0,0,0,*", "$PSEAC,L,0,0,0,*");
+    let zero = "$PSEAC,T,0,0,0,*";
+    let standby = "$PSEAC,L,0,0,0,*";
     for listen in ["tcp://127.0.0.1:0", "udp://127.0.0.1:0", "pty"] {
         let wire = Wire::listen(listen);
         let args = ["gateway", "surveyor", "--vehicle", "blue_one", "--no-record", "--game", "nowhere-else", "--link"];

@@ -48,7 +48,8 @@ impl Fleet {
             self.sim.squall(&["gateway", "console", "--gateway", &controls[0], "--gateway", &controls[1]]);
         command.stdin(Stdio::piped()).stderr(Stdio::piped());
         let (mut process, said) = Process::with_lines(command);
-        let ((sender, lines), (complainer, complaints)) = (channel(), channel());
+        let (sender, lines) = channel();
+        let (complainer, complaints) = channel();
         let stderr = BufReader::new(process.0.stderr.take().expect("piped"));
         std::thread::spawn(move || said.map_while(|line| sender.send(line).ok()).for_each(drop));
         std::thread::spawn(move || {
@@ -76,7 +77,9 @@ impl Console {
 
     /// Waits for lines with these beginnings, in any order; returns their times, ms.
     fn wait_for(&self, beginnings: &[&str]) -> Vec<u128> {
-        let (mut left, mut times, mut all) = (beginnings.to_vec(), Vec::new(), Vec::new());
+        let mut left = beginnings.to_vec();
+        let mut times = Vec::new();
+        let mut all = Vec::new();
         let start = Instant::now();
         while !left.is_empty() {
             let line = self.lines.recv_timeout(LIMIT.saturating_sub(start.elapsed()));

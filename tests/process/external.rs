@@ -31,7 +31,8 @@ pub(crate) struct Gateway {
 }
 
 fn request(bus: &Bus, vehicle: &str) -> JoinRequest {
-    let (version, vehicles) = (primitives::VERSION.to_owned(), vec![vehicle.to_owned()]);
+    let version = primitives::VERSION.to_owned();
+    let vehicles = vec![vehicle.to_owned()];
     JoinRequest { version, role: Role::Gateway, node: bus.id(), vehicles }
 }
 
@@ -134,7 +135,8 @@ fn a_real_boat_has_one_gateway_and_holds_without_navigation_or_agent() {
     agent.kill();
     gateway.sail_until("a boat without an agent holds", Gateway::is_held);
     sim.wait_for_event("agent_lost", "blue_one");
-    let (count, given_ns) = (gateway.received(), gateway.newest().expect("an order").given_ns);
+    let count = gateway.received();
+    let given_ns = gateway.newest().expect("an order").given_ns;
     gateway.sail_until("it is sent the hold again", |gateway| gateway.received() > count + 3);
     assert!(gateway.newest().is_some_and(|newest| newest.given_ns == given_ns) && gateway.is_held());
 
@@ -152,7 +154,8 @@ fn a_real_boat_has_one_gateway_and_holds_without_navigation_or_agent() {
 
 #[test]
 fn a_rehearsal_is_the_game_of_simulated_boats_in_one_process_and_across() {
-    let (mixed, simulated) = (own("mixed_30s"), own("pav01_30s"));
+    let mixed = own("mixed_30s");
+    let simulated = own("pav01_30s");
     let want = result_of(&[&simulated, "--in-process"])["digest"].clone();
     assert!(want.is_string());
     assert_eq!(result_of(&[&mixed, "--rehearse", "--in-process"])["digest"], want);

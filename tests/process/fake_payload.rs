@@ -22,11 +22,13 @@ impl FakePayload {
     fn start(serve: impl Fn(TcpStream, &AtomicU64) -> std::io::Result<()> + Send + Sync + 'static) -> FakePayload {
         let listener = TcpListener::bind("127.0.0.1:0").expect("a free port");
         let address = listener.local_addr().expect("an address");
-        let (asked, serve) = (Arc::<AtomicU64>::default(), Arc::new(serve));
+        let asked = Arc::<AtomicU64>::default();
+        let serve = Arc::new(serve);
         let counted = Arc::clone(&asked);
         std::thread::spawn(move || {
             for stream in listener.incoming().flatten() {
-                let (asked, serve) = (Arc::clone(&counted), Arc::clone(&serve));
+                let asked = Arc::clone(&counted);
+                let serve = Arc::clone(&serve);
                 // It is not an error if a client disconnects.
                 std::thread::spawn(move || drop(serve(stream, &asked)));
             }
@@ -109,7 +111,8 @@ fn answer(command: &str) -> String {
 
 /// The request line and the body of a request.
 fn request(reader: &mut impl BufRead) -> std::io::Result<(String, String)> {
-    let (mut head, mut length) = (String::new(), 0);
+    let mut head = String::new();
+    let mut length = 0;
     reader.read_line(&mut head)?;
     loop {
         let mut line = String::new();

@@ -68,7 +68,8 @@ fn agents_report_a_killed_sim_and_fail() {
 fn an_agent_does_not_stay_with_a_sim_that_never_let_it_in() {
     let (mut sim, mut agents) = game("lockstep");
     sim.play_on(2.0);
-    let (endpoint, name) = (sim.endpoint.clone(), sim.game.clone());
+    let endpoint = sim.endpoint.clone();
+    let name = sim.game.clone();
     sim.process.kill();
     let next = Sim::start_with(squall(&[]), "impatient", &["--listen", &endpoint, "--game", &name]);
     // Pictures resume: an agent that checks nothing else would stay.

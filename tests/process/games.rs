@@ -17,7 +17,8 @@ fn a_lockstep_game_over_the_network_is_the_game_in_one_process_byte_for_byte() {
 
 #[test]
 fn a_rough_game_with_lossy_links_is_the_same_over_the_network_too() {
-    let (game, bay) = (own("rough"), "scenarios/seas/bay_fresh_breeze.toml");
+    let game = own("rough");
+    let bay = "scenarios/seas/bay_fresh_breeze.toml";
     let mut digests = Vec::new();
     for (seed, sea) in [("1", &[][..]), ("2", &[]), ("1", &["--sea", bay])] {
         let words = [&[game.as_str(), "--seed", seed], sea].concat();

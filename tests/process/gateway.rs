@@ -265,7 +265,8 @@ fn refusal_within(limit: Duration, mut gateway: Command) -> String {
 
 #[test]
 fn a_gateway_that_cannot_record_exits_with_the_reason_and_leaves_the_boat_alone() {
-    let (dir, boat) = (temporary(), TcpListener::bind("127.0.0.1:0").expect("a port"));
+    let dir = temporary();
+    let boat = TcpListener::bind("127.0.0.1:0").expect("a port");
     boat.set_nonblocking(true).expect("a socket");
     let link = format!("tcp://{}", boat.local_addr().expect("it is bound"));
     let [taken, nowhere, full] = ["taken.mcap", "nowhere/x.mcap", "full.mcap"].map(|name| dir.path().join(name));
@@ -302,7 +303,8 @@ fn a_gateway_that_fails_sends_its_boat_standby_first_and_ends() {
 
 #[test]
 fn gateways_that_could_not_record_begin_no_game() {
-    let (dir, gateways) = (temporary(), "scenarios/gateways/emulated.toml");
+    let dir = temporary();
+    let gateways = "scenarios/gateways/emulated.toml";
     let file = dir.path().join("blue_one.mcap").display().to_string();
     std::fs::write(&file, "of the run before").expect("a file can be written");
     let records = dir.path().display().to_string();
@@ -393,7 +395,8 @@ fn a_game_through_gateways_and_emulated_boats_is_like_one_without() {
     let looped = emulated_game("scenarios/gateways/emulated.toml");
     let pure = result_of(&[MIXED, "--rehearse", "--in-process"]);
     for what in ["grabs", "tags"] {
-        let (got, want) = (count(&looped, what), count(&pure, what));
+        let got = count(&looped, what);
+        let want = count(&pure, what);
         assert!(
             got > 0 && want > 0 && got <= 4 * want && want <= 4 * got,
             "{what}: {got} through gateways, {want} without"

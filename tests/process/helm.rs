@@ -36,7 +36,8 @@ fn a_helm_says_what_it_thinks_and_its_functions_if_they_are_asked_for() {
 
 #[test]
 fn watch_shows_a_helm_and_helm_writes_its_functions() {
-    let ((sim, _agents), dir) = (game(), temporary());
+    let (sim, _agents) = game();
+    let dir = temporary();
     let watch = sim.squall(&["watch", "--helm", "blue_two", "--rate", "20"]);
     let (mut watch, mut lines) = Process::with_lines(watch);
     for line in lines.by_ref().take(3) {
@@ -84,7 +85,8 @@ fn a_game_goes_on_while_somebody_takes_a_decision_apart() {
 
 #[test]
 fn an_agent_plays_by_a_strategy_file_of_its_own() {
-    let (mine, sim) = (own("mine"), Sim::start("long", &[]));
+    let mine = own("mine");
+    let sim = Sim::start("long", &[]);
     let _ours = sim.quiet(&["agent", "--vehicle", "blue_one", "blue_two", "--strategy", &mine]);
     let _theirs = sim.quiet(&["agent", "--vehicle", "red_one", "red_two"]);
     sim.wait_for_kind("started");

@@ -212,7 +212,8 @@ fn an_e_stop_is_obeyed_at_once_under_a_flood_of_garbage() {
     let sim = sim_with_few_threads("real_attacker", &format!("{FACTOR}x"));
     let _agents = [sim.agent(&["blue_one"]), sim.agent(&["red_one"])];
     let mut gateway = Gateway::joined(&sim);
-    let ((bus, name, scenario), operator) = (sim.session(), sim.bus());
+    let (bus, name, scenario) = sim.session();
+    let operator = sim.bus();
     let (sender, orders) = channel();
     let take = move |bytes: &[u8]| {
         let order: ExternalOrder = codec::decode(bytes).expect("an order");

@@ -99,7 +99,8 @@ fn recorded(bag: &Bag, topic: &str, outward: bool) -> Vec<Vec<u8>> {
 #[test]
 fn bytes_pass_both_ways_and_are_recorded_with_what_the_sonde_measures() {
     let camera = FakePayload::camera(Duration::from_millis(20));
-    let (http, sonde) = (FakePayload::http_sonde(), FakePayload::sonde());
+    let http = FakePayload::http_sonde();
+    let sonde = FakePayload::sonde();
     let dir = temporary();
     let file = dir.path().join("boat.mcap").display().to_string();
     let payloads = [
@@ -171,8 +172,11 @@ fn bytes_pass_both_ways_and_are_recorded_with_what_the_sonde_measures() {
 /// The longest pause in sentences to the boat, and their rate per second, over this period.
 fn pace(wire: &Wire, over: Duration) -> (Duration, f64) {
     let count = || wire.received.visit(|text| text.matches("$PSEAC").count());
-    let (begin, first) = (Instant::now(), count());
-    let (mut last, mut seen, mut longest) = (begin, first, Duration::ZERO);
+    let begin = Instant::now();
+    let first = count();
+    let mut last = begin;
+    let mut seen = first;
+    let mut longest = Duration::ZERO;
     while begin.elapsed() < over {
         std::thread::sleep(Duration::from_millis(5));
         let now = count();
@@ -207,7 +211,8 @@ fn the_boat_is_commanded_ten_times_a_second_whatever_payloads_do() {
     full.set_write_timeout(Some(Duration::from_secs(1))).expect("a limit");
     assert!(full.write_all(&vec![b'x'; 50_000_000]).is_err(), "it is held up");
     // A client of a missing payload is disconnected, however often it connects.
-    let (gone, address) = (gateway.connect("gone"), gateway.reach("gone"));
+    let gone = gateway.connect("gone");
+    let address = gateway.reach("gone");
     assert_eq!(asked(gone, ""), "");
     let flood = std::thread::spawn(move || {
         while began.elapsed() < Duration::from_secs(14) {

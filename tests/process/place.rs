@@ -86,7 +86,8 @@ fn gateway(user: &User, game: &str, boat: &TcpListener) -> Command {
 
 #[test]
 fn a_gateway_that_outlives_its_sim_joins_the_next_and_requires_its_token() {
-    let (user, endpoint) = (User::new(), free_endpoint());
+    let user = User::new();
+    let endpoint = free_endpoint();
     let boat = TcpListener::bind("127.0.0.1:0").expect("a port");
     let pace = ["--pace", "realtime"];
     // The gateway starts before the first sim, too.

@@ -34,7 +34,8 @@ fn drive_north(bus: &Bus, name: &GameName, info: &GameInfo) -> Declaration {
 /// Plays a game with or without the policy; returns the result and the frames.
 fn play(is_safe: bool, has_policy: bool) -> (serde_json::Value, Vec<Frame>) {
     let sim = Sim::start("still_1v1", &[]);
-    let (bus, name) = (sim.bus(), sim.name());
+    let bus = sim.bus();
+    let name = sim.name();
     let info = sim.info(&bus);
     let frames = Arc::new(Mutex::new(Vec::new()));
     let seen = Arc::clone(&frames);
@@ -72,6 +73,7 @@ fn a_boat_follows_a_policy_but_not_out_of_the_field_and_the_game_is_the_same_aga
 fn without_a_policy_the_boat_lies_still() {
     let (_, frames) = play(true, false);
     let at = |frame: &Frame| frame.vehicles[ME.index()].nav.at();
-    let (first, last) = (frames.first().expect("frames"), frames.last().expect("frames"));
+    let first = frames.first().expect("frames");
+    let last = frames.last().expect("frames");
     assert!(at(first).distance(at(last)) < 1.0);
 }

@@ -15,7 +15,8 @@ fn refused(all: &Loop) -> String {
 /// its errors.
 fn check(all: &mut Loop, config: &str, report: &Path) -> [String; 2] {
     all.end_gateway();
-    let (link, report) = (format!("tcp://127.0.0.1:{}", all.proxy.port), report.display().to_string());
+    let link = format!("tcp://127.0.0.1:{}", all.proxy.port);
+    let report = report.display().to_string();
     let check = ["gateway", "check", "--link", &link, "--vehicle", "blue_one", "--config", config, "--report", &report];
     let checked = all.sim.run(&check);
     let said = [stdout(&checked), stderr(&checked)];

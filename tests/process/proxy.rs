@@ -30,8 +30,10 @@ impl Proxy {
     pub(crate) fn start(to: String) -> Proxy {
         let listener = TcpListener::bind("127.0.0.1:0").expect("a free port");
         let port = listener.local_addr().expect("bound").port();
-        let (state, open) = (Arc::new(AtomicU8::new(PASS)), Arc::new(Mutex::new(Vec::new())));
-        let (now, streams) = (Arc::clone(&state), Arc::clone(&open));
+        let state = Arc::new(AtomicU8::new(PASS));
+        let open = Arc::new(Mutex::new(Vec::new()));
+        let now = Arc::clone(&state);
+        let streams = Arc::clone(&open);
         std::thread::spawn(move || {
             for inner in listener.incoming().map_while(Result::ok) {
                 if now.load(Ordering::Relaxed) == REFUSE {
@@ -40,7 +42,8 @@ impl Proxy {
                 let Ok(outer) = TcpStream::connect(&to) else { continue };
                 for (from, into) in [(&inner, &outer), (&outer, &inner)] {
                     let _ = SockRef::from(from).set_recv_buffer_size(BUFFER);
-                    let (from, into) = (from.try_clone().expect("a stream"), into.try_clone().expect("a stream"));
+                    let from = from.try_clone().expect("a stream");
+                    let into = into.try_clone().expect("a stream");
                     let now = Arc::clone(&now);
                     std::thread::spawn(move || pass(from, into, &now));
                 }

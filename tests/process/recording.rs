@@ -96,7 +96,8 @@ fn what_is_heard_is_written_down_if_it_is_sound() {
     let file = path.display().to_string();
     let sim = Sim::start("long", &["--pace", "20x", "--record", &file]);
     let _agent = sim.agent(&FOUR);
-    let (bus, game) = (sim.bus(), sim.name());
+    let bus = sim.bus();
+    let game = sim.name();
     let scenario = scenario::load(Path::new(&own("long"))).unwrap_or_else(|e| panic!("{e}"));
     // A recording begins with the game.
     sim.play_on(1.0);
@@ -198,7 +199,8 @@ fn a_damaged_message_costs_itself_alone() {
 #[test]
 fn real_boats_are_recorded_with_every_byte_and_their_game_can_be_played_again() {
     let dir = temporary();
-    let (runs, gateways) = (dir.path().join("runs"), dir.path().join("gateways"));
+    let runs = dir.path().join("runs");
+    let gateways = dir.path().join("gateways");
     let [runs_text, gateways_text] = [&runs, &gateways].map(|path| path.display().to_string());
     let config = "scenarios/gateways/emulated.toml";
     let options = ["--emulate", "--pace", "10x", "--gateway", config, "--record-gateways", &gateways_text];
@@ -218,7 +220,8 @@ fn real_boats_are_recorded_with_every_byte_and_their_game_can_be_played_again() 
     let own = Bag::open(Path::new(&file)).unwrap_or_else(|e| panic!("{e}"));
     let sentences = |bytes: &[u8]| bytes.split(|byte| *byte == b'\n').filter(|line| line.len() > 9).count();
     for outward in [false, true] {
-        let (ours, theirs) = (bytes(recording.bag(), outward), bytes(&own, outward));
+        let ours = bytes(recording.bag(), outward);
+        let theirs = bytes(&own, outward);
         let place = theirs.windows(ours.len()).position(|window| window == ours);
         assert!(
             place.is_some() && sentences(&ours) > 100,

@@ -20,7 +20,8 @@ struct Shore {
 
 impl Shore {
     fn of(sim: &Sim) -> Shore {
-        let (bus, name) = (sim.bus(), sim.name());
+        let bus = sim.bus();
+        let name = sim.name();
         let (run, runs) = newest(&bus, topic::run(&name), |bytes| serde_json::from_slice(bytes).expect("a state"));
         let (frame, frames) = newest(&bus, topic::frame(&name), |bytes| codec::decode(bytes).expect("a frame"));
         Shore { bus, name, run, frame, _standing: [runs, frames] }

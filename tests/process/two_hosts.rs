@@ -37,7 +37,8 @@ impl Hosts {
         let id = format!("{}-{}", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
         let hosts = Hosts { names: [format!("squall-a-{id}"), format!("squall-b-{id}")], id: id.clone() };
         let [a, b] = &hosts.names;
-        let (va, vb) = (format!("sqa{id}"), format!("sqb{id}"));
+        let va = format!("sqa{id}");
+        let vb = format!("sqb{id}");
         for command in [
             format!("netns add {a}"),
             format!("netns add {b}"),

@@ -186,7 +186,8 @@ fn boats_reach_the_speed_they_are_named_for() {
                 scenario::boat::ThrustCurve::Propeller(p) => p.k_ahead * p.n_max_rad_s * p.n_max_rad_s,
                 scenario::boat::ThrustCurve::Table { points } => points.last().unwrap().1,
             };
-        let (a, b) = (boat.hull.surge_quadratic_kg_m, boat.hull.surge_linear_kg_s);
+        let a = boat.hull.surge_quadratic_kg_m;
+        let b = boat.hull.surge_linear_kg_s;
         // The positive root of a u² + b u = T, in the form that also holds for a = 0.
         let u_m_s = 2.0 * thrust_newton / (b + (b * b + 4.0 * a * thrust_newton).sqrt());
         assert!((u_m_s - want_m_s).abs() < 0.01, "{name}: {u_m_s} m/s");
@@ -341,7 +342,8 @@ fn the_examples_of_every_key_are_sound_and_show_the_defaults() {
     }
     for &kind in KINDS {
         // Every key of the schema is shown.
-        let (schema, text) = (scenario::schema(kind), &texts[kind.name()]);
+        let schema = scenario::schema(kind);
+        let text = &texts[kind.name()];
         for key in keys(&schema) {
             assert!(key == "base" || text.contains(&key), "{key} is not in the example of a {kind}");
         }

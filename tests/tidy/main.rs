@@ -51,7 +51,8 @@ fn every_rule_notices_its_breach() {
         let case = case.replace("{500 empty lines}\n", &"\n".repeat(LINES_MAX));
         let mut parts = case.splitn(3, '\n');
         let mut line = |begin: &str| parts.next().and_then(|line| line.strip_prefix(begin)).expect(begin).to_owned();
-        let (rule, said) = (line("rule: "), line("says: "));
+        let rule = line("rule: ");
+        let said = line("says: ");
         let mut tree = sound_tree();
         assert_eq!(breaches_of(&tree, &rule), Breaches::new(), "the sound tree, by {rule:?}");
         tree.files.insert(path.clone(), parts.next().expect("a text").to_owned());

@@ -27,7 +27,8 @@ impl Tree {
         let entries = fs::read_dir(folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display()));
         for entry in entries.map(|entry| entry.expect("a folder can be read to its end")) {
             let name = entry.file_name().to_string_lossy().into_owned();
-            let (at, path) = (entry.path(), if path.is_empty() { name.clone() } else { format!("{path}/{name}") });
+            let at = entry.path();
+            let path = if path.is_empty() { name.clone() } else { format!("{path}/{name}") };
             let is_text = [".rs", ".toml", ".md"].iter().any(|end| name.ends_with(end));
             if at.is_dir() && !at.is_symlink() && !name.starts_with('.') && path != "runs" {
                 self.add(&at, &path);

@@ -32,7 +32,8 @@ impl Arrival {
 
     /// Whether the point is reached; `line` is its position relative to the boat.
     pub(super) fn reaches(&mut self, line: Ned, capture_radius_m: f64, slip_radius_m: f64) -> bool {
-        let (distance_m, bearing_rad) = (line.length(), Ned::default().bearing_rad(line));
+        let distance_m = line.length();
+        let bearing_rad = Ned::default().bearing_rad(line);
         let before_rad = self.bearing_rad.replace(bearing_rad).unwrap_or(bearing_rad);
         self.turned_rad += wrap_pi(bearing_rad - before_rad);
         if self.turned_rad.abs() >= TAU {

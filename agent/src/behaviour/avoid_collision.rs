@@ -16,8 +16,10 @@ const PASSING_MIN_M_S: f64 = 0.3;
 
 impl BehaviourLogic for AvoidCollision {
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
-        let (inner_m, outer_m) = (self.inner_m.value(situation), self.outer_m.value(situation));
-        let (min_m, max_m) = (self.cpa_min_m.value(situation), self.cpa_max_m.value(situation));
+        let inner_m = self.inner_m.value(situation);
+        let outer_m = self.outer_m.value(situation);
+        let min_m = self.cpa_min_m.value(situation);
+        let max_m = self.cpa_max_m.value(situation);
         let horizon_s = self.time_on_leg_s.value(situation);
         // Cheap rejection without a square root: in a large fleet nearly all boats are far away.
         // The exact test follows.
@@ -49,7 +51,8 @@ impl BehaviourLogic for AvoidCollision {
 /// The side on which two approaching boats leave each other: the one on which they already pass.
 /// Both compute the same side, so neither turns into the other.
 fn side(own: MovingPoint, contact: MovingPoint) -> Option<Side> {
-    let (line, past) = (contact.at - own.at, contact.velocity - own.velocity);
+    let line = contact.at - own.at;
+    let past = contact.velocity - own.velocity;
     let past_m_s = past.length();
     if past_m_s < PASSING_MIN_M_S || line.dot(past) >= 0.0 {
         return None;
@@ -88,7 +91,8 @@ mod tests {
                     [30.0, 30.0, 3.0, 3.0].map(|most| stream.between(-most, most));
                 MovingPoint { at: Ned { north, east }, velocity: Ned { north: velocity_north, east: velocity_east } }
             };
-            let (one, other) = (boat(), boat());
+            let one = boat();
+            let other = boat();
             assert_eq!(side(one, other), side(other, one), "{one:?}, {other:?}");
             sides[side(one, other).map_or(0, |side| 1 + side as usize)] += 1;
         }

@@ -22,14 +22,16 @@ pub(super) struct AvoidObstacleBehaviour {
 
 impl AvoidObstacleBehaviour {
     pub(super) fn new(task: AvoidObstacle) -> AvoidObstacleBehaviour {
-        let (table, instructions) = (Table::default(), Instructions::best());
+        let table = Table::default();
+        let instructions = Instructions::best();
         AvoidObstacleBehaviour { task, outlines: Vec::new(), table, instructions }
     }
 }
 
 impl BehaviourLogic for AvoidObstacleBehaviour {
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
-        let (inner_m, outer_m) = (self.task.inner_m.value(situation), self.task.outer_m.value(situation));
+        let inner_m = self.task.inner_m.value(situation);
+        let outer_m = self.task.outer_m.value(situation);
         let min_m = self.task.cpa_min_m.value(situation);
         let max_m = self.task.cpa_max_m.value(situation).max(min_m);
         let horizon_s = self.task.time_on_leg_s.value(situation);

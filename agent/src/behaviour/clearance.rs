@@ -92,7 +92,8 @@ impl Clearance<'_> {
     /// Lowers the utilities of a group of courses.
     #[inline(always)]
     fn lower(&mut self, first: usize, ways: &Ways) {
-        let (worth, old_m_s) = (((50.0 / self.save_m) as f32, self.bend as f32), self.surge_m_s as f32);
+        let worth = ((50.0 / self.save_m) as f32, self.bend as f32);
+        let old_m_s = self.surge_m_s as f32;
         let most_m_s = larger(old_m_s, self.grid.speed_max_m_s() as f32);
         // A bit mask finds the courses that need work, without a branch for each.
         let mut low = ways.low(most_m_s, self.save_m as f32);
@@ -102,7 +103,8 @@ impl Clearance<'_> {
             if first + i >= self.grid.courses() {
                 return;
             }
-            let (way, speeds) = (ways.at(i), self.grid.speeds_side_by_side());
+            let way = ways.at(i);
+            let speeds = self.grid.speeds_side_by_side();
             // Lowered, not set: in a corner the boat is near two edges, and the worse one counts.
             for (row, speed_m_s) in self.table.lowered_mut(first + i).iter_mut().zip(speeds) {
                 for i in 0..LANES {
@@ -160,7 +162,8 @@ impl Turns {
     #[inline(always)]
     fn new(clearance: &Clearance<'_>, courses: &Courses) -> Turns {
         let handling = &clearance.handling;
-        let (zeros, speeds) = (Lanes::splat(0.0), Lanes::splat(0.0));
+        let zeros = Lanes::splat(0.0);
+        let speeds = Lanes::splat(0.0);
         let mut turns = Turns {
             by_rad: zeros,
             turn_rad_s: zeros,
@@ -228,8 +231,8 @@ impl Outward {
         let parallel_after_s = to_parallel_rad / turn.turn_rad_s;
         // All cases are computed without branches, so that this vectorises over a group of courses.
         let ends_out = end_s > 0.0;
-        let (end_out_s, end_after_s) =
-            (if ends_out { end_s } else { 0.0 }, if ends_out { turn.duration_s } else { 0.0 });
+        let end_out_s = if ends_out { end_s } else { 0.0 };
+        let end_after_s = if ends_out { turn.duration_s } else { 0.0 };
         // The farthest point is where the boat is parallel to the edge if the turn passes that
         // heading; otherwise it is at the start or the end.
         let is_parallel = (to_parallel_rad < turn.by_rad.abs()) & (parallel_s > end_s);
@@ -292,7 +295,8 @@ struct Ways {
 impl Ways {
     #[inline(always)]
     fn new(clearance: &Clearance<'_>, courses: &Courses, turns: &Turns, edge: &Edge) -> Ways {
-        let (normal, zeros) = (edge.normal, Lanes::splat(0.0));
+        let normal = edge.normal;
+        let zeros = Lanes::splat(0.0);
         let mut ways = Ways {
             start_m: edge.start_m,
             drift_m: edge.drift_m,
@@ -372,7 +376,8 @@ mod tests {
     fn stepped(from_rad: f64, by_rad: f64) -> (f64, f64) {
         let steps = 100_000;
         let dt_s = by_rad.abs() / HANDLING.turn_rad_s / f64::from(steps);
-        let (mut out_m, mut farthest_m) = (0.0, 0.0_f64);
+        let mut out_m = 0.0;
+        let mut farthest_m = 0.0_f64;
         for step in 0..steps {
             let angle_rad = from_rad + by_rad * (f64::from(step) + 0.5) / f64::from(steps);
             out_m += dt_s * math::sin_cos(angle_rad).1;
@@ -385,12 +390,15 @@ mod tests {
     fn a_turn_goes_out_as_far_as_small_steps_say() {
         for from_deg in (-180..180).step_by(25) {
             for by_deg in (-180..=180).step_by(20) {
-                let (from_rad, by_rad) = (f64::from(from_deg).to_radians(), f64::from(by_deg).to_radians());
+                let from_rad = f64::from(from_deg).to_radians();
+                let by_rad = f64::from(by_deg).to_radians();
                 let turn = Turn::new(by_rad, &HANDLING);
                 let sine = |angle_rad| math::sin_cos(angle_rad).0;
                 let outward = Outward::new(&turn, (from_rad, sine(from_rad)), sine(from_rad + by_rad));
                 let (farthest_m, out_m) = stepped(from_rad, by_rad);
-                let (farthest_s, after_s, end_s) = (outward.farthest_s, outward.farthest_after_s, outward.end_s);
+                let farthest_s = outward.farthest_s;
+                let after_s = outward.farthest_after_s;
+                let end_s = outward.end_s;
                 assert!((0.0..=turn.duration_s + 1e-9).contains(&after_s), "{after_s}");
                 let what = format!("from {from_deg} by {by_deg} degrees");
                 assert!((farthest_s - farthest_m).abs() < 1e-4, "{what}: {farthest_s} m, {farthest_m}");
@@ -402,7 +410,8 @@ mod tests {
     #[test]
     fn all_instructions_come_to_the_same_bits() {
         // The last courses and speeds do not fill their lanes.
-        let (grid, mut lowered) = (Grid::new(362, 37, 3.5), 0);
+        let grid = Grid::new(362, 37, 3.5);
+        let mut lowered = 0;
         for seed in 0..200 {
             let mut stream = primitives::stream::Stream::new(seed, "op_region");
             let heading_rad = stream.between(-4.0, 4.0);
@@ -410,7 +419,8 @@ mod tests {
                 let (sin, cos) = math::sin_cos(rad);
                 (Ned { north: cos, east: sin }, stream.between(-2.0, 60.0))
             });
-            let (surge_m_s, drift) = (stream.between(0.0, 4.0), Ned { north: stream.between(-1.0, 1.0), east: 0.3 });
+            let surge_m_s = stream.between(0.0, 4.0);
+            let drift = Ned { north: stream.between(-1.0, 1.0), east: 0.3 };
             let bits = |instructions: &Instructions| {
                 let mut table = Table::default();
                 table.clear(&grid);
@@ -438,14 +448,18 @@ mod tests {
 
     #[test]
     fn a_course_that_is_left_out_is_clear_at_every_speed() {
-        let (save_m, fastest_m_s) = (6.0, 3.5_f32);
+        let save_m = 6.0;
+        let fastest_m_s = 3.5_f32;
         let mut left_out = 0;
         for seed in 0..20_000 {
             let mut stream = primitives::stream::Stream::new(seed, "op_region");
             let old_m_s = stream.between(0.0, 4.0);
             let mut lanes = |least, most| Lanes::splat(stream.between(least, most) as f32);
-            let (out_s, back_s, straight_s) = (lanes(0.0, 9.0), lanes(0.0, 9.0), lanes(-9.0, 9.0));
-            let (start_m, drift_m) = (stream.between(0.0, 80.0) as f32, stream.between(-9.0, 9.0) as f32);
+            let out_s = lanes(0.0, 9.0);
+            let back_s = lanes(0.0, 9.0);
+            let straight_s = lanes(-9.0, 9.0);
+            let start_m = stream.between(0.0, 80.0) as f32;
+            let drift_m = stream.between(-9.0, 9.0) as f32;
             let within = [0; 3].map(|_| reached(old_m_s, stream.between(0.0, 9.0), &HANDLING));
             let slowest_m_s = within.map(|(slowest_m_s, _)| Lanes::splat(slowest_m_s));
             let fastest = within.map(|(_, fastest_m_s)| Lanes::splat(fastest_m_s));

@@ -35,7 +35,8 @@ impl HaltingAvoidance {
         let Some(halt_m) = value(halt_m) else { return Halt::Clear };
         // Three times the halt distance by default: if a halt ended at the distance at which it
         // begins, it would begin again at once.
-        let (release_m, release_s) = (value(release_m).unwrap_or(3.0 * halt_m), value(release_s));
+        let release_m = value(release_m).unwrap_or(3.0 * halt_m);
+        let release_s = value(release_s);
         let distances = situation.others.iter().map(|other| situation.at.distance(other.at));
         // All boats, including those that `contacts` excludes: the halt is about hulls, not tags.
         let nearest_m = distances.fold(f64::INFINITY, f64::min);

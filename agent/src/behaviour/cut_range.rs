@@ -9,7 +9,8 @@ impl BehaviourLogic for CutRange {
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
         let Some(contact) = situation.boat(self.contact).copied() else { return };
         let line = contact.at - situation.at;
-        let (distance_m, giveup_m) = (line.length(), self.giveup_m.value(situation));
+        let distance_m = line.length();
+        let giveup_m = self.giveup_m.value(situation);
         if giveup_m > 0.0 && distance_m > giveup_m {
             return;
         }

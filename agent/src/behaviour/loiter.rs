@@ -73,8 +73,8 @@ impl BehaviourLogic for LoiterBehaviour {
             self.choose(situation);
         }
         let Some(mut target) = self.target else { return };
-        let (capture_m, slip_m) =
-            (self.task.capture_radius_m.value(situation), self.task.slip_radius_m.value(situation));
+        let capture_m = self.task.capture_radius_m.value(situation);
+        let slip_m = self.task.slip_radius_m.value(situation);
         // On a small polygon several corners may be behind the boat at once, but never all of them.
         for _ in 1..self.corners.len() {
             if !self.arrival.reaches(self.corners[target] - situation.at, capture_m, slip_m) {

@@ -23,7 +23,8 @@ impl MemoryTurnLimitBehaviour {
 
     /// The mean of the remembered headings, rad, as a mean of directions.
     fn mean_rad(&self) -> f64 {
-        let (mut sum_sin, mut sum_cos) = (0.0, 0.0);
+        let mut sum_sin = 0.0;
+        let mut sum_cos = 0.0;
         for (_, heading_rad) in &self.headings {
             let (sin, cos) = math::sin_cos(*heading_rad);
             // A mean of directions, not of angles: the mean of 359 and 1 degrees is north.

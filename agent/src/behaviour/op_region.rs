@@ -39,7 +39,8 @@ pub(super) struct OpRegionBehaviour {
 
 impl OpRegionBehaviour {
     pub(super) fn new(task: OpRegion) -> OpRegionBehaviour {
-        let (table, instructions) = (Table::default(), Instructions::best());
+        let table = Table::default();
+        let instructions = Instructions::best();
         OpRegionBehaviour { task, side: Side::In, crossed: None, table, instructions }
     }
 
@@ -89,7 +90,8 @@ impl BehaviourLogic for OpRegionBehaviour {
             });
             return;
         }
-        let (lookahead_s, save_m) = (self.task.lookahead_s.value(situation), self.task.save_m.value(situation));
+        let lookahead_s = self.task.lookahead_s.value(situation);
+        let save_m = self.task.save_m.value(situation);
         // With the drift's deviation, boats left the field a quarter to a half less often in wind
         // and waves.
         let gust_m = GUST_S * situation.motion.spread_m_s();
@@ -137,7 +139,8 @@ impl Region {
     fn new(situation: &Situation, margin_m: f64) -> Region {
         let field = &situation.model.field;
         let (x, y) = field.along_across(situation.at);
-        let (width_m, depth_m) = (field.plan.width_m, field.plan.depth_m);
+        let width_m = field.plan.width_m;
+        let depth_m = field.plan.depth_m;
         let minus = |v: Ned| v.scaled(-1.0);
         Region {
             edges: [

@@ -113,7 +113,9 @@ impl Outline {
                 }
             }
         }
-        let (facing, feet, utilities) = (Vec::new(), Vec::new(), Vec::new());
+        let facing = Vec::new();
+        let feet = Vec::new();
+        let utilities = Vec::new();
         Outline { corners: corners.to_vec(), sides, half_planes, facing, feet, utilities }
     }
 
@@ -123,10 +125,12 @@ impl Outline {
         let mut least = Lanes::splat(f64::INFINITY);
         for side in &self.sides {
             for i in 0..LANES {
-                let (north, east) = (places.north.0[i] - side.corner.north, places.east.0[i] - side.corner.east);
+                let north = places.north.0[i] - side.corner.north;
+                let east = places.east.0[i] - side.corner.east;
                 let share = (north * side.along.north + east * side.along.east) * side.per_m2;
                 let share = smaller(larger(share, 0.0), 1.0);
-                let (north, east) = (north - share * side.along.north, east - share * side.along.east);
+                let north = north - share * side.along.north;
+                let east = east - share * side.along.east;
                 least.0[i] = smaller(least.0[i], north * north + east * east);
             }
         }
@@ -136,7 +140,8 @@ impl Outline {
     /// Computes where runs pass the corners and when they cross a side.
     #[inline(always)]
     fn runs(&mut self, from: Places, along: Places) -> Runs {
-        let (mut per_m2_s2, mut crossing_s) = (Lanes::splat(0.0), Lanes::splat(f64::INFINITY));
+        let mut per_m2_s2 = Lanes::splat(0.0);
+        let mut crossing_s = Lanes::splat(f64::INFINITY);
         for i in 0..LANES {
             let squared = along.north.0[i] * along.north.0[i] + along.east.0[i] * along.east.0[i];
             per_m2_s2.0[i] = if squared > 0.0 { 1.0 / squared } else { 0.0 };
@@ -145,10 +150,13 @@ impl Outline {
         for side in &self.sides {
             let mut foot = Foot { after_s: per_m2_s2, squared_m2: per_m2_s2 };
             for i in 0..LANES {
-                let (run_north, run_east) = (along.north.0[i], along.east.0[i]);
-                let (north, east) = (side.corner.north - from.north.0[i], side.corner.east - from.east.0[i]);
+                let run_north = along.north.0[i];
+                let run_east = along.east.0[i];
+                let north = side.corner.north - from.north.0[i];
+                let east = side.corner.east - from.east.0[i];
                 let after_s = (north * run_north + east * run_east) * per_m2_s2.0[i];
-                let (off_north, off_east) = (north - after_s * run_north, east - after_s * run_east);
+                let off_north = north - after_s * run_north;
+                let off_east = east - after_s * run_east;
                 let squared_m2 = off_north * off_north + off_east * off_east;
                 foot.after_s.0[i] = after_s;
                 // No run passes a corner behind it, however long it is.
@@ -230,7 +238,8 @@ impl Passes<'_> {
     #[inline(always)]
     fn pass(&mut self, first: usize, courses: &Courses) {
         let along = Places { north: courses.north, east: courses.east };
-        let (duration_s, horizon_s) = (self.turns_s(courses), Lanes::splat(self.horizon_s));
+        let duration_s = self.turns_s(courses);
+        let horizon_s = Lanes::splat(self.horizon_s);
         let velocity = Places::splat(self.velocity);
         let start = Places::splat(self.at).after(&velocity, &duration_s);
         let begin = start.after(&Places::splat(self.drift), &horizon_s);
@@ -286,7 +295,8 @@ impl Passes<'_> {
         let most_m = self.max_m + ROUNDING_M;
         let mut clear = Clear::No;
         for half_plane in &self.outline.facing {
-            let (mut turn_m, mut end_m) = (Lanes::splat(0.0), Lanes::splat(0.0));
+            let mut turn_m = Lanes::splat(0.0);
+            let mut end_m = Lanes::splat(0.0);
             for i in 0..LANES {
                 let start_m = half_plane.out_m(start.north.0[i], start.east.0[i]);
                 turn_m.0[i] = smaller(start_m, half_plane.out_m(begin.north.0[i], begin.east.0[i]));
@@ -307,7 +317,8 @@ impl Passes<'_> {
     /// last. Returns the first.
     #[inline(always)]
     fn run_straight(&mut self, begin: Places, along: Places, before_m2: &Lanes<f64>) -> usize {
-        let (speeds_m_s, max_m2) = (self.grid.speeds_m_s(), self.max_m * self.max_m);
+        let speeds_m_s = self.grid.speeds_m_s();
+        let max_m2 = self.max_m * self.max_m;
         let clear_m = self.clear_m(&begin, &along, smaller(before_m2.reduced(larger), max_m2).sqrt() + ROUNDING_M);
         let first = speeds_m_s.partition_point(|speed_m_s| speed_m_s * self.horizon_s <= clear_m).max(1);
         self.outline.utilities.clear();
@@ -459,7 +470,8 @@ mod tests {
     fn ways_are_worth_what_they_are_leg_by_leg_with_the_same_bits_from_all_instructions() {
         // The last courses and speeds do not fill their lanes.
         let grid = Grid::new(45, 20, 2.0);
-        let (mut clear, mut near) = (0, 0);
+        let mut clear = 0;
+        let mut near = 0;
         for seed in 0..2_000 {
             let scene = Scene::new(seed);
             let tables = Instructions::of_this_machine().into_iter().map(|set| scene.table(&grid, set));

@@ -18,7 +18,8 @@ impl BehaviourLogic for Shield {
         let ahead_m = self.distance_m.value(situation).min(0.5 * range_m);
         let station = if range_m > 1e-6 { guarded.at + line.scaled(ahead_m / range_m) } else { guarded.at };
         let distance_m = situation.at.distance(station);
-        let (guarded_m_s, fastest_m_s) = (guarded.velocity.length(), self.speed_m_s.value(situation));
+        let guarded_m_s = guarded.velocity.length();
+        let fastest_m_s = self.speed_m_s.value(situation);
         let (course_rad, speed_m_s) = if distance_m > self.radius_m.value(situation) {
             (situation.at.bearing_rad(station), guarded_m_s + CATCH_UP_PER_S * distance_m)
         } else if guarded_m_s > 0.1 {

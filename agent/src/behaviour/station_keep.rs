@@ -22,7 +22,8 @@ impl StationKeepBehaviour {
     }
 
     fn speed_m_s(&self, situation: &Situation, distance_m: f64) -> f64 {
-        let (inner_m, outer_m) = (self.task.inner_radius_m.value(situation), self.task.outer_radius_m.value(situation));
+        let inner_m = self.task.inner_radius_m.value(situation);
+        let outer_m = self.task.outer_radius_m.value(situation);
         if distance_m <= inner_m {
             0.0
         } else if distance_m < outer_m {

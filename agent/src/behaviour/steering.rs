@@ -44,7 +44,8 @@ pub(super) fn steer(situation: &Situation, course_rad: f64, speed_m_s: f64, cour
 
 /// A heading, rad, and a speed through the water, with the heading's share of the utility.
 pub(super) fn steer_heading(heading_rad: f64, summit: f64, course_share: f64) -> Objective<'static> {
-    let (peak_width, summit_delta) = (0.5 * summit, SPEED_SUMMIT_DELTA);
+    let peak_width = 0.5 * summit;
+    let summit_delta = SPEED_SUMMIT_DELTA;
     Objective::Coupled {
         course: Peak::tent(angle::wrap_pi(heading_rad), PI),
         speed: Peak { peak_width, summit_delta, ..Peak::tent(summit, SPEED_BASE_M_S) },

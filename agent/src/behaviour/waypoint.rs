@@ -46,8 +46,8 @@ impl BehaviourLogic for WaypointBehaviour {
         let count = self.task.points.len();
         let index = if self.task.reverse { count - 1 - self.reached } else { self.reached };
         let Some(point) = situation.locate(&self.task.points[index]) else { return };
-        let (capture_m, slip_m) =
-            (self.task.capture_radius_m.value(situation), self.task.slip_radius_m.value(situation));
+        let capture_m = self.task.capture_radius_m.value(situation);
+        let slip_m = self.task.slip_radius_m.value(situation);
         if self.arrival.reaches(point.at - situation.at, capture_m, slip_m) {
             output.reached = true;
             (self.arrival, self.from) = (self.arrival.next(), point.at);

@@ -83,7 +83,8 @@ impl HelmMind {
         // Only if a fault requires it: a copy of the scenario for each boat would be too expensive in a
         // fleet.
         if scenario.faults.iter().any(is_killed) {
-            let (scenario, program) = (scenario.clone(), program.clone());
+            let scenario = scenario.clone();
+            let program = program.clone();
             helm.restarted = Some(Box::new(move || HelmMind::new(&scenario, vehicle, &program)));
         }
         helm
@@ -156,7 +157,8 @@ impl HelmMind {
 
     /// Runs all behaviours that may run. Returns whether one requires the boat to stop.
     fn run_behaviours(&mut self, mode: usize) -> bool {
-        let (situation, posted) = (&self.situation, &mut self.posted);
+        let situation = &self.situation;
+        let posted = &mut self.posted;
         let mut stop = false;
         self.functions.clear();
         for (i, (behaviour, instance)) in self.program.behaviours.iter().zip(&mut self.instances).enumerate() {
@@ -234,7 +236,8 @@ impl HelmMind {
             }
             Decided::Steer(Choice { decision: Decision { course, speed }, .. }) => {
                 let grid = self.functions.problem.grid();
-                let (heading_rad, speed_m_s) = (grid.course_rad(course), grid.speed_m_s(speed));
+                let heading_rad = grid.course_rad(course);
+                let speed_m_s = grid.speed_m_s(speed);
                 self.situation.motion.order(heading_rad, speed_m_s)
             }
         }

@@ -78,7 +78,8 @@ mod tests {
 
     /// The moments posted for steps of (may run, active, complete).
     fn posted(perpetual: bool, steps: &[(bool, bool, bool)]) -> (Vec<Moment>, RunState) {
-        let (mut run, mut moments) = (BehaviourRun::new(), vec![]);
+        let mut run = BehaviourRun::new();
+        let mut moments = vec![];
         for (i, (may_run, active, complete)) in steps.iter().enumerate() {
             run.allow(*may_run, SimTime(i as i64), |moment| moments.push(moment));
             if run.runs() {

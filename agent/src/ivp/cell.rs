@@ -40,7 +40,8 @@ impl Cell {
         let at = |(north, east): (f32, f32), speed: f32| (speed * north, speed * east);
         // For a disc the corners lie on both sides of the middle: the square uses the same four
         // products as a ring segment, so that no lane branches.
-        let (slow, fast) = (if self.is_disc { -self.slow } else { self.slow }, self.stretch * self.fast);
+        let slow = if self.is_disc { -self.slow } else { self.slow };
+        let fast = self.stretch * self.fast;
         [at(self.first, slow), at(self.last, slow), at(self.first, fast), at(self.last, fast)]
     }
 }
@@ -114,20 +115,23 @@ impl CellSize {
         // The grid size need not be a multiple of the cell size. Lanes beyond it repeat the last
         // course, which keeps all bounds valid, and their sums mark them as absent.
         let of = |i: usize| (self.side * number + i).min(grid.courses() - 1);
-        let (first, last) = (of(0), of(self.side - 1));
+        let first = of(0);
+        let last = of(self.side - 1);
         if self.half_rad.is_none() {
             // The square around all speeds; `speed` gives half a side.
             return [1.0, 1.0, 1.0, -1.0, 1.0, 0.0];
         }
         let (east, north) = primitives::math::sin_cos(0.5 * (grid.course_rad(first) + grid.course_rad(last)));
-        let (first, last) = (grid.direction(first), grid.direction(last));
+        let first = grid.direction(first);
+        let last = grid.direction(last);
         [first.0, first.1, last.0, last.1, north as f32, east as f32]
     }
 
     /// The slowest, the fastest and the mean speed, m/s; beyond the grid, its last speed.
     fn speed(self, grid: &Grid, number: usize) -> [f32; 3] {
         let of = |i: usize| grid.speed_m_s((self.side * number + i).min(grid.speeds() - 1)) as f32;
-        let (slow, fast) = (of(0), of(self.side - 1));
+        let slow = of(0);
+        let fast = of(self.side - 1);
         if self.half_rad.is_some() { [slow, fast, 0.5 * (slow + fast)] } else { [fast, fast, 0.0] }
     }
 }
@@ -170,8 +174,10 @@ pub(super) struct Cells {
 
 impl Cells {
     pub(super) fn new(grid: &Grid) -> Cells {
-        let (sector_courses, sector_speeds) = (grid.courses().div_ceil(LANES), grid.speeds().div_ceil(LANES));
-        let (tile, sector) = (CellSize::new(grid, SIDE), CellSize::new(grid, SIDE * SIDE));
+        let sector_courses = grid.courses().div_ceil(LANES);
+        let sector_speeds = grid.speeds().div_ceil(LANES);
+        let tile = CellSize::new(grid, SIDE);
+        let sector = CellSize::new(grid, SIDE * SIDE);
         let chunks = (sector_courses * sector_speeds).div_ceil(LANES);
         let sectors = |chunk: usize| {
             let number = move |i: usize| LANES * chunk + i;
@@ -211,7 +217,8 @@ mod tests {
     fn field(stream: &mut Stream, grid: &Grid) -> Field {
         let fastest_m_s = grid.speed_max_m_s();
         let range_m = [3.0, 30.0, 400.0][stream.below(3) as usize];
-        let (offset, velocity) = (within(stream, range_m), within(stream, fastest_m_s));
+        let offset = within(stream, range_m);
+        let velocity = within(stream, fastest_m_s);
         let lag = |stream: &mut Stream| Lag {
             velocity: within(stream, fastest_m_s),
             heading: Ned::toward_deg(stream.between(0.0, 360.0)),
@@ -249,7 +256,8 @@ mod tests {
         match field {
             Field::Closest(ready) => {
                 let ways = ready.ways(&ready.turning.fan(cell), cell);
-                let (least_m, most_m) = (ready.least(&ways), ready.most(&ways));
+                let least_m = ready.least(&ways);
+                let most_m = ready.most(&ways);
                 if ready.seek {
                     (ready.worth_near(least_m), ready.worth_near(most_m))
                 } else {
@@ -267,9 +275,11 @@ mod tests {
             let mut stream = Stream::new(seed, "ivp/cell");
             let courses = [5, 12, 36, 47, 90, 360][stream.below(6) as usize];
             let grid = Grid::new(courses, [2, 9, 21, 36][stream.below(4) as usize], stream.between(0.5, 8.0));
-            let (cells, field) = (Cells::new(&grid), field(&mut stream, &grid));
+            let cells = Cells::new(&grid);
+            let field = field(&mut stream, &grid);
             for (k, j) in grid.points() {
-                let (across, along) = (k / LANES, j / LANES);
+                let across = k / LANES;
+                let along = j / LANES;
                 let sector = along * cells.sector_courses + across;
                 let (of_courses, of_speeds) = &cells.sectors[sector / LANES];
                 let tile = SIDE * (j / SIDE % SIDE) + k / SIDE % SIDE;

@@ -118,7 +118,8 @@ impl Closest {
         let scale_m = self.offset.length() + (contact_m_s + own_m_s) * most_s;
         let single = |v: Ned| (v.north as f32, v.east as f32);
         let (reaction_s, own) = lag.map_or((0.0, Ned::default()), |lag| (lag.reaction_s, lag.velocity));
-        let (offset, present) = (single(self.offset), single(self.velocity - own));
+        let offset = single(self.offset);
+        let present = single(self.velocity - own);
         let reaction = reaction_s as f32;
         let (beside, other_side) = match leave_to {
             Some(Side::Port) => ((offset.1, -offset.0), OTHER_SIDE),
@@ -237,8 +238,10 @@ impl Ready {
     /// it.
     #[inline(always)]
     pub(super) fn distance(&self, turn: &Turn, course: Vector, speed: f32) -> f32 {
-        let (at, speed) = (self.after(turn), self.mean_speed.of(speed));
-        let (past, w) = (minus(at, self.start), self.passing(course, speed));
+        let at = self.after(turn);
+        let speed = self.mean_speed.of(speed);
+        let past = minus(at, self.start);
+        let w = self.passing(course, speed);
         let turning = square(self.start, past, time(self.start, past, 1.0));
         let t = time(at, w, self.horizon);
         let straight = square(at, w, t);
@@ -251,10 +254,12 @@ impl Ready {
 
     #[inline(always)]
     pub(super) fn ways(&self, fan: &Fan, cell: &Cell) -> Ways {
-        let (first, last) = (self.after(&fan.first), self.after(&fan.last));
+        let first = self.after(&fan.first);
+        let last = self.after(&fan.last);
         let middle = (0.5 * (first.0 + last.0), 0.5 * (first.1 + last.1));
         let past = minus(middle, self.start);
-        let (slow, fast) = (self.mean_speed.of(cell.slow), self.mean_speed.of(cell.fast));
+        let slow = self.mean_speed.of(cell.slow);
+        let fast = self.mean_speed.of(cell.fast);
         let w = self.passing((cell.north, cell.east), self.mean_speed.of(cell.mean));
         Ways {
             first,
@@ -358,6 +363,7 @@ fn dot(a: Vector, b: Vector) -> f32 {
 /// The squared distance at a time, m², from a position with a velocity.
 #[inline(always)]
 fn square(p: Vector, w: Vector, t: f32) -> f32 {
-    let (north, east) = (p.0 + w.0 * t, p.1 + w.1 * t);
+    let north = p.0 + w.0 * t;
+    let east = p.1 + w.1 * t;
     north * north + east * east
 }

@@ -93,7 +93,8 @@ mod tests {
         }
         let mut stream = primitives::stream::Stream::new(1, "fixed");
         for _ in 0..100_000 {
-            let (factor, utility) = (stream.between(0.0, 64_000.0) as f32, stream.between(0.0, 100.0) as f32);
+            let factor = stream.between(0.0, 64_000.0) as f32;
+            let utility = stream.between(0.0, 100.0) as f32;
             let want = (f64::from(utility * factor)).round_ties_even() as i32;
             assert_eq!(Weight(factor).quanta(utility), want, "{factor} times {utility}");
         }

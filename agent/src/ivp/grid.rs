@@ -137,7 +137,8 @@ impl Grid {
     #[inline(always)]
     pub(super) fn ticks_between(&self, from: f64, k: usize) -> f64 {
         // Both are below a full turn, so no division is needed.
-        let (circle, ahead) = (self.circle(), f64::from(k as i32) * TICKS - from);
+        let circle = self.circle();
+        let ahead = f64::from(k as i32) * TICKS - from;
         let ahead = if ahead < 0.0 { ahead + circle } else { ahead };
         if 2.0 * ahead > circle { ahead - circle } else { ahead }
     }

@@ -81,7 +81,8 @@ impl<'a> Bounded<'a> {
     #[inline(always)]
     pub(super) fn new() -> Bounded<'a> {
         let zeros = Lanes::splat(0.0);
-        let (first, last) = (Turns::new(), Turns::new());
+        let first = Turns::new();
+        let last = Turns::new();
         Bounded { known: None, first, last, off: zeros, off_s: zeros, least: zeros, most: zeros }
     }
 

@@ -70,7 +70,8 @@ impl Objective<'_> {
         assert!(k < grid.courses() && j < grid.speeds(), "course {k}, speed {j}");
         match self.parts(grid) {
             Parts::Separable(Separable { course, speed, share }) => {
-                let (course, speed) = (course.of_course(grid, k), speed.of_speed(grid, j));
+                let course = course.of_course(grid, k);
+                let speed = speed.of_speed(grid, j);
                 // For display: the search adds the two parts as integers, each with its own weight,
                 // as `contribution` does.
                 (f64::from(course) * share + f64::from(speed) * (1.0 - share)) as f32
@@ -112,7 +113,8 @@ impl Objective<'_> {
             Objective::Closest(closest) => field(closest.ready(fastest_m_s).map(Field::Closest)),
             Objective::Closing(closing) => field(closing.ready(fastest_m_s).map(Field::Closing)),
             Objective::Table(table) => {
-                let (found, size) = ((table.courses, table.speeds), (grid.courses(), grid.speeds()));
+                let found = (table.courses, table.speeds);
+                let size = (grid.courses(), grid.speeds());
                 // A bug of the caller, not a fault of a file: a table of another grid would be read
                 // beyond its end.
                 assert!(found == size, "table of {found:?} courses and speeds, expected {size:?}");

@@ -82,7 +82,8 @@ impl Kernel for Search<'_> {
         }
         // Most promising first.
         while let Some(sector) = take_most(&mut self.bounds.sectors, best.value) {
-            let (across, along) = (sector % self.cells.sector_courses, sector / self.cells.sector_courses);
+            let across = sector % self.cells.sector_courses;
+            let along = sector / self.cells.sector_courses;
             let mut tiles = [self.tiles(sector)];
             while let Some(tile) = take_most(&mut tiles, best.value) {
                 self.evaluate((SIDE * across + tile % SIDE, SIDE * along + tile / SIDE), &mut best);
@@ -209,16 +210,20 @@ impl Sums {
     /// The upper bounds of lists and tables in each tile of a sector.
     #[inline(always)]
     fn most_in_lists(&self, across: usize, along: usize) -> Lanes<i32> {
-        let (of_courses, of_speeds) = (&self.courses[across], &self.speeds[along]);
-        let (most_courses, most_speeds) = (of_courses.most_of_fours(), of_speeds.most_of_fours());
+        let of_courses = &self.courses[across];
+        let of_speeds = &self.speeds[along];
+        let most_courses = of_courses.most_of_fours();
+        let most_speeds = of_speeds.most_of_fours();
         let mut tiles = Lanes::splat(0);
         for i in 0..LANES {
             tiles.0[i] = most_courses[i % SIDE] + most_speeds[i / SIDE];
         }
         if let Some(rows) = self.rows(across, along) {
             // Unrolled: a loop over them would be vectorised in the wrong direction.
-            let (a, b) = (most_of_rows(rows, of_courses, of_speeds, 0), most_of_rows(rows, of_courses, of_speeds, 1));
-            let (c, d) = (most_of_rows(rows, of_courses, of_speeds, 2), most_of_rows(rows, of_courses, of_speeds, 3));
+            let a = most_of_rows(rows, of_courses, of_speeds, 0);
+            let b = most_of_rows(rows, of_courses, of_speeds, 1);
+            let c = most_of_rows(rows, of_courses, of_speeds, 2);
+            let d = most_of_rows(rows, of_courses, of_speeds, 3);
             for i in 0..LANES {
                 let first = if i % SIDE < 1 { a.0[i] } else { b.0[i] };
                 let last = if i % SIDE < 3 { c.0[i] } else { d.0[i] };
@@ -292,7 +297,8 @@ impl Sums {
                 sums.0[i] += rows[i / SIDE].0[first_speed + i % SIDE];
             }
         }
-        let ((north, east), speed) = (&cells.points[course_tile], &cells.point_speeds[speed_tile]);
+        let (north, east) = &cells.points[course_tile];
+        let speed = &cells.point_speeds[speed_tile];
         let mut measured = Distances::new();
         for (i, (weight, field)) in self.fields.iter().enumerate() {
             match field {
@@ -383,8 +389,13 @@ fn add_full(sums: &mut Lanes<i32>, weight: Weight) {
 /// The upper bounds of lists and a table on the courses of one tile, for the speeds of each tile.
 #[inline(always)]
 fn most_of_rows(rows: &[Lanes<i32>], of_courses: &Lanes<i32>, of_speeds: &Lanes<i32>, tile: usize) -> Lanes<i32> {
-    let (k, mut most, mut pairs) = (SIDE * tile, Lanes::splat(DONE), Lanes::splat(DONE));
-    let (a, b, c, d) = (&rows[k].0, &rows[k + 1].0, &rows[k + 2].0, &rows[k + 3].0);
+    let k = SIDE * tile;
+    let mut most = Lanes::splat(DONE);
+    let mut pairs = Lanes::splat(DONE);
+    let a = &rows[k].0;
+    let b = &rows[k + 1].0;
+    let c = &rows[k + 2].0;
+    let d = &rows[k + 3].0;
     let of = &of_courses.0;
     for i in 0..LANES {
         let first = larger(a[i] + of[k], b[i] + of[k + 1]);

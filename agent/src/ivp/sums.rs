@@ -29,7 +29,8 @@ impl Sums {
     /// A sum of no functions.
     pub(super) fn new(grid: &Grid) -> Sums {
         let lists = |count: usize| vec![Lanes::splat(0); count.div_ceil(LANES)];
-        let (courses, speeds) = (lists(grid.courses()), lists(grid.speeds()));
+        let courses = lists(grid.courses());
+        let speeds = lists(grid.speeds());
         let lowered = vec![false; courses.len()];
         // Programs have up to one table per obstacle and one formula per contact, so no list grows
         // later.

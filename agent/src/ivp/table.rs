@@ -43,7 +43,8 @@ impl Table {
     #[inline(always)]
     pub(crate) fn lowered_mut(&mut self, k: usize) -> &mut [Lanes<f32>] {
         let lanes = self.lanes();
-        let (row, lowered) = (&mut self.rows[k * lanes..][..lanes], &mut self.lowered[k / LANES]);
+        let row = &mut self.rows[k * lanes..][..lanes];
+        let lowered = &mut self.lowered[k / LANES];
         if *lowered >> (k % LANES) & 1 == 0 {
             // Filled on first use, so that `clear` costs nothing per course.
             *lowered |= 1 << (k % LANES);

@@ -116,9 +116,11 @@ impl Turning {
     pub(super) fn to(&self, (north, east): Vector) -> Turn {
         let cosine = self.heading.0 * north + self.heading.1 * east;
         let x2 = larger(0.5 - 0.5 * cosine, 0.0);
-        let (chord, x4) = (2.0 * x2.sqrt(), x2 * x2);
+        let chord = 2.0 * x2.sqrt();
+        let x4 = x2 * x2;
         let arc_of_chord = 1.0 + x2 * (1.0 / 6.0) + 0.36 * x4 * x4;
-        let (middle_north, middle_east) = (self.heading.0 + north, self.heading.1 + east);
+        let middle_north = self.heading.0 + north;
+        let middle_east = self.heading.1 + east;
         let middle = (middle_north * middle_north + middle_east * middle_east).sqrt();
         // For the course straight back, the middle of both headings is zero and has no direction.
         let scale = self.radius * chord / larger(middle, 1e-3);
@@ -134,15 +136,18 @@ impl Turning {
     /// end points jump.
     #[inline(always)]
     pub(super) fn fan(&self, cell: &Cell) -> Fan {
-        let (first, last) = (self.to(cell.first), self.to(cell.last));
+        let first = self.to(cell.first);
+        let last = self.to(cell.last);
         let bend = 0.5 * cell.half * cell.half;
-        let (mut off, mut off_s) = (bend + ROUNDING_RAD, 2.4 * bend + ROUNDING_RAD);
+        let mut off = bend + ROUNDING_RAD;
+        let mut off_s = 2.4 * bend + ROUNDING_RAD;
         let cosine = self.heading.0 * cell.north + self.heading.1 * cell.east;
         let within = 1.0 - larger(cosine, -cosine) < 0.55 * (cell.half + ROUNDING_RAD) * (cell.half + ROUNDING_RAD);
         // Between two courses on either side of the bow the arcs bend to both sides, and near
         // straight back they end far apart. The four corners do not enclose them there, so the
         // bound is widened by the largest deviation.
-        let (at_bow, at_back) = (within & (cosine > 0.0), within & (cosine <= 0.0));
+        let at_bow = within & (cosine > 0.0);
+        let at_back = within & (cosine <= 0.0);
         off += if at_bow { 1.1 * cell.half } else { 0.0 } + if at_back { 4.0 } else { 0.0 };
         off_s += if at_bow { 1.3 * cell.half } else { 0.0 } + if at_back { 3.2 } else { 0.0 };
         let whole = if cell.is_disc { 1e6 } else { 0.0 };
@@ -207,7 +212,8 @@ mod tests {
         let turning = Turning::new(Some(&LAG));
         for by_deg in (-175..=175).step_by(5) {
             let by_rad = f64::from(by_deg).to_radians();
-            let (steps, duration_s) = (10_000, by_rad.abs() / LAG.turn_rad_s);
+            let steps = 10_000;
+            let duration_s = by_rad.abs() / LAG.turn_rad_s;
             let way_m = LAG.velocity.east * duration_s / f64::from(steps);
             let course = |share: f64| {
                 let (sin, cos) = primitives::math::sin_cos(std::f64::consts::FRAC_PI_2 + share * by_rad);
@@ -229,10 +235,13 @@ mod tests {
         for until_s in [1.0, 3.0, 8.0] {
             let mean = MeanSpeed::new(Some(&LAG), until_s);
             for wanted in [0.0_f64, 0.7, 1.9, 2.0, 2.4, 3.0, 9.0] {
-                let (steps, mut speed_m_s, mut way_m) = (100_000, 2.0_f64, 0.0);
+                let steps = 100_000;
+                let mut speed_m_s = 2.0_f64;
+                let mut way_m = 0.0;
                 let dt_s = until_s / f64::from(steps);
                 for _ in 0..steps {
-                    let (slower, faster) = (LAG.deceleration_m_s2 * dt_s, LAG.acceleration_m_s2 * dt_s);
+                    let slower = LAG.deceleration_m_s2 * dt_s;
+                    let faster = LAG.acceleration_m_s2 * dt_s;
                     speed_m_s = wanted.clamp(speed_m_s - slower, speed_m_s + faster);
                     way_m += dt_s * speed_m_s;
                 }

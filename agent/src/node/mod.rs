@@ -47,7 +47,8 @@ pub fn serve(settings: &Settings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), 
     let mut report = |reason: &str| tell(News::Looking { reason });
     let (bus, game, info) = search.game(&mut report, &settings.place, settings.game.as_ref())?;
     let mut agent = AgentLoop::open(&bus, &game, &info, settings)?;
-    let (place, names) = (&settings.place, &settings.vehicles);
+    let place = &settings.place;
+    let names = &settings.vehicles;
     let joined =
         search.until(&mut report, || game_search::join(&bus, place, (&game, &info.scenario), Role::Agent, names))?;
     agent.join(&bus, &game, &info.scenario, joined)?;

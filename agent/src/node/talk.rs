@@ -52,7 +52,8 @@ impl Talk {
         let boats =
             teams.iter().enumerate().map(|(i, team)| (*team, talking.contains(team) && talks(VehicleId::at(i))));
         let team_inbox = Arc::new(Watched::new(TeamInbox::new(boats, &own)));
-        let (mut outgoing, mut declarations) = (Vec::new(), Vec::new());
+        let mut outgoing = Vec::new();
+        let mut declarations = Vec::new();
         for team in talking {
             let inbox = Arc::clone(&team_inbox);
             let take = move |bytes: &[u8]| inbox.visit(|team_inbox| team_inbox.receive(team, bytes));

@@ -92,8 +92,10 @@ fn edges(situation: &Situation, out: &mut Numbers<'_>) {
 /// current goal among them.
 fn goals(situation: &Situation, out: &mut Numbers<'_>) {
     let at = |mark| situation.locate(&Place::Mark(mark)).map_or(situation.at, |point| point.at);
-    let (enemy_flag, own_flag) = (at(Mark::EnemyFlag), at(Mark::OwnFlag));
-    let (capture, untag) = (at(Mark::CapturePlace), at(Mark::UntagPlace));
+    let enemy_flag = at(Mark::EnemyFlag);
+    let own_flag = at(Mark::OwnFlag);
+    let capture = at(Mark::CapturePlace);
+    let untag = at(Mark::UntagPlace);
     let own = &situation.own;
     let goal = if own.tagged {
         untag

@@ -76,7 +76,8 @@ impl DriftEstimate {
         let (north, east, both) = self.variance;
         // Bounded, so that a single wave does not set the drift on a heading unused for an hour.
         let grown = |variance: f64| (variance + WALK_M2_S3 * step_s).min(UNKNOWN_M2_S2);
-        let (north, east) = (grown(north), grown(east));
+        let north = grown(north);
+        let east = grown(east);
         let (sin, cos) = math::sin_cos(nav.psi_rad);
         let starboard = Ned { north: -sin, east: cos };
         let of_starboard = Ned {

@@ -53,7 +53,8 @@ pub(super) fn assign(interceptors: &[Interceptor], intruders: &[Intruder], befor
             interceptor.unready_s.max(time_to_meet_s(interceptor, intruder)) - kept_s
         };
         let intruder_m_s = intruder.velocity.length();
-        let (mut soonest_s, mut soonest) = (f64::INFINITY, None);
+        let mut soonest_s = f64::INFINITY;
+        let mut soonest = None;
         for (i, interceptor) in left.iter().enumerate() {
             // With many boats most are too far away to be sooner, even head-on. Computing the
             // meeting time of every pair took a quarter of a game of 100 against 100.
@@ -130,7 +131,8 @@ mod tests {
 
     #[test]
     fn a_boat_that_has_just_tagged_leaves_the_next_one_to_another() {
-        let (quick, mut near) = (interceptor(1, 30.0), interceptor(0, 10.0));
+        let quick = interceptor(1, 30.0);
+        let mut near = interceptor(0, 10.0);
         let meets = |near| numbers(&assign(&[near, quick], &[intruder(7, 0.0)], &[]));
         assert_eq!(meets(near), [(0, 7)]);
         near.unready_s = 20.0;
@@ -165,7 +167,8 @@ mod tests {
             let intruders: Vec<Intruder> =
                 (20..30).map(|i| Intruder { at: place(300.0), velocity: place(3.0), ..intruder(i, 0.0) }).collect();
             let before = [Pair { interceptor: VehicleId(3), intruder: VehicleId(20) }];
-            let (mut left, mut want) = (boats.clone(), Vec::new());
+            let mut left = boats.clone();
+            let mut want = Vec::new();
             for intruder in &intruders {
                 let cost_s = |boat: &Interceptor| plain_cost_s(boat, intruder, before[0]);
                 let soonest = (0..left.len()).min_by(|a, b| cost_s(&left[*a]).total_cmp(&cost_s(&left[*b])));

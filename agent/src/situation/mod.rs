@@ -350,7 +350,8 @@ impl Situation {
         let targets = self.model.targets.iter();
         let key = |(flag, home): &&(FlagId, Ned)| (self.carried(*flag).is_some(), self.at.distance_squared(*home));
         let best = targets.min_by(|a, b| {
-            let (a, b) = (key(a), key(b));
+            let a = key(a);
+            let b = key(b);
             a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
         });
         best.map_or(self.at, |(_, home)| *home)

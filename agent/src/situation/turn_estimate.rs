@@ -24,7 +24,8 @@ pub(super) struct TurnEstimate {
 impl TurnEstimate {
     /// The estimate updated with the contact's present state.
     pub(super) fn seen(before: Option<TurnEstimate>, contact: &Contact) -> TurnEstimate {
-        let (seen, psi_rad) = (contact.seen_ns, contact.psi_rad);
+        let seen = contact.seen_ns;
+        let psi_rad = contact.psi_rad;
         let Some(before) = before else { return TurnEstimate { seen, psi_rad, yaw_rate_rad_s: 0.0 } };
         // A contact shown again unchanged was not observed again: it would appear to have stopped
         // turning.

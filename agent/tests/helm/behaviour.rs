@@ -51,9 +51,12 @@ fn is_wanted(report: &HelmReport, want: &str) -> bool {
 #[test]
 fn every_behaviour_alone_decides_as_the_cases_say() {
     let text = include_str!("behaviours.txt");
-    let (mut decided, mut wrong) = (0, vec![]);
+    let mut decided = 0;
+    let mut wrong = vec![];
     for case in text.split("\n## ").skip(1) {
-        let (mut own, mut contact, mut behaviour) = (Boat::at(0.0, 0.0).going(0.0, 1.0), None, String::new());
+        let mut own = Boat::at(0.0, 0.0).going(0.0, 1.0);
+        let mut contact = None;
+        let mut behaviour = String::new();
         let mut lines = case.lines();
         let name = lines.next().unwrap_or_default();
         for line in lines.filter(|line| !line.is_empty() && !line.starts_with('#')) {
@@ -80,7 +83,9 @@ fn every_behaviour_alone_decides_as_the_cases_say() {
 /// A boat with this maximum turn rate, rad/s, that takes a second to change its speed, simulated
 /// for this many tenths of a second.
 fn driven(behaviour: &str, from: Boat, turn_rad_s: f64, contact: Boat, steps: u32) -> Vec<Boat> {
-    let (mut helm, mut own, mut track) = (helm(&only(behaviour)), from, vec![]);
+    let mut helm = helm(&only(behaviour));
+    let mut own = from;
+    let mut track = vec![];
     for step in 0..steps {
         let mut scene = with_contact(own, contact);
         scene.stamp.valid_ns = SimTime::from_s(0.1 * f64::from(step));
@@ -228,7 +233,8 @@ fn who_looks_inside_sees_the_utilities() {
         assert_eq!(function.utilities.len(), report.courses * report.speeds, "{}", function.behaviour);
     }
     let it = report.functions.iter().find(|f| f.behaviour == "it").expect("the waypoint has a function");
-    let (utility, best) = (it.utility.expect("it was requested"), it.utilities.iter().copied().fold(0.0, f32::max));
+    let utility = it.utility.expect("it was requested");
+    let best = it.utilities.iter().copied().fold(0.0, f32::max);
     assert!(utility > 99.0 && (best - utility).abs() < 1e-3, "the waypoint's preference wins: {utility}, {best}");
     let value: f64 = report.functions.iter().map(|f| f.weight * f64::from(f.utility.unwrap_or(0.0))).sum();
     assert!((value - report.value.expect("a value")).abs() < 0.1, "{value}, {:?}", report.value);

@@ -69,7 +69,8 @@ fn behaviours_live_and_post() {
 #[test]
 fn mates_count_when_they_have_sent_everything_that_is_asked() {
     let scenario = without_safety(PROGRAM);
-    let (mut mine, mut words) = (helm(&scenario), vec![]);
+    let mut mine = helm(&scenario);
+    let mut words = vec![];
     let weight = |helm: &mut HelmMind| {
         let report = at(helm, 0.0, -30.0);
         report.behaviours.iter().find(|behaviour| behaviour.name == "rest").expect("the behaviour exists").weight

@@ -37,7 +37,8 @@ fn alone(scenario: &Scenario, at: Ned) -> Picture {
 fn a_boat_makes_for_the_nearest_place_that_the_referee_takes() {
     for (game, flags) in [("surveyor_2v2", 1), ("fleet_20v20", 3), ("fleet_100v100", 5)] {
         let scenario = scenario(game);
-        let (field, rules) = (&scenario.field, &scenario.rules);
+        let field = &scenario.field;
+        let rules = &scenario.rules;
         assert_eq!(field.own_flags(BLUE).count(), flags, "{game}");
         for (along, across) in [(0.1, 0.05), (0.3, 0.2), (0.4, 0.5), (0.6, 0.8), (0.9, 0.95)] {
             let at = field.at(along * field.plan.width_m, across * field.plan.depth_m);

@@ -63,7 +63,9 @@ fn picture(state: &State, team: usize) -> Picture {
     picture.stamp.valid_ns = now;
     picture.flags = vec![FlagView { carrier: -1 }; 2];
     for (i, boat) in state.boats.iter().enumerate() {
-        let (vehicle, of, tagged) = (i as u16, i / team_size, boat.tagged == 1);
+        let vehicle = i as u16;
+        let of = i / team_size;
+        let tagged = boat.tagged == 1;
         let here = scene::Boat::at(boat.x, boat.y).going(boat.heading_deg, boat.speed_m_s);
         let carrying = if boat.has_flag == 1 { 1 - of as i16 } else { -1 };
         if of == team {

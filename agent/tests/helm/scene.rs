@@ -11,7 +11,8 @@ use std::path::Path;
 /// The scenario in which all boats follow the program `strategy`: two against two on the test
 /// field.
 pub(crate) fn scenario(strategy: &str) -> Scenario {
-    let (game, field) = (include_str!("game.toml"), include_str!("field.toml"));
+    let game = include_str!("game.toml");
+    let field = include_str!("field.toml");
     loaded(&[("game.toml", game), ("field.toml", field), ("strategy.toml", strategy)])
 }
 

@@ -61,7 +61,8 @@ fn a_scene_turned_by_half_a_turn_gives_a_decision_turned_by_half_a_turn() {
         };
         for scene in 0..500 {
             let picture = random(&mut stream);
-            let (here, there) = (decide(0, &picture), decide(2, &turned(&picture)));
+            let here = decide(0, &picture);
+            let there = decide(2, &turned(&picture));
             match (here, there) {
                 (Order::Hold, Order::Hold) => {}
                 (Order::Steer { heading_rad: a, speed_m_s: u }, Order::Steer { heading_rad: b, speed_m_s: v }) => {

@@ -47,7 +47,8 @@ fn function<'a>(stream: &mut Stream, grid: &Grid, table: &'a Table) -> Objective
         },
         4 => {
             // A limit.
-            let (high, base) = (stream.between(0.0, 1.1), [0.0, stream.between(0.0, 1.1)][stream.below(2) as usize]);
+            let high = stream.between(0.0, 1.1);
+            let base = [0.0, stream.between(0.0, 1.1)][stream.below(2) as usize];
             let fastest_m_s = grid.speed_max_m_s();
             Objective::speed(Peak { peak_width: high * fastest_m_s, ..Peak::tent(0.0, base * fastest_m_s) })
         }
@@ -81,7 +82,8 @@ fn speed_peak(stream: &mut Stream, grid: &Grid) -> Peak {
 pub(crate) fn closest(stream: &mut Stream, grid: &Grid) -> Closest {
     let range = [3.0, 60.0, 400.0, 5000.0][stream.below(4) as usize];
     let speed = [0.0, 1.0, 3.0][stream.below(3) as usize] * grid.speed_max_m_s();
-    let (offset, velocity) = (within(stream, range), within(stream, speed));
+    let offset = within(stream, range);
+    let velocity = within(stream, speed);
     let min_m = stream.between(0.0, 0.5) * range;
     Closest {
         offset,

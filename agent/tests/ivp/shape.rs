@@ -56,8 +56,10 @@ fn searched_m(closest: &Closest, grid: &Grid, k: usize, j: usize) -> f64 {
     let Some(lag) = closest.lag else { return least(closest.offset, straight(speed_m_s), closest.horizon_s) };
     let present = closest.velocity - lag.velocity;
     let start = closest.offset + present.scaled(lag.reaction_s);
-    let (ahead_m_s, x) = (lag.velocity.dot(lag.heading).max(0.0), 0.5 * (course - lag.heading).length());
-    let (x2, x4) = (x * x, x * x * x * x);
+    let ahead_m_s = lag.velocity.dot(lag.heading).max(0.0);
+    let x = 0.5 * (course - lag.heading).length();
+    let x2 = x * x;
+    let x4 = x * x * x * x;
     let angle_rad = 2.0 * x * (1.0 + x2 / 6.0 + 0.36 * x4 * x4);
     let turn_s = angle_rad / lag.turn_rad_s;
     let middle = course + lag.heading;

@@ -73,7 +73,9 @@ impl Motion {
             Objective::Closest(c) => {
                 let turned =
                     |lag: Lag| Lag { velocity: self.vector(lag.velocity), heading: self.vector(lag.heading), ..lag };
-                let (offset, velocity, lag) = (self.vector(c.offset), self.vector(c.velocity), c.lag.map(turned));
+                let offset = self.vector(c.offset);
+                let velocity = self.vector(c.velocity);
+                let lag = c.lag.map(turned);
                 Objective::Closest(Closest { offset, velocity, lag, approach: self.approach(c.approach), ..c })
             }
             Objective::Closing(Closing { offset, velocity }) => {

@@ -66,7 +66,8 @@ pub fn write(recording: &Recording, wants_vehicles: bool, open: &mut Open<'_>) -
     let header = recording.header();
     let boats = if wants_vehicles { recording.scenario().vehicles.len() } else { 0 };
     let mut shoreside = Some(Shoreside::begin(header, open)?);
-    let (mut next, mut damaged) = (0, Damaged::default());
+    let mut next = 0;
+    let mut damaged = Damaged::default();
     // The first pass is needed even without vehicles.
     while shoreside.is_some() || next < boats {
         let end = boats.min(next + FILES_MAX);
@@ -103,7 +104,8 @@ impl Shoreside {
     }
 
     fn add(&mut self, scenario: &Scenario, step: &Step) -> io::Result<()> {
-        let (log, time_s) = (&mut self.log, step.time_s);
+        let log = &mut self.log;
+        let time_s = step.time_s;
         // An event is recorded with the next frame. Its own time comes first, except at the start
         // of the game.
         if !std::mem::replace(&mut self.has_begun, true) {
@@ -134,7 +136,8 @@ impl Vehicle {
     }
 
     fn add(&mut self, scenario: &Scenario, step: &Step) -> io::Result<()> {
-        let (log, time_s) = (&mut self.log, step.time_s);
+        let log = &mut self.log;
+        let time_s = step.time_s;
         let Some(sample) = step.samples.get(self.place) else { return Ok(()) };
         let estimated = sample.estimated.unwrap_or(sample.truth);
         log.nav(time_s, "NAV_", &estimated)?;

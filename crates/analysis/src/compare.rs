@@ -213,9 +213,12 @@ fn events([a, b]: [Vec<EventOutcome>; 2], until_s: f64, tolerance_s: f64) -> Eve
             kinds.entry(kind(&event)).or_default()[i].push(event);
         }
     }
-    let (mut only_in_a, mut only_in_b, mut in_both) = (vec![], vec![], 0);
+    let mut only_in_a = vec![];
+    let mut only_in_b = vec![];
+    let mut in_both = 0;
     for [of_a, of_b] in kinds.into_values() {
-        let (mut of_a, mut of_b) = (of_a.into_iter().peekable(), of_b.into_iter().peekable());
+        let mut of_a = of_a.into_iter().peekable();
+        let mut of_b = of_b.into_iter().peekable();
         while let (Some(a), Some(b)) = (of_a.peek(), of_b.peek()) {
             let later_s = b.at_s - a.at_s;
             if later_s.abs() <= tolerance_s {

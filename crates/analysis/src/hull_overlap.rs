@@ -17,7 +17,8 @@ impl HullRectangle {
     /// Half of its extent along an axis (a unit vector), m.
     fn half_m(&self, axis: Ned) -> f64 {
         let rotation = self.pose.rotation();
-        let (ahead, starboard) = (rotation.ahead().dot(axis).abs(), rotation.starboard().dot(axis).abs());
+        let ahead = rotation.ahead().dot(axis).abs();
+        let starboard = rotation.starboard().dot(axis).abs();
         0.5 * (self.length_m * ahead + self.beam_m * starboard)
     }
 

@@ -91,11 +91,14 @@ fn heading_rms_rad(pairs: &[OrderAndAnswer]) -> Option<f64> {
 fn correlation(pairs: &[OrderAndAnswer]) -> Option<f64> {
     varies(pairs, VARIES_M_S)?;
     let count = pairs.len() as f64;
-    let (mean_x, mean_y) =
-        (pairs.iter().map(|t| t.0).sum::<f64>() / count, pairs.iter().map(|t| t.1).sum::<f64>() / count);
-    let (mut xx, mut yy, mut xy) = (0.0, 0.0, 0.0);
+    let mean_x = pairs.iter().map(|t| t.0).sum::<f64>() / count;
+    let mean_y = pairs.iter().map(|t| t.1).sum::<f64>() / count;
+    let mut xx = 0.0;
+    let mut yy = 0.0;
+    let mut xy = 0.0;
     for (x, y) in pairs {
-        let (x, y) = (x - mean_x, y - mean_y);
+        let x = x - mean_x;
+        let y = y - mean_y;
         (xx, yy, xy) = (xx + x * x, yy + y * y, xy + x * y);
     }
     let coefficient = xy / (xx * yy).sqrt();
@@ -118,7 +121,9 @@ fn proportion(pairs: &[OrderAndAnswer]) -> (f64, f64) {
 }
 
 fn hold_drift(series: &GameSeries, boat: &BoatSeries) -> Option<[f64; 2]> {
-    let (mut held_s, mut sum, mut count) = (0.0, Ned::default(), 0_u32);
+    let mut held_s = 0.0;
+    let mut sum = Ned::default();
+    let mut count = 0_u32;
     let mut before_s = None;
     for (sample, time_s) in boat.samples.iter().zip(&series.times_s) {
         let step_s = time_s - before_s.replace(*time_s).unwrap_or(*time_s);

@@ -75,7 +75,8 @@ impl GameSeries {
             teams: scenario.teams.iter().map(|team| team.name.clone()).collect(),
             ..GameSeries::default()
         };
-        let (mut count, mut left_out) = (0, None);
+        let mut count = 0;
+        let mut left_out = None;
         series.damaged = for_each_step(recording, |mut step| {
             series.events.append(&mut step.events);
             if usize::is_multiple_of(count, every) {

@@ -119,7 +119,8 @@ impl StatisticsBuilder {
 
 impl BoatSums {
     fn add(&mut self, sample: &Sample, step_s: f64) {
-        let (at, sums) = (sample.truth.at(), &mut self.sums);
+        let at = sample.truth.at();
+        let sums = &mut self.sums;
         sums.distance_m += self.before.replace(at).map_or(0.0, |before| before.distance(at));
         sums.speed_max_m_s = sums.speed_max_m_s.max(sample.truth.speed_m_s());
         self.travelled_m += sample.truth.speed_m_s() * step_s;

@@ -74,7 +74,9 @@ impl Summary {
     pub fn of(recording: &Recording) -> Summary {
         let scenario = recording.scenario();
         let mut statistics = StatisticsBuilder::new(scenario);
-        let (mut times_s, mut score, mut events) = (None, vec![], vec![]);
+        let mut times_s = None;
+        let mut score = vec![];
+        let mut events = vec![];
         let damaged = for_each_step(recording, |step| {
             statistics.add(&step);
             times_s = Some((times_s.map_or(step.time_s, |(first_s, _)| first_s), step.time_s));

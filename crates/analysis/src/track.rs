@@ -35,7 +35,8 @@ pub(crate) fn apart(
         let all = series.times_s.iter().copied().zip(boat.track());
         all.filter(|(time_s, _)| (begin_s..=end_s).contains(time_s)).unzip()
     };
-    let ((times_s, common_a), (_, common_b)) = (common(a, in_a), common(b, in_b));
+    let (times_s, common_a) = common(a, in_a);
+    let (_, common_b) = common(b, in_b);
     let track_b: Vec<Ned> = in_b.track().collect();
     let distance_m = |(time_s, at): (&f64, &Ned)| at.distance(place_at(&b.times_s, &track_b, *time_s));
     // At the samples of the first.

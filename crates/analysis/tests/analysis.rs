@@ -111,7 +111,8 @@ fn recording() -> Recording {
 #[test]
 fn a_gateways_own_recording_begins_safed_and_tells_each_change() {
     let state_after = |changes: &[&str]| {
-        let (kind, facts) = (Kind::Gateway, Facts::new());
+        let kind = Kind::Gateway;
+        let facts = Facts::new();
         let opening = Opening { kind, began_utc_ns: 0, facts, more: vec![], teams: vec![] };
         let mut writer = Writer::begin(Cursor::new(Vec::new()), &opening).expect("it begins");
         for to in changes {
@@ -132,7 +133,8 @@ fn a_gateways_own_recording_begins_safed_and_tells_each_change() {
 
 #[test]
 fn a_summary_has_the_figures_of_the_game() {
-    let (summary, series) = (Summary::of(&recording()), GameSeries::of(&recording()));
+    let summary = Summary::of(&recording());
+    let series = GameSeries::of(&recording());
     assert_eq!((summary.game.as_str(), summary.seed, summary.commit.as_str()), ("pav01-1", 1, "c0ffee"));
     assert!((summary.duration_s - 0.3).abs() < 1e-9 && (summary.wall_s - 3.0).abs() < 1e-9);
     assert_eq!((summary.is_cut, summary.dropped, summary.winner.as_deref()), (false, Some(3), Some("blue")));

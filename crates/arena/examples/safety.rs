@@ -40,7 +40,8 @@ const CROWD_M: f64 = 15.0;
 fn main() {
     let args: Vec<String> = std::env::args().skip(1).collect();
     let number = |i: usize, default: u64| args.get(i).and_then(|arg| arg.parse().ok()).unwrap_or(default);
-    let (games, duration_s) = (number(0, 10_000), number(2, 120));
+    let games = number(0, 10_000);
+    let duration_s = number(2, 120);
     let sea = args.get(1).map_or("calm", String::as_str);
     let boat = args.get(3).map_or("surveyor_m1_8", String::as_str);
     if let Some(seed) = args.get(4).and_then(|arg| arg.parse().ok()) {
@@ -81,7 +82,9 @@ fn summary(tallies: &[Tally], (sea, boat): (&str, &str), duration_s: u64) -> Str
         let games = tallies.iter().filter(|tally| count(tally) > 0).count();
         format!("in {:.2} % of games", 100.0 * games as f64 / tallies.len() as f64)
     };
-    let (left, pushed, crowded) = (sum(|t| t.left), sum(|t| t.left_pushed), sum(|t| t.left_crowded));
+    let left = sum(|t| t.left);
+    let pushed = sum(|t| t.left_pushed);
+    let crowded = sum(|t| t.left_crowded);
     [
         format!("{} games of {duration_s} s, sea {sea}, {boat}, {boat_hours:.0} boat-hours", tallies.len()),
         format!("left the field: {}, {}", often(left), in_games(|t| t.left)),
@@ -155,7 +158,9 @@ fn behaviour(stream: &mut Stream) -> String {
             "kind = \"waypoint\"\npoints = [\"enemy_flag\", \"own_flag\"]\nspeed_m_s = {speed_m_s:.2}\nperpetual = true\n"
         ),
         2 => {
-            let (centre, along, across) = (place(stream), stream.between(10.0, 120.0), stream.between(10.0, 80.0));
+            let centre = place(stream);
+            let along = stream.between(10.0, 120.0);
+            let across = stream.between(10.0, 80.0);
             format!(
                 "kind = \"loiter\"\nellipse = {{ centre = {centre}, along_m = {along:.1}, across_m = {across:.1} }}\nspeed_m_s = {speed_m_s:.2}\n"
             )
@@ -170,8 +175,10 @@ fn behaviour(stream: &mut Stream) -> String {
 /// Plays a game and counts its events.
 fn play(scenario: &Scenario, seed: u64) -> Tally {
     let count = scenario.vehicles.len();
-    let (mut touching, mut touched_s) = (vec![false; count * count], vec![f64::NEG_INFINITY; count]);
-    let (mut tally, mut cursor) = (Tally::default(), EventCursor::default());
+    let mut touching = vec![false; count * count];
+    let mut touched_s = vec![f64::NEG_INFINITY; count];
+    let mut tally = Tally::default();
+    let mut cursor = EventCursor::default();
     let outcome = arena::play_watched(scenario, agent::minds_of(scenario), seed, |contest| {
         let now_s = contest.now().as_s();
         let pose = |i: usize| contest.world().state().boats[i].pose;

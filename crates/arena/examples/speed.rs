@@ -9,7 +9,9 @@ use scenario::Scenario;
 use std::path::{Path, PathBuf};
 
 fn main() {
-    let (mut seeds, mut duration_s, mut games) = (1, f64::INFINITY, Vec::new());
+    let mut seeds = 1;
+    let mut duration_s = f64::INFINITY;
+    let mut games = Vec::new();
     let mut args = std::env::args().skip(1);
     while let Some(arg) = args.next() {
         let mut number = || args.next().and_then(|value| value.parse().ok()).unwrap_or_else(|| panic!("{arg} N"));

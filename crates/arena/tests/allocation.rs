@@ -21,12 +21,14 @@ fn a_decision_takes_nothing_from_the_heap_unless_hulls_are_close_or_something_ha
     let scenario: Scenario = scenario::load(&path).unwrap_or_else(|e| panic!("{e}"));
     let mut runner = arena::runner_of(agent::minds_of(&scenario));
     let mut contest = Contest::new(&scenario, 1).unwrap_or_else(|e| panic!("{e}"));
-    let (mut free, mut busy) = (0, 0);
+    let mut free = 0;
+    let mut busy = 0;
     while !contest.is_over() {
         let boats = &contest.world().state().boats;
         let near = |i: usize| boats[..i].iter().any(|other| other.pose.at.distance(boats[i].pose.at) < 1.83 + 1.0);
         let crowded = (0..boats.len()).any(near);
-        let (events, decision) = (contest.events().len(), contest.decision());
+        let events = contest.events().len();
+        let decision = contest.decision();
         let heap = Region::new(HEAP);
         arena::decide(&mut contest, &mut runner);
         contest.advance();

@@ -208,7 +208,8 @@ fn subjects(scenario: &Scenario, has_keys: bool) -> Vec<Subject> {
 /// zenoh's setting `access_control` for the hub of a game, with or without keys.
 pub(crate) fn control(game: &GameName, scenario: &Scenario, has_keys: bool) -> Value {
     let all = subjects(scenario, has_keys);
-    let (mut rules, mut policies) = (Vec::new(), Vec::new());
+    let mut rules = Vec::new();
+    let mut policies = Vec::new();
     for subject in &all {
         let own = subject.rules(game);
         let ids: Vec<&Value> = own.iter().map(|rule| &rule["id"]).collect();

@@ -40,7 +40,8 @@ pub fn control(bus: &Bus, game: &GameName, control: Control) -> Result<(), BusEr
 
 fn stop(bus: &Bus, key: &str, control: Control) -> Result<Option<ControlReply>, BusError> {
     let publisher = bus.publisher(key.to_owned(), Priority::Urgent)?;
-    let (start, json) = (clock::now(), serde_json::to_vec(&control).expect("a control is JSON"));
+    let start = clock::now();
+    let json = serde_json::to_vec(&control).expect("a control is JSON");
     let answered = Arc::new(Answered::default());
     for said in 1.. {
         publisher.send_json(json.clone())?;
@@ -60,7 +61,9 @@ fn stop(bus: &Bus, key: &str, control: Control) -> Result<Option<ControlReply>, 
 
 /// Queries the sim. On a slow link, the next query goes out before the answer to this one arrives.
 fn ask(bus: &Bus, key: &str, control: Control, limit: Duration, answered: &Arc<Answered>) {
-    let (bus, key, answered) = (bus.clone(), key.to_owned(), Arc::clone(answered));
+    let bus = bus.clone();
+    let key = key.to_owned();
+    let answered = Arc::clone(answered);
     // In its own thread: a query blocks until answered or timed out, and the stop must be repeated
     // meanwhile.
     let asked = start_thread("stop-question", move || {

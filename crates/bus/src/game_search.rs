@@ -232,7 +232,9 @@ pub fn join(
     let bus = bus.clone().with_token(place.net(Some(game))?.token);
     // Gives the sim the node's session: the sim acts as soon as that link ends. A killed process
     // closes its socket, and its boats hold in the same decision.
-    let (version, node, asked) = (primitives::VERSION.to_owned(), bus.id(), clock::now());
+    let version = primitives::VERSION.to_owned();
+    let node = bus.id();
+    let asked = clock::now();
     let request = JoinRequest { version, role, node, vehicles: vehicles.to_vec() };
     match bus.request(&topic::join(game, scenario, role, vehicles), &request, ANSWER)? {
         None => Err(Missing::Yet("the sim does not answer the join request".to_owned())),
@@ -257,7 +259,8 @@ fn check_keys(bus: &Bus, scenario: &Scenario, role: Role, vehicles: &[String]) -
     match vehicles.iter().find(|name| !is_own(name)) {
         None => Ok(()),
         Some(name) => {
-            let (folder, identity) = (keys.folder.display(), &keys.identity);
+            let folder = keys.folder.display();
+            let identity = &keys.identity;
             Err(Refusal::Refused(format!("{folder}: the keys of {identity} are not for the {role} of {name}")))
         }
     }

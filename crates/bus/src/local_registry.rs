@@ -224,7 +224,8 @@ mod tests {
     #[test]
     fn a_link_to_a_folder_is_not_followed_and_a_relative_folder_not_used() {
         let dir = tempfile::tempdir().expect("a folder");
-        let (own, link) = (dir.path().join("own"), dir.path().join("squall"));
+        let own = dir.path().join("own");
+        let link = dir.path().join("squall");
         make_private(&own).expect("it is new");
         std::os::unix::fs::symlink(&own, &link).expect("a link");
         assert!(!is_private(&link));

@@ -60,7 +60,8 @@ struct SimLiveness {
 
 impl SimLiveness {
     fn new(patience: Patience, now: Instant) -> SimLiveness {
-        let (ours, tokens) = (None, BTreeSet::new());
+        let ours = None;
+        let tokens = BTreeSet::new();
         SimLiveness { patience, heard_at: now, is_heard: false, missed_at: None, ours, tokens, is_replaced: false }
     }
 

@@ -355,7 +355,8 @@ mod tests {
 
     #[test]
     fn a_guard_goes_by_the_token_of_now() {
-        let (first, second) = (Token::random(), Token::random());
+        let first = Token::random();
+        let second = Token::random();
         let current = CurrentToken::default();
         let mut guard = Guard::new(current.clone());
         for token in [&first, &second] {

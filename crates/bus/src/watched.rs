@@ -29,7 +29,8 @@ impl<T> Watched<T> {
 
     /// Waits up to `limit` until `holds`, and returns whether it does.
     pub fn wait(&self, limit: Duration, mut holds: impl FnMut(&T) -> bool) -> bool {
-        let (runtime, deadline) = (runtime(), clock::now().checked_add(limit));
+        let runtime = runtime();
+        let deadline = clock::now().checked_add(limit);
         // The value stays unlocked while a runtime waits.
         while !holds(&self.state.lock()) {
             match runtime.wait(self.address(), deadline) {

@@ -30,7 +30,8 @@ fn keys(hosts: &[&str], valid: Duration) -> tempfile::TempDir {
     bus::restart_for_keys().expect("the tests start again");
     let folder = tempfile::tempdir().expect("a folder");
     let boat = Identity::Gateway(Some("red_one".to_owned()));
-    let (sim, any) = (Identity::Sim, Identity::Gateway(None));
+    let sim = Identity::Sim;
+    let any = Identity::Gateway(None);
     let all = [sim, team("blue"), team("red"), any, boat, Identity::Observer, Identity::Operator];
     let hosts: Vec<String> = hosts.iter().map(|host| (*host).to_owned()).collect();
     make(folder.path(), &all, &hosts, valid).expect("keys");
@@ -65,7 +66,8 @@ fn refused(endpoint: &str, keys: Option<Arc<Bundle>>) -> String {
 
 #[test]
 fn whose_keys_do_not_fit_is_told_why() {
-    let (own, foreign) = (keys(&["127.0.0.1"], DAY), keys(&["127.0.0.1"], DAY));
+    let own = keys(&["127.0.0.1"], DAY);
+    let foreign = keys(&["127.0.0.1"], DAY);
     let elsewhere = keys(&["sim.example"], DAY);
     let (sim, endpoint) = hub(bundle(&own, "sim"));
     let _sim = sim.expect("it listens");
@@ -149,7 +151,8 @@ fn is_heard(from: &Bus, to: &Bus, word: &str, free: &str) -> bool {
     );
     // Over QUIC in datagrams, which have the same rights as what is reliable.
     let publisher = |word| from.publisher_with(key(word), Priority::Normal, Delivery::Newest).expect("open");
-    let (asked, sure) = (publisher(word), publisher(free));
+    let asked = publisher(word);
+    let sure = publisher(free);
     let start = clock::now();
     while !heard.wait(Duration::from_millis(20), |(_, free)| *free) {
         assert!(clock::since(start) < LIMIT, "nothing comes through at all");

@@ -127,7 +127,8 @@ impl LeafArgs {
 
     /// Like `net`, for nodes that outlive a game or start before it.
     pub fn place(&self) -> Result<Place> {
-        let (leaf, keys) = (self.clone(), self.access.keys()?);
+        let leaf = self.clone();
+        let keys = self.access.keys()?;
         Ok(Place::new(move |game| leaf.net_of(game, keys.clone()).map_err(|e| crate::explain::line(&e))))
     }
 

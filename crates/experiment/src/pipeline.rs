@@ -86,11 +86,15 @@ pub(crate) fn play_in_order<K: Default, R: Send, E>(
     std::thread::scope(|scope| {
         let (sender, receiver) = sync_channel(QUEUE);
         for _ in 0..threads.get().min(count) {
-            let (next, sender, play, stop) = (&next, sender.clone(), &play, Stop([stop, &refused]));
+            let next = &next;
+            let sender = sender.clone();
+            let play = &play;
+            let stop = Stop([stop, &refused]);
             scope.spawn(move || work((next, count), play, stop, &sender));
         }
         drop(sender);
-        let (mut waiting, mut due) = (BTreeMap::new(), 0);
+        let mut waiting = BTreeMap::new();
+        let mut due = 0;
         for (i, row) in receiver {
             waiting.insert(i, row);
             while let Some(row) = waiting.remove(&due) {

@@ -37,7 +37,8 @@ fn plan_of(folder: &Path, text: &str) -> Plan {
 
 /// Plays a study from its current game up to, but not including, `to`.
 fn go_on(study: &mut Study, plan: &Plan, to: usize, jobs: usize) {
-    let (from, jobs) = (study.done(), NonZeroUsize::new(jobs).expect("it can be"));
+    let from = study.done();
+    let jobs = NonZeroUsize::new(jobs).expect("it can be");
     sweep::play(plan, (from, to), jobs, &AtomicBool::new(false), |played| study.add(plan, &played)).expect("it can be");
 }
 
@@ -252,7 +253,8 @@ fn the_breaking_point_is_found_where_it_is() {
     let jobs = (NonZeroUsize::MIN, &AtomicBool::new(false));
     let mut journal = Journal::begin(dir.path(), &plan).unwrap();
     let point = sweep::breaking_point(&plan, &condition, Some("game.duration_s"), &mut journal, jobs, |_| {}).unwrap();
-    let (low, high) = (point.low.unwrap(), point.high.unwrap());
+    let low = point.low.unwrap();
+    let high = point.high.unwrap();
     assert!(low < 37.0 && 37.0 < high && high - low < 1.0, "{low} to {high}");
     for text in ["easy.duration_s", "nobody.score < 1", "easy.speed < 1", "score < 1"] {
         assert!(Condition::parse(text, plan.sweep()).is_err(), "{text}");

@@ -58,7 +58,9 @@ fn the_report_is_the_same_bytes_on_one_thread_and_on_many() {
     let plan = Plan::new(&tournament).unwrap();
     assert_eq!((plan.seeds(), plan.games_per_seed(), plan.games()), (3, 3 * 2 + 3, 27));
     let report = |jobs| serde_json::to_string(&Report::new(&plan, &records(&plan, jobs))).unwrap();
-    let (one, four, many) = (report(1), report(4), report(64));
+    let one = report(1);
+    let four = report(4);
+    let many = report(64);
     assert!(one == four && one == many, "{one}\n{four}\n{many}");
     assert!(one.contains("\"games_unplayed\":0,\"games_left_out\":0"), "{one}");
 }
@@ -91,7 +93,8 @@ fn every_seed_is_played_from_both_sides_and_is_the_game_of_these_strategies() {
     let report = Report::new(&plan, &records);
     let names: Vec<&str> = report.entries.iter().map(|row| row.name.as_str()).collect();
     assert_eq!((names[0], report.entries[0].losses), ("easy_attackers_1", 0), "{names:?}");
-    let (there, back) = (cell(&report, "easy_attackers_1", "idle_2"), cell(&report, "idle_2", "easy_attackers_1"));
+    let there = cell(&report, "easy_attackers_1", "idle_2");
+    let back = cell(&report, "idle_2", "easy_attackers_1");
     assert_eq!((there.games, there.wins, there.draws, there.losses), (6, 3, 3, 0));
     assert_eq!((back.wins, back.draws, back.losses), (0, 3, 3));
     assert_eq!(back.score_difference, -there.score_difference);
@@ -132,7 +135,8 @@ fn the_two_games_of_a_seed_are_one_observation() {
     let [first, second] = &report.entries[..] else { panic!("{report:?}") };
     assert_eq!((first.name.as_str(), first.games, first.score.mean), ("pav01_0", 6, 5.0));
     let half = T_975_OF_2 * 2.0 / 3_f64.sqrt();
-    let (low, high) = (first.score.low.unwrap(), first.score.high.unwrap());
+    let low = first.score.low.unwrap();
+    let high = first.score.high.unwrap();
     assert!((low - (5.0 - half)).abs() < ROUNDING && (high - (5.0 + half)).abs() < ROUNDING, "{low} to {high}");
     assert_eq!([first.wins, first.draws, first.losses], [4, 1, 1]);
     assert_eq!([second.wins, second.draws, second.losses], [1, 1, 4]);

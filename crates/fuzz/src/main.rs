@@ -32,7 +32,10 @@ fn main() -> ExitCode {
 }
 
 fn soak_all(options: &[&str]) -> ExitCode {
-    let (mut seconds, mut seed, mut jobs, mut targets) = (20, u64::from(std::process::id()), 1, Vec::new());
+    let mut seconds = 20;
+    let mut seed = u64::from(std::process::id());
+    let mut jobs = 1;
+    let mut targets = Vec::new();
     let mut options = options.iter();
     while let Some(option) = options.next() {
         let mut number = || {
@@ -50,7 +53,8 @@ fn soak_all(options: &[&str]) -> ExitCode {
         targets = TARGETS.to_vec();
     }
     println!("{seconds} s each with seed {seed}");
-    let (next, is_sound) = (AtomicUsize::new(0), AtomicBool::new(true));
+    let next = AtomicUsize::new(0);
+    let is_sound = AtomicBool::new(true);
     std::thread::scope(|scope| {
         for _ in 0..jobs {
             scope.spawn(|| {
@@ -89,7 +93,8 @@ fn soak_one(target: &Target, seconds: u64, seed: u64) -> bool {
 
 fn child(target: &str, seconds: &str, seed: &str, current: &Path) -> ExitCode {
     limit_memory();
-    let (target, seconds) = (target_of(target), seconds.parse().expect("seconds"));
+    let target = target_of(target);
+    let seconds = seconds.parse().expect("seconds");
     match soak::soak(&target, Duration::from_secs(seconds), seed.parse().expect("a seed"), current) {
         Ok(runs) => {
             println!("{}: {runs} runs, {} per second, no fault", target.name, runs / seconds.max(1));

@@ -53,8 +53,10 @@ pub struct Played {
 pub fn played(scenario: Scenario, decisions: u64) -> Played {
     let mut contest = sim::Contest::new(&scenario, scenario.seed).expect("the game starts");
     let mut runner = arena::runner_of(agent::minds_of(&scenario));
-    let (mut cursor, mut kept) = (EventCursor::default(), Vec::new());
-    let (mut orders, mut says) = (Vec::new(), Vec::new());
+    let mut cursor = EventCursor::default();
+    let mut kept = Vec::new();
+    let mut orders = Vec::new();
+    let mut says = Vec::new();
     contest.keep_inputs();
     for _ in 0..decisions {
         arena::decide(&mut contest, &mut runner);

@@ -38,7 +38,8 @@ pub fn check(target: &Target, input: &[u8]) {
 
 /// The bytes allocated by a check in total, and its CPU time.
 fn cost(target: &Target, input: &[u8]) -> (usize, Duration) {
-    let (allocated, cpu) = (ALLOCATOR.stats().bytes_allocated, cpu_time());
+    let allocated = ALLOCATOR.stats().bytes_allocated;
+    let cpu = cpu_time();
     (target.check)(input);
     (ALLOCATOR.stats().bytes_allocated - allocated, cpu_time() - cpu)
 }
@@ -64,7 +65,9 @@ pub fn soak(target: &Target, time: Duration, seed: u64, current: &Path) -> Resul
     };
     // The unchanged real inputs must pass too.
     seeds.iter().try_for_each(|seed| run(seed.clone()))?;
-    let (change, mut dice, begin) = ((target.change)(seeds), Dice::new(seed), Instant::now());
+    let change = (target.change)(seeds);
+    let mut dice = Dice::new(seed);
+    let begin = Instant::now();
     while begin.elapsed() < time {
         run(change(&mut dice))?;
     }

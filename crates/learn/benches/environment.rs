@@ -47,7 +47,8 @@ fn steps(c: &mut Criterion) {
     for (name, game, opponent) in games {
         let mut environment =
             VectorEnvironment::new(setup(game, opponent), GAMES, 1, 1, None).unwrap_or_else(|e| panic!("{e}"));
-        let (mut stream, rows) = (Stream::new(1, "actions"), environment.rows().0);
+        let mut stream = Stream::new(1, "actions");
+        let rows = environment.rows().0;
         group.throughput(Throughput::Elements(GAMES as u64)).sample_size(20);
         group.bench_function(name, |b| {
             b.iter(|| {

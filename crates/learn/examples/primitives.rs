@@ -82,7 +82,8 @@ fn played(mut setup: Setup, actor: &mut Actor, episodes: usize) -> Played {
     let sides: Vec<_> = (0..episodes).map(|game| environment.standing(game).side).collect();
     let boats_of = |game: usize| environment.setup().pilots_of(sides[game].learner, SEED + game as u64);
     let boats: Vec<Vec<VehicleId>> = (0..episodes).map(|game| boats_of(game).collect()).collect();
-    let (mut ended, mut played) = (vec![false; episodes], Played::default());
+    let mut ended = vec![false; episodes];
+    let mut played = Played::default();
     while ended.iter().any(|ended| !ended) {
         for game in (0..episodes).filter(|game| !ended[*game]) {
             let all = progress(environment.contest(game), true);

@@ -234,7 +234,8 @@ mod tests {
         let game = GameName::new("pav01").expect("a good name");
         let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
         let scenario = scenario::load(&file).unwrap_or_else(|e| panic!("{e}"));
-        let (red, two) = (TeamId(1), VehicleId(1));
+        let red = TeamId(1);
+        let two = VehicleId(1);
         for (key, want) in [
             (say(&game, &scenario, red), "squall/pav01/say/red"),
             (policy(&game, &scenario, two), "squall/pav01/policy/blue_two"),

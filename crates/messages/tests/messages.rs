@@ -168,7 +168,8 @@ fn messages_survive_and_damaged_ones_are_refused() {
     survives_or_is_refused(&Say { words: vec![], ..say() });
     survives_or_is_refused(&proposal());
     let nav = Nav { north_m: 0.1 + 0.2, surge_m_s: -0.0, ..Nav::default() };
-    let (stamp, ticket) = (stamp::<NavReport>(), u64::MAX - 5);
+    let stamp = stamp::<NavReport>();
+    let ticket = u64::MAX - 5;
     survives_or_is_refused(&NavReport { stamp, ticket, vehicle: VehicleId(3), valid: true, age_ns: 30_000_000, nav });
     let order = VehicleOrder::new(VehicleId(3), Order::Thrust { port: -1.0, starboard: 1.0 / 3.0 });
     survives_or_is_refused(&ExternalOrder { stamp: self::stamp::<ExternalOrder>(), given_ns: SimTime(7), order });

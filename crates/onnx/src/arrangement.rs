@@ -236,11 +236,13 @@ fn slice_axis(
     let selected: Vec<usize> = match step {
         0 => return Err(node.wrong("step 0", "another step")),
         1.. => {
-            let (from, to) = (from_start(start).clamp(0, length), from_start(end).clamp(0, length));
+            let from = from_start(start).clamp(0, length);
+            let to = from_start(end).clamp(0, length);
             (from..to).step_by(usize::try_from(step).unwrap_or(usize::MAX)).map(|i| i as usize).collect()
         }
         _ => {
-            let (from, to) = (from_start(start).min(length - 1), from_start(end).max(-1));
+            let from = from_start(start).min(length - 1);
+            let to = from_start(end).max(-1);
             let size = usize::try_from(step.unsigned_abs()).unwrap_or(usize::MAX);
             (to + 1..=from).rev().step_by(size).map(|i| i as usize).collect()
         }
@@ -360,7 +362,8 @@ pub(super) fn shape(planner: &mut Planner, node: &Node) -> Result<Value, Network
     let dims: Vec<i64> = shape_of(&value).iter().map(|dim| *dim as i64).collect();
     let rank = dims.len() as i64;
     let at = |index: i64| if index < 0 { index.saturating_add(rank) } else { index }.clamp(0, rank) as usize;
-    let (start, end) = (at(node.integer("start", 0)?), at(node.integer("end", rank)?));
+    let start = at(node.integer("start", 0)?);
+    let end = at(node.integer("end", rank)?);
     let dims = dims.get(start..end).unwrap_or_default().to_vec();
     Ok(Value::Constant(Tensor::new(vec![dims.len()], Numbers::Integers(dims))))
 }
@@ -465,7 +468,8 @@ pub(super) fn shape_of(value: &Value) -> &[usize] {
 /// The same numbers in another shape of the same size.
 fn reshaped(node: &Node, value: Value, shape: Vec<usize>) -> Result<Value, NetworkError> {
     if shape.len() > RANK_MAX {
-        let (output, found) = (node.proto.output.first(), format!("{} dimensions", shape.len()));
+        let output = node.proto.output.first();
+        let found = format!("{} dimensions", shape.len());
         let name = shown(output.map_or("", String::as_str));
         return Err(node.wrong(format!("{found} of `{name}`"), format!("at most {RANK_MAX}")));
     }

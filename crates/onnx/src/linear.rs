@@ -83,7 +83,8 @@ pub(super) fn gemm(planner: &mut Planner, node: &Node) -> Result<Value, NetworkE
     if node.integer("transA", 0)? != 0 {
         input = transposed_row(planner, input, &[1, 0])?;
     }
-    let (alpha, beta) = (node.float("alpha", 1.0)?, node.float("beta", 1.0)?);
+    let alpha = node.float("alpha", 1.0)?;
+    let beta = node.float("beta", 1.0)?;
     let tensor = planner.constant(node, 1)?;
     let weights = floats(node, 1, &tensor)?;
     let (rows, columns) = matrix(node, &tensor.shape)?;

@@ -52,7 +52,8 @@ pub(super) const OPERATORS: &[Operator] = &[
     operator("Gelu", &["approximate"], 1..=1, elementwise::gelu),
     operator("Gemm", &["alpha", "beta", "transA", "transB"], 2..=3, linear::gemm),
     operator("HardSigmoid", &["alpha", "beta"], 1..=1, |planner, node| {
-        let (alpha, beta) = (node.float("alpha", 0.2)?, node.float("beta", 0.5)?);
+        let alpha = node.float("alpha", 0.2)?;
+        let beta = node.float("beta", 0.5)?;
         function(planner, node, Function::HardSigmoid { alpha, beta })
     }),
     operator("HardSwish", &[], 1..=1, |planner, node| function(planner, node, Function::HardSwish)),
@@ -81,7 +82,8 @@ pub(super) const OPERATORS: &[Operator] = &[
     operator("Relu", &[], 1..=1, |planner, node| function(planner, node, Function::Relu)),
     operator("Reshape", &["allowzero"], 2..=2, arrangement::reshape),
     operator("Selu", &["alpha", "gamma"], 1..=1, |planner, node| {
-        let (alpha, gamma) = (node.float("alpha", 1.673_263_2)?, node.float("gamma", 1.050_701)?);
+        let alpha = node.float("alpha", 1.673_263_2)?;
+        let gamma = node.float("gamma", 1.050_701)?;
         function(planner, node, Function::Selu { alpha, gamma })
     }),
     operator("Shape", &["start", "end"], 1..=1, arrangement::shape),

@@ -179,7 +179,8 @@ fn add(planner: &mut Planner, proto: &NodeProto, version: i64, needed: &BTreeSet
     let node = Node { proto, operator: operator.name, version };
     node.check_attributes(operator.attributes)?;
     if !operator.inputs.contains(&proto.input.len()) {
-        let (least, most) = (operator.inputs.start(), operator.inputs.end());
+        let least = operator.inputs.start();
+        let most = operator.inputs.end();
         let expected = if least == most { least.to_string() } else { format!("{least} to {most}") };
         return Err(node.wrong(format!("{} inputs", proto.input.len()), expected));
     }
@@ -194,7 +195,8 @@ fn add(planner: &mut Planner, proto: &NodeProto, version: i64, needed: &BTreeSet
         outputs => return Err(node.wrong(format!("{} outputs", outputs.len()), "one")),
     };
     let is_constant = planner.is_constant(&node);
-    let (steps, values) = (planner.steps.len(), planner.values.len());
+    let steps = planner.steps.len();
+    let values = planner.values.len();
     let value = match (operator.plan)(planner, &node)? {
         Value::Computed(row) if is_constant => planner.fold(steps, values, row)?,
         value => value,

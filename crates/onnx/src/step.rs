@@ -54,7 +54,8 @@ pub(super) struct Blocks {
 impl Step {
     pub(super) fn take(&self, values: &mut [f32]) {
         let (before, after) = values.split_at_mut(self.output.start);
-        let (input, output) = (&before[self.input.clone()], &mut after[..self.output.len()]);
+        let input = &before[self.input.clone()];
+        let output = &mut after[..self.output.len()];
         match &self.work {
             Work::Function(function) => function.apply(input, output),
             Work::Binary { operation, right } => operation.apply(input, &before[right.clone()], output),

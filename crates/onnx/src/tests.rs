@@ -13,13 +13,16 @@ const OF_FLOAT: i32 = 1;
 const OF_INTEGER: i32 = 2;
 
 fn tensor(name: &str, dims: &[i64], numbers: &[f32]) -> TensorProto {
-    let (name, dims, float_data) = (name.to_owned(), dims.to_vec(), numbers.to_vec());
+    let name = name.to_owned();
+    let dims = dims.to_vec();
+    let float_data = numbers.to_vec();
     TensorProto { name, dims, data_type: FLOAT, float_data, ..TensorProto::default() }
 }
 
 fn node(operator: &str, inputs: &[&str], output: &str) -> NodeProto {
     let input = inputs.iter().map(|&name| name.to_owned()).collect();
-    let (name, op_type) = (format!("{output} node"), operator.to_owned());
+    let name = format!("{output} node");
+    let op_type = operator.to_owned();
     NodeProto { input, output: vec![output.to_owned()], name, op_type, ..NodeProto::default() }
 }
 

@@ -104,7 +104,8 @@ impl Ned {
     #[inline]
     #[must_use]
     pub fn distance_squared(self, other: Ned) -> f64 {
-        let (n, e) = (self.north - other.north, self.east - other.east);
+        let n = self.north - other.north;
+        let e = self.east - other.east;
         n * n + e * e
     }
 

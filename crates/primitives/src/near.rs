@@ -57,18 +57,21 @@ impl Near {
         self.keys.sort_unstable();
         let mut row_to_the_north = 0;
         for (i, &key) in self.keys.iter().enumerate() {
-            let (here, a) = (at(vehicle(key)), key as u16);
+            let here = at(vehicle(key));
+            let a = key as u16;
             // Forward half of the neighbourhood: the rest of this cell and the one to the east,
             // then the three cells to the north. All of these positions advance with the list.
             let cell = key & !u64::from(u16::MAX);
-            let (start, end) = (cell + ROW - COLUMN, cell + ROW + 2 * COLUMN);
+            let start = cell + ROW - COLUMN;
+            let end = cell + ROW + 2 * COLUMN;
             while self.keys.get(row_to_the_north).is_some_and(|key| *key < start) {
                 row_to_the_north += 1;
             }
             let this = self.keys[i + 1..].iter().take_while(|key| **key < cell + 2 * COLUMN);
             let north = self.keys[row_to_the_north..].iter().take_while(|key| **key < end);
             for &key in this.chain(north) {
-                let (there, b) = (at(vehicle(key)), key as u16);
+                let there = at(vehicle(key));
+                let b = key as u16;
                 push_if_near(&mut self.pairs, (a.min(b), a.max(b)), here.distance_squared(there), reach_m);
             }
         }
@@ -113,7 +116,8 @@ mod tests {
             let fleet: Vec<Ned> = (0..count)
                 .map(|_| Ned { north: stream.between(-40.0, 40.0), east: stream.between(-80.0, 80.0) })
                 .collect();
-            let (mut all, mut cells) = (Near::default(), Near::default());
+            let mut all = Near::default();
+            let mut cells = Near::default();
             all.compare_all(&|i| fleet[i], count, 7.0);
             let got = cells.pairs(|i| fleet[i], count, 7.0);
             assert_eq!(got, all.pairs, "seed {seed}");

@@ -57,7 +57,8 @@ pub(crate) fn normal(mut bits: impl FnMut(u64) -> u64) -> f64 {
 /// The number if it is under the next layer; otherwise the drawn layer and position.
 #[inline]
 fn inside(drawn: u64) -> Result<f64, (usize, f64)> {
-    let (layers, layer) = (&*LAYER, (drawn % LAYERS as u64) as usize);
+    let layers = &*LAYER;
+    let layer = (drawn % LAYERS as u64) as usize;
     let x = (2.0 * unit(drawn) - 1.0) * layers[layer].edge;
     if x.abs() < layers[layer + 1].edge { Ok(x) } else { Err((layer, x)) }
 }
@@ -66,7 +67,8 @@ fn inside(drawn: u64) -> Result<f64, (usize, f64)> {
 #[cold]
 #[inline(never)]
 fn try_on(first: (usize, f64), mut bits: impl FnMut(u64) -> u64) -> f64 {
-    let (mut drawn, mut asked) = (Err(first), 0);
+    let mut drawn = Err(first);
+    let mut asked = 0;
     let mut next = || {
         asked += 1;
         bits(asked)
@@ -88,7 +90,8 @@ fn try_on(first: (usize, f64), mut bits: impl FnMut(u64) -> u64) -> f64 {
 /// `x` if a height drawn within the layer is under the bell curve.
 fn beside(x: f64, layer: usize, next: &mut impl FnMut() -> u64) -> Option<f64> {
     if layer > 0 {
-        let (low, high) = (LAYER[layer].bell, LAYER[layer + 1].bell);
+        let low = LAYER[layer].bell;
+        let high = LAYER[layer + 1].bell;
         return (low + unit(next()) * (high - low) < bell(x)).then_some(x);
     }
     // Marsaglia (1964).

@@ -128,7 +128,8 @@ mod tests {
 
     #[test]
     fn the_same_seed_and_name_give_the_same_numbers() {
-        let (mut a, mut b) = (Stream::new(7, "spawn"), Stream::new(7, "spawn"));
+        let mut a = Stream::new(7, "spawn");
+        let mut b = Stream::new(7, "spawn");
         assert!((0..100).all(|_| a.bits() == b.bits()));
     }
 
@@ -153,7 +154,8 @@ mod tests {
     fn units_have_the_mean_and_variance_of_a_uniform_number() {
         let mut stream = Stream::new(3, "test");
         let n = 100_000;
-        let (mut sum, mut squares) = (0.0, 0.0);
+        let mut sum = 0.0;
+        let mut squares = 0.0;
         for _ in 0..n {
             let x = stream.unit();
             sum += x;

@@ -67,7 +67,9 @@ mod tests {
 
     #[test]
     fn times_stop_at_the_ends() {
-        let (first, last, second) = (SimTime(i64::MIN), SimTime(i64::MAX), SimTime(1_000_000_000));
+        let first = SimTime(i64::MIN);
+        let last = SimTime(i64::MAX);
+        let second = SimTime(1_000_000_000);
         for (got, want) in [
             (last + second, last),
             (first - second, first),

@@ -87,7 +87,8 @@ impl Recorder {
         let writer = Writer::begin(file, opening)?;
         let (sender, jobs) = sync_channel(WAITING);
         let queue = Queue { jobs: sender, waiting_max, shared: Arc::default() };
-        let (theirs, size_of) = (Arc::clone(&queue.shared), path.clone());
+        let theirs = Arc::clone(&queue.shared);
+        let size_of = path.clone();
         let thread = std::thread::Builder::new().name("recorder".to_owned());
         // In the sim's process instead of an observer on the network, which the sim would have to
         // wait for or which would miss messages. The game passes copies; `benches/recording.rs`

@@ -86,7 +86,8 @@ fn agrees(source: &Source, checksum_at: u64, place: Range<u64>) -> Result<bool, 
 /// Opcode and body of the record at `place`; the body may extend beyond the available bytes.
 fn record_at(source: &Source, place: u64, end: u64) -> Result<Option<(u8, Range<u64>)>, RecordingError> {
     let Some(from) = place.checked_add(PREFIX).filter(|from| *from <= end) else { return Ok(None) };
-    let (opcode, length) = (source.array::<1>(place)?, source.array(place + 1)?.map(u64::from_le_bytes));
+    let opcode = source.array::<1>(place)?;
+    let length = source.array(place + 1)?.map(u64::from_le_bytes);
     let body = length.and_then(|length| from.checked_add(length)).map(|end| from..end);
     Ok(opcode.map(|[opcode]| opcode).zip(body))
 }

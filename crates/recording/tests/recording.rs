@@ -252,7 +252,8 @@ fn a_byte_that_is_another_is_noticed_and_its_chunk_named() {
     let whole = recorded(&[1.0]);
     let opened = Recording::of(whole.clone()).unwrap_or_else(|e| panic!("{e}"));
     assert!(opened.bag().damage.is_empty(), "nothing is");
-    let (all, schema) = (all_of(&opened), first_schema(&whole));
+    let all = all_of(&opened);
+    let schema = first_schema(&whole);
     for place in schema - 60..whole.len() {
         let mut bytes = whole.clone();
         bytes[place] ^= 0x10;

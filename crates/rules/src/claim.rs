@@ -55,8 +55,10 @@ mod tests {
 
     #[test]
     fn each_gets_one_thing_and_each_thing_goes_to_the_nearest() {
-        let (near, first) = (TagChoice::Nearest, TagChoice::First);
-        let (at_once, in_turn) = (Resolution::AtOnce, Resolution::InTurn);
+        let near = TagChoice::Nearest;
+        let first = TagChoice::First;
+        let at_once = Resolution::AtOnce;
+        let in_turn = Resolution::InTurn;
         for (name, claims, choice, resolution, want) in [
             ("one reaches for two", vec![(0, 5, 4.0), (0, 6, 1.0)], near, at_once, vec![(0, 6)]),
             ("one takes the first", vec![(0, 6, 1.0), (0, 5, 4.0)], first, at_once, vec![(0, 5)]),

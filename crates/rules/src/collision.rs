@@ -20,7 +20,8 @@ impl Referee {
         // one.
         let mut before = standing.touching.iter().peekable();
         for pair in near.iter().filter(|pair| pair.distance_squared < reach_squared) {
-            let (first, second) = (VehicleId(pair.a), VehicleId(pair.b));
+            let first = VehicleId(pair.a);
+            let second = VehicleId(pair.b);
             while before.next_if(|old| **old < (first, second)).is_some() {}
             if before.next_if(|old| **old == (first, second)).is_none() {
                 events.push(Event::Collided { first, second });

@@ -137,7 +137,8 @@ pub fn distance_to_outline(corners: &[Ned], at: Ned) -> f64 {
 /// The distance to the line segment from `a` to `b`, m.
 #[must_use]
 pub fn distance_to_side(a: Ned, b: Ned, at: Ned) -> f64 {
-    let (side, from_a) = (b - a, at - a);
+    let side = b - a;
+    let from_a = at - a;
     let length_squared = side.dot(side);
     let share = if length_squared > 0.0 { (from_a.dot(side) / length_squared).clamp(0.0, 1.0) } else { 0.0 };
     from_a.distance(side.scaled(share))
@@ -157,8 +158,10 @@ pub fn distance_to_line(corners: &[Ned], (a, b): (Ned, Ned)) -> f64 {
 /// Whether two line segments have a point in common.
 #[must_use]
 pub fn do_meet((a, b): (Ned, Ned), (c, d): (Ned, Ned)) -> bool {
-    let (c_side, d_side) = (turn(a, b, c), turn(a, b, d));
-    let (a_side, b_side) = (turn(c, d, a), turn(c, d, b));
+    let c_side = turn(a, b, c);
+    let d_side = turn(a, b, d);
+    let a_side = turn(c, d, a);
+    let b_side = turn(c, d, b);
     let apart = |p: f64, q: f64| (p > 0.0 && q > 0.0) || (p < 0.0 && q < 0.0);
     if apart(c_side, d_side) || apart(a_side, b_side) {
         return false;
@@ -189,7 +192,8 @@ impl Zone {
     /// The convex polygon with these corners, in clockwise order on the chart.
     fn new(corners: Vec<Ned>) -> Zone {
         let edge = |(a, b): (Ned, Ned)| {
-            let (side, length) = (b - a, a.distance(b));
+            let side = b - a;
+            let length = a.distance(b);
             // A quarter turn to port of the side's direction: outward, because the corners are
             // clockwise.
             let out = Ned { north: side.east / length, east: -side.north / length };
@@ -240,7 +244,9 @@ impl Field {
         let along = Ned::toward_deg(plan.along_deg);
         let across = Ned { north: along.east, east: -along.north };
         let at = |x: f64, y: f64| plan.corner + along.scaled(x) + across.scaled(y);
-        let (w, d, half) = (plan.width_m, plan.depth_m, plan.width_m / 2.0);
+        let w = plan.width_m;
+        let d = plan.depth_m;
+        let half = plan.width_m / 2.0;
         let corners = [at(0.0, 0.0), at(0.0, d), at(w, d), at(w, 0.0)];
         let mut flags = vec![
             Flag { team: TeamId(0), home: at(plan.flag_inset_m, d / 2.0) },
@@ -307,7 +313,8 @@ impl Field {
         let [first, second] = *self.own_corners.get(team.index())?;
         let ahead = (second - first).scaled(inset_m / first.distance(second));
         let inward = Ned { north: -ahead.east, east: ahead.north };
-        let (first, second) = (first + ahead + inward, second - ahead + inward);
+        let first = first + ahead + inward;
+        let second = second - ahead + inward;
         Some(if at.distance_squared(first) <= at.distance_squared(second) { first } else { second })
     }
 

@@ -35,7 +35,8 @@ impl Referee {
         }
         settle(&mut notes.claims, TagChoice::Nearest, self.rules.resolution);
         for claim in &notes.claims {
-            let (vehicle, flag) = (VehicleId(claim.by), FlagId(claim.on as u8));
+            let vehicle = VehicleId(claim.by);
+            let flag = FlagId(claim.on as u8);
             standing.vehicles[vehicle.index()].carrying = Some(flag);
             let state = &mut standing.flags[flag.index()];
             (state.carrier, state.moved_at) = (Some(vehicle), standing.now);
@@ -53,7 +54,8 @@ impl Referee {
         notes.claims.clear();
         for (on, state) in standing.flags.iter().enumerate() {
             let Some(carrier) = state.carrier.filter(|_| state.moved_at != standing.now) else { continue };
-            let (team, here) = (self.team_of[carrier.index()], look.legs[carrier.index()]);
+            let team = self.team_of[carrier.index()];
+            let here = look.legs[carrier.index()];
             let own_flags_home =
                 || self.field.own_flags(team).all(|(own, _)| standing.flags[own.index()].carrier.is_none());
             if standing.vehicles[carrier.index()].acts()
@@ -64,7 +66,8 @@ impl Referee {
             }
         }
         for claim in &notes.claims {
-            let (vehicle, flag) = (VehicleId(claim.by), FlagId(claim.on as u8));
+            let vehicle = VehicleId(claim.by);
+            let flag = FlagId(claim.on as u8);
             standing.bring_home(flag);
             standing.vehicles[vehicle.index()].carrying = None;
             standing.award(self.team_of[vehicle.index()], self.rules.points.capture);

@@ -25,7 +25,8 @@ impl Referee {
             return;
         }
         stream.shuffle(&mut chosen);
-        let (game, windows) = (self.rules.time_limit.0.max(0), chosen.len() as i64);
+        let game = self.rules.time_limit.0.max(0);
+        let windows = chosen.len() as i64;
         let length = self.rules.power_play.0.min(game / windows);
         // Sorting random gaps between the windows is equivalent to drawing the windows themselves.
         let spare = (game - length * windows) as u64;

@@ -31,7 +31,8 @@ impl Referee {
         }
         settle(&mut notes.claims, self.rules.tag_choice, self.rules.resolution);
         for claim in &notes.claims {
-            let (tagger, target) = (VehicleId(claim.by), VehicleId(claim.on));
+            let tagger = VehicleId(claim.by);
+            let target = VehicleId(claim.on);
             standing.put_tag(target, TagCause::Opponent(tagger), events);
             standing.drop_flag(target, events);
             standing.vehicles[tagger.index()].tag_ready = self.rules.tag_ready_after(standing.now);
@@ -45,8 +46,10 @@ impl Referee {
     /// line belongs to both sides: a boat on it is safe but can tag, so no boat is ever both tagger
     /// and target.
     fn may_tag(&self, standing: &Standing, tagger: usize, target: usize, look: &Look<'_>) -> bool {
-        let (by, on) = (&standing.vehicles[tagger], &standing.vehicles[target]);
-        let (own, other) = (self.team_of[tagger], self.team_of[target]);
+        let by = &standing.vehicles[tagger];
+        let on = &standing.vehicles[target];
+        let own = self.team_of[tagger];
+        let other = self.team_of[target];
         let at = |i: usize| self.rules.side_place(look.legs[i]);
         let able = own != other && by.in_play && Ability::from(by).may_tag(standing.now);
         let asks = self.rules.tags_and_grabs == Acting::Automatic || look.asks[tagger].tag;

@@ -163,7 +163,8 @@ mod tests {
 
     #[test]
     fn the_nearest_action_is_the_one_that_asked() {
-        let (heading_rad, fastest_m_s) = (2.5, 3.0);
+        let heading_rad = 2.5;
+        let fastest_m_s = 3.0;
         let space = ActionSpace::Pyquaticus;
         for action in (0..17).map(Action::Discrete) {
             let asked = space.set_point(action, heading_rad, fastest_m_s);

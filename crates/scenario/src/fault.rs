@@ -108,14 +108,16 @@ pub fn fault_spans(
     let mut spans = vec![];
     for fault in faults.iter().filter(|fault| fault.vehicles.contains(&vehicle)) {
         let stream = |seed: u64| Stream::new(seed, &format!("fault/{}/{name}", fault.name));
-        let (mut later, mut drawn) = (seeds.later().iter().peekable(), stream(seeds.first()));
+        let mut later = seeds.later().iter().peekable();
+        let mut drawn = stream(seeds.first());
         let lasts = fault.for_s.map_or(end, SimTime::from_s);
         let wait = |stream: &mut Stream| {
             let mean_s = fault.every_s?;
             // With a unit of 0 the wait would be infinite.
             Some(SimTime::from_s((-mean_s * libm::log1p(-stream.unit())).min(1e7)))
         };
-        let (mut next, mut over) = (fault.at_s.map(SimTime::from_s).or_else(|| wait(&mut drawn)), SimTime::ZERO);
+        let mut next = fault.at_s.map(SimTime::from_s).or_else(|| wait(&mut drawn));
+        let mut over = SimTime::ZERO;
         while let Some(mut from) = next.filter(|from| *from < end) {
             while let Some((after, seed)) = later.next_if(|(after, _)| *after < from) {
                 drawn = stream(*seed);
@@ -194,7 +196,8 @@ mod tests {
     fn another_seed_changes_what_begins_after_its_time_and_neither_what_was_before_nor_how_often() {
         let drawn = Fault { every_s: Some(50.0), for_s: Some(10.0), ..fault() };
         let of = |seeds: &Seeds| fault_spans(std::slice::from_ref(&drawn), (VehicleId(0), "a"), seeds, HOUR);
-        let (half, first) = (SimTime::from_s(1800.0), of(&1.into()));
+        let half = SimTime::from_s(1800.0);
+        let first = of(&1.into());
         let mut counts = [0, 0];
         for seed in 2..202 {
             let again = of(&Seeds::new(1, &[Reseed { after_s: 1800.0, seed }]));

@@ -168,7 +168,8 @@ impl Scenario {
     /// Whether everything that an event refers to exists in the game: the sender may be wrong.
     #[must_use]
     pub fn has(&self, event: Event) -> bool {
-        let (flag, team) = (event.flag(), if let Event::Ended { winner } = event { winner } else { None });
+        let flag = event.flag();
+        let team = if let Event::Ended { winner } = event { winner } else { None };
         [event.vehicle(), event.other()].into_iter().flatten().all(|vehicle| vehicle.index() < self.vehicles.len())
             && flag.is_none_or(|flag| flag.index() < self.field.flags.len())
             && team.is_none_or(|team| team.index() < self.teams.len())

@@ -179,7 +179,8 @@ fn spec_of(network: &Network, said: PartialSpec) -> Result<PolicySpec, String> {
 fn agreed<T: PartialEq + Serialize>(key: &str, said_by: &str, found: Option<T>, said: Option<T>) -> Result<T, String> {
     match (found, said) {
         (Some(found), Some(said)) if found != said => {
-            let (found, said) = (json(&found), json(&said));
+            let found = json(&found);
+            let said = json(&said);
             Err(format!("its metadata has {key} = {found}, expected {said}, as stated here"))
         }
         (_, Some(one)) | (Some(one), None) => Ok(one),
@@ -198,7 +199,8 @@ fn check_input(network: &Network, observation: ObservationSpace) -> Result<(), S
     match observation {
         // The size for a game of 1 against 1, and the size per other boat.
         ObservationSpace::Pyquaticus => {
-            let (least, other) = (observation.size(0, 1), observation.size(1, 1) - observation.size(0, 1));
+            let least = observation.size(0, 1);
+            let other = observation.size(1, 1) - observation.size(0, 1);
             if input.size < least || !(input.size - least).is_multiple_of(other) {
                 return wrong(&format!("{least} numbers, or {other} more for each other boat"));
             }

@@ -163,7 +163,8 @@ pub(super) fn tree(
     mut asked_at: Option<usize>,
     own: &[&str],
 ) -> Option<Node> {
-    let (mut path, mut paths) = (tidied(path), Vec::<PathBuf>::new());
+    let mut path = tidied(path);
+    let mut paths = Vec::<PathBuf>::new();
     let mut tree: Option<Node> = None;
     loop {
         if let Some(at) = asked_at

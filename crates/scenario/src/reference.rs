@@ -81,7 +81,8 @@ pub fn reference() -> String {
         table(&mut page, &root["definitions"][name], |_, _| true);
     }
     let quoted = |names: &[&str]| names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
-    let (who, what) = (quoted(&Who::names()), quoted(&What::names()));
+    let who = quoted(&Who::names());
+    let what = quoted(&What::names());
     let _ = write!(page, "\n`on` is one of {who}, then one of {what}: `\"enemy grabs\"`.\n\n{EXPRESSIONS}");
     names(&mut page);
     behaviours(&mut page, root);
@@ -118,7 +119,8 @@ fn names(page: &mut String) {
     for (is_truth, kind) in [(true, "truth"), (false, "number")] {
         let _ = write!(page, "\n| {kind} | meaning |\n|---|---|\n");
         for measure in Measure::all().iter().filter(|measure| measure.is_truth() == is_truth) {
-            let (name, meaning) = (measure.name(), line(measure.meaning()));
+            let name = measure.name();
+            let meaning = line(measure.meaning());
             let two = if measure.is_of_two() { format!(" `{name}(from, to)`") } else { String::new() };
             let _ = writeln!(page, "| `{name}(place)`{two} | {meaning} |");
         }

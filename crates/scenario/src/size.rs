@@ -49,7 +49,8 @@ impl Scenario {
             within(&format!("helm.courses of {}", program.name), program.helm.courses, COURSES_MIN..=COURSES_MAX)?;
             within(&format!("helm.speeds of {}", program.name), program.helm.speeds, SPEEDS_MIN..=SPEEDS_MAX)?;
         }
-        let (mut candidates, mut observed) = (0, 0);
+        let mut candidates = 0;
+        let mut observed = 0;
         for vehicle in &self.vehicles {
             let roles = &self.strategies[vehicle.strategy].roles;
             candidates += roles.iter().map(|role| role.helm.courses * role.helm.speeds).max().unwrap_or(0);
@@ -65,7 +66,8 @@ impl Scenario {
 }
 
 fn within<T: PartialOrd + std::fmt::Display>(what: &str, found: T, allowed: RangeInclusive<T>) -> Result<(), String> {
-    let (min, max) = (allowed.start(), allowed.end());
+    let min = allowed.start();
+    let max = allowed.end();
     if allowed.contains(&found) { Ok(()) } else { Err(format!("{what} is {found}, expected {min} to {max}")) }
 }
 

@@ -54,7 +54,8 @@ impl Sources {
         }
         let before = &file.text[..end];
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-        let (line, column) = (before.matches('\n').count() + 1, before[line_start..].chars().count() + 1);
+        let line = before.matches('\n').count() + 1;
+        let column = before[line_start..].chars().count() + 1;
         let source = file.text[line_start..].lines().next().unwrap_or_default().to_owned();
         Problem { path: file.path.clone(), line, column, message, source }
     }

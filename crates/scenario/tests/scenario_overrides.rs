@@ -73,7 +73,8 @@ fn two_files_of_one_name_may_meet_and_what_is_replaced_is_not_read() {
 #[test]
 fn a_game_drawn_again_keeps_what_took_the_place_of_its_own() {
     let dir = tempfile::tempdir().unwrap();
-    let (game, strategy) = (dir.path().join("game.toml"), dir.path().join("own.toml"));
+    let game = dir.path().join("game.toml");
+    let strategy = dir.path().join("own.toml");
     let base = shipped("games/pav01_vs_pav01.toml").canonicalize().unwrap();
     std::fs::write(&game, format!("base = {base:?}\nlink = {{ delay_s = {{ uniform = [0.1, 0.2] }} }}\n")).unwrap();
     std::fs::write(&strategy, LIES_STILL).unwrap();
@@ -200,7 +201,8 @@ fn a_value_of_a_strategy_changes_that_of_its_team_alone() {
         let pursue = strategy.roles[0].behaviours.iter().find(|behaviour| behaviour.name == "pursue");
         format!("{:?}", pursue.expect("strategy 4 pursues").weight)
     };
-    let (own, changed) = (with(&[]).unwrap(), with(&["strategy.red.behaviour.pursue.weight=37"]).unwrap());
+    let own = with(&[]).unwrap();
+    let changed = with(&["strategy.red.behaviour.pursue.weight=37"]).unwrap();
     assert_eq!((own.strategies.len(), changed.strategies.len()), (1, 2), "boats of a team share its strategy");
     let weights = |scenario: &Scenario| [0, 1, 2, 3].map(|vehicle| weight(scenario, vehicle).contains("37"));
     assert_eq!((weights(&own), weights(&changed)), ([false; 4], [false, false, true, true]));

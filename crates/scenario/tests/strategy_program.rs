@@ -242,7 +242,9 @@ fn required(kind: &str) -> &'static str {
 #[test]
 fn numbers_of_behaviours_have_the_ranges_and_defaults_that_are_declared() {
     let schema = scenario::schema(Kind::STRATEGY);
-    let (mut kinds, mut ranges, mut defaults) = (0, 0, 0);
+    let mut kinds = 0;
+    let mut ranges = 0;
+    let mut defaults = 0;
     for about in schema["properties"]["behaviour"]["additionalProperties"]["anyOf"].as_array().unwrap() {
         let kind = about["properties"]["kind"]["const"].as_str().unwrap();
         kinds += 1;
@@ -254,7 +256,8 @@ fn numbers_of_behaviours_have_the_ranges_and_defaults_that_are_declared() {
             if about["title"] != "a number or an expression" {
                 continue;
             }
-            let (low, high) = (about["minimum"].as_f64().unwrap(), about["maximum"].as_f64().unwrap());
+            let low = about["minimum"].as_f64().unwrap();
+            let high = about["maximum"].as_f64().unwrap();
             for value in [low - 1.0, high + 1.0] {
                 // An expression is limited to the same range.
                 for value in [format!("{value:?}"), format!("\"{value:?} * 1\"")] {

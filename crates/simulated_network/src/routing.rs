@@ -31,7 +31,8 @@ impl State {
                 && (!is_own || *hears_own)
                 && keys_meet(&declared.key, key)
             {
-                let (take, bytes) = (Arc::clone(take), Arc::clone(bytes));
+                let take = Arc::clone(take);
+                let bytes = Arc::clone(bytes);
                 self.calls.push(Box::new(move || take(&bytes)));
             }
         }
@@ -86,7 +87,8 @@ impl State {
         if !self.links[link].hub_open {
             return;
         }
-        let (leaf, hub) = (self.links[link].leaf, self.links[link].hub);
+        let leaf = self.links[link].leaf;
+        let hub = self.links[link].hub;
         match packet {
             Packet::Publish { key, bytes } => {
                 self.report_published(leaf, &key, &bytes);
@@ -179,7 +181,8 @@ impl State {
                 && keys_meet(&declared.key, key)
                 && (if is_there { known.insert(key.to_owned()) } else { known.remove(key) })
             {
-                let (take, key) = (Arc::clone(take), key.to_owned());
+                let take = Arc::clone(take);
+                let key = key.to_owned();
                 self.calls.push(Box::new(move || take(&key, is_there)));
             }
         }
@@ -211,7 +214,8 @@ impl State {
                 if let Some(Declared { what: What::Watch(take, known), .. }) = declared
                     && known.insert(key.clone())
                 {
-                    let (take, key) = (Arc::clone(take), key.clone());
+                    let take = Arc::clone(take);
+                    let key = key.clone();
                     self.calls.push(Box::new(move || take(&key, true)));
                 }
             }

@@ -102,7 +102,9 @@ pub(crate) fn wait_until(address: usize, deadline: Option<Instant>) -> bool {
 
 impl World {
     pub(crate) fn new(start: Instant, state: State) -> Arc<World> {
-        let (now_ns, running, state) = (AtomicU64::new(0), AtomicUsize::new(MAIN), Mutex::new(state));
+        let now_ns = AtomicU64::new(0);
+        let running = AtomicUsize::new(MAIN);
+        let state = Mutex::new(state);
         Arc::new(World { start, now_ns, running, state, main: thread::current() })
     }
 
@@ -176,7 +178,8 @@ impl World {
             }
             state.step(self);
             self.now_ns.store(state.now_ns, Ordering::Relaxed);
-            let (calls, to_drop) = (std::mem::take(&mut state.calls), std::mem::take(&mut state.to_drop));
+            let calls = std::mem::take(&mut state.calls);
+            let to_drop = std::mem::take(&mut state.to_drop);
             drop(state);
             // Dropping these may send, which would deadlock with the state locked.
             drop(to_drop);
@@ -201,7 +204,9 @@ impl World {
 impl Current {
     /// Runs a thread of a node from start to end.
     fn run(self, body: Box<dyn FnOnce() + Send>) {
-        let (world, node, thread) = (Arc::clone(&self.world), self.node, self.thread);
+        let world = Arc::clone(&self.world);
+        let node = self.node;
+        let thread = self.thread;
         CURRENT.set(Some(self));
         world.await_turn(thread);
         let is_killed = world.state.lock().threads[thread].is_killed;
@@ -274,7 +279,8 @@ impl State {
         self.note("starts", node, "", &[]);
         let started = &mut self.nodes[node];
         started.is_running = true;
-        let (body, world) = (Arc::clone(&started.body), Arc::clone(world));
+        let body = Arc::clone(&started.body);
+        let world = Arc::clone(world);
         self.calls.push(Box::new(move || {
             let thread = world.spawn(node, Box::new(move || body()));
             world.state.lock().nodes[node].main_thread = Some(thread);

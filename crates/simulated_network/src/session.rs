@@ -90,7 +90,9 @@ impl SimulatedSession {
         let mut state = world.state.lock();
         let id = format!("{:016x}", state.stream.bits());
         let session = state.sessions.len();
-        let (node, endpoints, declared) = (current.node, endpoints.to_vec(), BTreeMap::new());
+        let node = current.node;
+        let endpoints = endpoints.to_vec();
+        let declared = BTreeMap::new();
         state.sessions.push(SessionState { node, is_open: true, endpoints, link: None, is_hub, declared });
         drop(state);
         Ok(SimulatedSession { world, session, id })
@@ -109,7 +111,8 @@ impl SimulatedSession {
             let declared = Declared { key: key.clone(), what };
             let packet = declared.packet(id);
             let own = &mut state.sessions[self.session];
-            let (is_hub, link) = (own.is_hub, own.link);
+            let is_hub = own.is_hub;
+            let link = own.link;
             let refused = if own.is_open { own.declared.insert(id, declared) } else { Some(declared) };
             match packet {
                 Packet::Declare { kind: Kind::Watch, .. } if is_hub => state.begin_watch(self.session, id, &key),

@@ -47,7 +47,8 @@ fn add_hub(network: &SimulatedNetwork, time: Duration, log: &Log) -> usize {
         let start = clock::now();
         let note = move |log: &Log, text: String| log.lock().push((clock::since(start).as_secs_f64(), text));
         let bus = Bus::hub(&net(), &GameName::new("test").expect("a name"), &scenario()).expect("the address is free");
-        let (numbers, tokens) = (Arc::clone(&log), Arc::clone(&log));
+        let numbers = Arc::clone(&log);
+        let tokens = Arc::clone(&log);
         let heard =
             bus.subscribe(KEY.to_owned(), move |bytes| note(&numbers, String::from_utf8_lossy(bytes).into_owned()));
         let seen =
@@ -73,7 +74,8 @@ fn add_leaf(network: &SimulatedNetwork, numbers: u32, every: Duration) -> usize 
 }
 
 fn played(seed: u64, numbers: u32, every: Duration, faults: &[(Duration, Fault)]) -> (Run, Vec<(f64, String)>) {
-    let (network, log) = (SimulatedNetwork::new(seed, conditions()), Log::default());
+    let network = SimulatedNetwork::new(seed, conditions());
+    let log = Log::default();
     add_hub(&network, Duration::from_secs(60), &log);
     add_leaf(&network, numbers, every);
     faults.iter().for_each(|(at, fault)| network.fault(*at, *fault));
@@ -141,7 +143,8 @@ fn who_is_suspended_hears_everything_afterwards_if_it_is_not_for_too_long() {
 fn a_full_link_drops_and_a_killed_node_is_missed_at_once() {
     let mut little = conditions();
     little.queue = 10;
-    let (network, log) = (SimulatedNetwork::new(9, little), Log::default());
+    let network = SimulatedNetwork::new(9, little);
+    let log = Log::default();
     add_hub(&network, Duration::from_secs(60), &log);
     let leaf = add_leaf(&network, 200, Duration::from_millis(100));
     network.fault(Duration::from_secs(2), Fault::Cut { node: leaf, time: Duration::from_secs(5) });

@@ -19,7 +19,8 @@ impl Drift {
     pub fn of(samples: &[Sample]) -> Option<Drift> {
         let middle = samples.len() / 2;
         let half = &samples[middle..];
-        let (first, last) = (half.first()?, half.last()?);
+        let first = half.first()?;
+        let last = half.last()?;
         if last.t_s <= first.t_s {
             return None;
         }
@@ -80,7 +81,8 @@ mod tests {
                 })
                 .collect();
             let drift = Drift::of(&samples).expect("it was sailed");
-            let (speed_m_s, toward_rad) = (drift.speed_m_s(), drift.toward_rad().expect("it moves"));
+            let speed_m_s = drift.speed_m_s();
+            let toward_rad = drift.toward_rad().expect("it moves");
             assert!((speed_m_s / want_m_s - 1.0).abs() < TOLERANCE, "{name}: {speed_m_s} m/s, balance {want_m_s} m/s");
             let off_rad = primitives::angle::wrap_pi(toward_rad - from_rad - std::f64::consts::PI);
             let off_beam_rad = primitives::angle::wrap_pi(drift.heading_rad - from_rad).abs() - FRAC_PI_2;

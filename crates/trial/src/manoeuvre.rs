@@ -136,7 +136,8 @@ pub fn sail(boat: &Boat, trial_boat: &mut TrialBoat, plan: &Plan) -> Result<Sail
     let mut sailed = Sailed { samples: vec![], approach_m_s, switches: vec![] };
     let mut side = plan.side;
     let mut off_course_rad = 0.0;
-    let (mut turned_rad, mut psi_rad) = (0.0, trial_boat.pose().psi_rad);
+    let mut turned_rad = 0.0;
+    let mut psi_rad = trial_boat.pose().psi_rad;
     loop {
         let t_s = (ROW * sailed.samples.len() as i64).as_s();
         let mut told = command(plan, helm, side);
@@ -172,7 +173,9 @@ fn approach(boat: &Boat, trial_boat: &mut TrialBoat, plan: &Plan, per_row: u32) 
     let engine = Engine::new(boat);
     let rows = SimTime::from_s(plan.approach_s).0 / ROW.0;
     let last_rows = (MEAN_S / ROW.as_s()).round() as i64;
-    let (mut speed_sum, mut throttle_sum, mut count) = (0.0, 0.0, 0.0_f64);
+    let mut speed_sum = 0.0;
+    let mut throttle_sum = 0.0;
+    let mut count = 0.0_f64;
     for row in 1..=rows {
         (0..per_row).for_each(|_| trial_boat.step(course));
         if !trial_boat.is_sound() {
@@ -188,7 +191,8 @@ fn approach(boat: &Boat, trial_boat: &mut TrialBoat, plan: &Plan, per_row: u32) 
 }
 
 fn command(plan: &Plan, helm: Helm, side: f64) -> Command {
-    let (throttle, full) = (helm.throttle, side > 0.0);
+    let throttle = helm.throttle;
+    let full = side > 0.0;
     match plan.manoeuvre {
         Manoeuvre::TurningCircle if helm.is_kinematic => helm.turning(side),
         Manoeuvre::TurningCircle => helm.apart(if full { throttle } else { 0.0 }, if full { 0.0 } else { throttle }),
@@ -224,7 +228,8 @@ fn is_steady(samples: &[Sample]) -> bool {
     let rows = (STEADY_S / ROW.as_s()).round() as usize;
     let mean = |samples: &[Sample]| samples.iter().map(|sample| sample.nu.surge).sum::<f64>() / rows as f64;
     let Some(first) = samples.len().checked_sub(2 * rows) else { return false };
-    let (before, after) = (mean(&samples[first..first + rows]), mean(&samples[first + rows..]));
+    let before = mean(&samples[first..first + rows]);
+    let after = mean(&samples[first + rows..]);
     after > 0.0 && (after - before).abs() < STEADY * after
 }
 

@@ -58,11 +58,13 @@ fn turning_circle(plan: &Plan, sailed: &Sailed) -> Vec<Measure> {
         first(angle_rad).map_or((f64::NAN, f64::NAN), |i| along_and_across(plan, sailed.samples[i].at))
     };
     let time = |angle_rad: f64| first(angle_rad).map_or(f64::NAN, |i| sailed.samples[i].t_s);
-    let ((advance_m, transfer_m), (_, tactical_m)) = (place(FRAC_PI_2), place(PI));
+    let (advance_m, transfer_m) = place(FRAC_PI_2);
+    let (_, tactical_m) = place(PI);
     let end = turned.last().copied().unwrap_or(0.0);
     let last_turn = turned.iter().position(|turned| (end - turned).abs() <= TAU).unwrap_or(0);
     let steady = if end.abs() >= TAU { &sailed.samples[last_turn..] } else { &[] };
-    let (speed_m_s, rate_rad_s) = (mean(steady, Sample::speed_m_s), mean(steady, |sample| sample.nu.yaw));
+    let speed_m_s = mean(steady, Sample::speed_m_s);
+    let rate_rad_s = mean(steady, |sample| sample.nu.yaw);
     vec![
         measure("approach speed", sailed.approach_m_s, "m/s"),
         measure("advance at 90°", advance_m, "m"),
@@ -168,7 +170,8 @@ fn spin(sailed: &Sailed) -> Vec<Measure> {
         let at = Ned { north: mean(&inside, |sample| sample.at.north), east: mean(&inside, |sample| sample.at.east) };
         (at, mean(&inside, |sample| sample.t_s))
     };
-    let ((last, last_s), (before, before_s)) = (turn(TAU), turn(2.0 * TAU));
+    let (last, last_s) = turn(TAU);
+    let (before, before_s) = turn(2.0 * TAU);
     let drifts = end >= 2.0 * TAU;
     let drift_m_s = if drifts { last.distance(before) / (last_s - before_s) } else { f64::NAN };
     vec![

@@ -40,7 +40,8 @@ pub fn ticks_per_row(tick: SimTime) -> Result<u32, String> {
 /// If the tick does not divide [`ROW`]; see [`ticks_per_row`].
 pub fn replay(trial_boat: &mut TrialBoat, orders: &Orders, duration: SimTime) -> Result<Vec<Sample>, Unsound> {
     let per_row = ticks_per_row(trial_boat.tick()).expect("the tick was checked");
-    let (start, rows) = (trial_boat.now(), duration.0 / ROW.0);
+    let start = trial_boat.now();
+    let rows = duration.0 / ROW.0;
     let mut samples = Vec::with_capacity(rows as usize + 1);
     samples.push(trial_boat.sample(0.0, orders.at(SimTime::ZERO)));
     for row in 1..=rows {

@@ -88,7 +88,8 @@ impl Sheet {
                 continue;
             }
             if record.len() != sheet.heads.len() {
-                let (found, wanted) = (record.len(), sheet.heads.len());
+                let found = record.len();
+                let wanted = sheet.heads.len();
                 if is_cut && found < wanted && !sheet.rows.is_empty() && records.peek().is_none() {
                     let note = format!("{found} of {wanted} columns in the last line, which is cut off and ignored");
                     sheet.notes.push(sheet.mistake(Some(line), note));

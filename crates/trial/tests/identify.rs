@@ -35,7 +35,8 @@ fn wrong(truth: &Boat) -> Boat {
 
 /// Commands for four minutes, each for some seconds, with both thrusters equal or different.
 fn orders_csv(stream: &mut Stream) -> String {
-    let (mut text, mut t_s) = ("t_s,port_pct,starboard_pct\n".to_owned(), 0.0);
+    let mut text = "t_s,port_pct,starboard_pct\n".to_owned();
+    let mut t_s = 0.0;
     while t_s < 240.0 {
         let port = stream.between(-60.0, 100.0);
         let starboard = if stream.between(0.0, 1.0) < 0.4 { port } else { stream.between(-60.0, 100.0) };
@@ -80,7 +81,8 @@ fn fitted(start: &Boat, csv: &str, names: &[&str]) -> Result<Fit, NoFit> {
 #[test]
 fn known_parameters_come_back_within_their_stated_confidence() {
     let truth = boat();
-    let (mut all, mut within) = (0, 0);
+    let mut all = 0;
+    let mut within = 0;
     for seed in 1..=4 {
         let mut stream = Stream::new(seed, "test");
         let orders = orders_csv(&mut stream);

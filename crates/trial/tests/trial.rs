@@ -33,16 +33,19 @@ fn a_trial_sails_as_a_game_does() {
         let mut trial_boat = TrialBoat::new(&boat, &sea, tick, 1, &Start::default());
         let start = world.state().boats[0].pose.at;
         for second in 0..20 {
-            let (heading_rad, speed_m_s) = (0.1 * f64::from(second), 1.5);
+            let heading_rad = 0.1 * f64::from(second);
+            let speed_m_s = 1.5;
             for _ in 0..(1.0 / tick_s).round() as u32 {
                 world.step(&[Order::Steer { heading_rad, speed_m_s }, Order::Hold]);
                 trial_boat.step(Command::Steer { heading_rad, speed_m_s });
             }
-            let (game, trial) = (world.state().boats[0], trial_boat.sample(0.0, Command::Hold));
+            let game = world.state().boats[0];
+            let trial = trial_boat.sample(0.0, Command::Hold);
             let apart_m = (game.pose.at - start).distance(trial.at);
             assert!(apart_m < 1e-9, "{name} after {second} s: {apart_m} m apart");
             assert!((game.pose.psi_rad - trial.psi_rad).abs() < 1e-9, "{name} after {second} s");
-            let (a, b) = (game.nu, trial.nu);
+            let a = game.nu;
+            let b = trial.nu;
             let off = (a.surge - b.surge).abs() + (a.sway - b.sway).abs() + (a.yaw - b.yaw).abs();
             assert!(off < 1e-9, "{name} after {second} s: {a:?} and {b:?}");
         }

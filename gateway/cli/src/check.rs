@@ -68,7 +68,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let sends =
         if gateway.protocol == BoatProtocol::Mavlink { "nothing but requests for telemetry" } else { "nothing" };
     let hello = format!("listening for {for_s} s, sending {sends}");
-    let (check, start) = (SensorCheck::new(&gateway), bus::clock::now());
+    let check = SensorCheck::new(&gateway);
+    let start = bus::clock::now();
     let mut listener = Listener { check, link, events, start, stop, reason: None, hello };
     listener.listen(&mut |listener| listener.now().as_s() >= for_s);
     let check = &listener.check;
@@ -91,7 +92,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     checks.extend(machine_checks(folder));
     checks.extend(guided_checks(&mut Guide::new(args.guided), &mut listener, &gateway));
     let now_ns = utc::now_ns();
-    let (at_unix_s, at) = (now_ns / 1_000_000_000, utc::text(now_ns));
+    let at_unix_s = now_ns / 1_000_000_000;
+    let at = utc::text(now_ns);
     let made = Report { vehicle: vehicle.clone(), link: address.to_string(), at_unix_s, at, checks };
     terminal::print(&format!("\n{}", made.text()));
     preflight_report::write(&path, &made)?;
@@ -134,7 +136,8 @@ pub(super) struct Listener {
 impl Listener {
     /// Sends the queries for data that the boat sends only on request.
     fn ask(&mut self) {
-        let (now, mut bytes) = (self.now(), vec![]);
+        let now = self.now();
+        let mut bytes = vec![];
         self.check.write_questions(now, &mut bytes);
         if !bytes.is_empty() {
             self.link.send(bytes, 0);

@@ -95,7 +95,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     if net.keys.is_none() {
         console.client.add_hub(&net.connect, args.leaf.game.as_ref(), net.token.as_ref())?;
     }
-    let (finder, printer) = (console.clone(), console.clone());
+    let finder = console.clone();
+    let printer = console.clone();
     let place = args.leaf.place()?;
     std::thread::spawn(move || finder.keep_game(&place));
     let printing = std::thread::spawn(move || printer.print_news());
@@ -173,7 +174,8 @@ impl Console {
                 _ => bail!("`all` accepts only estop, disarm, release and status"),
             };
         };
-        let (console, asked) = (self.clone(), clock::now());
+        let console = self.clone();
+        let asked = clock::now();
         // A separate thread: a slow answer must not delay other commands.
         std::thread::spawn(move || {
             let ports = console.ports();
@@ -193,7 +195,8 @@ impl Console {
     }
 
     fn release_all(&self) {
-        let (console, asked) = (self.clone(), clock::now());
+        let console = self.clone();
+        let asked = clock::now();
         std::thread::spawn(move || {
             let session = console.session.visit(|session| session.clone());
             let failed = release_all(&console.ports(), session.as_ref());
@@ -211,7 +214,9 @@ impl Console {
 
     /// Keeps a session in the game and tracks this machine's gateways.
     fn keep_game(&self, place: &bus::Place) {
-        let (mut session, mut said, mut attempts) = (None, String::new(), 0_u64);
+        let mut session = None;
+        let mut said = String::new();
+        let mut attempts = 0_u64;
         while !self.is_over.load(Ordering::Relaxed) {
             self.read_registry();
             match find_game(place, self.leaf.game.as_ref(), &mut session) {

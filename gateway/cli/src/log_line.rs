@@ -128,7 +128,8 @@ fn volts(status: &GatewayStatus) -> Option<String> {
 }
 
 fn geofence(report: &GeofenceReport) -> Option<String> {
-    let (clearance_m, stopping_m) = (report.clearance_m?, report.stopping_m?);
+    let clearance_m = report.clearance_m?;
+    let stopping_m = report.stopping_m?;
     let is_inside = if clearance_m > 0.0 { "inside".to_owned() } else { style::bad("OUTSIDE") };
     Some(format!("{is_inside}, {:.1} m to the nearest edge, {stopping_m:.1} m to stop", clearance_m.abs()))
 }

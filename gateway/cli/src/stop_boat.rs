@@ -50,9 +50,13 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let settings = LinkSettings { silence: None, retry_max: AGAIN, ..LinkSettings::default() };
     let link = Link::open(&address, settings, take)?;
     let gateway = Gateway { protocol: args.protocol.protocol(), ..default_gateway() };
-    let (mut protocol, mut boat) = (Protocol::new(&gateway), None);
-    let (start, limit) = (clock::now(), Duration::from_secs_f64(args.wait_s));
-    let (mut connected, mut due, mut reason) = (None, start, "no answer yet".to_owned());
+    let mut protocol = Protocol::new(&gateway);
+    let mut boat = None;
+    let start = clock::now();
+    let limit = Duration::from_secs_f64(args.wait_s);
+    let mut connected = None;
+    let mut due = start;
+    let mut reason = "no answer yet".to_owned();
     while clock::since(start) < limit {
         match events.recv_timeout(due.saturating_duration_since(clock::now()).min(AGAIN)) {
             Ok(LinkEvent::Up { name, .. }) => {

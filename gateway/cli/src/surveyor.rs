@@ -106,13 +106,16 @@ pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
     let guard = if args.at_game_pace { None } else { Some(guard::own_command()?) };
     let payloads = args.payload.clone();
     let outside = Outside { link, silence, control: args.control_listen, guard, payloads };
-    let (mut last, mut registration) = (String::new(), None::<Registration>);
+    let mut last = String::new();
+    let mut registration = None::<Registration>;
     let mut notify = |event: NodeEvent<'_>| match event {
         NodeEvent::Looking { reason } => log.remark(format!("{}: looking for the game: {reason}", args.vehicle)),
         NodeEvent::Recording(file) => log.remark(format!("recording to {}", file.display())),
         NodeEvent::Listening { what, reach } => log.remark(format!("{what} at {reach}")),
         NodeEvent::ControlPort { address: control, token } => {
-            let (vehicle, pid, token) = (args.vehicle.clone(), std::process::id(), token.as_ref().map(Token::hex));
+            let vehicle = args.vehicle.clone();
+            let pid = std::process::id();
+            let token = token.as_ref().map(Token::hex);
             let entry = bus::GatewayEntry { vehicle, game: game.clone(), control, pid, token };
             // If registration fails, operators must be given the address; nothing else is lost.
             if let Some(registration) = &registration {
@@ -160,7 +163,8 @@ fn preflight(args: &Args, link: &LinkAddress, gateway: &Gateway) -> Result<Prefl
     let how = program::text("{gateway} check --vehicle, then --preflight FILE; or --without-preflight PERSON");
     Ok(match &args.preflight {
         Some(path) => {
-            let (report, now_s) = (preflight_report::read(path)?, utc::now_ns() / 1_000_000_000);
+            let report = preflight_report::read(path)?;
+            let now_s = utc::now_ns() / 1_000_000_000;
             match report.admits(&args.vehicle, &link.to_string(), now_s, gateway.preflight.age_max_h) {
                 Ok(()) => Preflight::Passed,
                 Err(why) => Preflight::Missing(format!("a passed pre-flight check ({}: {why})", path.display())),

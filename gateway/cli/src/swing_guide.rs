@@ -50,7 +50,8 @@ impl Guide {
     /// Asks a question and keeps listening to the boat until it is answered.
     fn is_agreed(&self, question: &str, listener: &mut Listener) -> bool {
         terminal::remark(&format!("{question} [y/N]"));
-        let (start, mut answer) = (listener.now(), None);
+        let start = listener.now();
+        let mut answer = None;
         listener.listen(&mut |listener| {
             answer = self.typed();
             answer.is_some() || (listener.now() - start).as_s() >= LONGEST_S
@@ -131,7 +132,9 @@ fn propellers(guide: &Guide, listener: &mut Listener) -> Check {
     }
     // Whether the boat reports its operator, whether that is the remote control, and thrust ahead
     // and astern.
-    let (mut tells, mut by_remote, mut seen) = (false, false, [false; 2]);
+    let mut tells = false;
+    let mut by_remote = false;
+    let mut seen = [false; 2];
     let what = "Run both propellers ahead and astern by remote control, 20 per cent for two seconds each.";
     guide.until_enter(what, listener, &mut |listener| {
         let Some(control) = listener.check.control else { return };

@@ -265,8 +265,10 @@ fn tell_stop(args: &Args, command: StopCommand) -> Result<ExitCode> {
         {
             client.add_hub(&net.connect, args.leaf.game.as_ref(), net.token.as_ref())?;
         }
-        let (leaf, target) = (args.leaf.clone(), target.map(str::to_owned));
-        let (joins, reason) = (Arc::clone(&client), Arc::clone(&no_game));
+        let leaf = args.leaf.clone();
+        let target = target.map(str::to_owned);
+        let joins = Arc::clone(&client);
+        let reason = Arc::clone(&no_game);
         std::thread::spawn(move || {
             if let Err(e) = join(&leaf, target.as_deref(), &joins) {
                 drop(reason.set(command_line::explain::line(&e)));
@@ -354,7 +356,9 @@ fn tell_all(args: &Args) -> Result<ExitCode> {
     }
     let leaf = args.leaf.clone();
     std::thread::spawn(move || tell_game(&leaf, control, &known, &sender));
-    let (mut is_done, mut no_game, mut failed) = (false, None, Vec::new());
+    let mut is_done = false;
+    let mut no_game = None;
+    let mut failed = Vec::new();
     loop {
         match outcomes.recv_timeout(NEXT_ANSWER) {
             Ok(Outcome::Told) => is_done = true,

@@ -91,7 +91,8 @@ impl Boat {
         let address = LinkAddress::to_listen("tcp://127.0.0.1:0").expect("an address");
         let settings = LinkSettings { silence: None, ..LinkSettings::default() };
         let link = Arc::new(Link::open(&address, settings, take).expect("it listens"));
-        let (reporter, is_gone) = (Arc::clone(&link), Arc::<AtomicBool>::default());
+        let reporter = Arc::clone(&link);
+        let is_gone = Arc::<AtomicBool>::default();
         let ended = Arc::clone(&is_gone);
         std::thread::spawn(move || {
             while !ended.load(Ordering::Relaxed) {
@@ -104,7 +105,8 @@ impl Boat {
 
     /// Waits until this is received, starting after the previous match.
     fn wait_for(&self, what: &str) {
-        let (start, mut text) = (Instant::now(), String::new());
+        let start = Instant::now();
+        let mut text = String::new();
         while !text.contains(what) {
             assert!(start.elapsed() < LIMIT, "{what:?} does not come: {text:?}");
             text.extend(self.received.recv_timeout(Duration::from_millis(100)));
@@ -136,7 +138,8 @@ fn help_and_hints_name_this_program() {
 
 #[test]
 fn a_boat_is_checked_by_a_gateway_file_inside_of_the_program() {
-    let (folder, boat) = (Folder::new(), Boat::new());
+    let folder = Folder::new();
+    let boat = Boat::new();
     let link = boat.link.reach();
     let check = |config: &str| folder.command(&["check", "--link", &link, "--for-s", "60", "--config", config]);
     let refused = check("blueboot").output().expect("the program starts");
@@ -153,7 +156,8 @@ fn a_boat_is_checked_by_a_gateway_file_inside_of_the_program() {
 fn a_full_disk_is_reported_at_once_and_at_the_end() {
     // Numbers that do not repeat, because the recording is compressed.
     let boat = Boat::sending(|| (0..250).map(|_| Token::random().hex()).collect::<String>().into_bytes());
-    let (folder, link) = (Folder::new(), boat.link.reach());
+    let folder = Folder::new();
+    let link = boat.link.reach();
     let gateway = folder.command(&["surveyor", "--vehicle", "blue_one", "--game", "nowhere", "--link", &link]);
     // A file of 200 kB is this process's full disk.
     let limited = "trap '' XFSZ; ulimit -f 400; exec \"$@\"";
@@ -181,7 +185,8 @@ fn gga() -> Vec<u8> {
 
 #[test]
 fn the_search_for_a_game_is_no_error_of_the_boats_clock() {
-    let (folder, boat) = (Folder::new(), Boat::sending(gga));
+    let folder = Folder::new();
+    let boat = Boat::sending(gga);
     let link = boat.link.reach();
     let nobody = std::net::TcpListener::bind("127.0.0.1:0").and_then(|port| port.local_addr()).expect("a port");
     let connect = format!("tcp/{nobody}");
@@ -193,7 +198,8 @@ fn the_search_for_a_game_is_no_error_of_the_boats_clock() {
 
 #[test]
 fn a_check_of_a_link_without_sentences_shows_a_line_and_what_is_wrong_with_it() {
-    let (folder, boat) = (Folder::new(), Boat::sending(|| b"$PSEAG,N\r\n".to_vec()));
+    let folder = Folder::new();
+    let boat = Boat::sending(|| b"$PSEAG,N\r\n".to_vec());
     let (output, said) = folder.run(&["check", "--link", &boat.link.reach(), "--for-s", "2"]);
     assert!(
         !output.status.success() && said.contains("none of them a valid sentence: $PSEAG,N has no checksum"),
@@ -203,7 +209,8 @@ fn a_check_of_a_link_without_sentences_shows_a_line_and_what_is_wrong_with_it() 
 
 #[test]
 fn a_gateway_serves_operators_and_its_recording_is_replayed_and_its_guard_stops_the_boat() {
-    let (folder, boat) = (Folder::new(), Boat::new());
+    let folder = Folder::new();
+    let boat = Boat::new();
     let mut gateway = folder.gateway(&boat);
     boat.wait_for(ZERO);
     folder.run_until(&["tell", "blue_one", "status", "--game", "nowhere"], "blue_one: safed");

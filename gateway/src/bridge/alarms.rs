@@ -136,7 +136,8 @@ impl Alarms {
         for wrong in WRONGS {
             for side in [0, 1] {
                 let amps = self.found(wrong, side, power, ordered);
-                let (told, name) = (|amps| text(wrong, side, amps), name(wrong, side));
+                let told = |amps| text(wrong, side, amps);
+                let name = name(wrong, side);
                 let alarm = &mut self.currents[wrong as usize][side];
                 events.extend(alarm.note(now, amps, self.watch.debounce_s, (told, &name)));
             }
@@ -145,7 +146,8 @@ impl Alarms {
 
     /// The current, A, if it shows this fault.
     fn found(&self, wrong: Wrong, side: usize, power: &Power, ordered: Option<[f64; 2]>) -> Option<f64> {
-        let (watch, [here, there]) = (&self.watch, [power.thruster_a[side], power.thruster_a[1 - side]]);
+        let watch = &self.watch;
+        let [here, there] = [power.thruster_a[side], power.thruster_a[1 - side]];
         match wrong {
             Wrong::Bilge => power.bilge_a[side].filter(|amps| watch.bilge_a > 0.0 && *amps >= watch.bilge_a),
             Wrong::TooMuch => here.filter(|amps| watch.thruster_max_a > 0.0 && amps.abs() > watch.thruster_max_a),
@@ -208,7 +210,8 @@ mod tests {
 
     #[test]
     fn an_error_is_told_when_it_changes_and_stays_until_the_boat_takes_it_back() {
-        let (mut alarms, mut events) = (Alarms::new(WATCH), vec![]);
+        let mut alarms = Alarms::new(WATCH);
+        let mut events = vec![];
         for (error, told) in [(Some("L"), 1), (Some("L"), 1), (None, 1), (Some("L"), 2), (Some("B"), 3)] {
             alarms.take_error(error.map(str::to_owned), &mut events);
             assert_eq!(events.len(), told);

@@ -13,8 +13,11 @@ impl Bridge {
     pub(super) fn conditions_at(&mut self, now: SimTime) -> Conditions {
         let (others_at, others) = &self.others;
         let known: &[Ned] = if (now - *others_at).as_s() <= OTHERS_AGE_MAX_S { others } else { &[] };
-        let (mut nav_fault, mut thrust_fault) = (Some(NavFault::NoField), None);
-        let (mut inside, mut blocked, mut recovery_point) = (false, false, false);
+        let mut nav_fault = Some(NavFault::NoField);
+        let mut thrust_fault = None;
+        let mut inside = false;
+        let mut blocked = false;
+        let mut recovery_point = false;
         if let Some(site) = &mut self.on_site {
             recovery_point = self.recovery_point.taken().is_some_and(|erp| site.is_way_to(now, erp));
             let OnSite { estimator, geofence, bow, .. } = site;

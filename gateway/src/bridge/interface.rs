@@ -34,7 +34,8 @@ impl Plan {
     /// A boat without a site yet, which is armed by an operator and needs no pre-flight check.
     #[must_use]
     pub fn new(vehicle: &str, gateway: Gateway) -> Plan {
-        let (vehicle, preflight) = (vehicle.to_owned(), Preflight::NotRequired);
+        let vehicle = vehicle.to_owned();
+        let preflight = Preflight::NotRequired;
         Plan { vehicle, gateway, site: None, arms_itself: false, dry_run: false, preflight }
     }
 }

@@ -84,7 +84,8 @@ impl OnSite {
     pub(super) fn geofence_report(&self, now: SimTime) -> GeofenceReport {
         let area = &self.geofence.area;
         let nav = self.estimator.nav(now).map(|(nav, _)| nav);
-        let (at, yaw_rate_rad_s) = (nav.map(|nav| nav.at()), nav.map_or(0.0, |nav| nav.yaw_rate_rad_s));
+        let at = nav.map(|nav| nav.at());
+        let yaw_rate_rad_s = nav.map_or(0.0, |nav| nav.yaw_rate_rad_s);
         let way = self.geofence.stopping_way(now, (self.estimator.fastest_velocity_m_s(), yaw_rate_rad_s));
         GeofenceReport {
             outline: area.outline.clone(),

@@ -163,7 +163,9 @@ mod tests {
 
     #[test]
     fn it_holds_as_much_energy_as_the_specification_says_and_then_turns_no_thruster() {
-        let (mut battery, mut joules, mut s) = (Battery::new(Pack::SURVEYOR, Some(1.0)), 0.0, 0.0);
+        let mut battery = Battery::new(Pack::SURVEYOR, Some(1.0));
+        let mut joules = 0.0;
+        let mut s = 0.0;
         let first_v = battery.volts();
         while battery.left > 0.0 {
             s += 1.0;
@@ -171,7 +173,8 @@ mod tests {
             assert!(battery.carry_out(SimTime::from_s(s), HALF) == HALF || battery.left == 0.0);
             joules += battery.volts() * battery.amps();
         }
-        let (wh, hours) = (joules / 3600.0, s / 3600.0);
+        let wh = joules / 3600.0;
+        let hours = s / 3600.0;
         assert!((1400.0..1600.0).contains(&wh), "{wh} Wh, specified are 1500");
         // 1.5 m/s are half of the highest speed: an eighth of 2000 W, and 33 W of electronics.
         assert!((hours - 1500.0 / 283.0).abs() < 0.5, "{hours} h");

@@ -117,7 +117,8 @@ fn with_margin(corners: &[Ned; 4], margin_m: f64) -> Vec<Ned> {
         // From the normal of the side that ends here to that of the next side, a quarter turn
         // clockwise.
         let [first, second] = [(before, corner), (corner, after)].map(|(a, b)| {
-            let (side, length_m) = (b - a, a.distance(b));
+            let side = b - a;
+            let length_m = a.distance(b);
             Ned { north: side.east, east: -side.north }.scaled(margin_m / length_m)
         });
         (0..=8).map(move |step| {

@@ -131,10 +131,13 @@ impl Coasting {
     /// The path to rest from the boat on, in straight legs.
     pub(super) fn path(&self, glide: &Glide) -> Vec<Leg> {
         let Glide { water_m_s, drift_m_s, yaw_rate_rad_s, reaction_s, .. } = *glide;
-        let (mut speed_m_s, mut thrust_m_s) = (water_m_s.length(), glide.thrust_m_s.min(self.speed_max_m_s));
+        let mut speed_m_s = water_m_s.length();
+        let mut thrust_m_s = glide.thrust_m_s.min(self.speed_max_m_s);
         let course_rad = math::atan2(water_m_s.east, water_m_s.north);
         let until_fall_s = reaction_s + self.lag_s;
-        let (mut at, mut t_s, mut legs) = (Ned::default(), 0.0_f64, vec![]);
+        let mut at = Ned::default();
+        let mut t_s = 0.0_f64;
+        let mut legs = vec![];
         for step in 1.. {
             let turned_s = t_s.min(reaction_s)
                 + self.yaw_s * (1.0 - math::exp((reaction_s - t_s).min(0.0) / self.yaw_s.max(1e-6)));
@@ -227,7 +230,8 @@ impl DriftEstimate {
         let ahead = Ned { north: cos, east: sin };
         let Some(at) = self.at.replace(now).filter(|at| (now - *at).as_s() <= GAP_MAX_S) else {
             let surge_m_s = velocity_m_s.dot(ahead);
-            let (thrust_m_s, drift_m_s) = (ordered_m_s, Ned::default());
+            let thrust_m_s = ordered_m_s;
+            let drift_m_s = Ned::default();
             *self = DriftEstimate { at: Some(now), lasted_s: 0.0, surge_m_s, thrust_m_s, drift_m_s };
             return;
         };

@@ -110,7 +110,8 @@ impl GeofenceWatch {
     /// water, ...
     fn straight_paths(&self, velocity_m_s: Ned) -> Vec<Vec<Leg>> {
         let Geofence { deceleration_m_s2, coast_m, .. } = &self.rules;
-        let (speed_m_s, reaction_s) = (velocity_m_s.length(), self.reaction_s());
+        let speed_m_s = velocity_m_s.length();
+        let reaction_s = self.reaction_s();
         // v t + v²/2a: valid without a boat file, and above all at high speed. Water resistance
         // falls with the speed, so below 2 m/s boats coast farther than with any single
         // deceleration.
@@ -136,7 +137,9 @@ impl GeofenceWatch {
     fn drifting_path(&self, now: SimTime, (velocity_m_s, yaw_rate_rad_s): (Ned, f64)) -> Option<Vec<Leg>> {
         let coasting = self.coasting.as_ref().filter(|_| self.drift.is_fresh(now))?;
         let DriftEstimate { drift_m_s, thrust_m_s, .. } = self.drift;
-        let (water_m_s, thrust_m_s, reaction_s) = (velocity_m_s - drift_m_s, thrust_m_s.abs(), self.reaction_s());
+        let water_m_s = velocity_m_s - drift_m_s;
+        let thrust_m_s = thrust_m_s.abs();
+        let reaction_s = self.reaction_s();
         Some(coasting.path(&Glide { water_m_s, drift_m_s, thrust_m_s, yaw_rate_rad_s, reaction_s }))
     }
 

@@ -88,7 +88,8 @@ fn a_slow_boat_keeps_the_distance_that_it_coasts() {
 #[test]
 fn one_fix_outside_is_not_enough() {
     let mut geofence = GeofenceWatch::new(&game().field, &rules(), None);
-    let (inside, outside) = (Ned::from_xy(80.0, 40.0), Ned::from_xy(80.0, 400.0));
+    let inside = Ned::from_xy(80.0, 40.0);
+    let outside = Ned::from_xy(80.0, 400.0);
     for (seconds, place, want) in
         [(0.0, outside, true), (0.4, outside, true), (0.45, inside, true), (0.6, outside, true), (1.2, outside, false)]
     {
@@ -120,7 +121,8 @@ fn star(centre: Ned, radii_m: &[f64]) -> Vec<Ned> {
 /// full turn, or none.
 fn is_seen_around(polygon: &[Ned], at: Ned) -> bool {
     let angle = |(a, b): (Ned, Ned)| {
-        let (a, b) = (a - at, b - at);
+        let a = a - at;
+        let b = b - at;
         math::atan2(a.north * b.east - a.east * b.north, a.dot(b))
     };
     sides(polygon).map(angle).sum::<f64>().abs() > std::f64::consts::PI

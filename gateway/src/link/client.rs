@@ -44,7 +44,8 @@ pub(super) fn run(threads: &Arc<Threads>, address: &LinkAddress) {
             }
             Err(_) if threads.is_stopped() => return,
             Err(e) => {
-                let (wait, took) = (backoff.wait(), clock::since(begun_at));
+                let wait = backoff.wait();
+                let took = clock::since(begun_at);
                 // An attempt that nobody answered has taken its wait already.
                 let retry_in = if took < wait / 2 { wait } else { wait.saturating_sub(took) };
                 threads.emit(LinkEvent::Failed { reason: format!("{address}: {e}"), retry_in });

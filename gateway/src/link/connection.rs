@@ -34,7 +34,8 @@ impl Connection {
         threads.tell_port(connection.peer.port.descriptor());
         threads.add(&connection.peer);
         threads.emit(LinkEvent::Up { peer: connection.peer.number, name });
-        let (shared, peer) = (Arc::clone(threads), Arc::clone(&connection.peer));
+        let shared = Arc::clone(threads);
+        let peer = Arc::clone(&connection.peer);
         match threads.spawn("link writer", move || write_on(&peer, &shared)) {
             Ok(writer) => connection.writer = Some(writer),
             Err(e) => {
@@ -118,7 +119,8 @@ fn write_on(peer: &Peer, threads: &Threads) {
         if request.priority() != Priority::Normal && clock::since(settled_at) >= SETTLED {
             peer.port.discard_unsent();
         }
-        let (begun_at, transit) = (clock::now(), peer.port.transit(request.bytes().len()));
+        let begun_at = clock::now();
+        let transit = peer.port.transit(request.bytes().len());
         match peer.port.write(request.bytes(), || peer.is_to_end().is_some()) {
             Ok(Wrote::All) => {
                 let at = clock::now();

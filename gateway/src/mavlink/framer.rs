@@ -99,7 +99,8 @@ impl Layout {
         match *bytes {
             [MAV_STX, len, _, system, component, id, ..] => {
                 let end = 6 + usize::from(len);
-                let (version, id) = (MavlinkVersion::V1, u32::from(id));
+                let version = MavlinkVersion::V1;
+                let id = u32::from(id);
                 Ok(Some(Layout { version, id, system, component, payload: (6, end), len: end + 2 }))
             }
             // A receiver that does not know such a flag must discard the frame.
@@ -107,7 +108,8 @@ impl Layout {
             [MAV_STX_V2, len, flags, _, _, system, component, a, b, c, ..] => {
                 let end = 10 + usize::from(len);
                 let signature = if flags & SIGNED == 0 { 0 } else { SIGNATURE };
-                let (version, id) = (MavlinkVersion::V2, u32::from_le_bytes([a, b, c, 0]));
+                let version = MavlinkVersion::V2;
+                let id = u32::from_le_bytes([a, b, c, 0]);
                 Ok(Some(Layout { version, id, system, component, payload: (10, end), len: end + 2 + signature }))
             }
             [MAV_STX | MAV_STX_V2, ..] | [] => Ok(None),

@@ -127,7 +127,8 @@ mod tests {
 
     #[test]
     fn times_of_day_go_round_the_clock() {
-        let (evening, morning) = (TimeOfDay(86_399_500), TimeOfDay(700));
+        let evening = TimeOfDay(86_399_500);
+        let morning = TimeOfDay(700);
         assert_eq!(evening.later(SimTime::from_s(1.2)), morning);
         assert_eq!(morning.later(SimTime::from_s(-1.2)), evening);
         assert!((morning.since_s(evening) - 1.2).abs() < 1e-9 && (evening.since_s(morning) + 1.2).abs() < 1e-9);

@@ -9,7 +9,8 @@ fn fields_mean_what_the_list_says() {
     let mut count = 0;
     for line in include_str!("fields.txt").lines().filter(|line| !line.is_empty() && !line.starts_with('#')) {
         let cells: Vec<&str> = line.split('|').collect();
-        let (text, value) = (cells[1], cells[2].trim().parse::<f64>().ok());
+        let text = cells[1];
+        let value = cells[2].trim().parse::<f64>().ok();
         let got = match cells[0].trim() {
             "time" => TimeOfDay::parse(text).map(|time| f64::from(time.0)),
             "latitude" => LATITUDE.degrees(text),

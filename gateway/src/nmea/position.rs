@@ -62,12 +62,15 @@ impl Axis {
         // In whole steps, so that 59.999996 minutes become the next degree and never
         // "60.00000".
         let steps = (angle_deg.abs() * f64::from(60 * steps_per_minute)).round() as u32;
-        let (minutes, part) = (steps / steps_per_minute, steps % steps_per_minute);
+        let minutes = steps / steps_per_minute;
+        let part = steps % steps_per_minute;
         // A coordinate that rounds to zero is north or east: "0000.00000,S" would be a second text
         // for the same position.
         let letter = self.letters[usize::from(angle_deg < 0.0 && steps > 0)];
-        let (degree_digits, part_digits) = (self.degree_digits, decimals as usize);
-        let (degrees, minutes) = (minutes / 60, minutes % 60);
+        let degree_digits = self.degree_digits;
+        let part_digits = decimals as usize;
+        let degrees = minutes / 60;
+        let minutes = minutes % 60;
         Some(format!("{degrees:0degree_digits$}{minutes:02}.{part:0part_digits$},{letter}"))
     }
 }

@@ -31,7 +31,8 @@ impl<'a> Reader<'a> {
     pub(super) fn read(mut self, layout: Layout<'_>) -> Result<(), ParseError> {
         // More fields than expected are accepted: drivers of real boats send PSEAC with four to
         // six.
-        let (found, expected) = (self.data.len(), layout.fields_min);
+        let found = self.data.len();
+        let expected = layout.fields_min;
         if found < expected {
             return Err(ParseError::TooFew { address: self.address.to_owned(), found, expected });
         }
@@ -187,7 +188,8 @@ impl<'a> Reader<'a> {
     }
 
     fn wind_speed(&mut self, speed_m_s: &mut Option<f64>, unit: &mut SpeedUnit) -> Result<(), ParseError> {
-        let (speed, letter) = (self.number()?, self.next());
+        let speed = self.number()?;
+        let letter = self.next();
         *unit = match (SpeedUnit::from_letter(letter), speed) {
             (Some(unit), _) => unit,
             // Without a speed, the unit does not matter.

@@ -66,7 +66,8 @@ impl Command {
 /// A thruster receives their sum, so where rounding would exceed 100 the boat turns a little less.
 fn round_percents(mode: Mode, thrust: &mut Option<f64>, difference: &mut Option<f64>) {
     let sum = |thrust: Option<f64>, difference: Option<f64>| Some(thrust?.abs() + difference?.abs());
-    let (whole_thrust, whole_difference) = (thrust.map(f64::round), difference.map(f64::round));
+    let whole_thrust = thrust.map(f64::round);
+    let whole_difference = difference.map(f64::round);
     // 49.5 and 50.5 add up to 100 % but round to 50 and 51. It is not known how a boat handles more
     // than 100 %, so the difference is reduced.
     let by_rounding = sum(*thrust, *difference).is_some_and(|sum| sum < 100.5)
@@ -302,7 +303,8 @@ mod tests {
             (80.0, 40.0, (80.0, 40.0)),
             (101.0, 0.0, (101.0, 0.0)),
         ] {
-            let (mut got_thrust, mut got_difference) = (Some(thrust), Some(difference));
+            let mut got_thrust = Some(thrust);
+            let mut got_difference = Some(difference);
             round_percents(Mode::Thruster, &mut got_thrust, &mut got_difference);
             assert_eq!((got_thrust, got_difference), (Some(want.0), Some(want.1)), "{thrust}, {difference}");
         }

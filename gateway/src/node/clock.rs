@@ -78,7 +78,8 @@ mod tests {
     #[test]
     fn what_a_suspended_machine_slept_counts_as_time_and_as_a_gap() {
         let clock = Clock::start();
-        let (second, hour) = (Duration::from_secs(1), Duration::from_secs(3600));
+        let second = Duration::from_secs(1);
+        let hour = Duration::from_secs(3600);
         let before = clock.start;
         let after = |suspended| Moment { at: before.at + second, suspended: before.suspended + suspended };
         assert_eq!(clock.time_at(after(Duration::ZERO)), SimTime::from_s(1.0));

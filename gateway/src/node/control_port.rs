@@ -75,7 +75,8 @@ impl ControlPort {
         let serve = move |slot: &Slot, stream: &TcpStream| drop(shared.serve(slot, stream));
         let failed = |source| NodeError::ControlPort { listen, source };
         let port = TcpPort::open(listen, "control port", CONNECTIONS_MAX, serve).map_err(failed)?;
-        let (shared, address) = (Arc::clone(&server), port.address);
+        let shared = Arc::clone(&server);
+        let address = port.address;
         let read = |socket| DatagramPort::open(socket, "control datagrams", move |bytes| shared.serve_datagram(bytes));
         let datagrams = UdpSocket::bind(address).and_then(read).map_err(failed)?;
         Ok(ControlPort { server, address, _port: port, _datagrams: datagrams })
@@ -211,7 +212,8 @@ mod tests {
 
     fn port() -> (ControlPort, Token, super::super::loop_input::LoopOutput) {
         let (input, output) = loop_input();
-        let (token, here) = (Token::random(), SocketAddr::from(([127, 0, 0, 1], 0)));
+        let token = Token::random();
+        let here = SocketAddr::from(([127, 0, 0, 1], 0));
         let port = ControlPort::open(here, "blue_one", Some(token.clone()).into(), input).expect("a free port");
         (port, token, output)
     }

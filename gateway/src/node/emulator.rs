@@ -111,7 +111,8 @@ pub fn emulate(settings: &EmulatorSettings, notify: &mut dyn FnMut(NodeEvent<'_>
     let names = [settings.vehicle.clone()];
     let mut say = |reason: &str| notify(NodeEvent::Looking { reason });
     let sim = SimWatch::open(&bus, &game, Patience::of_player(settings.silence))?;
-    let (place, all) = (&settings.place, (&game, scenario));
+    let place = &settings.place;
+    let all = (&game, scenario);
     let joined = search.until(&mut say, || game_search::join(&bus, place, all, Role::Agent, &names))?;
     let boat = EmulatedBoat { vehicle, front_seat };
     let mut node = EmulatorNode {
@@ -262,7 +263,8 @@ impl EmulatorNode {
     }
 
     fn send_telemetry(&mut self) {
-        let (now, mut burst) = (self.now, Vec::with_capacity(512));
+        let now = self.now;
+        let mut burst = Vec::with_capacity(512);
         self.front_seat().telemetry(now, &mut burst);
         if burst.is_empty() {
             return;

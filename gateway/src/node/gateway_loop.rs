@@ -246,7 +246,8 @@ impl GatewayLoop<'_> {
     /// Enters the game that was found.
     fn enter(&mut self, found: FoundGame) -> Result<(), NodeError> {
         let FoundGame { bus, game, info, vehicle, factor, site } = found;
-        let (scenario, name) = (&info.scenario, &self.settings.plan.vehicle);
+        let scenario = &info.scenario;
+        let name = &self.settings.plan.vehicle;
         let newest = |key| bus.publisher_with(key, Priority::Normal, Delivery::Newest);
         let in_game = InGame {
             nav: newest(topic::nav(&game, scenario, vehicle))?,

@@ -139,7 +139,8 @@ enum Heard {
 /// If the socket cannot be used.
 pub fn guard(socket: impl AsFd, remark: &mut dyn FnMut(&str)) -> io::Result<()> {
     let mut link: Option<OwnedFd> = None;
-    let (mut stop, mut is_hung) = (Vec::new(), false);
+    let mut stop = Vec::new();
+    let mut is_hung = false;
     loop {
         let wait = if is_hung { AGAIN } else { SILENCE };
         set_socket_timeout(&socket, Timeout::Recv, Some(wait))?;
@@ -205,7 +206,8 @@ fn hear(socket: BorrowedFd<'_>) -> io::Result<Heard> {
 
 /// Writes all bytes if the port accepts them in time.
 fn write(link: &OwnedFd, bytes: &[u8]) {
-    let (start, mut rest) = (clock::now(), bytes);
+    let start = clock::now();
+    let mut rest = bytes;
     while !rest.is_empty() && clock::since(start) < WRITE_MAX {
         match rustix::io::write(link, rest) {
             Ok(count) => rest = &rest[count..],

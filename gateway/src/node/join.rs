@@ -31,8 +31,12 @@ impl Join {
         // without orders.
         let sim = SimWatch::open(bus, game, Patience::of_player(Duration::MAX))?;
         let stop = Arc::new(AtomicBool::new(false));
-        let (bus, place, game, scenario) = (bus.clone(), place.clone(), game.clone(), scenario.clone());
-        let (vehicles, ended) = ([vehicle.to_owned()], Arc::clone(&stop));
+        let bus = bus.clone();
+        let place = place.clone();
+        let game = game.clone();
+        let scenario = scenario.clone();
+        let vehicles = [vehicle.to_owned()];
+        let ended = Arc::clone(&stop);
         let join = move || game_search::join(&bus, &place, (&game, &scenario), Role::Gateway, &vehicles);
         let failed = |e: std::io::Error| BusError::Use {
             doing: "start the thread that joins as",

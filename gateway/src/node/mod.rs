@@ -200,7 +200,8 @@ fn connect(
     }
     let status = gateway_loop.full_status();
     // The boat is stopped before the network closes.
-    let (in_game, recorder) = (gateway_loop.in_game.take(), gateway_loop.recorder.take());
+    let in_game = gateway_loop.in_game.take();
+    let recorder = gateway_loop.recorder.take();
     drop(gateway_loop);
     let recorded = recorder.map(|recorder| recorder.end(Facts::new()));
     // Ends in every case, as does the search for a game.

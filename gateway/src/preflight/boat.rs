@@ -109,7 +109,8 @@ fn control(seen: &SensorCheck, gateway: &Gateway) -> Check {
         // responsibility for who has control.
         return Check::of("control", gateway.control.assumed, format!("{found}; expected PSEAD, or control.assumed"));
     };
-    let (mode, is_ours) = (control.shown.mode, control.operator.is_none_or(|operator| operator == Operator::Secondary));
+    let mode = control.shown.mode;
+    let is_ours = control.operator.is_none_or(|operator| operator == Operator::Secondary);
     let operator = control.operator.map_or("nobody identified".to_owned(), |operator| format!("{operator:?}"));
     let found = format!(
         "mode {}, commanded by {operator}; expected {}, and Secondary",
@@ -129,7 +130,8 @@ fn battery(seen: &SensorCheck, gateway: &Gateway) -> Check {
 }
 
 fn bilge(seen: &SensorCheck, gateway: &Gateway) -> Check {
-    let (most_a, currents) = (gateway.currents.bilge_a, seen.power.bilge_a);
+    let most_a = gateway.currents.bilge_a;
+    let currents = seen.power.bilge_a;
     let amps = currents.iter().flatten().copied().reduce(f64::max);
     match amps {
         Some(amps) if most_a > 0.0 => {
@@ -181,7 +183,8 @@ mod tests {
         for i in 0..120_u32 {
             let at = frame.lat_lon(Ned::from_xy(x + 0.1 * f64::from(i % 3), y));
             let minutes = |deg: f64| (deg.abs().trunc(), deg.abs().fract() * 60.0);
-            let ((lat, lat_min), (lon, lon_min)) = (minutes(at.lat_deg), minutes(at.lon_deg));
+            let (lat, lat_min) = minutes(at.lat_deg);
+            let (lon, lon_min) = minutes(at.lon_deg);
             let gga = format!(
                 "GPGGA,1505{:02}.00,{lat:02}{lat_min:08.5},N,{lon:03}{lon_min:08.5},W,{fix},5.5,M,-33.2,M,,",
                 i / 2
@@ -209,7 +212,8 @@ mod tests {
             sentences[at] = body;
             sentences
         };
-        let (home, fix) = ([80.0, 40.0], "4,11,0.98");
+        let home = [80.0, 40.0];
+        let fix = "4,11,0.98";
         for (place, fix, more, failed, found) in [
             (home, fix, SOUND, "", ""),
             (home, "0,11,0.98", SOUND, "fix", "no fix, 11 satellites"),

@@ -64,9 +64,11 @@ impl CompassSwing {
             [s + sin, c + cos]
         });
         let mean_rad = math::atan2(sin, cos);
-        let (mut normal, mut right) = ([[0.0; 5]; 5], [0.0; 5]);
+        let mut normal = [[0.0; 5]; 5];
+        let mut right = [0.0; 5];
         for (psi_rad, off_rad) in &self.pairs {
-            let (row, off_rad) = (basis(*psi_rad), wrap_pi(off_rad - mean_rad));
+            let row = basis(*psi_rad);
+            let off_rad = wrap_pi(off_rad - mean_rad);
             for i in 0..5 {
                 right[i] += row[i] * off_rad;
                 (0..5).for_each(|j| normal[i][j] += row[i] * row[j]);
@@ -99,7 +101,8 @@ impl Deviation {
 
 /// The basis functions of A to E.
 fn basis(psi_rad: f64) -> [f64; 5] {
-    let ((sin, cos), (sin_2, cos_2)) = (math::sin_cos(psi_rad), math::sin_cos(2.0 * psi_rad));
+    let (sin, cos) = math::sin_cos(psi_rad);
+    let (sin_2, cos_2) = math::sin_cos(2.0 * psi_rad);
     [1.0, sin, cos, sin_2, cos_2]
 }
 
@@ -107,7 +110,8 @@ fn basis(psi_rad: f64) -> [f64; 5] {
 /// 4.2.3 and 3.1); `None` if it is not positive definite. A five-by-five system does not justify a
 /// matrix library on the boat.
 fn solve_positive_definite(matrix: [[f64; 5]; 5], right: [f64; 5]) -> Option<[f64; 5]> {
-    let (mut lower, mut x) = (matrix, right);
+    let mut lower = matrix;
+    let mut x = right;
     for j in 0..5 {
         for k in 0..j {
             (j..5).for_each(|i| lower[i][j] -= lower[j][k] * lower[i][k]);

@@ -345,7 +345,8 @@ impl Codec for Mavlink {
     /// The stop message for a boat that is ours; one under other control receives a set-point of
     /// zero, which it ignores.
     fn stop_message(&self) -> Vec<u8> {
-        let (mut copy, mut out) = (self.clone(), Vec::new());
+        let mut copy = self.clone();
+        let mut out = Vec::new();
         // The same bytes as long as nothing changes.
         copy.writer = Writer::new(self.settings.system, self.settings.component);
         copy.write_set_point(SetPoint::ZERO, &mut out);
@@ -358,7 +359,8 @@ impl Codec for Mavlink {
 
     /// The stop message for a boat, regardless of who commands it.
     fn forced_stop_message(&self) -> Vec<u8> {
-        let (mut copy, mut out) = (self.clone(), Vec::new());
+        let mut copy = self.clone();
+        let mut out = Vec::new();
         copy.write_set_point(SetPoint::ZERO, &mut out);
         copy.write_mode(RoverMode::Hold, &mut out);
         copy.write_arming(false, &mut out);

@@ -211,7 +211,8 @@ impl Boat {
             MavMessage::ATTITUDE(ATTITUDE_DATA { roll, pitch, yaw, yawspeed, .. }) => {
                 take(Report::Tilt([*roll, *pitch].map(|angle| f64::from(angle).to_degrees())));
                 self.attitude_at = now;
-                let (deg, yaw_rate) = (f64::from(*yaw).to_degrees(), f64::from(*yawspeed).to_degrees());
+                let deg = f64::from(*yaw).to_degrees();
+                let yaw_rate = f64::from(*yawspeed).to_degrees();
                 take(Report::Heading(Heading { deg, north: North::True, yaw_rate_deg_s: Some(yaw_rate) }));
             }
             MavMessage::SYS_STATUS(status) => {

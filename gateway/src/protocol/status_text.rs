@@ -30,7 +30,8 @@ struct Unfinished {
 impl StatusTexts {
     /// Accepts a message; calls `say` with each text that it completes.
     pub(super) fn take(&mut self, now: SimTime, status: &STATUSTEXT_DATA, say: &mut dyn FnMut(String)) {
-        let (letters, capacity) = (status.text.iter().take_while(|letter| **letter != 0), status.text.len());
+        let letters = status.text.iter().take_while(|letter| **letter != 0);
+        let capacity = status.text.len();
         let letters: Vec<u8> = letters.copied().collect();
         // MAVLink 1 has neither field: the text is complete.
         if status.id == 0 {
@@ -88,11 +89,14 @@ mod tests {
 
     /// The texts shown for these chunks, which arrive every 0.1 s, and 2 s later.
     fn said(chunks: &[(u16, u8, &[u8])]) -> Vec<String> {
-        let (mut texts, mut said) = (StatusTexts::default(), vec![]);
+        let mut texts = StatusTexts::default();
+        let mut said = vec![];
         for (i, (id, chunk_seq, text)) in chunks.iter().enumerate() {
             let mut letters = [0; 50];
             letters[..text.len()].copy_from_slice(text);
-            let (id, chunk_seq, text) = (*id, *chunk_seq, letters.into());
+            let id = *id;
+            let chunk_seq = *chunk_seq;
+            let text = letters.into();
             let status = STATUSTEXT_DATA { id, chunk_seq, text, ..STATUSTEXT_DATA::default() };
             texts.take(SimTime::from_s(0.1 * i as f64), &status, &mut |text| said.push(text));
         }

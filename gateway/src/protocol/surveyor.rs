@@ -273,7 +273,8 @@ mod tests {
     fn what_a_boat_should_show_is_what_it_was_sent() {
         for (thrust_pct, difference_pct) in [(40.4, -9.6), (12.5, 0.49), (-33.3, 66.7)] {
             let command = Command::SetPoint(SetPoint::Thrust { thrust_pct, difference_pct });
-            let (mut bytes, mut sent) = (vec![], None);
+            let mut bytes = vec![];
+            let mut sent = None;
             write(command, &mut bytes);
             Framer::new().push(&bytes, &mut |body| sent = Sentence::parse(body).ok());
             let Some(Sentence::Command(sent)) = sent else { panic!("no command: {bytes:?}") };

@@ -326,7 +326,8 @@ impl Conditions {
         let order = (!self.order_fresh).then_some(Cause::OrderStale);
         let hung = self.hung_s.map(Cause::Hung);
         let control = self.control.map(Cause::Control);
-        let (nav, thrust) = (self.nav.map(Cause::Nav), self.thrust.map(Cause::Thrust));
+        let nav = self.nav.map(Cause::Nav);
+        let thrust = self.thrust.map(Cause::Thrust);
         // The order in which operators see them: a cause that makes others meaningless comes first.
         [link, hung, control, nav, thrust, geofence, battery, order].into_iter().flatten()
     }

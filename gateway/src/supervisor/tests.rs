@@ -81,7 +81,8 @@ fn all_requests() -> Vec<Option<OperatorRequest>> {
 /// Calls `check` with every step from every reachable supervisor. Arguments: supervisor before,
 /// conditions, request, supervisor after, step.
 fn explore(mut check: impl FnMut(&Supervisor, &Conditions, Option<OperatorRequest>, &Supervisor, &Step)) -> usize {
-    let (conditions, requests) = (all_conditions(), all_requests());
+    let conditions = all_conditions();
+    let requests = all_requests();
     let starts = all_actions().into_iter().flat_map(|actions| [true, false].map(|by_itself| (by_itself, actions)));
     let mut known: Vec<Supervisor> = starts.map(|(by_itself, actions)| Supervisor::new(by_itself, actions)).collect();
     let mut next = 0;
@@ -260,7 +261,8 @@ fn a_refused_request_names_what_is_missing_and_changes_nothing_else() {
             Refusal::EStopped(_) => assert!(before.is_stopped() && after.is_stopped(), "{case}"),
             Refusal::NotReady(missing) => assert!(!missing.is_empty() && *now != GOOD, "{case}"),
         }
-        let (mut quiet, mut asked) = (before.clone(), before.clone());
+        let mut quiet = before.clone();
+        let mut asked = before.clone();
         quiet.arms_itself = false;
         asked.arms_itself = false;
         quiet.step(now, None);

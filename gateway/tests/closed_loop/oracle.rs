@@ -54,7 +54,8 @@ impl Oracle {
     pub(crate) fn note(&mut self, now: SimTime, piece: &[u8]) {
         self.partial += &String::from_utf8_lossy(piece);
         while let Some((line, rest)) = self.partial.split_once(['\r', '\n']) {
-            let (line, rest) = (line.to_owned(), rest.to_owned());
+            let line = line.to_owned();
+            let rest = rest.to_owned();
             self.partial = rest;
             let Some((body, sum)) = line.rsplit('$').next().and_then(|line| line.split_once('*')) else { continue };
             if u8::from_str_radix(sum, 16) == Ok(body.bytes().fold(0, |a, b| a ^ b)) {

@@ -12,7 +12,8 @@ fn steer(heading_deg: f64, speed_m_s: f64) -> Order {
 #[test]
 fn ten_thousand_orders_a_second_become_twenty_sentences() {
     let mut rig = played("under-way\norder none");
-    let (start, before) = (rig.now, rig.oracle.all);
+    let start = rig.now;
+    let before = rig.oracle.all;
     let mut last_deg = 0.0;
     for i in 0..300 {
         for k in 0..100 {
@@ -33,7 +34,8 @@ fn a_new_order_does_not_wait_for_the_period_of_repetitions() {
     for i in 0..30 {
         // Orders come ten times a second, at varying times between the repetitions.
         rig.run(0.1 + 0.01 * f64::from(i % 3));
-        let (order, given) = (steer(f64::from(90 + i), 1.5), rig.now + SimTime(1));
+        let order = steer(f64::from(90 + i), 1.5);
+        let given = rig.now + SimTime(1);
         let before = rig.sent.len();
         rig.give(&Input::Order(order, given));
         assert_eq!(rig.sent.len(), before + 1, "{i}: sent in the very same step");

@@ -25,7 +25,8 @@ const COMPARISONS: [&str; 8] = ["=", "!=", "~", "!~", "^", "!^", "<", ">"];
 #[test]
 fn every_scenario_goes_as_it_is_written() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/closed_loop/scenarios");
-    let (mut count, mut failures) = (0, Vec::new());
+    let mut count = 0;
+    let mut failures = Vec::new();
     for file in std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path()) {
         let text = std::fs::read_to_string(&file).expect("text");
         for scenario in text.split("\n## ").skip(1).filter(|_| file.extension().is_some_and(|ending| ending == "txt")) {
@@ -146,7 +147,10 @@ fn boat(options: &[&str]) -> Rig {
         [file, rest @ ..] if file.ends_with(".toml") => (*file, rest),
         rest => ("surveyor.toml", rest),
     };
-    let (mut plan, mut watchdog_s, mut integers, mut charge) = (plan(file), None, false, Some(1.0));
+    let mut plan = plan(file);
+    let mut watchdog_s = None;
+    let mut integers = false;
+    let mut charge = Some(1.0);
     for option in options.chunks(2) {
         match option {
             ["watchdog", seconds] => watchdog_s = Some(number(seconds)),

@@ -63,7 +63,8 @@ fn a_ninth_is_closed_at_once_and_finds_room_when_one_goes() {
 #[test]
 fn a_peer_that_does_not_read_holds_up_nobody_and_is_dropped() {
     let (link, log) = listen(ANY);
-    let (mut quick, _slow) = (join(&link), join(&link));
+    let mut quick = join(&link);
+    let _slow = join(&link);
     log.up(1);
     let start = Instant::now();
     let mut slowest = Duration::ZERO;
@@ -91,7 +92,8 @@ fn a_silent_peer_stays_unless_the_settings_say_otherwise() {
     let address = LinkAddress::to_listen(ANY).unwrap();
     let (link, log) = open(&address, LinkSettings { silence: Some(Duration::from_millis(200)), ..patient() });
     let (patient_link, patient_log) = listen(ANY);
-    let (_one, _other) = (join(&link), join(&patient_link));
+    let _one = join(&link);
+    let _other = join(&patient_link);
     let (reason, _) = log.down(0);
     assert!(reason.contains("no bytes for 200ms"), "{reason}");
     patient_log.up(0);

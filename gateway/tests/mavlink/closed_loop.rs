@@ -123,7 +123,8 @@ fn a_boat_that_goes_astern_against_its_orders_is_stopped() {
 #[expect(deprecated, reason = "ground stations send the frames of the boat, and Rover takes them")]
 fn an_emulated_boat_takes_the_sign_of_its_speed_from_the_north_as_rover_does() {
     use PositionTargetTypemask as Mask;
-    let (has_yaw, has_rate) = (Mask::from_bits_retain(2535), Mask::from_bits_retain(1511));
+    let has_yaw = Mask::from_bits_retain(2535);
+    let has_rate = Mask::from_bits_retain(1511);
     let velocity_alone = Mask::from_bits_retain(3559);
     for (frame, type_mask, vx, is_ahead) in [
         (MavFrame::MAV_FRAME_LOCAL_NED, has_yaw, -1.0, false),
@@ -257,7 +258,8 @@ fn the_guards_message_stops_a_boat_that_is_driven_and_leaves_one_to_its_pilot() 
     rig.run(1.5);
     guarded(&mut rig);
     assert_eq!(rig.mode(), (RoverMode::Manual, true));
-    let (first, again) = (rig.bridge.guard_message(), rig.bridge.guard_message());
+    let first = rig.bridge.guard_message();
+    let again = rig.bridge.guard_message();
     assert_eq!(first, again, "the same bytes, so that the guard need not be told again");
 }
 
@@ -347,8 +349,10 @@ fn an_item_that_the_boat_got_twice_does_not_end_the_upload() {
     rig.alter = |message| (!matches!(message, MavMessage::MISSION_COUNT(_))).then_some(message);
     rig.operator(OperatorCommand::Mission(mission()));
     rig.run(1.5);
-    let (ours, mavtype) = (plan().gateway.mavlink, MavMissionResult::MAV_MISSION_INVALID_SEQUENCE);
-    let (target_system, target_component) = (ours.system, ours.component);
+    let ours = plan().gateway.mavlink;
+    let mavtype = MavMissionResult::MAV_MISSION_INVALID_SEQUENCE;
+    let target_system = ours.system;
+    let target_component = ours.component;
     let ack = MISSION_ACK_DATA { target_system, target_component, mavtype, ..Default::default() };
     let mut bytes = vec![];
     gateway::mavlink::Writer::new(1, 1).write(&MavMessage::MISSION_ACK(ack), &mut bytes);

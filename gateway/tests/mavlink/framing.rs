@@ -129,7 +129,9 @@ proptest! {
             stream.extend(&noise);
             stream.extend(frame);
         }
-        let (mut framer, mut count, mut rest) = (Framer::new(), 0, &stream[..]);
+        let mut framer = Framer::new();
+        let mut count = 0;
+        let mut rest = &stream[..];
         for cut in cuts.iter().cycle() {
             let (piece, after) = rest.split_at((*cut).min(rest.len()));
             count += read(&mut framer, piece).len();
@@ -157,7 +159,9 @@ proptest! {
             MavMessage::HEARTBEAT(HEARTBEAT_DATA { custom_mode: mode, ..HEARTBEAT_DATA::default() }),
             MavMessage::PARAM_VALUE(PARAM_VALUE_DATA { param_value: value, ..PARAM_VALUE_DATA::default() }),
         ];
-        let (mut writer, mut framer, mut out) = (Writer::new(9, 8), Framer::new(), Vec::new());
+        let mut writer = Writer::new(9, 8);
+        let mut framer = Framer::new();
+        let mut out = Vec::new();
         messages.iter().for_each(|message| writer.write(message, &mut out));
         let received = read(&mut framer, &out);
         prop_assert!(received.iter().all(|received| (received.system, received.component) == (9, 8)));

@@ -53,14 +53,16 @@ type Request = (MavMessage, fn(&MavMessage) -> bool);
 
 fn requests() -> Vec<Request> {
     use MavMessage as M;
-    let (target_system, target_component) = (1, 1);
+    let target_system = 1;
+    let target_component = 1;
     let mission_type = MavMissionType::MAV_MISSION_TYPE_MISSION;
     let read =
         PARAM_REQUEST_READ_DATA { target_system, target_component, param_id: "ARMING_CHECK".into(), param_index: -1 };
     let set = PARAM_SET_DATA { target_system, target_component, param_id: "NO_SUCH".into(), ..Default::default() };
     let item = MISSION_REQUEST_INT_DATA { seq: 9, target_system, target_component, mission_type };
     let current = MISSION_SET_CURRENT_DATA { seq: 9, target_system, target_component };
-    let (list, data) = (LOG_REQUEST_LIST_DATA::default(), LOG_REQUEST_DATA_DATA::default());
+    let list = LOG_REQUEST_LIST_DATA::default();
+    let data = LOG_REQUEST_DATA_DATA::default();
     let list = LOG_REQUEST_LIST_DATA { target_system, target_component, ..list };
     let data = LOG_REQUEST_DATA_DATA { target_system, target_component, ..data };
     let mut ftp = FILE_TRANSFER_PROTOCOL_DATA { target_system, target_component, ..Default::default() };

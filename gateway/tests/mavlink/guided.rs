@@ -94,10 +94,13 @@ fn positions_in_every_frame_that_rover_takes_are_reached_and_kept() {
         messages.push(MavMessage::SET_POSITION_TARGET_GLOBAL_INT(target));
     }
     // What MAVProxy's `guided` and dronekit's `simple_goto` send.
-    let (command, current, frame) = (MavCmd::MAV_CMD_NAV_WAYPOINT, 2, MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT);
+    let command = MavCmd::MAV_CMD_NAV_WAYPOINT;
+    let current = 2;
+    let frame = MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT;
     let item = MISSION_ITEM_INT_DATA { x: lat_int, y: lon_int, command, current, frame, ..Default::default() };
     messages.push(MavMessage::MISSION_ITEM_INT(item));
-    let (x, y) = (1e-7 * lat_int as f32, 1e-7 * lon_int as f32);
+    let x = 1e-7 * lat_int as f32;
+    let y = 1e-7 * lon_int as f32;
     messages.push(MavMessage::MISSION_ITEM(MISSION_ITEM_DATA { x, y, command, current, frame, ..Default::default() }));
     for message in &messages {
         // Once is enough, and it is shown.

@@ -20,10 +20,12 @@ fn checked(place: Ned, change: impl Fn(&mut ArduPilot)) -> (SensorCheck, Vec<Che
     let mut ardupilot = ArduPilot::new(site.field.plan.datum, Some(1.0));
     ardupilot.set_clock(SimTime::ZERO, BEGAN_UTC_NS);
     change(&mut ardupilot);
-    let (mut seen, mut now) = (SensorCheck::new(&plan.gateway), SimTime::ZERO);
+    let mut seen = SensorCheck::new(&plan.gateway);
+    let mut now = SimTime::ZERO;
     for tenth in 0..300_u64 {
         now = SimTime::from_s(0.1 * tenth as f64);
-        let (mut to_boat, mut from_boat) = (vec![], vec![]);
+        let mut to_boat = vec![];
+        let mut from_boat = vec![];
         seen.write_questions(now, &mut to_boat);
         ardupilot.receive(now, &to_boat);
         let boat = Boat { at: place, psi_rad: 1.0, ..Boat::default() };
@@ -69,8 +71,11 @@ fn a_sound_boat_passes_and_each_thing_that_is_wrong_fails_its_own_check() {
 
 #[test]
 fn it_asks_for_what_it_needs_and_says_what_does_not_come() {
-    let (mut seen, mut asked, mut wanted) = (SensorCheck::new(&plan().gateway), Framer::new(), vec![]);
-    let (mut heartbeats, mut writer) = (vec![], Writer::new(SYSTEM, AUTOPILOT));
+    let mut seen = SensorCheck::new(&plan().gateway);
+    let mut asked = Framer::new();
+    let mut wanted = vec![];
+    let mut heartbeats = vec![];
+    let mut writer = Writer::new(SYSTEM, AUTOPILOT);
     let heartbeat = HEARTBEAT_DATA {
         custom_mode: 4,
         mavtype: MavType::MAV_TYPE_SURFACE_BOAT,
@@ -79,7 +84,8 @@ fn it_asks_for_what_it_needs_and_says_what_does_not_come() {
     };
     writer.write(&MavMessage::HEARTBEAT(heartbeat), &mut heartbeats);
     for s in 0..30 {
-        let (now, mut to_boat) = (SimTime::from_s(f64::from(s)), vec![]);
+        let now = SimTime::from_s(f64::from(s));
+        let mut to_boat = vec![];
         seen.receive(now, &heartbeats);
         seen.write_questions(now, &mut to_boat);
         asked.push(&to_boat, &mut |received| wanted.push(received.message));

@@ -116,7 +116,8 @@ impl Rig {
         self.bridge.process(self.now, input, &mut out);
         self.events.extend(out.events);
         self.refused = out.refused.or(self.refused.take());
-        let (now, sent) = (self.now, &mut self.sent);
+        let now = self.now;
+        let sent = &mut self.sent;
         self.sent_framer.push(&out.bytes, &mut |received| sent.push((now, received.message)));
         if self.open.0 && !out.bytes.is_empty() {
             self.ardupilot.receive(self.now, &self.altered(&out.bytes));

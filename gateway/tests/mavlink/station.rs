@@ -86,7 +86,8 @@ impl Station {
     }
 
     fn hear(&mut self, bytes: &[u8], heard: &mut Vec<MavMessage>) {
-        let (systems, acks) = (&mut self.systems, &mut self.acks);
+        let systems = &mut self.systems;
+        let acks = &mut self.acks;
         self.framer.push_frames(bytes, &mut |frame| match frame {
             Frame::Read(received) => {
                 systems.push(received.system);
@@ -147,7 +148,8 @@ impl Station {
 
     /// Uploads waypoints; the result.
     pub(crate) fn upload(&mut self, count: u16, mission_type: MavMissionType) -> MavMissionResult {
-        let (target_system, target_component) = (1, 1);
+        let target_system = 1;
+        let target_component = 1;
         let count = MISSION_COUNT_DATA { count, target_system, target_component, mission_type, ..Default::default() };
         let mut heard = self.reply(&MavMessage::MISSION_COUNT(count));
         loop {

@@ -10,7 +10,8 @@ const COMMAND: &str = "$PSEAC,T,0,20,-10,*22\r\n";
 /// The expected result of a framer, computed from the whole stream: split at every `$`, then check
 /// each part.
 fn model(bytes: &[u8]) -> (Vec<String>, Counts) {
-    let (mut found, mut counts) = (Vec::new(), Counts::default());
+    let mut found = Vec::new();
+    let mut counts = Counts::default();
     let noise = |bytes: &[u8]| bytes.iter().filter(|byte| !b"\r\n".contains(byte)).count() as u64;
     let mut parts = bytes.split(|byte| *byte == b'$').peekable();
     counts.garbage += noise(parts.next().expect("a split has a first part"));

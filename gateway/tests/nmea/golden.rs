@@ -8,7 +8,8 @@ use gateway::nmea::{BoatError, Command, Mode, Sentence};
 /// The meaning of a sentence: its kind and the fields with a value. Minutes are not a round
 /// fraction of a degree, so numbers have ten digits.
 fn meaning(sentence: &Sentence) -> String {
-    let (mut words, mut last) = (Vec::<String>::new(), String::new());
+    let mut words = Vec::<String>::new();
+    let mut last = String::new();
     for (field, value) in values(sentence) {
         if ["Some", "None", "LatLon", "TimeOfDay", "Date", "Talker"].contains(&value.as_str()) {
             continue;
@@ -39,7 +40,8 @@ fn wrong(golden: &[&str]) -> Option<String> {
         Ok(sentence) => sentence,
         Err(error) => return Some(error.to_string()),
     };
-    let (got, line_again) = (meaning(&sentence), sentence.line());
+    let got = meaning(&sentence);
+    let line_again = sentence.line();
     let is_written = match golden.get(2).map(|want| want.strip_prefix("written ")) {
         None => true,
         Some(Some("alike")) => line_again == format!("{line}\r\n"),
@@ -52,7 +54,8 @@ fn wrong(golden: &[&str]) -> Option<String> {
 
 #[test]
 fn sentences_mean_what_is_told_and_are_written_to_the_byte() {
-    let (mut count, mut failures) = (0, Vec::new());
+    let mut count = 0;
+    let mut failures = Vec::new();
     for paragraph in include_str!("golden.txt").split("\n\n") {
         let golden: Vec<&str> = paragraph.lines().map(str::trim).filter(|line| !line.starts_with('#')).collect();
         if golden.is_empty() {

@@ -58,10 +58,12 @@ fn same(sentence: &Sentence, back: &Sentence) -> bool {
             number.get_or_insert(0.0);
         }
     }
-    let (want, got) = (values(&sentence), values(back));
+    let want = values(&sentence);
+    let got = values(back);
     let close = |(field, want): &(String, String), got: &str| match tolerance(&sentence, field) {
         Some((most, is_angle)) if want != "None" && want != "Some" => {
-            let (want, got) = (want.parse::<f64>().unwrap_or(f64::NAN), got.parse::<f64>().unwrap_or(f64::NAN));
+            let want = want.parse::<f64>().unwrap_or(f64::NAN);
+            let got = got.parse::<f64>().unwrap_or(f64::NAN);
             let off = if is_angle { (want - got + 180.0).rem_euclid(360.0) - 180.0 } else { want - got };
             off.abs() <= most
         }
@@ -115,7 +117,8 @@ proptest! {
         prop_assert!(back.is_ok(), "{line}: {back:?}");
         let back = back.unwrap();
         prop_assert!(same(&sentence, &back), "{sentence:?} came back as {back:?}: {line}");
-        let (second, third) = (back.line(), &back.line()[1..]);
+        let second = back.line();
+        let third = &back.line()[1..];
         let again = Sentence::parse(&third[..third.len() - 5]);
         prop_assert_eq!(again.map(|again| again.line()), Ok(second), "written again");
     }
@@ -146,7 +149,8 @@ proptest! {
             let again = Sentence::parse(&line[1..line.len() - 5]);
             prop_assert!(again.is_ok(), "{body} -> {line}: {again:?}");
             // Derived values (km/h) are stable only after the first round trip.
-            let (second, body) = (again.unwrap().line(), sentence.line());
+            let second = again.unwrap().line();
+            let body = sentence.line();
             let settled = Sentence::parse(&second[1..second.len() - 5]).map(|settled| settled.line());
             prop_assert_eq!(settled, Ok(second), "{}", body);
         }

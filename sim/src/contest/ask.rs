@@ -12,7 +12,8 @@ pub(super) fn asks_of<'a>(
     field: &'a Field,
     picture: &'a Picture,
 ) -> impl Iterator<Item = (VehicleId, Asks)> {
-    let (tag_m, grab_m) = (rules.tag_radius_m, rules.grab_radius_m);
+    let tag_m = rules.tag_radius_m;
+    let grab_m = rules.grab_radius_m;
     picture.own.iter().map(move |boat| {
         let at = boat.nav.at();
         let is_near = |other: Ned, reach_m: f64| at.distance_squared(other) < reach_m * reach_m;

@@ -28,7 +28,8 @@ impl Contest {
     /// Starts and ends the agent faults of this tick, with an event each. Boats whose agents die
     /// hold.
     pub(super) fn begin_and_end_faults(&mut self) {
-        let (now, tick) = (self.now(), self.scenario.tick);
+        let now = self.now();
+        let tick = self.scenario.tick;
         for i in 0..self.faults.len() {
             if self.faults[i].is_empty() {
                 continue;
@@ -37,7 +38,8 @@ impl Contest {
                 |at: SimTime| self.faults[i].iter().any(|span| span.kind == FaultKind::AgentLost && span.is_on(at));
             // Derived from the previous tick instead of stored: a restored game must log the same
             // events.
-            let (was, is) = (now.0 >= tick.0 && is_on(now - tick), is_on(now));
+            let was = now.0 >= tick.0 && is_on(now - tick);
+            let is = is_on(now);
             if is {
                 self.hold_now(i);
             }

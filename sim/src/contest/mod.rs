@@ -263,7 +263,8 @@ impl Contest {
         let now = self.now();
         for i in 0..self.state.tracks.len() {
             let (vehicle, Some(track)) = (VehicleId::at(i), &mut self.state.tracks[i]) else { continue };
-            let (estimate, event) = (track.estimate(now), track.event(vehicle, now));
+            let estimate = track.estimate(now);
+            let event = track.event(vehicle, now);
             if let Some((pose, nu)) = estimate.filter(|(_, nu)| *nu == Planar::default())
                 && self.world.state().boats[i].nu != nu
             {
@@ -277,7 +278,8 @@ impl Contest {
     fn gather(&mut self) {
         let Contest { scenario, world, radio, sightings, state, faults, .. } = self;
         let ContestState { standing, decision, known, tracks, .. } = state;
-        let (decision, now) = (*decision, world.state().now);
+        let decision = *decision;
+        let now = world.state().now;
         let scene = Scene { scenario, world, standing, decision };
         if let Some(sightings) = sightings {
             let oldest = radio.as_ref().map_or(decision, Radio::oldest_report);

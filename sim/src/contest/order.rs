@@ -25,7 +25,9 @@ impl Contest {
     /// [`BadOrder`] for invalid numbers; the vehicle then holds.
     pub fn order(&mut self, vehicle: VehicleId, order: Order, given_at: SimTime) -> Result<(), BadOrder> {
         let checked = order.check();
-        let (order, i, now) = (checked.unwrap_or_default(), vehicle.index(), self.now());
+        let order = checked.unwrap_or_default();
+        let i = vehicle.index();
+        let now = self.now();
         // Otherwise an agent could claim to answer a future picture, and its order would never
         // expire.
         let given_at = given_at.min(now);

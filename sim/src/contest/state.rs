@@ -51,7 +51,8 @@ pub(super) struct OrderInForce {
 impl Contest {
     /// Checks the invariants of world and game, once per decision.
     pub(super) fn assert_sound(&self) {
-        let (world, standing) = (self.world.state(), &self.state.standing);
+        let world = self.world.state();
+        let standing = &self.state.standing;
         assert_eq!(world.now, self.scenario.tick * world.tick as i64, "time is the number of ticks");
         // The world quarantines boats with a non-finite state. One that gets past that is our bug,
         // and the game's result would be worthless.

@@ -120,7 +120,8 @@ mod tests {
             (REALTIME, 6, 0, 1),
             (Pace::Lockstep, 5, 1, 0),
         ] {
-            let (mut agents, mut refusals) = (agents(&[&["blue_one"]]), Refusals::default());
+            let mut agents = agents(&[&["blue_one"]]);
+            let mut refusals = Refusals::default();
             let taken = accept(&mut agents, &orders(1, seq, &[0]), (5, pace), &mut refusals);
             assert_eq!(taken.orders.len(), accepted, "{pace} {seq}");
             assert_eq!(refusals, Refusals::from([(Refusal::WrongTick, refused)]), "{pace} {seq}");
@@ -138,7 +139,8 @@ mod tests {
             (orders(1, 0, &[0, 1]), Some(Refusal::NotYours), PUSH),
             (orders(1, 0, &[999, 0]), Some(Refusal::NotYours), PUSH),
         ] {
-            let (mut agents, mut refusals) = (agents(&[&["blue_one"], &["blue_two"]]), Refusals::default());
+            let mut agents = agents(&[&["blue_one"], &["blue_two"]]);
+            let mut refusals = Refusals::default();
             let taken = accept(&mut agents, &message, (0, Pace::Lockstep), &mut refusals);
             assert_eq!(taken.orders, [(VehicleId(0), order)], "{message:?}");
             let want: Vec<(Refusal, u64)> = refusal.map(|refusal| (refusal, 1)).into_iter().collect();
@@ -148,7 +150,8 @@ mod tests {
 
     #[test]
     fn who_was_lost_and_speaks_again_is_back_unless_another_has_its_vehicle() {
-        let (mut agents, mut refusals) = (agents(&[&["blue_one"]]), Refusals::default());
+        let mut agents = agents(&[&["blue_one"]]);
+        let mut refusals = Refusals::default();
         let mut take = |agents: &mut Membership, message: &Orders, tick| {
             accept(agents, message, (tick, Pace::Lockstep), &mut refusals)
         };

@@ -10,7 +10,8 @@ const OLDEST: SimTime = SimTime(86_400_000_000_000);
 
 /// Checks a report that arrived at game time `now`. Returns the time of its fix if accepted.
 pub fn accept(gateways: &mut Membership, report: &NavReport, now: SimTime, refusals: &mut Refusals) -> Option<SimTime> {
-    let (vehicle, seq) = (report.vehicle, report.stamp.seq);
+    let vehicle = report.vehicle;
+    let seq = report.stamp.seq;
     let mut own = gateways.vehicles_of(report.ticket).peekable();
     let refusal = if own.peek().is_none() {
         Refusal::Ticket
@@ -55,7 +56,8 @@ mod tests {
 
     #[test]
     fn a_report_of_an_own_boat_is_taken_with_the_time_of_its_fix() {
-        let (mut gateways, mut refusals) = (gateways(&["red_one", "blue_one"]), Refusals::default());
+        let mut gateways = gateways(&["red_one", "blue_one"]);
+        let mut refusals = Refusals::default();
         assert_eq!(accept(&mut gateways, &report(7, 0, 2), NOW, &mut refusals), Some(SimTime(70)));
         let long_ago = NavReport { age_ns: i64::MAX, valid: false, ..report(7, 1, 2) };
         assert_eq!(accept(&mut gateways, &long_ago, NOW, &mut refusals), Some(NOW - OLDEST));

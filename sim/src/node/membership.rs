@@ -64,7 +64,8 @@ impl Membership {
         // Exactly equal: two versions may agree on messages and differ in a rounding, and then in
         // the game.
         if request.version != primitives::VERSION {
-            let (theirs, ours) = (&request.version, primitives::VERSION);
+            let theirs = &request.version;
+            let ours = primitives::VERSION;
             return refused(format!("the {role} is Squall {theirs}, the sim is Squall {ours}: use the same version"));
         }
         // A node must join for at least one vehicle: lockstep would wait for a node without any.

@@ -18,7 +18,8 @@ const EVENTS_MAX: usize = 5000;
 
 /// The events so far, as JSON; the last ones if there are too many.
 pub(super) fn events_json(contest: &Contest) -> Vec<u8> {
-    let (scenario, all) = (contest.scenario(), contest.events());
+    let scenario = contest.scenario();
+    let all = contest.events();
     let events = all[all.len().saturating_sub(EVENTS_MAX)..].iter().map(|logged| EventOutcome::new(scenario, logged));
     serde_json::to_vec(&events.collect::<Vec<_>>()).expect("events are JSON")
 }

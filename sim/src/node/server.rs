@@ -103,7 +103,8 @@ impl<'w> GameServer<'w> {
         // The hub needs the scenario, because its rules list every topic by team and boat.
         let bus = Bus::hub(&settings.net, &settings.game, contest.scenario())?;
         let (questions_sender, questions) = inbox(QUESTIONS);
-        let (controls, messages) = (Arc::new(ControlInbox::default()), Arc::new(MessageInbox::default()));
+        let controls = Arc::new(ControlInbox::default());
+        let messages = Arc::new(MessageInbox::default());
         let others = Arc::clone(&messages);
         let inboxes = Inboxes { controls: Arc::clone(&controls), questions: questions_sender, others };
         let game = &settings.game;
@@ -285,7 +286,8 @@ impl<'w> GameServer<'w> {
         if !publisher.is_heard() {
             return Ok(());
         }
-        let (valid_ns, seq) = (self.contest.now(), self.contest.decision());
+        let valid_ns = self.contest.now();
+        let seq = self.contest.decision();
         let stamp = Stamp { valid_ns, seq, version: ExternalOrder::VERSION };
         // The time of the answered picture, by which the gateway judges an order's age, however
         // often the order is repeated.
@@ -361,7 +363,8 @@ impl<'w> GameServer<'w> {
             if !is_wanted {
                 self.link_reports.remove(&vehicle);
             } else if !self.link_reports.contains_key(&vehicle) {
-                let (what, inbox) = ((vehicle, Reported::Link), Arc::clone(&self.inbox));
+                let what = (vehicle, Reported::Link);
+                let inbox = Arc::clone(&self.inbox);
                 let subscription = subscriptions::subscribe_report(&self.bus, &self.game, scenario, what, inbox)?;
                 self.link_reports.insert(vehicle, subscription);
             }

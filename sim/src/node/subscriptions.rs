@@ -43,7 +43,8 @@ impl Inboxes {
     }
 
     fn question_callback(&self, question: fn() -> Question) -> impl Fn(Query) + Send + Sync + use<> {
-        let (questions, others) = (self.questions.clone(), Arc::clone(&self.others));
+        let questions = self.questions.clone();
+        let others = Arc::clone(&self.others);
         move |query| {
             questions.put((question(), query));
             others.push(Incoming::Look);
@@ -92,15 +93,18 @@ pub(super) fn open(
     recorded: &[RecordedTopic],
 ) -> Result<Vec<Declaration>, BusError> {
     let others = || Arc::clone(&inboxes.others);
-    let (gone, joins) = (others(), others());
+    let gone = others();
+    let joins = others();
     // If this does not fit, the sim is busy and reads the inbox before each message anyway.
-    let (stops, look) = (Arc::clone(&inboxes.controls), others());
+    let stops = Arc::clone(&inboxes.controls);
+    let look = others();
     let stop = move |bytes: &[u8]| {
         if stops.put_stop(bytes) {
             look.push(Incoming::Look);
         }
     };
-    let (controls, look) = (Arc::clone(&inboxes.controls), others());
+    let controls = Arc::clone(&inboxes.controls);
+    let look = others();
     let control = move |query| {
         if controls.put_query(query) {
             look.push(Incoming::Look);

@@ -60,7 +60,10 @@ mod tests {
     fn play(delay: Duration, spacing: Duration) -> (f64, Duration) {
         let start = bus::clock::now();
         let mut throttle = Throttle::new(start);
-        let (mut free, mut answers, mut sent, mut last) = (start, std::collections::VecDeque::new(), 0, Duration::ZERO);
+        let mut free = start;
+        let mut answers = std::collections::VecDeque::new();
+        let mut sent = 0;
+        let mut last = Duration::ZERO;
         for tick in 0..600 {
             let now = start + tick * PERIOD;
             while let Some((at, asked)) = answers.pop_front_if(|(at, _): &mut (Instant, Instant)| *at <= now) {

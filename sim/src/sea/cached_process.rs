@@ -48,7 +48,8 @@ impl CachedProcess {
     #[inline]
     pub(super) fn at(&self, place: f64) -> Pair {
         let floor = place.floor();
-        let (index, weight) = (floor as i64, place - floor);
+        let index = floor as i64;
+        let weight = place - floor;
         let (low, high) = self.neighbours(index);
         let product = 2.0 * weight * (1.0 - weight);
         // Between two correlated numbers, linear interpolation has less variance; uncorrected,

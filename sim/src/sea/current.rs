@@ -110,8 +110,10 @@ impl CurrentNow<'_> {
     #[inline]
     #[must_use]
     pub fn over_hull(&self, place: Ned, rotation: Rotation) -> (Ned, f64) {
-        let (ahead, starboard) = (rotation.ahead(), rotation.starboard());
-        let (mut mean_m_s, mut turn_rad_s) = (self.uniform_m_s, 0.0);
+        let ahead = rotation.ahead();
+        let starboard = rotation.starboard();
+        let mut mean_m_s = self.uniform_m_s;
+        let mut turn_rad_s = 0.0;
         if let Some(shear) = self.shear {
             let speed_m_s = shear.per_s * (place - shear.origin).dot(shear.across);
             mean_m_s = mean_m_s + shear.toward.scaled(speed_m_s);

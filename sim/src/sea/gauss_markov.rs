@@ -184,7 +184,8 @@ mod tests {
         let games = GAMES as f64;
         for (lag, [sum, squares, _]) in lags.into_iter().zip(sums) {
             let rho = libm::exp(-(lag as f64) / STEPS_PER_LENGTH);
-            let (mean, variance) = (sum / games, squares / games - (sum / games) * (sum / games));
+            let mean = sum / games;
+            let variance = squares / games - (sum / games) * (sum / games);
             let want = 1.0 - rho * rho;
             assert!((mean - known * rho).abs() < 5.0 * (want / games).sqrt(), "lag {lag}: mean {mean}");
             assert!((variance - want).abs() < 5.0 * want * (2.0 / games).sqrt(), "lag {lag}: variance {variance}");

@@ -56,7 +56,8 @@ impl HeadingTable {
     /// beyond the last component they are 0.
     pub(super) fn new(rows: usize, numbers: impl Fn(usize, usize) -> [f64; FOLD]) -> HeadingTable {
         let number = |i: usize| {
-            let (bin, row) = (i / rows, i % rows);
+            let bin = i / rows;
+            let row = i % rows;
             let parts: [[f64; FOLD]; ROW] = std::array::from_fn(|lane| numbers(bin, row * ROW + lane));
             Lanes::of_row(std::array::from_fn(|part| parts.map(|parts| parts[part] as f32)))
         };

@@ -64,7 +64,8 @@ struct Row {
 
 impl Row {
     fn new(waves: &[PlaneWave]) -> Row {
-        let (one, omega_rad_s) = ([1.0; ROW], row_of(waves, |w| w.component.omega_rad_s));
+        let one = [1.0; ROW];
+        let omega_rad_s = row_of(waves, |w| w.component.omega_rad_s);
         Row {
             of_cos: Lanes::of_row([one, one, omega_rad_s, one]),
             of_sin: Lanes::of_row([omega_rad_s, omega_rad_s, one, one]),
@@ -131,7 +132,9 @@ impl HullWaves {
             // explicitly would combine it with a wrong wave number.
             let (sin, cos) = block.phases.sin_cos(pose.at, time_s);
             for (i, (row, line)) in block.rows.iter().zip(lines).enumerate() {
-                let (line, sin, cos) = (line.at_fraction(fraction), sin.row(i), cos.row(i));
+                let line = line.at_fraction(fraction);
+                let sin = sin.row(i);
+                let cos = cos.row(i);
                 sums.of_cos += line * (row.of_cos * cos);
                 sums.of_sin += line * (row.of_sin * sin);
                 if let Some(lines) = submergence {
@@ -143,7 +146,8 @@ impl HullWaves {
     }
 
     fn sample(&self, Sums { of_cos, of_sin }: &Sums, heading_rad: f64) -> WaveSample {
-        let (in_phase, off_phase) = (of_cos.sum(3), of_sin.sum(3));
+        let in_phase = of_cos.sum(3);
+        let off_phase = of_sin.sum(3);
         // The squared envelope: in Newman's approximation, drift follows the wave groups.
         let groups_m2 = in_phase * in_phase + off_phase * off_phase;
         let (drift, fraction) = self.drift.at(heading_rad);

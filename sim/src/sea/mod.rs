@@ -249,7 +249,8 @@ impl SeaNow<'_> {
         nu: Planar,
         forcing: &mut SeaForcing,
     ) {
-        let (half_s, shape) = (self.model.half_s, &self.model.shapes[boat.shape].1);
+        let half_s = self.model.half_s;
+        let shape = &self.model.shapes[boat.shape].1;
         let velocity_m_s = nu.in_ned(rotation);
         // Once, in the middle of the tick: the rate of change is known there too, and three
         // evaluations would triple the largest part of a tick.

@@ -25,8 +25,10 @@ pub(super) struct Patch {
 impl Patch {
     pub(super) fn new(wave: &PlaneWave, boat: &Boat, heading_rad: f64) -> Patch {
         let (starboard, ahead) = libm::sincos(wave.component.toward_rad - heading_rad);
-        let (k_x, k_y) = (wave.wavenumber_rad_m * ahead, wave.wavenumber_rad_m * starboard);
-        let ((mean_x, tilt_x), (mean_y, tilt_y)) = (fit(0.5 * k_x * boat.length_m), fit(0.5 * k_y * boat.beam_m));
+        let k_x = wave.wavenumber_rad_m * ahead;
+        let k_y = wave.wavenumber_rad_m * starboard;
+        let (mean_x, tilt_x) = fit(0.5 * k_x * boat.length_m);
+        let (mean_y, tilt_y) = fit(0.5 * k_y * boat.beam_m);
         Patch { ahead, starboard, mean_x, mean_y, tilt_x: k_x * tilt_x, tilt_y: k_y * tilt_y }
     }
 

@@ -90,7 +90,8 @@ mod tests {
             for quarter in [-2.0, -1.0, 0.0, 1.0, 2.0] {
                 for nudge in [-1e-9, 0.0, 1e-9] {
                     let turns = whole + 0.25 * quarter + nudge;
-                    let ((sin, cos), (want_sin, want_cos)) = (one(turns), truth(turns));
+                    let (sin, cos) = one(turns);
+                    let (want_sin, want_cos) = truth(turns);
                     assert!((sin - want_sin).abs() < ERROR && (cos - want_cos).abs() < ERROR, "{turns} turns");
                 }
             }

@@ -140,7 +140,8 @@ impl Curve {
     fn new(x: (f64, f64), mut densities: impl Iterator<Item = f64>) -> Curve {
         let mut up_to = Vec::with_capacity(PIECES + 1);
         up_to.push(0.0);
-        let (mut sum, mut last) = (0.0, densities.next().unwrap_or_default());
+        let mut sum = 0.0;
+        let mut last = densities.next().unwrap_or_default();
         for next in densities {
             sum += 0.5 * (last + next);
             last = next;
@@ -155,7 +156,8 @@ impl Curve {
     /// The quantile of `share`.
     fn at(&self, share: f64) -> f64 {
         let i = self.up_to.partition_point(|up_to| *up_to <= share).clamp(1, PIECES);
-        let (low, high) = (self.up_to[i - 1], self.up_to[i]);
+        let low = self.up_to[i - 1];
+        let high = self.up_to[i];
         let part = if high > low { (share - low) / (high - low) } else { 0.0 };
         self.x.0 + (self.x.1 - self.x.0) * (((i - 1) as f64 + part) / PIECES as f64)
     }

@@ -94,7 +94,8 @@ impl Wave {
     /// amidships, given sine and cosine of [`Wave::further_rad`].
     fn change_at(&self, place: Body, patch: &Patch, (sin, cos): (f64, f64)) -> (f64, f64) {
         let [heave, roll, pitch] = quasi_static(self.pressed_m, patch);
-        let (bow_up, starboard_down) = (pitch * place.ahead, roll * place.starboard);
+        let bow_up = pitch * place.ahead;
+        let starboard_down = roll * place.starboard;
         (
             self.amplitude_m * cos - heave * self.heave.0 - bow_up * self.pitch.1 + starboard_down * self.roll.1,
             -self.amplitude_m * sin + heave * self.heave.1 - bow_up * self.pitch.0 + starboard_down * self.roll.0,
@@ -114,7 +115,8 @@ mod tests {
         let boat = scenario::load_file::<scenario::Boat>(&file).unwrap_or_else(|e| panic!("{e}"));
         let field = WaveField::new(&waves_from(0.7, 0.3, 2.5, 64), None, 3);
         let places = [-0.33, 0.33].map(|starboard| Body { ahead: -0.7, starboard });
-        let (submergence, response) = (Submergence::new(&field, &boat, places), WaveResponse::new(&field, &boat));
+        let submergence = Submergence::new(&field, &boat, places);
+        let response = WaveResponse::new(&field, &boat);
         let waves = HullWaves::new(&field, &boat, 1000.0);
         for k in 0..200 {
             // Headings of the table, so that nothing is interpolated.

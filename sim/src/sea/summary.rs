@@ -120,7 +120,8 @@ fn wind_summary(wind: &Wind, boat: &Boat, hull: &HullModel) -> WindSummary {
 
 /// The root of `excess`, a decreasing function, between 0 and `most`, by bisection.
 fn equilibrium(most: f64, excess: impl Fn(f64) -> f64) -> f64 {
-    let (mut low, mut high) = (0.0, most);
+    let mut low = 0.0;
+    let mut high = most;
     // Sixty halvings go beyond the last bit; drag is not smooth enough for Newton's method.
     for _ in 0..60 {
         let middle = 0.5 * (low + high);

@@ -79,7 +79,8 @@ impl PlaneWave {
 
     /// Stokes drift, averaged over a draught, m/s.
     fn stokes_m_s(&self, draught_m: f64) -> f64 {
-        let (k, draught_m) = (self.wavenumber_rad_m, draught_m.min(self.depth_m));
+        let k = self.wavenumber_rad_m;
+        let draught_m = draught_m.min(self.depth_m);
         let bottom = libm::exp(-2.0 * self.depth_rad());
         // sinh 2kh − sinh 2k(h − T), over sinh² k h and e^(2kh) / 2 each.
         let at_keel = libm::exp(-2.0 * k * draught_m);
@@ -367,7 +368,8 @@ impl WaveField {
         water_density_kg_m3: f64,
         waves: impl Iterator<Item = (f64, (f64, f64))>,
     ) -> Planar {
-        let (mut surge, mut sway) = (0.0, 0.0);
+        let mut surge = 0.0;
+        let mut sway = 0.0;
         for (reflected_m, (cos, sin)) in waves {
             surge += reflected_m * reflected_m * cos * cos.abs();
             sway += reflected_m * reflected_m * sin * sin.abs();

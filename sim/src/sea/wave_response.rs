@@ -100,7 +100,8 @@ impl Row {
 /// Real part, and minus the imaginary part, of wn² / (wn² − ω² + 2 i ζ wn ω).
 pub(super) fn transfer(natural_rad_s: f64, damping: f64, omega_rad_s: f64) -> (f64, f64) {
     let ratio = omega_rad_s / natural_rad_s;
-    let (real, imaginary) = (1.0 - ratio * ratio, 2.0 * damping * ratio);
+    let real = 1.0 - ratio * ratio;
+    let imaginary = 2.0 * damping * ratio;
     let size = real * real + imaginary * imaginary;
     // A damped spring driven by the surface. These seas peak at or below half of its natural
     // frequency, so a hull mostly follows the surface.
@@ -181,7 +182,9 @@ impl Kernel for At<'_> {
             let (sin, cos) = block.phases.sin_cos(self.pose.at, self.time_s);
             let rate_rad_s = block.phases.rate_rad_s(self.velocity_m_s);
             for (i, (row, line)) in block.rows.iter().zip(lines).enumerate() {
-                let (sin, cos, rate_rad_s) = (sin.row(i), cos.row(i), rate_rad_s.row(i));
+                let sin = sin.row(i);
+                let cos = cos.row(i);
+                let rate_rad_s = rate_rad_s.row(i);
                 let value = row.value.of(sin, cos);
                 let now = line.at_fraction(fraction);
                 let swing = now * rate_rad_s;

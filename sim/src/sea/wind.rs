@@ -55,7 +55,8 @@ impl WindField {
     #[must_use]
     pub fn new(wind: &Wind, reference_height_m: f64, field: &Field, seeds: &Seeds) -> WindField {
         let upwind = Rotation::from_heading(wind.from_rad);
-        let (downwind, across) = (upwind.ahead().scaled(-1.0), upwind.starboard().scaled(-1.0));
+        let downwind = upwind.ahead().scaled(-1.0);
+        let across = upwind.starboard().scaled(-1.0);
         let mut made = WindField {
             downwind,
             across,

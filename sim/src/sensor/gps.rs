@@ -132,7 +132,8 @@ impl GpsModel {
     }
 
     fn measure_fix(&self, state: &mut GpsState, truth: &Truth, now: SimTime, number: u64) -> Fix {
-        let (normals, uniforms) = (self.normals.at(now), self.uniforms.at(now));
+        let normals = self.normals.at(now);
+        let uniforms = self.uniforms.at(now);
         let normal = |which: u64, sigma: f64| {
             let (north, east) = normals.normal_pair(PAIRS * number + which);
             Ned { north, east }.scaled(sigma)

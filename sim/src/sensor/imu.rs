@@ -52,7 +52,9 @@ impl ImuReading {
         let Truth { nu, nu_dot, attitude, .. } = *truth;
         let (sin_roll, cos_roll) = math::sin_cos(attitude.roll_rad);
         let (sin_pitch, cos_pitch) = math::sin_cos(attitude.pitch_rad);
-        let (roll_rate, pitch_rate, yaw_rate) = (attitude.roll_rad_s, attitude.pitch_rad_s, nu.yaw);
+        let roll_rate = attitude.roll_rad_s;
+        let pitch_rate = attitude.pitch_rad_s;
+        let yaw_rate = nu.yaw;
         // a − g along the heading, across it and down, in the rotating axes.
         let ahead = nu_dot.surge - nu.sway * yaw_rate;
         let starboard = nu_dot.sway + nu.surge * yaw_rate;
@@ -93,7 +95,8 @@ impl ImuModel {
     pub fn read(&self, state: &mut ImuState, truth: &Truth, now: SimTime) -> ImuReading {
         let number = (now.0 / self.tick.0) as u64;
         let GaussMarkovStep { kept, fresh } = if number == 0 { GaussMarkovStep::FIRST } else { self.bias_step };
-        let (imu, drawn) = (&self.imu, self.noise.at(now));
+        let imu = &self.imu;
+        let drawn = self.noise.at(now);
         let mut reading = ImuReading::of(truth);
         for axis in 0..3 {
             let (noise, step) = drawn.normal_pair(PAIRS * number + axis as u64);

@@ -85,7 +85,8 @@ pub(crate) fn hamper(scenario: &mut Scenario) {
 pub(crate) fn set_in(contest: &mut Contest, change: impl FnOnce(&mut State)) {
     // Name and version, mark of the scenario, checksum; then the world comes first.
     let snapshot = contest.snapshot();
-    let (head, body) = (&snapshot[..13], &snapshot[21..]);
+    let head = &snapshot[..13];
+    let body = &snapshot[21..];
     let (mut state, rest) = postcard::take_from_bytes::<State>(body).expect("a snapshot begins with the world");
     change(&mut state);
     let body = [&postcard::to_stdvec(&state).expect("plain numbers can be encoded"), rest].concat();
@@ -147,7 +148,8 @@ pub(crate) fn capsule(world: &World, scenario: &Scenario, vehicle: usize) -> ((N
 
 /// The distance between the hulls of two boats, m.
 pub(crate) fn gap_m(world: &World, scenario: &Scenario, a: usize, b: usize) -> f64 {
-    let ((keel_a, radius_a), (keel_b, radius_b)) = (capsule(world, scenario, a), capsule(world, scenario, b));
+    let (keel_a, radius_a) = capsule(world, scenario, a);
+    let (keel_b, radius_b) = capsule(world, scenario, b);
     keels_m(keel_a, keel_b) - radius_a - radius_b
 }
 
@@ -163,7 +165,8 @@ pub(crate) fn keels_m((a, b): (Ned, Ned), (c, d): (Ned, Ned)) -> f64 {
 
 /// The distance of a point from a line segment, m.
 pub(crate) fn point_m(at: Ned, (a, b): (Ned, Ned)) -> f64 {
-    let (side, from_a) = (b - a, at - a);
+    let side = b - a;
+    let from_a = at - a;
     let share = (from_a.dot(side) / side.dot(side)).clamp(0.0, 1.0);
     from_a.distance(side.scaled(share))
 }
@@ -246,7 +249,9 @@ pub(crate) fn amplitudes(series: &[f64]) -> Vec<f64> {
         (0..count).map(|i| primitives::math::sin_cos(std::f64::consts::TAU * i as f64 / count as f64)).collect();
     let windowed: Vec<f64> = series.iter().zip(&turns).map(|(x, turn)| x * (1.0 - turn.1)).collect();
     let amplitude = |harmonic: usize| {
-        let (mut sin, mut cos, mut place) = (0.0, 0.0, 0);
+        let mut sin = 0.0;
+        let mut cos = 0.0;
+        let mut place = 0;
         for x in &windowed {
             (sin, cos) = (sin + x * turns[place].0, cos + x * turns[place].1);
             place += harmonic;

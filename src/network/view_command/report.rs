@@ -154,10 +154,8 @@ impl SweepReport {
             Ok(plan) => table().map(|bytes| sweep::rows_in(plan, &String::from_utf8_lossy(&bytes))),
             Err(_) => Ok(vec![]),
         };
-        let (plan, rows) = (
-            plan.map_err(|why| command_line::explain::line(&why)),
-            rows.map_err(|why| command_line::explain::line(&why)),
-        );
+        let plan = plan.map_err(|why| command_line::explain::line(&why));
+        let rows = rows.map_err(|why| command_line::explain::line(&why));
         let worst = value["worst"].as_array().into_iter().flatten();
         let digest =
             |game: &Value| Some((usize::try_from(game["game"].as_u64()?).ok()?, game["digest"].as_str()?.to_owned()));
@@ -173,9 +171,11 @@ impl SweepReport {
     /// The games of a point, as JSON for the page.
     fn games_at(&self, point: usize) -> Option<Value> {
         let plan = self.plan.as_ref().ok().filter(|plan| point < plan.points().len())?;
-        let (count, first) = (plan.games_per_point(), point * plan.games_per_point());
+        let count = plan.games_per_point();
+        let first = point * plan.games_per_point();
         let game = |index: usize| {
-            let (job, result) = (plan.job(index), self.row(index).map(|row| &row.result));
+            let job = plan.job(index);
+            let result = self.row(index).map(|row| &row.result);
             json!({
                 "game": index,
                 "entry": job.entry,
@@ -194,10 +194,12 @@ impl SweepReport {
         let plan = self.plan.as_ref().map_err(|why| anyhow!("cannot rerun games: {why}"))?;
         let job = plan.job(place_of(name, plan.games())?);
         let scenario = plan.scenario(job.point, job.entry, job.side)?;
-        let (sweep, values) = (plan.sweep(), &plan.points()[job.point]);
+        let sweep = plan.sweep();
+        let values = &plan.points()[job.point];
         let axes: Vec<String> =
             sweep.axes.iter().zip(values).map(|(axis, value)| format!("{} {value}", axis.key)).collect();
-        let (entry, team) = (&sweep.entries[job.entry].name, &plan.teams()[job.side]);
+        let entry = &sweep.entries[job.entry].name;
+        let team = &plan.teams()[job.side];
         Ok(Game {
             about: format!("{entry} ({team}) at {}, seed {}", axes.join(", "), job.seed),
             source: Source::Played {

@@ -124,7 +124,8 @@ fn expected<'a>(path: &'a str, said: &'a str) -> (&'a str, usize, usize, &'a str
     };
     let mut parts = said.splitn(3, ':');
     let mut number = || parts.next().and_then(|number| number.parse().ok()).expect("a line and a column");
-    let (line, column) = (number(), number());
+    let line = number();
+    let column = number();
     (path, line, column, parts.next().unwrap_or_default().trim_start())
 }
 

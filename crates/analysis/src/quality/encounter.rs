@@ -154,7 +154,8 @@ impl EncounterCounter {
             let boat = self.scenario.boat_of(VehicleId::at(vehicle));
             HullRectangle { pose: sample.truth.pose(), length_m: boat.length_m, beam_m: boat.beam_m }
         };
-        let (one, other) = (hull(a, one), hull(b, other));
+        let one = hull(a, one);
+        let other = hull(b, other);
         let reach_m = one.length_m + one.beam_m + other.length_m + other.beam_m;
         distance_m < reach_m && one.overlaps(&other)
     }

@@ -80,7 +80,10 @@ fn goes_round(places: &VecDeque<(f64, Ned)>) -> bool {
 fn circle(places: &VecDeque<(f64, Ned)>) -> Option<(Ned, f64)> {
     let share = 1.0 / places.len() as f64;
     let mean = places.iter().fold(Ned::default(), |sum, (_, at)| sum + *at).scaled(share);
-    let (mut nn, mut ee, mut ne, mut third) = (0.0, 0.0, 0.0, Ned::default());
+    let mut nn = 0.0;
+    let mut ee = 0.0;
+    let mut ne = 0.0;
+    let mut third = Ned::default();
     for (_, at) in places {
         let p = *at - mean;
         nn += p.north * p.north;

@@ -94,7 +94,8 @@ fn standing_still_and_the_edge_are_told_by_speed_and_place() {
         samples[2].truth.north_m = 85.0;
         minds[2] = None;
     });
-    let (a, other) = (mode(&got, "a", "m"), mode(&got, "unknown", "unknown"));
+    let a = mode(&got, "a", "m");
+    let other = mode(&got, "unknown", "unknown");
     assert!((a.standing_s - 5.0).abs() < 1e-9 && (a.edge_s - 3.0).abs() < 1e-9, "{a:?}");
     assert!(other.standing_s == 0.0 && (other.edge_s - 10.0).abs() < 1e-9, "{other:?}");
 }

@@ -62,7 +62,8 @@ fn fields(definition: &str) -> Vec<String> {
     let text = ros::DEFINITIONS.iter().find(|(name, _)| *name == definition).map_or("", |(_, text)| text);
     let field = |line: &str| {
         let mut words = line.split('#').next().unwrap_or_default().split_whitespace();
-        let (kind, name) = (words.next()?.to_owned(), words.next()?.to_owned());
+        let kind = words.next()?.to_owned();
+        let name = words.next()?.to_owned();
         (!name.contains('=')).then_some((kind, name))
     };
     let columns_of = |(kind, name): (String, String)| match kind.rsplit_once('/') {

@@ -41,7 +41,8 @@ fn another_seed_in_the_midst_leaves_what_was_before_and_changes_what_is_drawn_af
             played.unwrap_or_else(|why| panic!("{}: {why}", game.name));
             digests
         };
-        let (first, again) = (with(vec![]), with(vec![Reseed { after_s: AFTER_S, seed: 77 }]));
+        let first = with(vec![]);
+        let again = with(vec![Reseed { after_s: AFTER_S, seed: 77 }]);
         let before = |all: &[(SimTime, u128)]| all.iter().filter(|(now, _)| now.as_s() <= AFTER_S).count();
         assert_eq!(first[..before(&first)], again[..before(&again)], "{}", scenario.name);
         if first.last() != again.last() {
@@ -81,7 +82,8 @@ fn a_snapshot_from_either_side_of_another_seed_goes_on_as_the_game_did() {
 
 #[test]
 fn two_seeds_are_two_games_where_a_scenario_is_random_and_one_where_it_is_not() {
-    let (mut random, mut fixed) = (0, 0);
+    let mut random = 0;
+    let mut fixed = 0;
     for scenario in small_games() {
         assert_eq!(digest(&scenario, 1) != digest(&scenario, 2), scenario.is_random(), "{}", scenario.name);
         *if scenario.is_random() { &mut random } else { &mut fixed } += 1;

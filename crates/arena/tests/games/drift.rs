@@ -48,7 +48,8 @@ fn crossing(compensate_drift: bool) -> (Vec<(f64, f64)>, f64) {
     );
     let scenario = scenario(QUICK_BOAT, &current(0.5, 0.0), &strategy, 90.0);
     let start = Contest::new(&scenario, 1).map(|contest| blue_at(&contest)).expect("a start");
-    let (mut track, mut time_s) = (Vec::new(), 0.0);
+    let mut track = Vec::new();
+    let mut time_s = 0.0;
     watch(&scenario, |contest, _| {
         let way = blue_at(contest) - start;
         time_s = contest.now().as_s();

@@ -27,7 +27,8 @@ fn encounter(stream: &mut Stream) -> Scenario {
         let beside_m = stream.between(-4.0, 4.0);
         let (sin, cos) = primitives::math::sin_cos(f64::to_radians(way_deg));
         let place = |way_m: f64| (MIDDLE_M.0 + way_m * cos - beside_m * sin, MIDDLE_M.1 + way_m * sin + beside_m * cos);
-        let (from, to) = (place(-START_M), place(2.0 * START_M));
+        let from = place(-START_M);
+        let to = place(2.0 * START_M);
         let heading_deg = f64::rem_euclid(90.0 - way_deg, 360.0);
         game += &format!(
             "[[vehicle]]\nname = \"{name}\"\nteam = \"blue\"\nat = [{}, {}]\nheading_deg = {}\n",
@@ -50,14 +51,16 @@ fn nearest(scenario: &Scenario) -> (f64, bool) {
         .map(VehicleId::at)
         .filter(|boat| scenario.vehicles[boat.index()].name.starts_with("blue"))
         .collect();
-    let (mut nearest_m, mut touch) = (f64::INFINITY, false);
+    let mut nearest_m = f64::INFINITY;
+    let mut touch = false;
     watch(scenario, |contest, _| {
         let hull = |vehicle: VehicleId| {
             let boat = scenario.boat_of(vehicle);
             let pose = contest.world().state().boats[vehicle.index()].pose;
             HullRectangle { pose, length_m: boat.length_m, beam_m: boat.beam_m }
         };
-        let (one, other) = (hull(boats[0]), hull(boats[1]));
+        let one = hull(boats[0]);
+        let other = hull(boats[1]);
         nearest_m = nearest_m.min(Ned::distance(one.pose.at, other.pose.at));
         touch |= one.overlaps(&other);
         true
@@ -68,7 +71,9 @@ fn nearest(scenario: &Scenario) -> (f64, bool) {
 #[test]
 fn boats_whose_ways_cross_choose_different_sides() {
     let mut stream = Stream::new(1, "encounters");
-    let (mut touches, mut near, mut met) = (0, 0, 0);
+    let mut touches = 0;
+    let mut near = 0;
+    let mut met = 0;
     for _ in 0..150 {
         let (nearest_m, touch) = nearest(&encounter(&mut stream));
         touches += u32::from(touch);

@@ -53,7 +53,8 @@ fn the_first_game_of_the_paper_is_played_to_its_end() {
 #[test]
 fn the_same_seed_is_the_same_game() {
     for game in ["pav01_vs_pav01.toml", "harbour_2v2.toml"] {
-        let (first, again) = (played(game, 5), play(&shipped(game), 5));
+        let first = played(game, 5);
+        let again = play(&shipped(game), 5);
         assert_eq!(first, again, "{game}");
     }
     // Forty boats that avoid each other take long to simulate: two minutes of game time suffice.

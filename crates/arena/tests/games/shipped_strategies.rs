@@ -22,7 +22,8 @@ fn game(boats: u32, blue: &str, red: &str, seed: u64) -> Scenario {
 
 /// The final report of the first boat's helm, and the modes it was in.
 fn watched(scenario: &Scenario) -> (HelmReport, Vec<String>) {
-    let (mut last, mut modes) = (None, vec![]);
+    let mut last = None;
+    let mut modes = vec![];
     arena::play_observed(scenario, agent::minds_of(scenario), scenario.seed, |_, runner| {
         let report = runner.mind(VehicleId(0)).and_then(Mind::report).expect("a helm");
         if modes.last() != Some(&report.mode) {
@@ -79,7 +80,8 @@ fn two_teams_that_watch_each_other_play_a_game() {
 fn strategy_5_beats_strategy_4_from_either_side() {
     const SEEDS: u64 = 12;
     let points = |outcome: &Outcome, team: &str| outcome.score.teams[team];
-    let (mut won, mut lost) = (0, 0);
+    let mut won = 0;
+    let mut lost = 0;
     for (blue, red, own, other) in
         [("strategy_5", "strategy_4", "blue", "red"), ("strategy_4", "strategy_5", "red", "blue")]
     {

@@ -47,7 +47,8 @@ impl Bundle {
             let problem = format!("no keys found: a bundle is a folder with {CERTIFICATE_FILE}{}", bundles_in(folder));
             return Err(BundleError { file: folder.to_owned(), problem });
         }
-        let (chain, key) = (certificates(&path(CERTIFICATE_FILE))?, private_key(&path(KEY_FILE))?);
+        let chain = certificates(&path(CERTIFICATE_FILE))?;
+        let key = private_key(&path(KEY_FILE))?;
         certificates(&path(AUTHORITY_FILE))?;
         // zenoh would only report that it cannot open a session. This names the faulty file and its
         // fault before anything is opened.
@@ -61,7 +62,8 @@ impl Bundle {
         // To its owner an expired certificate looks like a network failure, since the other side
         // closes the link silently.
         check_period(&certificate, ASN1Time::now()).map_err(not_understood)?;
-        let (validity, hosts) = (certificate.validity(), hosts(&certificate));
+        let validity = certificate.validity();
+        let hosts = hosts(&certificate);
         let valid = [validity.not_before, validity.not_after].map(|at| at.to_string());
         Ok(Bundle { folder: folder.to_owned(), identity, hosts, valid })
     }

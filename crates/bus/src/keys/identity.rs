@@ -68,7 +68,8 @@ mod tests {
 
     #[test]
     fn an_identity_is_read_as_it_is_written() {
-        let (team, boat) = (Identity::Team("blue".to_owned()), Identity::Gateway(Some("blue_one".to_owned())));
+        let team = Identity::Team("blue".to_owned());
+        let boat = Identity::Gateway(Some("blue_one".to_owned()));
         for identity in [Identity::Sim, team, Identity::Gateway(None), boat, Identity::Observer, Identity::Operator] {
             assert_eq!(identity.to_string().parse(), Ok(identity));
         }

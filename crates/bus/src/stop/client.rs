@@ -102,7 +102,8 @@ impl StopClient {
     /// # Errors
     /// [`BusError`] if the session is closed.
     pub fn join(&self, bus: &Bus, game: &GameName, boats: &[String]) -> Result<(), BusError> {
-        let (shared, is_here) = (Arc::downgrade(&self.0), bus.is_on_this_machine);
+        let shared = Arc::downgrade(&self.0);
+        let is_here = bus.is_on_this_machine;
         let path = StopTopics::open(bus, game, boats, move |status| {
             shared.upgrade().iter().for_each(|shared| shared.hear(&status, is_here));
         })?;
@@ -182,7 +183,8 @@ impl Drop for StopClient {
         self.0.is_closing.store(true, Ordering::SeqCst);
         self.0.orders.visit(StopOrders::hurry);
         self.leave();
-        let (gateways, hubs) = (std::mem::take(&mut *self.0.gateways.lock()), std::mem::take(&mut *self.0.hubs.lock()));
+        let gateways = std::mem::take(&mut *self.0.gateways.lock());
+        let hubs = std::mem::take(&mut *self.0.hubs.lock());
         // All of them end concurrently.
         gateways.values().for_each(GatewayPath::close);
         hubs.iter().for_each(DatagramPath::close);
@@ -227,7 +229,8 @@ impl Shared {
         // Until its boat is known, the address is used as its name.
         let expected = vehicle.map_or_else(|| at.to_string(), str::to_owned);
         self.orders.visit(|orders| orders.expect(&expected));
-        let (shared, unnamed) = (Arc::downgrade(self), vehicle.is_none().then_some(expected));
+        let shared = Arc::downgrade(self);
+        let unnamed = vehicle.is_none().then_some(expected);
         let on_news: OnNews = Arc::new(move |news| gateway_said(&shared, unnamed.as_deref(), news));
         let gateway = GatewayPath::open(at, vehicle.map(str::to_owned), CurrentToken::from(token), on_news)?;
         gateways.insert(at, gateway);

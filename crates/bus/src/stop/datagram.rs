@@ -160,7 +160,8 @@ mod tests {
 
     #[test]
     fn an_answer_is_never_longer_than_its_request() {
-        let (request, token) = (request(GatewayCommand::Fleet(FleetCommand::EStop)), Token::random());
+        let request = request(GatewayCommand::Fleet(FleetCommand::EStop));
+        let token = Token::random();
         let answer = |count, room| request.answer(room, Some(&token), &states(count));
         assert_eq!((answer(1, 0), answer(1, 27), answer(100, FILLED)), (None, None, None));
         for count in [0, 1, 12] {
@@ -172,7 +173,9 @@ mod tests {
 
     #[test]
     fn an_answer_counts_for_its_request_alone_and_only_with_the_token_that_is_known() {
-        let (request, token, other) = (request(boat(OperatorCommand::EStop)), Token::random(), Token::random());
+        let request = request(boat(OperatorCommand::EStop));
+        let token = Token::random();
+        let other = Token::random();
         let answer = |token| request.answer(FILLED, token, &states(1)).expect("room");
         assert_eq!(request.read_answer(&answer(Some(&token)), Some(&token)), Some(states(1)));
         assert_eq!(request.read_answer(&answer(Some(&token)), None), Some(states(1)), "nothing is known to prove");

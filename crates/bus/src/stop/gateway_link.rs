@@ -93,7 +93,9 @@ impl DatagramPath {
     pub(super) fn send(&self, command: &GatewayCommand, stop: u64) {
         let mut sent = self.sent.lock();
         sent.number += 1;
-        let (number, game, command) = (sent.number, self.game.clone(), command.clone());
+        let number = sent.number;
+        let game = self.game.clone();
+        let command = command.clone();
         let request = StopRequest { session: self.session, number, game, command };
         let bytes = request.encode();
         sent.awaited.push_back((request, Asked { stop, at: clock::now() }));

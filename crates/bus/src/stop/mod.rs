@@ -42,7 +42,8 @@ impl StopTopics {
     ) -> Result<StopTopics, BusError> {
         // Before everything else, and not behind a lost packet, because stops are repeated.
         let publisher = |key| bus.publisher_with(key, Priority::Urgent, Delivery::Newest);
-        let (mut stops, mut statuses) = (BTreeMap::new(), Vec::new());
+        let mut stops = BTreeMap::new();
+        let mut statuses = Vec::new();
         for boat in boats {
             stops.insert(boat.clone(), publisher(topic::stop(game, boat))?);
             statuses.push(bus.subscribe_status(game, boat, take.clone())?);

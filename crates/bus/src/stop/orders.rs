@@ -148,7 +148,9 @@ pub struct StopOrders {
 impl StopOrders {
     /// No stops yet. An unshown stop is repeated for up to `limit`.
     pub(super) fn new(limit: Duration) -> StopOrders {
-        let (boats, stops, news) = (BTreeMap::new(), Vec::new(), VecDeque::new());
+        let boats = BTreeMap::new();
+        let stops = Vec::new();
+        let news = VecDeque::new();
         StopOrders { limit, boats, is_complete: false, stops, count: 0, changes: 0, news }
     }
 
@@ -290,7 +292,9 @@ impl StopOrders {
             }
             match stop.shown.get(vehicle).copied() {
                 None if stop.command.is_shown_by(state) => {
-                    let (vehicle, state, after) = (vehicle.to_owned(), state.to_owned(), now - stop.asked);
+                    let vehicle = vehicle.to_owned();
+                    let state = state.to_owned();
+                    let after = now - stop.asked;
                     stop.shown.insert(vehicle.clone(), is_sure);
                     news.push(StopNews::Done { vehicle, command: stop.command, state, after });
                 }
@@ -319,7 +323,9 @@ impl StopOrders {
     /// The stops to be sent now.
     pub(super) fn due(&mut self, now: Instant) -> Vec<Saying> {
         let mut sayings = Vec::new();
-        let (boats, is_complete, limit) = (&self.boats, self.is_complete, self.limit);
+        let boats = &self.boats;
+        let is_complete = self.is_complete;
+        let limit = self.limit;
         for stop in &mut self.stops {
             if stop.next(boats, is_complete, limit).is_none_or(|at| at > now) {
                 continue;

@@ -190,11 +190,13 @@ impl Axis {
 fn truncated_normal(share: f64) -> f64 {
     const CUT: f64 = 3.0;
     let below = |x: f64| 0.5 * libm::erfc(-x / std::f64::consts::SQRT_2);
-    let (least, whole) = (below(-CUT), below(CUT) - below(-CUT));
+    let least = below(-CUT);
+    let whole = below(CUT) - below(-CUT);
     let wanted = least + share * whole;
     // The distribution is monotonic, and 60 bisections of 6 deviations reach the precision of a
     // double.
-    let (mut low, mut high) = (-CUT, CUT);
+    let mut low = -CUT;
+    let mut high = CUT;
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
         *(if below(middle) < wanted { &mut low } else { &mut high }) = middle;

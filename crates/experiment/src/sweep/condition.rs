@@ -41,7 +41,8 @@ impl Condition {
         let names: Vec<&str> = sweep.entries.iter().map(|entry| entry.name.as_str()).collect();
         let wrong = || ConditionError::Form(text.to_owned(), names[0].to_owned());
         let at = text.find(['<', '>']).ok_or_else(wrong)?;
-        let (left, number) = (text[..at].trim(), text[at + 1..].trim());
+        let left = text[..at].trim();
+        let number = text[at + 1..].trim();
         let threshold = number.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(wrong)?;
         let (entry, metric) = match left.split_once('.') {
             Some((entry, metric)) => {

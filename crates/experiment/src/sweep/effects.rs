@@ -148,7 +148,8 @@ pub(crate) fn effects(plan: &Plan, observed: &Observations) -> Vec<Effect> {
 /// The points grouped by the value of an axis; in a one-at-a-time design, only those where all
 /// other axes are nominal.
 fn groups(plan: &Plan, axis: usize) -> Vec<Group> {
-    let (sweep, points) = (plan.sweep(), plan.points());
+    let sweep = plan.sweep();
+    let points = plan.points();
     let about = &sweep.axes[axis];
     let others_are_nominal = |point: &Point| {
         let mut others = sweep.axes.iter().zip(point).enumerate().filter(|(k, _)| *k != axis);
@@ -200,7 +201,8 @@ pub(crate) fn interactions(plan: &Plan, observed: &Observations) -> Vec<Interact
     for a in 0..sweep.axes.len() {
         for b in a + 1..sweep.axes.len() {
             let cell = |i: usize| -> Vec<usize> {
-                let (one, other) = (&halves[a][i / 2], &halves[b][i % 2]);
+                let one = &halves[a][i / 2];
+                let other = &halves[b][i % 2];
                 one.iter().filter(|point| other.contains(point)).copied().collect()
             };
             let cells = [0, 1, 2, 3].map(cell);

@@ -118,7 +118,8 @@ pub fn find(
 /// A share with its exact 95 % interval (Clopper and Pearson, Biometrika 1934), which is
 /// informative even without a failure.
 fn rate_of(failures: usize, games: usize) -> Estimate {
-    let (k, n) = (failures as f64, games as f64);
+    let k = failures as f64;
+    let n = games as f64;
     let quantile = |a: f64, b: f64, p: f64| Beta::new(a, b).ok().map(|beta| beta.inverse_cdf(p));
     Estimate {
         mean: k / n,

@@ -16,7 +16,8 @@ pub(crate) fn page(title: &str, json: &str) -> String {
 /// index.
 #[must_use]
 pub fn served(json: &serde_json::Value, has_games: bool) -> [(&'static str, String); 4] {
-    let ((before, _), (style, after)) = (halves(PAGE, "<meta http-equiv"), between(PAGE, "style"));
+    let (before, _) = halves(PAGE, "<meta http-equiv");
+    let (style, after) = between(PAGE, "style");
     let (data, rest) = between(after, "script");
     let (script, end) = between(rest, "script");
     let head = format!(

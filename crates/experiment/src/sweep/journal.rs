@@ -77,7 +77,8 @@ impl Journal {
         let whole = text.rfind('\n').map_or("", |end| &text[..=end]);
         let (found, lines) = whole.split_once('\n').unwrap_or_default();
         if found != plan.digest() {
-            let (expected, found) = (plan.digest(), found.to_owned());
+            let expected = plan.digest();
+            let found = found.to_owned();
             return Err(StudyError::Other { folder: folder.to_owned(), expected, found });
         }
         let file = OpenOptions::new().write(true).open(&path).map_err(io("open", &path))?;

@@ -70,7 +70,8 @@ impl Plan {
     /// A plan with unchecked points, read from these files.
     fn unchecked(sweep: &Sweep, files: Arc<Files>) -> Result<Plan, Problems> {
         let teams = teams_of(&sweep.game, &files)?;
-        let (points, files_needed) = (points(sweep)?, files.list().len());
+        let points = points(sweep)?;
+        let files_needed = files.list().len();
         Ok(Plan { sweep: sweep.clone(), teams, seeds: u64::from(sweep.games).div_ceil(2), points, files, files_needed })
     }
 
@@ -128,7 +129,8 @@ impl Plan {
     #[must_use]
     pub fn job(&self, index: usize) -> Job {
         assert!(index < self.games(), "game {index} of {}", self.games());
-        let (point, within) = (index / self.games_per_point(), index % self.games_per_point());
+        let point = index / self.games_per_point();
+        let within = index % self.games_per_point();
         let entries = self.sweep.entries.len();
         let seed = self.sweep.seed.wrapping_add((within / (2 * entries)) as u64);
         Job { index, point, entry: within / 2 % entries, seed, side: within % 2 }

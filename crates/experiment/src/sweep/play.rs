@@ -184,7 +184,8 @@ impl<'a> Watch<'a> {
                 edges_m[team],
             ]
         };
-        let (own, opponent) = (team(side), team(1 - side));
+        let own = team(side);
+        let opponent = team(1 - side);
         let win_share = game.winner.map_or(0.5, |winner| f64::from(u8::from(winner == side)));
         let of_game = [
             own[0] - opponent[0],

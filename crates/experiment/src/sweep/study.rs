@@ -181,7 +181,8 @@ impl Study {
     pub fn add_lines(&mut self, index: usize, game: &str, boats: &str) -> Result<(), StudyError> {
         assert_eq!(index, self.done, "games come in order");
         // The checksum is written last, to confirm the other lines.
-        let (folder, sum) = (&self.folder, sum_line(game, boats));
+        let folder = &self.folder;
+        let sum = sum_line(game, boats);
         self.boats.write_all(boats.as_bytes()).map_err(io("write", &folder.join(BOATS)))?;
         self.games.write_all(game.as_bytes()).map_err(io("write", &folder.join(GAMES)))?;
         self.sums.write_all(sum.as_bytes()).map_err(io("write", &folder.join(SUMS)))?;
@@ -213,7 +214,8 @@ impl Study {
 pub fn lines(plan: &Plan, played: &Played) -> (String, String) {
     let index = played.row.job.index;
     let boat = |boat: &BoatRow| {
-        let (of, counts) = (&boat.statistics, &boat.statistics.counts);
+        let of = &boat.statistics;
+        let counts = &boat.statistics.counts;
         let counts =
             [counts.grabs, counts.captures, counts.tags, counts.tagged, counts.out_of_bounds, counts.collisions];
         let mut cells = vec![index.to_string(), of.boat.clone(), of.team.clone(), u8::from(boat.is_own).to_string()];
@@ -249,7 +251,8 @@ fn whole(plan: &Plan, [games, boats, sums]: &[String; 3]) -> (usize, [usize; 3])
     if !games.starts_with(&games_head) || !boats.starts_with(&boats_head) {
         return (0, [0; 3]);
     }
-    let (mut done, mut lengths) = (0, [games_head.len(), boats_head.len(), 0]);
+    let mut done = 0;
+    let mut lengths = [games_head.len(), boats_head.len(), 0];
     for (row, games_end) in table::csv_rows(plan, games) {
         let rest = &boats[lengths[1]..];
         let boats_end = lengths[1] + rest.split_inclusive('\n').take(row.boats).map(str::len).sum::<usize>();

@@ -28,7 +28,8 @@ pub fn text(report: &Report) -> String {
     };
     line(format!("{}: {}", report.sweep, report.about));
     line(format!("{} against {}", report.game, report.opponent));
-    let (done, points) = (report.games_done, report.points.len());
+    let done = report.games_done;
+    let points = report.points.len();
     line(format!("{done} of {} games at {points} points; means per game ± 95 % over seeds", report.games));
     for effect in &report.effects {
         line(String::new());
@@ -77,7 +78,9 @@ fn differences(report: &Report, line: &mut impl FnMut(String)) {
         let better = sure(|one| one.low.is_some_and(|low| low > 0.0));
         let worse = sure(|one| one.high.is_some_and(|high| high < 0.0));
         let mean = all.iter().map(|one| one.mean).sum::<f64>() / all.len().max(1) as f64;
-        let (first, pct, count) = (&report.entries[0], 100.0 * mean, all.len());
+        let first = &report.entries[0];
+        let pct = 100.0 * mean;
+        let count = all.len();
         line(format!("\n{entry} minus {first}, on the same seeds: {pct:+.0} % of games won on average;"));
         line(format!("significantly more at {better} and fewer at {worse} of {count} points"));
     }

@@ -98,7 +98,8 @@ impl League {
     /// The known games of a plan, and the indices of the others.
     #[must_use]
     pub fn split(&self, plan: &Plan, pairings: &[String]) -> (Vec<Record>, Vec<usize>) {
-        let (mut known, mut new) = (vec![], vec![]);
+        let mut known = vec![];
+        let mut new = vec![];
         for place in 0..plan.games() {
             let of = plan.match_at(place).0;
             match self.known.get(&(pairings[place % pairings.len()].clone(), of.seed)) {

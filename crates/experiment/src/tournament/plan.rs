@@ -139,7 +139,8 @@ impl Plan {
     #[must_use]
     pub fn digest(&self) -> String {
         let nowhere = |entry: &Entrant| Entrant { strategy: PathBuf::new(), ..entry.clone() };
-        let (entries, sea) = (self.tournament.entries.iter().map(nowhere).collect(), self.tournament.sea.is_some());
+        let entries = self.tournament.entries.iter().map(nowhere).collect();
+        let sea = self.tournament.sea.is_some();
         let meant = Tournament { game: PathBuf::new(), sea: None, entries, ..self.tournament.clone() };
         digest_of(&format!("{meant:?} {sea}"), &self.files.list())
     }

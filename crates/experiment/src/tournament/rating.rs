@@ -119,7 +119,8 @@ fn curvature_of(games: &[Meeting], strengths: &DVector<f64>) -> DMatrix<f64> {
 
 /// The half width of each interval, in units of strength; `None` with a single seed.
 fn errors(rounds: &[Vec<Meeting>], strengths: &DVector<f64>, curvature: &DMatrix<f64>) -> Option<Vec<f64>> {
-    let (seeds, entries) = (rounds.len() as f64, strengths.len());
+    let seeds = rounds.len() as f64;
+    let entries = strengths.len();
     let quantile = quantile(seeds - 1.0)?;
     let covariance = curvature.clone().cholesky()?.inverse();
     let mut spread = DMatrix::zeros(entries, entries);
@@ -134,7 +135,8 @@ fn errors(rounds: &[Vec<Meeting>], strengths: &DVector<f64>, curvature: &DMatrix
     // Only the difference of an entry from the mean of all is known; the mean itself is arbitrary.
     let centre = DMatrix::identity(entries, entries) - DMatrix::from_element(entries, entries, 1.0 / entries as f64);
     let of_mean = |covariance: DMatrix<f64>| (&centre * covariance * &centre).diagonal();
-    let (independent, clustered) = (of_mean(covariance), of_mean(clustered));
+    let independent = of_mean(covariance);
+    let clustered = of_mean(clustered);
     Some((0..entries).map(|i| quantile * f64::max(independent[i], clustered[i]).max(0.0).sqrt()).collect())
 }
 
@@ -152,7 +154,8 @@ mod tests {
         /// The prior pulls slightly toward the mean.
         const PULL: f64 = 1.0;
         let rated = ratings(2, &meetings([0, 1], 750, 1000));
-        let (ahead, want) = (rated[0].elo - rated[1].elo, 190.85);
+        let ahead = rated[0].elo - rated[1].elo;
+        let want = 190.85;
         assert!((ahead - want).abs() < PULL && (rated[0].elo + rated[1].elo - 3000.0).abs() < 1e-6, "{rated:?}");
         // By the delta method: the error of ln(p / (1 - p)) is 1 / sqrt(n p (1 - p)), split evenly
         // between the two.
@@ -188,7 +191,8 @@ mod tests {
     #[test]
     fn nineteen_of_twenty_intervals_have_the_truth() {
         let truth = [0.9, 0.3, 0.0, -1.2];
-        let (mut within, mut all) = (0, 0);
+        let mut within = 0;
+        let mut all = 0;
         for trial in 0..200 {
             let mut stream = Stream::new(trial, "ratings");
             let mut meet = |one: usize, other: usize| {

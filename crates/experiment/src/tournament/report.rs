@@ -196,7 +196,8 @@ impl Report {
         });
         let matches = records.iter().filter_map(|record| {
             let Game { score, winner, duration_s, digest, .. } = record.result.as_ref().ok()?.clone();
-            let ([blue, red], game) = (record.of.sides.map(name), plan.place_of(record.of));
+            let [blue, red] = record.of.sides.map(name);
+            let game = plan.place_of(record.of);
             Some(MatchRow { game, blue, red, seed: record.of.seed, score, winner, duration_s, digest })
         });
         Report {
@@ -304,7 +305,8 @@ fn matrix<'a>(plan: &Plan, rounds: &[&'a [Record]], ranks: &[usize]) -> Vec<Cell
         let score = [points(0), points(1)];
         let [wins, draws, losses] = standing(all());
         let score_difference = score[0] - score[1];
-        let (row, column) = (name(row), name(column));
+        let row = name(row);
+        let column = name(column);
         let cell = Cell { row, column, games, wins, draws, losses, won_of_decided, score, score_difference, seeds };
         (games > 0).then_some(cell)
     };

@@ -31,7 +31,9 @@ pub fn text(report: &Report, columns: usize) -> String {
     match report.matrix.first() {
         None => add_line(&mut text, format_args!("no result: no seed has all its games")),
         Some(Cell { games, seeds, .. }) => {
-            let (count, first, last) = (report.seeds_counted, seeds.first, seeds.last);
+            let count = report.seeds_counted;
+            let first = seeds.first;
+            let last = seeds.last;
             add_line(&mut text, format_args!("{games} games per pairing, half of them on each side"));
             add_line(&mut text, format_args!("means per game ± 95 %, over {count} seeds from {first} to {last}\n"));
             entries(&mut text, report, columns);

@@ -60,7 +60,8 @@ pub struct Pieces {
 impl Pieces {
     /// Collects the pieces of the texts.
     pub fn of(texts: &[Vec<u8>]) -> Pieces {
-        let (numbers, words) = (NUMBERS.map(str::to_owned).to_vec(), WORDS.map(str::to_owned).to_vec());
+        let numbers = NUMBERS.map(str::to_owned).to_vec();
+        let words = WORDS.map(str::to_owned).to_vec();
         let mut pieces = Pieces { kinds: [numbers, words, vec!["\"\"".to_owned()]], lines: vec![String::new()] };
         for text in texts.iter().map(|text| String::from_utf8_lossy(text)) {
             pieces.lines.extend(text.lines().filter(|line| line.len() < 1000).map(str::to_owned));

@@ -33,7 +33,9 @@ fn check(bytes: &[u8]) {
 
 /// The measurements from the turns, each split into pieces of this size.
 fn measured(bytes: &[u8], size: usize) -> (Vec<Measurement>, Sonde) {
-    let (mut sonde, mut conversation, mut all) = (Sonde::default(), Conversation::default(), vec![]);
+    let mut sonde = Sonde::default();
+    let mut conversation = Conversation::default();
+    let mut all = vec![];
     for (i, turn) in bytes.split(|byte| *byte == TURN).enumerate() {
         for piece in turn.chunks(size) {
             all.extend(conversation.read_bytes(i % 2 == 0, piece, &mut sonde));

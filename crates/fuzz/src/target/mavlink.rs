@@ -30,7 +30,8 @@ fn check(bytes: &[u8]) {
 }
 
 fn framed<'a>(pieces: impl IntoIterator<Item = &'a [u8]>) -> (Vec<String>, Counts) {
-    let (mut framer, mut received) = (Framer::new(), Vec::new());
+    let mut framer = Framer::new();
+    let mut received = Vec::new();
     // As text, because NaN does not equal itself.
     pieces.into_iter().for_each(|piece| framer.push(piece, &mut |message| received.push(format!("{message:?}"))));
     (received, framer.counts().clone())
@@ -40,11 +41,15 @@ fn framed<'a>(pieces: impl IntoIterator<Item = &'a [u8]>) -> (Vec<String>, Count
 /// accept them all.
 fn repaired(bytes: &[u8]) {
     let gateway = Gateway { protocol: BoatProtocol::Mavlink, ..gateway::config::default_gateway() };
-    let (mut protocol, mut boat) =
-        (Protocol::new(&gateway), ArduPilot::new(primitives::LatLon { lat_deg: 42.0, lon_deg: -71.0 }, None));
-    let (mut messages, mut framer, now) = (Vec::new(), Framer::new(), SimTime::from_s(1.0));
+    let mut protocol = Protocol::new(&gateway);
+    let mut boat = ArduPilot::new(primitives::LatLon { lat_deg: 42.0, lon_deg: -71.0 }, None);
+    let mut messages = Vec::new();
+    let mut framer = Framer::new();
+    let now = SimTime::from_s(1.0);
     framer.push(bytes, &mut |Received { message, .. }| messages.push(message));
-    let (mut out, mut to_boat, mut to_us) = (Vec::new(), Writer::new(255, 190), Writer::new(1, 1));
+    let mut out = Vec::new();
+    let mut to_boat = Writer::new(255, 190);
+    let mut to_us = Writer::new(1, 1);
     for message in &messages {
         out.clear();
         to_boat.write(message, &mut out);

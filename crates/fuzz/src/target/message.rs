@@ -40,7 +40,8 @@ fn seeds() -> Vec<Vec<u8>> {
     }
     let stamp = |version| Stamp { version, ..Stamp::default() };
     let nav = Nav { north_m: 10.0, ..Nav::default() };
-    let (vehicle, valid) = (VehicleId(1), true);
+    let vehicle = VehicleId(1);
+    let valid = true;
     let report = NavReport { stamp: stamp(NavReport::VERSION), ticket: TICKET, vehicle, valid, age_ns: 30, nav };
     let data = b"$GPHDT,12.5,T*30\r\n".to_vec();
     let link = LinkBytes { stamp: stamp(LinkBytes::VERSION), vehicle, outward: false, data };

@@ -75,7 +75,8 @@ pub(super) fn look_around(recording: Recording) {
 /// Sends lines to a session. Every reply has a kind, replies end, and at most two frames are in
 /// flight.
 fn talk(mut session: PageSession, lines: &str, answered: impl Fn(&str, &[String])) {
-    let (mut now, mut under_way) = (clock::now(), 0_usize);
+    let mut now = clock::now();
+    let mut under_way = 0_usize;
     for line in lines.lines() {
         now += Duration::from_millis(10 * (line.len() as u64 % 50));
         match (line.strip_prefix('~'), line.starts_with('!')) {

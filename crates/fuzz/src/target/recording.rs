@@ -39,7 +39,8 @@ fn seeds() -> Vec<Vec<u8>> {
     let failsafes = vec![FailsafeReport { at_s: 1.0, cause: "link down".to_owned() }];
     let status = GatewayStatus { failsafes, ..GatewayStatus::default() };
     let message = |topic: &str, schema, bytes| {
-        let (topic, at) = (topic.to_owned(), SimTime(1_000_000));
+        let topic = topic.to_owned();
+        let at = SimTime(1_000_000);
         Entry::Message { topic, schema, bytes, at }
     };
     let others = [
@@ -55,7 +56,8 @@ fn seeds() -> Vec<Vec<u8>> {
 }
 
 fn gateway_recording() -> Vec<u8> {
-    let (scenario, vehicle) = (mixed(), "blue_one".to_owned());
+    let scenario = mixed();
+    let vehicle = "blue_one".to_owned();
     let gateway = gateway::config::default_gateway();
     let field = scenario.field.clone();
     let site = Some(Site { field, length_m: 2.0, declination_rad: 0.1, coasting: None });
@@ -68,7 +70,8 @@ fn gateway_recording() -> Vec<u8> {
     let rmc = b"$GPRMC,123519,A,4807.038,N,01131.000,E,002.4,084.4,230394,003.1,W*6A\r\n".to_vec();
     let inputs = [Input::LinkUp, Input::Bytes(rmc), Input::Joined, Input::Tick, Input::LinkDown];
     for (i, input) in inputs.iter().enumerate() {
-        let (at, mut out) = (SimTime::from_s(i as f64), Output::default());
+        let at = SimTime::from_s(i as f64);
+        let mut out = Output::default();
         bridge.process(at, input, &mut out);
         for entry in encoder.step(at, SimTime::ZERO, input, &out) {
             writer.write(&entry, began_utc_ns).expect("memory");

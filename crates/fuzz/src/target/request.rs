@@ -39,7 +39,8 @@ fn seeds() -> Vec<Vec<u8>> {
     let controls = [Control::EStop, Control::Halt, Control::Speed(Some(4.0)), Control::Speed(None), Control::Release];
     seeds.extend(controls.iter().flat_map(requests));
     let vehicles = vec!["blue_one".to_owned(), "blue_two".to_owned()];
-    let (version, node) = (primitives::VERSION.to_owned(), "a7".to_owned());
+    let version = primitives::VERSION.to_owned();
+    let node = "a7".to_owned();
     seeds.extend(requests(&JoinRequest { version, role: Role::Agent, node, vehicles: vehicles.clone() }));
     seeds.push(bytes_of(&JoinReply::Granted {
         ticket: 7,
@@ -62,7 +63,8 @@ fn seeds() -> Vec<Vec<u8>> {
     let waves = vec![PlaneWave { amplitude_m: 0.1, wavenumber_rad_m: 1.0, ..PlaneWave::default() }; 3];
     seeds.extend([bytes_of(&Water { waves }), bytes_of(&game.ending.outcome), bytes_of(&game.ending.outcome.events)]);
     seeds.push(bytes_of(&HelmQuestion::default()));
-    let (endpoint, control) = ("tcp/127.0.0.1:7447".to_owned(), "127.0.0.1:7001".parse().expect("an address"));
+    let endpoint = "tcp/127.0.0.1:7447".to_owned();
+    let control = "127.0.0.1:7001".parse().expect("an address");
     seeds.push(bytes_of(&Entry {
         game: "pav01".to_owned(),
         endpoint,

@@ -165,7 +165,8 @@ impl Game {
     }
 
     pub(super) fn standing(&self) -> Standing {
-        let (score, scenario) = (self.contest.score(), self.contest.scenario());
+        let score = self.contest.score();
+        let scenario = self.contest.scenario();
         let teams = [self.side.learner, TeamId(1 - self.side.learner.0)];
         let counts = teams.map(|team| self.tally.team(team, |i| scenario.vehicles[i].team));
         let score = teams.map(|team| score[team.index()]);

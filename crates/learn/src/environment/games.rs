@@ -101,7 +101,8 @@ impl Games {
         let starts = Starts::new(&setup, seed, watches);
         let slot = |i: usize| {
             let game = starts.game(&setup, i as u64)?;
-            let (taught, truth) = (vec![], [vec![], vec![]]);
+            let taught = vec![];
+            let truth = [vec![], vec![]];
             Ok(Slot { game, number: i as u64, ended: None, taught, truth, is_shown: false })
         };
         let slots: Result<Vec<Slot>, SetupError> = (0..games).map(slot).collect();
@@ -246,7 +247,8 @@ impl Games {
     /// If the number of actions or the length of a slice is not the number of rows.
     pub fn step(&mut self, actions: &[Action], rows: Rows<'_>) -> Result<(), SetupError> {
         assert_eq!(actions.len(), self.rows().0, "one action per row");
-        let (count, per_game) = (self.slots.len() as u64, self.rows_per_game);
+        let count = self.slots.len() as u64;
+        let per_game = self.rows_per_game;
         let begun = self.for_each_game(rows, |setup, starts, i, slot, rows| {
             if !slot.is_shown {
                 slot.show(setup, rows);
@@ -273,7 +275,8 @@ impl Games {
         work: impl Fn(&Setup, &Starts, usize, &mut Slot, &mut Rows<'_>) -> T + Sync,
     ) -> Vec<T> {
         let Games { setup, starts, slots, pool, rows_per_game: per_game, observation_size, .. } = self;
-        let (numbers, count) = (*per_game * *observation_size, slots.len());
+        let numbers = *per_game * *observation_size;
+        let count = slots.len();
         assert!(rows.observations.len() == count * numbers && rows.final_observations.len() == count * numbers);
         assert!(rows.rewards.len() == count * *per_game && rows.counts.len() == count * *per_game);
         let games = slots

@@ -143,7 +143,8 @@ impl RecordedGame {
                         Stage::Recording(Box::new(recorder), path)
                     }
                     Err(error) => {
-                        let (folder, seed) = (self.recordings.folder.display(), contest.scenario().seed);
+                        let folder = self.recordings.folder.display();
+                        let seed = contest.scenario().seed;
                         self.log.problem(format!("cannot record the game with seed {seed} in {folder}: {error}"));
                         Stage::Ended
                     }

@@ -116,7 +116,8 @@ pub(super) fn write(contest: &Contest, boats: &[VehicleId], out: &mut Vec<f32>) 
 
 /// By vehicle index: the remaining share of the time until the boat may tag again.
 fn waits(contest: &Contest) -> Vec<f64> {
-    let (scenario, now) = (contest.scenario(), contest.now());
+    let scenario = contest.scenario();
+    let now = contest.now();
     let mut waits = vec![0.0; scenario.vehicles.len()];
     for boat in contest.last_pictures().iter().flat_map(|picture: &Picture| &picture.own) {
         waits[boat.vehicle.index()] = scenario.rules.tag_wait_share(boat.tag_ready_ns, now);

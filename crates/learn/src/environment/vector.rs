@@ -52,7 +52,8 @@ impl VectorEnvironment {
         watches: Option<Watches>,
     ) -> Result<VectorEnvironment, SetupError> {
         let mut games = Games::new(setup, games, threads, seed, watches)?;
-        let (rows, numbers) = (games.rows().0, games.rows().0 * games.setup().observation_size());
+        let rows = games.rows().0;
+        let numbers = games.rows().0 * games.setup().observation_size();
         let mut shown = Shown {
             observations: vec![0.0; numbers],
             final_observations: vec![0.0; numbers],
@@ -123,7 +124,8 @@ impl VectorEnvironment {
         if truth == 0 {
             return;
         }
-        let (size, (rows, per_game)) = (self.setup().observation_size(), self.rows());
+        let size = self.setup().observation_size();
+        let (rows, per_game) = self.rows();
         let VectorEnvironment { games, shown } = self;
         let Shown { observations, final_observations, states, final_states, .. } = shown;
         for (states, observations, is_last) in
@@ -131,7 +133,8 @@ impl VectorEnvironment {
         {
             states.resize(rows * (size + truth), 0.0);
             for (row, state) in states.chunks_exact_mut(size + truth).enumerate() {
-                let (game, place) = (row / per_game, row % per_game);
+                let game = row / per_game;
+                let place = row % per_game;
                 let (now, last) = games.truth(game);
                 let of_game = if is_last { last } else { now };
                 state[..size].copy_from_slice(&observations[row * size..(row + 1) * size]);

@@ -44,7 +44,8 @@ impl Adam {
         let norm = gradient.iter().map(|number| f64::from(*number) * f64::from(*number)).sum::<f64>().sqrt() as f32;
         let scale = norm_max.map_or(1.0, |most| if norm > most { most / norm } else { 1.0 });
         self.powers = (beta_1 * self.powers.0, beta_2 * self.powers.1);
-        let (left_1, left_2) = (1.0 - self.powers.0, 1.0 - self.powers.1);
+        let left_1 = 1.0 - self.powers.0;
+        let left_2 = 1.0 - self.powers.1;
         let rate = learning_rate / left_1;
         for (((parameter, gradient), mean), square) in
             parameters.iter_mut().zip(gradient).zip(&mut self.mean).zip(&mut self.square)

@@ -24,7 +24,8 @@ impl Perceptron {
     }
 
     fn onnx_layer(&self, i: usize) -> Layer {
-        let (inputs, outputs) = (self.sizes()[i], self.sizes()[i + 1]);
+        let inputs = self.sizes()[i];
+        let outputs = self.sizes()[i + 1];
         let (weights, biases) = self.layer(i);
         // Weights are grouped by input here and by output in ONNX files.
         let turned = (0..outputs).flat_map(|to| (0..inputs).map(move |from| weights[from * outputs + to]));

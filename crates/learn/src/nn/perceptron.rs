@@ -87,7 +87,9 @@ impl Perceptron {
         let mut end = 0;
         let sizes = self.sizes.clone();
         (1..sizes.len()).map(move |i| {
-            let (inputs, outputs, weights) = (sizes[i - 1], sizes[i], end);
+            let inputs = sizes[i - 1];
+            let outputs = sizes[i];
+            let weights = end;
             let biases = weights + inputs * outputs;
             end = biases + outputs;
             Layer { inputs, outputs, weights, biases, end }
@@ -105,7 +107,8 @@ impl Perceptron {
         let last = self.sizes.len() - 2;
         for (i, layer) in self.layers().enumerate() {
             let (before, after) = trace.layers.split_at_mut(i + 1);
-            let (before, after) = (&before[i], &mut after[0]);
+            let before = &before[i];
+            let after = &mut after[0];
             let biases = &self.parameters[layer.biases..layer.end];
             after.clear();
             (0..rows).for_each(|_| after.extend_from_slice(biases));
@@ -200,7 +203,8 @@ fn transposed(numbers: &[f32], width: usize) -> Vec<f32> {
 /// A random row-major matrix with orthonormal rows or columns, whichever are fewer: normal numbers
 /// after the Gram-Schmidt process.
 fn orthogonal(rows: usize, columns: usize, stream: &mut Stream) -> Vec<f64> {
-    let (count, length) = (rows.min(columns), rows.max(columns));
+    let count = rows.min(columns);
+    let length = rows.max(columns);
     let mut vectors: Vec<Vec<f64>> = Vec::with_capacity(count);
     while vectors.len() < count {
         let mut vector: Vec<f64> = (0..length).map(|_| stream.normal()).collect();

@@ -77,8 +77,10 @@ impl DqnLearner {
         settings: &Dqn,
     ) -> Slope {
         let sizes = self.network.sizes();
-        let (actions, per_row) = (sizes[sizes.len() - 1], 1.0 / minibatch.count() as f32);
-        let (mut trace, mut then) = (Trace::default(), Trace::default());
+        let actions = sizes[sizes.len() - 1];
+        let per_row = 1.0 / minibatch.count() as f32;
+        let mut trace = Trace::default();
+        let mut then = Trace::default();
         self.network.forward(next_rows, &mut trace);
         self.target.forward(next_rows, &mut then);
         let next = trace.output().chunks_exact(actions).zip(then.output().chunks_exact(actions));

@@ -139,7 +139,8 @@ impl Td3Learner {
     /// Half a critic's mean squared error, and its gradient with respect to the critic's
     /// parameters.
     fn critic_slope(&self, which: usize, minibatch: &Minibatch<Numbers>, targets: &[f32]) -> Slope {
-        let (critic, size) = (&self.critics[which], self.actor.sizes()[0]);
+        let critic = &self.critics[which];
+        let size = self.actor.sizes()[0];
         let per_row = 1.0 / minibatch.count() as f32;
         let of_shard = |((rows, actions), targets): ((&[f32], &[Numbers]), &[f32])| {
             let mut trace = Trace::default();
@@ -165,18 +166,21 @@ impl Td3Learner {
     /// parameters.
     #[must_use]
     pub fn actor_gradient(&self, minibatch: &Minibatch<Numbers>) -> (Vec<f32>, f32) {
-        let (critic, size) = (&self.critics[0], self.actor.sizes()[0]);
+        let critic = &self.critics[0];
+        let size = self.actor.sizes()[0];
         let counted = minibatch.observations.chunks_exact(size).zip(&minibatch.counts).filter(|(_, counts)| **counts);
         let observations: Vec<f32> = counted.flat_map(|(row, _)| row).copied().collect();
         let per_row = 1.0 / (observations.len() / size).max(1) as f32;
         let of_shard = |rows: &[f32]| {
-            let (mut chosen, mut valued) = (Trace::default(), Trace::default());
+            let mut chosen = Trace::default();
+            let mut valued = Trace::default();
             self.actor.forward(rows, &mut chosen);
             let actions: Vec<Numbers> = chosen.output().chunks_exact(NUMBERS).map(action).collect();
             critic.forward(&with_actions(rows, &actions, size), &mut valued);
             let loss = valued.output().iter().map(|value| -value * per_row).sum();
             let mut by_values = vec![-per_row; actions.len()];
-            let (mut unused, mut by_input) = (vec![0.0; critic.parameters().len()], vec![]);
+            let mut unused = vec![0.0; critic.parameters().len()];
+            let mut by_input = vec![];
             critic.backward(&valued, &mut by_values, &mut unused, Some(&mut by_input));
             let slope = |(by, action): (&[f32], &Numbers)| -> Numbers {
                 // The derivative of the hyperbolic tangent.

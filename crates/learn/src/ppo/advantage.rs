@@ -45,7 +45,8 @@ mod tests {
     fn they_are_the_weighted_sums_of_all_later_surprises() {
         // Two rows of six steps; in the first the game is over after the third, the second is cut
         // off after the fourth.
-        let (rows, count) = (2, 6);
+        let rows = 2;
+        let count = 6;
         let number = |i: usize| (0.37 * i as f32).fract() - 0.4;
         let steps = Steps {
             rows,
@@ -55,10 +56,12 @@ mod tests {
             over: (0..rows * count).map(|i| i == 4).collect(),
             ended: (0..rows * count).map(|i| i == 4 || i == 7).collect(),
         };
-        let (discount, lambda) = (0.9_f32, 0.8_f32);
+        let discount = 0.9_f32;
+        let lambda = 0.8_f32;
         let got = steps.advantages(discount, lambda);
         for (first, got) in got.into_iter().enumerate() {
-            let (mut want, mut weight) = (0.0_f64, 1.0_f64);
+            let mut want = 0.0_f64;
+            let mut weight = 1.0_f64;
             for i in (first..rows * count).step_by(rows) {
                 let next = if steps.over[i] { 0.0 } else { steps.next_values[i] };
                 want += weight * f64::from(steps.rewards[i] + discount * next - steps.values[i]);

@@ -110,13 +110,16 @@ impl ActorCritic {
     /// If the length of a list does not match.
     pub fn update(&mut self, batch: &Batch, settings: &Ppo, rate: f32, stream: &mut Stream) -> Learnt {
         let count = batch.actions.len();
-        let (observation, state) = (self.actor.sizes()[0], self.critic.sizes()[0]);
+        let observation = self.actor.sizes()[0];
+        let state = self.critic.sizes()[0];
         assert!(batch.observations.len() == count * observation && batch.states.len() == count * state);
         assert!([&batch.log_probabilities, &batch.advantages, &batch.returns].iter().all(|list| list.len() == count));
         assert_eq!(batch.counts.len(), count);
         self.scale.see(&batch.returns);
         let mut order: Vec<u32> = (0..count as u32).collect();
-        let (mut sums, mut seen, mut values) = (Sums::default(), 0.0, 0.0);
+        let mut sums = Sums::default();
+        let mut seen = 0.0;
+        let mut values = 0.0;
         'epochs: for _ in 0..settings.epochs {
             stream.shuffle(&mut order);
             for minibatch in order.chunks(settings.minibatch) {
@@ -174,7 +177,8 @@ impl ActorCritic {
         let rows = |from: &[f32], size: usize| -> Vec<f32> {
             shard.iter().flat_map(|i| &from[*i as usize * size..(*i as usize + 1) * size]).copied().collect()
         };
-        let (per_counted, per_sample) = (1.0 / counted.max(1) as f32, 1.0 / samples as f32);
+        let per_counted = 1.0 / counted.max(1) as f32;
+        let per_sample = 1.0 / samples as f32;
         let mut sums = Sums::default();
         let mut trace = Trace::default();
         self.actor.forward(&rows(&batch.observations, self.actor.sizes()[0]), &mut trace);
@@ -193,7 +197,8 @@ impl ActorCritic {
             }
             log_probabilities(logits, &mut logs);
             let advantage = advantages.normalised(batch.advantages[i]);
-            let (action, was) = (usize::from(batch.actions[i]), batch.log_probabilities[i]);
+            let action = usize::from(batch.actions[i]);
+            let was = batch.log_probabilities[i];
             match batch.lesson {
                 Lesson::Reinforcement => policy_gradient(&logs, action, (was, advantage), settings, by, &mut sums),
                 // Without imitation, a million samples did not reach the level of a hundred
@@ -276,7 +281,8 @@ fn policy_gradient(
     let change = logs[action] - was;
     let ratio = libm::expf(change);
     let limited = ratio.clamp(1.0 - settings.clip, 1.0 + settings.clip);
-    let (free, held) = (ratio * advantage, limited * advantage);
+    let free = ratio * advantage;
+    let held = limited * advantage;
     let entropy = -logs.iter().map(|log| libm::expf(*log) * log).sum::<f32>();
     // Where the clipped term is smaller, the gradient is zero.
     let by_log = if free <= held { -ratio * advantage } else { 0.0 };
@@ -312,7 +318,8 @@ mod tests {
     fn loss(logits: &[f64], action: usize, was: f64, advantage: f64, settings: &Ppo) -> f64 {
         let sum: f64 = logits.iter().map(|logit| libm::exp(*logit)).sum();
         let logs: Vec<f64> = logits.iter().map(|logit| logit - libm::log(sum)).collect();
-        let (ratio, clip) = (libm::exp(logs[action] - was), f64::from(settings.clip));
+        let ratio = libm::exp(logs[action] - was);
+        let clip = f64::from(settings.clip);
         let gain = (ratio * advantage).min(ratio.clamp(1.0 - clip, 1.0 + clip) * advantage);
         let entropy: f64 = -logs.iter().map(|log| libm::exp(*log) * log).sum::<f64>();
         -gain - f64::from(settings.entropy) * entropy
@@ -346,7 +353,8 @@ mod tests {
         for (change, advantage) in [(0.05, 1.3), (0.05, -0.7), (0.5, 1.0), (-0.5, -1.0), (0.5, -1.0), (-0.5, 1.0)] {
             let action = 2;
             let was = logs[action] - change;
-            let (mut by, mut sums) = ([0.0; 5], Sums::default());
+            let mut by = [0.0; 5];
+            let mut sums = Sums::default();
             policy_gradient(&logs, action, (was, advantage), &settings, &mut by, &mut sums);
             assert_slopes(by, logits, |logits| loss(logits, action, f64::from(was), f64::from(advantage), &settings));
         }
@@ -357,7 +365,8 @@ mod tests {
         let logits = [0.3_f64, -1.1, 0.8, 0.1];
         let mut logs = [0.0; 4];
         log_probabilities(&logits.map(|logit| logit as f32), &mut logs);
-        let (mut by, mut sums) = ([0.0; 4], Sums::default());
+        let mut by = [0.0; 4];
+        let mut sums = Sums::default();
         imitation_gradient(&logs, 1, &mut by, &mut sums);
         let entropy = |logits: &[f64; 4]| libm::log(logits.iter().map(|logit| libm::exp(*logit)).sum()) - logits[1];
         assert!((f64::from(sums.policy) - entropy(&logits)).abs() < 1e-5, "{}", sums.policy);

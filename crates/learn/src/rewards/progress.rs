@@ -57,7 +57,9 @@ pub fn progress(contest: &Contest, among_others: bool) -> Vec<BoatProgress> {
     let placed = |team: TeamId| Placed { at: Ned::default(), team, tagged: false, carrying: false };
     let mut boats: Vec<Placed> = scenario.vehicles.iter().map(|vehicle| placed(vehicle.team)).collect();
     for boat in contest.last_pictures().iter().flat_map(|picture| &picture.own) {
-        let (at, tagged, carrying) = (boat.nav.at(), boat.tagged, boat.carried_flag().is_some());
+        let at = boat.nav.at();
+        let tagged = boat.tagged;
+        let carrying = boat.carried_flag().is_some();
         boats[boat.vehicle.index()] = Placed { at, tagged, carrying, team: scenario.team_of(boat.vehicle) };
     }
     of_boats(&scenario.field, &boats, among_others)
@@ -103,7 +105,8 @@ impl Posts {
     }
 
     fn among(&self, field: &Field, boats: &[Placed], i: usize) -> Among {
-        let (width_m, me) = (field.plan.width_m, &boats[i]);
+        let width_m = field.plan.width_m;
+        let me = &boats[i];
         let near = |place: Ned, reach: f64| (1.0 - me.at.distance(place) / (reach * width_m)).max(0.0);
         let intruders =
             boats.iter().filter(|boat| boat.team != me.team && !boat.tagged && field.is_own_side(me.team, boat.at));

@@ -52,7 +52,8 @@ pub fn evaluate(
     threads: usize,
     seed: u64,
 ) -> Result<Played, SetupError> {
-    let (pool, is_discrete) = (pool(threads), setup.spaces.action.is_discrete());
+    let pool = pool(threads);
+    let is_discrete = setup.spaces.action.is_discrete();
     let mut environment = VectorEnvironment::new(setup, games, threads, seed, None)?;
     let (rows, _) = environment.rows();
     let mut ended: Vec<Option<Finished>> = vec![None; games];

@@ -26,7 +26,8 @@ pub enum Learner {
 
 impl Learner {
     pub(super) fn new(training: &Training, setup: &Setup, actions: usize) -> Learner {
-        let (hidden, seed) = (&training.network.hidden, training.seed);
+        let hidden = &training.network.hidden;
+        let seed = training.seed;
         let observation = setup.observation_size();
         match training.algorithm() {
             Algorithm::Ppo(_) => {

@@ -104,7 +104,8 @@ impl Trainer {
     fn with(training: Training, threads: usize, state: Option<State>) -> Result<Trainer, SetupError> {
         let setups: Vec<Setup> =
             training.stage.iter().map(|stage| Setup::of_stage(&training, stage)).collect::<Result<_, _>>()?;
-        let (first, last) = (&setups[0], &setups[setups.len() - 1]);
+        let first = &setups[0];
+        let last = &setups[setups.len() - 1];
         let judges = judges(&training, last)?;
         let size = first.observation_size();
         if let Some(other) = setups.iter().map(Setup::observation_size).find(|other| *other != size) {
@@ -358,7 +359,8 @@ fn judges(training: &Training, last: &Setup) -> Result<Vec<(String, Setup)>, Set
     let base = Setup { teacher: None, critic: CriticInput::Observation, starts: None, steps_max: None, ..last.clone() };
     let judge = |path: &PathBuf| {
         let strategy = scenario::load_file::<scenario::strategy::Strategy>(path)?;
-        let (name, player) = (strategy.name.clone(), Player::Strategy(Box::new(strategy)));
+        let name = strategy.name.clone();
+        let player = Player::Strategy(Box::new(strategy));
         Ok((name, Setup { opponents: vec![(1.0, player)], ..base.clone() }))
     };
     training.evaluation.opponents.iter().map(judge).collect()
@@ -379,7 +381,8 @@ fn pool(threads: usize) -> rayon::ThreadPool {
 /// The network's output for every row of the input, in the calling thread pool.
 fn outputs(network: &Perceptron, input: &[f32]) -> Vec<f32> {
     let sizes = network.sizes();
-    let (from, to) = (sizes[0], sizes[sizes.len() - 1]);
+    let from = sizes[0];
+    let to = sizes[sizes.len() - 1];
     let mut out = vec![0.0; input.len() / from * to];
     input.par_chunks(SHARD * from).zip(out.par_chunks_mut(SHARD * to)).for_each_init(
         Trace::default,

@@ -57,7 +57,9 @@ impl OffPolicy<Td3Learner, Td3, Numbers> {
         if replay.count() < settings.warm_up {
             return Ok(update);
         }
-        let (mut critic, mut actor, mut actor_steps) = (0.0, 0.0, 0.0);
+        let mut critic = 0.0;
+        let mut actor = 0.0;
+        let mut actor_steps = 0.0;
         for _ in 0..settings.minibatches {
             let losses = pool.install(|| learner.update(replay, settings, stream));
             critic += losses.critic;
@@ -85,7 +87,8 @@ impl OffPolicy<DqnLearner, Dqn, u16> {
         stream: &mut Stream,
     ) -> Result<Update, SetupError> {
         let OffPolicy { learner, settings, replay } = self;
-        let (network, epsilon) = (&learner.network, settings.epsilon_after(samples));
+        let network = &learner.network;
+        let epsilon = settings.epsilon_after(samples);
         let choose = |observations: &[f32], counts: &[bool], _: usize| -> Vec<u16> {
             let outputs = pool.install(|| outputs(network, observations));
             let explored = |(values, counts): (&[f32], &bool)| {
@@ -123,17 +126,20 @@ fn play<A: Copy + Default>(
     mut choose: impl FnMut(&[f32], &[bool], usize) -> Vec<A>,
     action: impl Fn(A) -> Action,
 ) -> Result<Update, SetupError> {
-    let ((rows, per_game), size) = (environment.rows(), environment.setup().observation_size());
+    let (rows, per_game) = environment.rows();
+    let size = environment.setup().observation_size();
     let mut update = Update { counted: 0, transitions: 0, reward: 0.0, finished: vec![], learnt: Learnt::default() };
     for _ in 0..steps {
-        let (before, counts) = (environment.observations().to_vec(), environment.counts().to_vec());
+        let before = environment.observations().to_vec();
+        let counts = environment.counts().to_vec();
         let boats: Vec<usize> = (0..rows / per_game).map(|game| environment.boats(game).len()).collect();
         let chosen = choose(&before, &counts, replay.count());
         environment.step(&chosen.iter().copied().map(&action).collect::<Vec<Action>>())?;
         let mut ended: Vec<Option<bool>> = vec![None; boats.len()];
         environment.finished().iter().for_each(|one| ended[one.game] = Some(!one.cut_off));
         for row in (0..rows).filter(|row| row % per_game < boats[row / per_game]) {
-            let (numbers, ended) = (row * size..(row + 1) * size, ended[row / per_game]);
+            let numbers = row * size..(row + 1) * size;
+            let ended = ended[row / per_game];
             let shown = if ended.is_some() { environment.final_observations() } else { environment.observations() };
             replay.push(Transition {
                 observation: &before[numbers.clone()],

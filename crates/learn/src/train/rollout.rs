@@ -57,7 +57,8 @@ impl Rollout {
             rollout.steps.rewards.extend_from_slice(environment.rewards());
             values = expected(environment.states());
             let mut next = values.clone();
-            let (mut over, mut ended) = (vec![false; rows], vec![false; rows]);
+            let mut over = vec![false; rows];
+            let mut ended = vec![false; rows];
             for one in environment.finished() {
                 let of_game = one.game * per_game..(one.game + 1) * per_game;
                 let size = environment.setup().state_size();

@@ -16,7 +16,8 @@ pub(super) fn check(diagnostics: &mut Diagnostics, document: &Document<Training>
         return;
     }
     let algorithm = training.algorithm();
-    let (name, action) = (algorithm.name(), training.action);
+    let name = algorithm.name();
+    let action = training.action;
     if document.is_sound("action") && algorithm.is_discrete() != action.is_discrete() {
         let expected = if algorithm.is_discrete() { "\"pyquaticus\" or \"options\"" } else { "\"continuous\"" };
         let place = if document.has("action") { "action" } else { name };

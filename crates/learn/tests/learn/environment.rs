@@ -41,7 +41,8 @@ fn played(threads: usize) -> (Vec<u32>, Vec<learn::environment::Finished>) {
     let opponents = vec![(1.0, Player::Policy), (1.0, Player::Strategy(strategy("pav01")))];
     let setup = Setup { steps_max: Some(120), ..setup("surveyor_2v2", opponents) };
     let mut environment = begun(setup, 6, threads, 11);
-    let (mut numbers, mut finished) = (vec![], vec![]);
+    let mut numbers = vec![];
+    let mut finished = vec![];
     for _ in 0..300 {
         act(&mut environment);
         let shown =
@@ -58,7 +59,8 @@ fn a_critic_is_given_the_truth_that_sensors_do_not_tell() {
     let opponents = vec![(1.0, Player::Policy)];
     let setup = Setup { critic: CriticInput::Truth, ..setup("surveyor_2v2", opponents) };
     let mut environment = begun(setup, 2, 1, 3);
-    let (observation, state) = (environment.setup().observation_size(), environment.setup().state_size());
+    let observation = environment.setup().observation_size();
+    let state = environment.setup().state_size();
     for _ in 0..40 {
         environment.step(&[Action::Discrete(3); 8]).unwrap();
     }
@@ -176,7 +178,8 @@ fn rewards_are_what_events_say_and_potentials_cancel_out() {
     let base = Setup { discount: 1.0, ..setup("surveyor_2v2", opponents) };
     let total = |rewards: Rewards| {
         let mut environment = begun(Setup { rewards, ..base.clone() }, 1, 1, 5);
-        let (size, mut stream) = (environment.setup().observation_size(), Stream::new(3, "actions"));
+        let size = environment.setup().observation_size();
+        let mut stream = Stream::new(3, "actions");
         let mut sum = [0.0_f64; 2];
         while environment.finished().is_empty() {
             let rows = environment.observations().len() / size;
@@ -215,7 +218,8 @@ fn starts_come_round_again_and_are_those_of_their_seeds() {
         let setup = Setup { starts, steps_max: Some(20), ..setup("surveyor_2v2", opponents) };
         begun(setup, 2, 2, 30)
     };
-    let (mut new, mut again) = (of(None), of(Some(3)));
+    let mut new = of(None);
+    let mut again = of(Some(3));
     let size = new.setup().observation_size();
     let mut seeds = vec![];
     for step in 0..100 {

@@ -69,9 +69,12 @@ pub(crate) fn begun(setup: Setup, games: usize, threads: usize, seed: u64) -> Ve
 
 /// Lets `work` write the rows of games. Returns the observations; those not written are 9.
 pub(crate) fn written(games: &mut Games, work: impl FnOnce(&mut Games, Rows<'_>)) -> Vec<f32> {
-    let (rows, numbers) = (games.rows().0, games.rows().0 * games.setup().observation_size());
-    let (mut observations, mut final_observations) = (vec![9.0; numbers], vec![0.0; numbers]);
-    let (mut rewards, mut counts) = (vec![0.0; rows], vec![false; rows]);
+    let rows = games.rows().0;
+    let numbers = games.rows().0 * games.setup().observation_size();
+    let mut observations = vec![9.0; numbers];
+    let mut final_observations = vec![0.0; numbers];
+    let mut rewards = vec![0.0; rows];
+    let mut counts = vec![false; rows];
     let shown = Rows {
         observations: &mut observations,
         final_observations: &mut final_observations,

@@ -20,7 +20,8 @@ const SPEC: PolicySpec = PolicySpec {
 /// A policy with random weights, large enough to vary its actions.
 fn model(spec: PolicySpec) -> PolicyModel {
     let mut stream = primitives::stream::Stream::new(8, "test/model");
-    let (inputs, outputs) = (spec.observation.size(1, 2), spec.action.outputs());
+    let inputs = spec.observation.size(1, 2);
+    let outputs = spec.action.outputs();
     model_of(&Perceptron::new(&[inputs, 32, outputs], 3.0, &mut stream), spec)
 }
 
@@ -66,7 +67,8 @@ impl Mind for Driven {
 #[test]
 fn a_model_in_a_strategy_plays_the_game_that_it_was_trained_in() {
     let scenario = game("surveyor_2v2");
-    let (model, strategy) = (model(SPEC), *strategy("policy"));
+    let model = model(SPEC);
+    let strategy = *strategy("policy");
     let loaded = with_model(strategy.clone(), &model);
     let played = |is_loaded: bool| {
         let mind = |vehicle: VehicleId| -> Box<dyn Mind> {
@@ -80,7 +82,8 @@ fn a_model_in_a_strategy_plays_the_game_that_it_was_trained_in() {
         let minds = (0..4).map(|i| mind(VehicleId::at(i))).collect();
         arena::play_watched(&scenario, minds, 3, |contest| contest.decision() < 2000).unwrap()
     };
-    let (boat, training) = (played(true), played(false));
+    let boat = played(true);
+    let training = played(false);
     assert_eq!(boat.digest, training.digest);
     let still = with_model(strategy.clone(), &model_of_nan());
     let minds = (0..4).map(|i| agent::mind_by(&scenario, VehicleId::at(i), &still)).collect();
@@ -110,7 +113,8 @@ fn what_a_policy_cannot_do_its_helm_says_and_safety_is_left() {
         ),
     ] {
         let vehicle = VehicleId::at(0);
-        let (without, with) = (*strategy("policy"), with_model(*strategy("policy"), &model));
+        let without = *strategy("policy");
+        let with = with_model(*strategy("policy"), &model);
         let mut mind = agent::mind_by(scenario, vehicle, &with);
         let mut contest = sim::Contest::new(scenario, 1).unwrap();
         contest.pictures();

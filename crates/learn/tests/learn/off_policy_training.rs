@@ -73,14 +73,16 @@ fn a_policy_of_td3_plays_from_its_file_as_it_was_trained() {
     }
     let model = PolicyModel::read("td3.onnx", &trainer.model().unwrap(), PartialSpec::default()).unwrap();
     assert_eq!(model.spec, trainer.spec());
-    let (mut network, mut trace) = (model.network(), Trace::default());
+    let mut network = model.network();
+    let mut trace = Trace::default();
     let stream = &mut Stream::new(1, "test/observation");
     for size in [0.3, 1.0, 10.0, 1000.0] {
         for _ in 0..50 {
             let observation: Vec<f32> = (0..model.input_size()).map(|_| (size * stream.normal()) as f32).collect();
             trainer.learner().actor().forward(&observation, &mut trace);
             network.evaluate(&observation);
-            let (got, want) = (network.output(model.output()), td3::action(trace.output()));
+            let got = network.output(model.output());
+            let want = td3::action(trace.output());
             assert!(got.iter().all(|number| (-1.0..=1.0).contains(number)), "{got:?}");
             // The sums of a layer have another order.
             assert!(

@@ -21,7 +21,8 @@ fn gradients_are_the_slopes_of_the_output() {
         network.forward(input, &mut trace);
         trace.output().iter().zip(&weights).map(|(output, weight)| output * weight).sum()
     };
-    let (mut trace, mut by_input) = (Trace::default(), vec![]);
+    let mut trace = Trace::default();
+    let mut by_input = vec![];
     network.forward(&input, &mut trace);
     let mut gradient = vec![0.0; network.parameters().len()];
     network.backward(&trace, &mut weights.clone(), &mut gradient, Some(&mut by_input));
@@ -64,7 +65,8 @@ fn first_weights_are_orthogonal_with_their_gain() {
 fn adam_goes_as_its_authors_say() {
     // The first step is the learning rate against the sign; the second was computed by hand.
     let settings = AdamSettings { epsilon: 0.0, norm_max: None, ..AdamSettings::default() };
-    let (mut adam, mut parameters) = (Adam::new(2, settings), [1.0_f32, -1.0]);
+    let mut adam = Adam::new(2, settings);
+    let mut parameters = [1.0_f32, -1.0];
     let norm = adam.step(&mut parameters, &[3.0, -4.0], 0.1);
     assert!((norm - 5.0).abs() < 1e-6 && (parameters[0] - 0.9).abs() < 1e-6 && (parameters[1] + 0.9).abs() < 1e-6);
     adam.step(&mut parameters, &[0.0, -4.0], 0.1);
@@ -74,15 +76,20 @@ fn adam_goes_as_its_authors_say() {
     assert!((parameters[1] + 0.8).abs() < 1e-6, "{parameters:?}");
     // A gradient that is too long is scaled to the limit. Of the first step only the reported norm
     // changes.
-    let (mut adam, mut parameters) = (Adam::new(1, AdamSettings::default()), [0.0_f32]);
+    let mut adam = Adam::new(1, AdamSettings::default());
+    let mut parameters = [0.0_f32];
     assert!((adam.step(&mut parameters, &[1e6], 0.1) - 1e6).abs() < 1.0 && (parameters[0] + 0.1).abs() < 1e-4);
 }
 
 /// Samples of a one-step game: in each of eight observations, one action has a reward of 1. A teacher's
 /// action has no reward.
 fn sampled(learner: &ActorCritic, lesson: Lesson, stream: &mut Stream) -> Batch {
-    let (mut observations, mut actions, mut log_probabilities, mut rewards) = (vec![], vec![], vec![], vec![]);
-    let (mut trace, mut all) = (Trace::default(), [0.0; 4]);
+    let mut observations = vec![];
+    let mut actions = vec![];
+    let mut log_probabilities = vec![];
+    let mut rewards = vec![];
+    let mut trace = Trace::default();
+    let mut all = [0.0; 4];
     for _ in 0..1500 {
         let picture = stream.below(8);
         let observation = observation(picture as usize);
@@ -94,7 +101,9 @@ fn sampled(learner: &ActorCritic, lesson: Lesson, stream: &mut Stream) -> Batch 
         log_probabilities.push(all[action]);
         rewards.push(if action as u64 == picture * 3 % 4 { 1.0 } else { 0.0 });
     }
-    let (states, returns, counts) = (observations.clone(), rewards.clone(), vec![true; rewards.len()]);
+    let states = observations.clone();
+    let returns = rewards.clone();
+    let counts = vec![true; rewards.len()];
     Batch { observations, states, actions, log_probabilities, advantages: rewards, returns, lesson, counts }
 }
 
@@ -117,7 +126,8 @@ fn trained(lesson: Lesson, updates: usize, threads: usize, mut learner: ActorCri
 #[test]
 fn a_policy_learns_which_action_is_worth_most() {
     let learner = trained(Lesson::Reinforcement, 40, 2, ActorCritic::new(3, 3, &[32], 4, 1));
-    let (mut trace, mut value) = (Trace::default(), Trace::default());
+    let mut trace = Trace::default();
+    let mut value = Trace::default();
     for picture in 0..8_usize {
         let observation = observation(picture);
         learner.actor.forward(&observation, &mut trace);

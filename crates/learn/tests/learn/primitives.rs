@@ -20,7 +20,8 @@ fn the_gains_of_a_place_add_up_to_what_it_is_worth_where_a_boat_has_come_to() {
     let mut environment = begun(setup, 4, 2, 9);
     let (rows, per_game) = environment.rows();
     let worth = |environment: &VectorEnvironment, row: usize| {
-        let (game, place_of) = (row / per_game, row % per_game);
+        let game = row / per_game;
+        let place_of = row % per_game;
         let contest = environment.contest(game);
         let seed = contest.scenario().seed;
         let boats: Vec<VehicleId> =
@@ -76,12 +77,14 @@ fn at_home(mut act: impl FnMut(&[f32]) -> Action) -> f64 {
     setup.opponents.iter_mut().for_each(|(weight, _)| *weight = 1.0);
     let size = setup.observation_size();
     let mut environment = begun(setup, 16, 2, 77);
-    let (mut looks, mut home) = (0.0, 0.0);
+    let mut looks = 0.0;
+    let mut home = 0.0;
     for _ in 0..119 {
         let actions: Vec<Action> = environment.observations().chunks_exact(size).map(&mut act).collect();
         environment.step(&actions).unwrap();
         for game in 0..16 {
-            let (contest, team) = (environment.contest(game), environment.standing(game).side.learner);
+            let contest = environment.contest(game);
+            let team = environment.standing(game).side.learner;
             for (i, boat) in progress(contest, true).iter().enumerate() {
                 if contest.scenario().team_of(VehicleId::at(i)) == team {
                     looks += 1.0;

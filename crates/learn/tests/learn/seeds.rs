@@ -93,7 +93,8 @@ fn standings_are_what_the_outcome_says() {
     let mut games = games(&RawSetup { episode_max_s: None, opponents: vec![(1.0, None)], ..raw() }, 1, 3);
     // Full ahead until every boat has left the field.
     (0..300).for_each(|_| step(&mut games, 4));
-    let (standing, outcome) = (games.standing(0), games.contest(0).outcome());
+    let standing = games.standing(0);
+    let outcome = games.contest(0).outcome();
     assert_eq!(standing.steps, 300);
     for (place, team) in [standing.side.learner.index(), 1 - standing.side.learner.index()].into_iter().enumerate() {
         let name = &games.setup().scenario.teams[team].name;

@@ -54,7 +54,8 @@ fn the_same_file_trains_the_same_weights_on_any_number_of_threads_and_resumed() 
         assert!(run(3) == (state.clone(), progress), "{name}: 3 threads gave other results");
 
         // Resumed wherever possible.
-        let (mut trainer, mut taken_up) = (trainer(training.clone(), 2), 0);
+        let mut trainer = trainer(training.clone(), 2);
+        let mut taken_up = 0;
         while !trainer.is_over() {
             if updated(&mut trainer).can_be_resumed {
                 let resumed = Trainer::resume(training.clone(), 2, &trainer.state());
@@ -115,7 +116,8 @@ fn a_policy_learns_to_choose_what_its_teacher_is_at() {
     assert!(progress.iter().all(|one| one.learnt.clipped == Some(0.0)));
     let losses: Vec<f32> = progress.iter().filter_map(|one| one.learnt.policy_loss).collect();
     // Ten options, initially.
-    let (first, last) = (losses[0], losses[losses.len() - 1]);
+    let first = losses[0];
+    let last = losses[losses.len() - 1];
     assert!(first > 1.5 && last < 0.7, "cross-entropy, nats: {losses:?}");
 }
 

@@ -52,7 +52,9 @@ proptest! {
         at in any::<prop::sample::Index>(),
     ) {
         let bytes = file(MODELS[model]);
-        let (from, to, at) = (from.index(bytes.len()), to.index(bytes.len()), at.index(bytes.len()));
+        let from = from.index(bytes.len());
+        let to = to.index(bytes.len());
+        let at = at.index(bytes.len());
         let part = &bytes[from.min(to)..from.max(to)];
         try_file(&[&bytes[..at], part, &bytes[at..]].concat());
         try_file(&[&bytes[..from.min(to)], &bytes[from.max(to)..]].concat());

@@ -120,7 +120,8 @@ fn an_evaluation_depends_on_its_row_alone() {
         for case in &cases {
             network.evaluate(&case.input);
             // On another thread, where policies are evaluated during training.
-            let (mut other, input) = (fresh.clone(), case.input.clone());
+            let mut other = fresh.clone();
+            let input = case.input.clone();
             let thread = std::thread::spawn(move || {
                 other.evaluate(&input);
                 other

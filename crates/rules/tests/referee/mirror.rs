@@ -20,7 +20,8 @@ impl Mirror {
     }
 
     fn pair(&self, first: VehicleId, second: VehicleId) -> (VehicleId, VehicleId) {
-        let (a, b) = (self.vehicle(first), self.vehicle(second));
+        let a = self.vehicle(first);
+        let b = self.vehicle(second);
         (a.min(b), a.max(b))
     }
 

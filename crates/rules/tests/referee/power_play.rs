@@ -22,7 +22,8 @@ fn windows(scene: &Scene, seed: u64) -> Vec<(SimTime, SimTime, usize)> {
 #[test]
 fn one_boat_of_each_team_is_drawn_and_never_two_at_once() {
     let scene = Scene::new(mctf_2026(), 3);
-    let (mut drawn, mut first_team_first) = ([0; 6], 0);
+    let mut drawn = [0; 6];
+    let mut first_team_first = 0;
     for seed in 0..600 {
         let windows = windows(&scene, seed);
         let [(from_a, until_a, a), (from_b, until_b, b)] = windows[..] else { panic!("seed {seed}: {windows:?}") };

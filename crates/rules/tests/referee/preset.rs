@@ -12,7 +12,8 @@ static SHIPPED: LazyLock<[Rules; 4]> = LazyLock::new(|| {
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
     let folder = tempfile::tempdir().expect("a folder for files");
     ["aquaticus_2023", "pyquaticus", "mctf_2025", "mctf_2026"].map(|name| {
-        let (base, rules) = ("games/pav01_vs_pav01.toml", format!("rules/{name}.toml"));
+        let base = "games/pav01_vs_pav01.toml";
+        let rules = format!("rules/{name}.toml");
         let text = format!("base = {:?}\nrules = {:?}\n", scenarios.join(base), scenarios.join(rules));
         std::fs::write(folder.path().join("game.toml"), text).expect("a file in it");
         let scenario = scenario::load(&folder.path().join("game.toml")).unwrap_or_else(|e| panic!("{e}"));

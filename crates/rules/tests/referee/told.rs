@@ -36,7 +36,9 @@ fn opened(line: &str) -> Told<Scene> {
     let mut words = line.strip_prefix("rules ").ok_or("expected `rules BOOK`")?.split(' ');
     let book = words.next().and_then(|name| preset::all().into_iter().find(|rules| rules.name == name));
     let mut rules = serde_json::to_value(book.ok_or("no such book")?).map_err(|e| e.to_string())?;
-    let (mut boats, mut sides, mut extra_flags) = (1, 2, vec![]);
+    let mut boats = 1;
+    let mut sides = 2;
+    let mut extra_flags = vec![];
     for word in words {
         let (key, value) = word.split_once('=').ok_or("expected KEY=VALUE")?;
         match key {
@@ -138,7 +140,8 @@ fn every_scene_goes_as_it_is_told() {
     let mut wrong = vec![];
     for entry in std::fs::read_dir(folder).expect("the folder is there") {
         let path = entry.expect("it can be read").path();
-        let (file, text) = (path.display(), std::fs::read_to_string(&path).expect("a text"));
+        let file = path.display();
+        let text = std::fs::read_to_string(&path).expect("a text");
         let scenes: Vec<&str> = text.split("\n## ").skip(1).collect();
         let begun = text.lines().filter(|line| line.starts_with("##")).count();
         assert!(begun > 0 && begun == scenes.len(), "{file}: {} scenes of {begun} can be read", scenes.len());

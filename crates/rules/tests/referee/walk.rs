@@ -109,9 +109,12 @@ fn look<'a>(legs: &'a [Leg], near: &'a [Pair], now: SimTime) -> Look<'a> {
 fn play(walk: &Walk, mut each: impl FnMut(&Referee, &Standing, &Standing, &[Leg], &[Event])) {
     let referee = walk.referee();
     let mut standing = referee.start(&mut Stream::new(walk.seed, "rules"));
-    let (mut notes, mut near, mut now) = (Notes::default(), Near::default(), SimTime::ZERO);
+    let mut notes = Notes::default();
+    let mut near = Near::default();
+    let mut now = SimTime::ZERO;
     for fleet in walk.fleets() {
-        let (before, mut events) = (standing.clone(), vec![]);
+        let before = standing.clone();
+        let mut events = vec![];
         let pairs = near.pairs(|i| fleet[i].to, fleet.len(), referee.rules.reach_m());
         referee.advance(&mut standing, &mut notes, &look(&fleet, pairs, now), &mut events);
         each(&referee, &before, &standing, &fleet, &events);
@@ -142,7 +145,8 @@ fn assert_consistent(referee: &Referee, before: &Standing, after: &Standing) {
 }
 
 fn assert_lawful(referee: &Referee, before: &Standing, after: &Standing, fleet: &[Leg], event: Event) {
-    let (rules, field) = (&referee.rules, &referee.field);
+    let rules = &referee.rules;
+    let field = &referee.field;
     let team = |vehicle: VehicleId| referee.team_of[vehicle.index()];
     let at = |vehicle: VehicleId| fleet[vehicle.index()].to;
     let on_own_side = |vehicle: VehicleId| {
@@ -224,7 +228,8 @@ proptest! {
     #[test]
     fn mirrored_teams_get_mirrored_results(walk in walks(prop_oneof![4 => 1..5_usize, 1 => 17..22_usize])) {
         let mirror = Mirror { boats: walk.boats };
-        let (mut notes, mut near) = (Notes::default(), Near::default());
+        let mut notes = Notes::default();
+        let mut near = Near::default();
         let mut reflected: Option<Standing> = None;
         play(&walk, |referee, before, after, fleet, events| {
             let other = reflected.get_or_insert_with(|| mirror.standing(before));

@@ -20,7 +20,8 @@ impl ScenarioFile for Field {
     fn check(diagnostics: &mut Diagnostics, document: &Document<raw::Field>) -> Option<Field> {
         let raw = &document.raw;
         let Plan { name, datum, corner, along_deg, width_m, depth_m, walls, .. } = raw.plan.clone();
-        let (flag_inset_m, half_m) = (raw.plan.flag_inset_m.unwrap_or(width_m / 8.0), width_m / 2.0);
+        let flag_inset_m = raw.plan.flag_inset_m.unwrap_or(width_m / 8.0);
+        let half_m = width_m / 2.0;
         if !(flag_inset_m > 0.0 && flag_inset_m < half_m) && document.is_sound("width_m") {
             let message = format!("flag_inset_m is {flag_inset_m}, expected more than 0 and less than {half_m}");
             diagnostics.note(document.at("flag_inset_m"), message);
@@ -30,7 +31,8 @@ impl ScenarioFile for Field {
         if !is_plane_sound {
             return None;
         }
-        let (extra_flags, obstacles) = (vec![], vec![]);
+        let extra_flags = vec![];
+        let obstacles = vec![];
         let mut plan =
             Plan { name, datum, corner, along_deg, width_m, depth_m, flag_inset_m, extra_flags, obstacles, walls };
         let empty = Field::new(plan.clone());
@@ -62,7 +64,8 @@ pub(super) fn is_inside(diagnostics: &mut Diagnostics, field: &Field, at: usize,
     let is_inside = field.contains(position);
     if !is_inside {
         let (along, across) = field.along_across(position);
-        let (width, depth) = (field.plan.width_m, field.plan.depth_m);
+        let width = field.plan.width_m;
+        let depth = field.plan.depth_m;
         diagnostics.note(
             at,
             format!(

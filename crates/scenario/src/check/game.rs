@@ -71,7 +71,9 @@ impl ScenarioFile for Scenario {
         check_looks(diagnostics, document, tick, rules.as_ref());
         check_reseed(diagnostics, document);
         let Fleet { boats, strategies, entries, .. } = fleet;
-        let (field, mut rules, sea) = (field?, rules?, sea?);
+        let field = field?;
+        let mut rules = rules?;
+        let sea = sea?;
         if !document.is_faultless(diagnostics) {
             return None;
         }
@@ -172,7 +174,8 @@ fn sea(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) -> Option<
 /// The physics tick, and the number of ticks per decision.
 fn clock(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) -> (SimTime, u32) {
     let raw::Game { tick_s, decision_s, .. } = document.raw;
-    let (tick, decision) = (SimTime::from_s(tick_s), SimTime::from_s(decision_s));
+    let tick = SimTime::from_s(tick_s);
+    let decision = SimTime::from_s(decision_s);
     if decision.0 % tick.0 != 0 {
         let place = document.at(if document.has("decision_s") { "decision_s" } else { "tick_s" });
         diagnostics.note(place, format!("decision_s is {decision_s}, expected a multiple of tick_s, {tick_s}"));
@@ -202,7 +205,9 @@ fn check_looks(diagnostics: &mut Diagnostics, document: &Document<raw::Game>, ti
     for (key, period) in [("tag_look_period_s", rules.tag_look_period), ("flag_look_period_s", rules.flag_look_period)]
     {
         if period.0 % tick.0 != 0 {
-            let (name, period_s, tick_s) = (&rules.name, period.as_s(), tick.as_s());
+            let name = &rules.name;
+            let period_s = period.as_s();
+            let tick_s = tick.as_s();
             let message = format!("{key} of rules {name} is {period_s}, expected a multiple of tick_s, {tick_s}");
             diagnostics.note(document.at("rules"), message);
         }
@@ -215,7 +220,8 @@ fn check_models(diagnostics: &mut Diagnostics, entries: &[Entry], strategies: &[
         let mates = entries.iter().filter(|other| other.team == *team).count() - 1;
         let enemies = entries.len() - 1 - mates;
         for model in strategies[*strategy].models() {
-            let (takes, size) = (model.input_size(), model.spec.observation.size(mates, enemies));
+            let takes = model.input_size();
+            let size = model.spec.observation.size(mates, enemies);
             if takes != size {
                 let message = format!(
                     "the model {} has {takes} inputs, expected {size}: {name} has {mates} mates and {enemies} enemies",
@@ -237,7 +243,8 @@ fn check_teams(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) {
     }
     let is_unknown = |team: &&str| !teams.contains(team);
     let overrides = &diagnostics.overrides;
-    let (names, replaced) = (teams.join(", "), overrides.strategies.keys().map(String::as_str).find(is_unknown));
+    let names = teams.join(", ");
+    let replaced = overrides.strategies.keys().map(String::as_str).find(is_unknown);
     let message = replaced.map(|team| format!("unknown team {team:?}, expected one of {names}")).or_else(|| {
         let changed = overrides.settings.iter().find(|setting| setting.team().as_ref().is_some_and(is_unknown))?;
         Some(format!("{}: unknown team, expected one of {names} after strategy", changed.key))
@@ -326,7 +333,8 @@ impl Fleet<'_> {
                 _ => self.boat(diagnostics, path, raw.boat.as_ref(), &name),
             };
             let (Some(boat), start_position) = (boat, start_position.clone()) else { return };
-            let (heading_deg, source) = (None, Source::Simulated);
+            let heading_deg = None;
+            let source = Source::Simulated;
             self.entries.push(Entry { name, place, team, boat, strategy, start_position, heading_deg, source });
         }
     }

@@ -16,7 +16,8 @@ pub fn check_corners(corners: &[Ned]) -> Result<(), (usize, String)> {
         }
         // Neighbours share a corner; they must not fold back onto one another.
         let crossing = (i + 1..count).find(|&j| {
-            let (is_next, is_before) = (j == i + 1, (j + 1) % count == i);
+            let is_next = j == i + 1;
+            let is_before = (j + 1) % count == i;
             match (is_next, is_before) {
                 (true, _) => folds_back(corners[i], corners[j], side(j).1),
                 (_, true) => folds_back(corners[j], corners[i], side(i).1),

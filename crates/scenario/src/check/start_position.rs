@@ -61,7 +61,9 @@ pub(super) fn somewhere(
     count: usize,
     field: &Field,
 ) -> Option<StartPosition> {
-    let (width_m, depth_m, gap_m) = (field.plan.width_m, field.plan.depth_m, raw.gap_m);
+    let width_m = field.plan.width_m;
+    let depth_m = field.plan.depth_m;
+    let gap_m = raw.gap_m;
     let mut bounds = |key: &str, given: Option<[f64; 2]>, whole_m: f64, usual_m: f64| {
         let Some([from_m, to_m]) = given else { return Some((MARGIN_M, usual_m - MARGIN_M)) };
         let place = document.at(&format!("{path}.{key}"));
@@ -77,7 +79,8 @@ pub(super) fn somewhere(
     };
     let along_m = bounds("along_m", raw.along_m, width_m, width_m / 2.0);
     let across_m = bounds("across_m", raw.across_m, depth_m, depth_m);
-    let (along_m, across_m) = (along_m?, across_m?);
+    let along_m = along_m?;
+    let across_m = across_m?;
     let area_m2 = (along_m.1 - along_m.0) * (across_m.1 - across_m.0);
     let wanted_m2 = count as f64 * gap_m * gap_m;
     if count > 1 && wanted_m2 > FULLEST * area_m2 {
@@ -130,7 +133,8 @@ pub(super) fn check_clear(
         let StartPosition::At(pose) = start_position else { continue };
         let length_m = boats[entry.boat].length_m;
         if field.plan.obstacles.iter().any(|obstacle| obstacle.distance(pose.at) <= length_m / 2.0) {
-            let (x, y) = (pose.at.east, pose.at.north);
+            let x = pose.at.east;
+            let y = pose.at.north;
             let message = format!("{} starts at [{x}, {y}], on an obstacle, expected open water", entry.name);
             diagnostics.note(entry.place, message);
         }
@@ -140,8 +144,10 @@ pub(super) fn check_clear(
     let mut near = Near::default();
     let mut last = usize::MAX;
     for pair in near.pairs(|i| placed[i].1, placed.len(), longest_m) {
-        let ((a, _, a_length_m), (b, _, b_length_m)) = (placed[usize::from(pair.a)], placed[usize::from(pair.b)]);
-        let (apart_m, least_m) = (pair.distance_squared.sqrt(), a_length_m.max(b_length_m));
+        let (a, _, a_length_m) = placed[usize::from(pair.a)];
+        let (b, _, b_length_m) = placed[usize::from(pair.b)];
+        let apart_m = pair.distance_squared.sqrt();
+        let least_m = a_length_m.max(b_length_m);
         // Reports each crowded boat once, and each crowded fleet once.
         if apart_m < least_m && b.place != last {
             last = b.place;
@@ -160,7 +166,8 @@ fn is_point(diagnostics: &mut Diagnostics, at: usize, key: &str, name: &str) -> 
     let is_known = names.iter().any(|known| known == name);
     if !is_known {
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        let (points, guess) = (names.join(" "), did_you_mean(name, &names));
+        let points = names.join(" ");
+        let guess = did_you_mean(name, &names);
         diagnostics.note(at, format!("{key} is {name:?}, expected a named point, one of {points}{guess}"));
     }
     is_known

@@ -79,7 +79,8 @@ impl Place {
     /// The names, abbreviated.
     #[must_use]
     pub fn names_in_short() -> String {
-        let (marks, boats) = (Mark::names().join(", "), Boat::names().join(", "));
+        let marks = Mark::names().join(", ");
+        let boats = Boat::names().join(", ");
         format!("{marks}, a boat ({boats}) or a named point such as CH")
     }
 }

@@ -59,7 +59,9 @@ impl Background {
             Ok(imagesize::ImageType::Jpeg) => "image/jpeg",
             _ if bytes.iter().find(|byte| !byte.is_ascii_whitespace()) == Some(&b'{') => {
                 let shoreline = Shoreline::parse(&bytes).map_err(bad)?;
-                let (areas, lines, points) = (shoreline.areas, shoreline.lines, shoreline.points);
+                let areas = shoreline.areas;
+                let lines = shoreline.lines;
+                let points = shoreline.points;
                 let json = json!({"name": name, "areas": areas, "lines": lines, "points": points}).to_string();
                 return Ok(Background { json, image: None });
             }
@@ -70,7 +72,8 @@ impl Background {
             }
         };
         let size = imagesize::blob_size(&bytes).map_err(|e| bad(format!("is damaged: {e}")))?;
-        let (width, height) = (size.width, size.height);
+        let width = size.width;
+        let height = size.height;
         if !(1..=SIDE_MAX).contains(&width) || !(1..=SIDE_MAX).contains(&height) {
             return Err(bad(format!("has {width} x {height} pixels, expected 1 to {SIDE_MAX} on each side")));
         }
@@ -147,7 +150,8 @@ impl Extent {
 
     fn check(&self) -> Result<(), String> {
         let Some([low, high]) = self.0 else { return Ok(()) };
-        let (wide, tall) = (high[0] - low[0], high[1] - low[1]);
+        let wide = high[0] - low[0];
+        let tall = high[1] - low[1];
         if wide.max(tall) <= EXTENT_MAX_DEG {
             return Ok(());
         }
@@ -208,7 +212,9 @@ impl Shoreline {
 
     fn geometry(&mut self, value: &Value, at: &str, name: &str) -> Result<(), String> {
         check_object(value, at)?;
-        let (kind, coordinates, place) = (&value["type"], &value["coordinates"], within(at, "coordinates"));
+        let kind = &value["type"];
+        let coordinates = &value["coordinates"];
+        let place = within(at, "coordinates");
         match kind.as_str().unwrap_or_default() {
             "Point" => self.point(coordinates, &place, name),
             "MultiPoint" => each(coordinates, &place, |it, at| self.point(it, at, name)),

@@ -38,7 +38,8 @@ pub(super) fn chart(scenario: &Scenario, water: &Water) -> Value {
 }
 
 fn vehicle(scenario: &Scenario, vehicle: &Vehicle) -> Value {
-    let (boat, strategy) = (&scenario.boats[vehicle.boat], &scenario.strategies[vehicle.strategy]);
+    let boat = &scenario.boats[vehicle.boat];
+    let strategy = &scenario.strategies[vehicle.strategy];
     json!({
         "name": vehicle.name,
         "team": vehicle.team.index(),

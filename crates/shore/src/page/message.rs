@@ -171,7 +171,8 @@ impl PageMessage<'_> {
         chart: &'a Value,
     ) -> PageMessage<'a> {
         let definitions = messages::ros::DEFINITIONS.into_iter().collect();
-        let (rights, operates) = (access >= Access::Control, access >= Access::Operate);
+        let rights = access >= Access::Control;
+        let operates = access >= Access::Operate;
         PageMessage::Hello { protocol: PROTOCOL, version, mode, rights, operates, game, about, definitions, chart }
     }
 
@@ -214,7 +215,8 @@ mod tests {
             other: Some("b".into()),
             team: None,
         };
-        let (tagged, failsafe) = (event("tagged"), event("failsafe"));
+        let tagged = event("tagged");
+        let failsafe = event("failsafe");
         let tell =
             PageMessage::Events { reset: true, events: vec![EventMessage::new(&tagged), EventMessage::new(&failsafe)] };
         let want = json!({"tick": 7, "at_s": 0.35, "event": "tagged", "vehicle": "a", "other": "b",

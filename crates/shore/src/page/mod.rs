@@ -206,7 +206,8 @@ mod tests {
 
     fn open_named(listen: &str, token: Option<&str>, hosts: &[&str]) -> Result<Page, PageError> {
         let hosts = hosts.iter().map(|host| (*host).to_owned()).collect();
-        let (listen, token) = (listen.parse().expect("an address"), token.map(str::to_owned));
+        let listen = listen.parse().expect("an address");
+        let token = token.map(str::to_owned);
         Page::open(PageSettings { listen, token, hosts, background: None, stop: Arc::default() })
     }
 

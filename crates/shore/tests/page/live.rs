@@ -56,10 +56,12 @@ impl Sim {
         let game = GameName::new(name).expect("a valid name");
         let bus = Bus::hub(&net, &game, &scenario).expect("the port is free");
         let publisher = |key: String| bus.publisher(key, Priority::Normal).expect("the bus is open");
-        let (frames, run) = (publisher(topic::frame(&game)), publisher(topic::run(&game)));
+        let frames = publisher(topic::frame(&game));
+        let run = publisher(topic::run(&game));
         let pictures = publisher(topic::picture(&game, &scenario, TeamId(0)));
         let events = Arc::new(Watched::new(vec![]));
-        let (controls, proposals) = (Arc::new(Watched::new(vec![])), Arc::new(Watched::new(vec![])));
+        let controls = Arc::new(Watched::new(vec![]));
+        let proposals = Arc::new(Watched::new(vec![]));
         let info =
             GameInfo { version: primitives::VERSION.to_owned(), pace: pace.to_owned(), scenario: scenario.clone() };
         let wave = PlaneWave { amplitude_m: 0.25, ..PlaneWave::default() };

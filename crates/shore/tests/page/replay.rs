@@ -81,7 +81,8 @@ fn it_plays_as_fast_as_asked_and_to_the_end() {
 #[test]
 fn each_page_has_a_player_of_its_own() {
     let page = page(show(), None, &[]);
-    let (mut one, mut other) = (open_viewer(&page), open_viewer(&page));
+    let mut one = open_viewer(&page);
+    let mut other = open_viewer(&page);
     one.frame();
     one.ack();
     other.frame();
@@ -213,7 +214,8 @@ fn is_of_selected(said: &Outgoing) -> bool {
 #[test]
 fn what_can_wait_waits_until_there_is_room() {
     let show = ReplayView::new(two_minutes(), None);
-    let (mut viewer, now) = (show.open_viewer(Access::Watch), clock::now());
+    let mut viewer = show.open_viewer(Access::Watch);
+    let now = clock::now();
     while viewer.next_message(now, Budget::All).is_some() {}
     viewer
         .ask(&PageRequest::Select { vehicle: Some("red_one".to_owned()), functions: true }, now)

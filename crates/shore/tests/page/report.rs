@@ -35,7 +35,8 @@ fn a_report_has_files_and_a_game_is_told_of_until_it_is_there() {
     let report = Arc::new(OneGame { showing: Showing::new(Arc::clone(&preparing) as _), preparing });
     let page = empty_page(None, &[]);
     page.publish(Arc::clone(&report) as _);
-    let (at, host) = (page.address, page.address.to_string());
+    let at = page.address;
+    let host = page.address.to_string();
     for (path, status, part) in [
         ("/", 307, "location: /report.html"),
         ("/?game=1", 200, "layer-boats"),

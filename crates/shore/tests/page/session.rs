@@ -102,7 +102,8 @@ fn a_page_opened_before_there_is_a_show_waits_for_it() {
 #[test]
 fn garbage_is_refused_and_survived() {
     let page = page(show(), None, &[]);
-    let (mut rude, mut polite) = (open_viewer(&page), open_viewer(&page));
+    let mut rude = open_viewer(&page);
+    let mut polite = open_viewer(&page);
     for garbage in [
         Message::text("ahoy"),
         Message::text(r#"{"do":"fly"}"#),

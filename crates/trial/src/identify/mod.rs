@@ -29,7 +29,9 @@ pub fn written(fit: &Fit, base: &str, log: &str) -> String {
             text += &format!("\n[{table}]\n");
         }
         for estimate in of_table {
-            let (key, value, plus_minus) = (estimate.parameter.key, estimate.value, estimate.plus_minus);
+            let key = estimate.parameter.key;
+            let value = estimate.value;
+            let plus_minus = estimate.plus_minus;
             text += &format!("{key} = {value:.6} # ± {plus_minus:.6}, was {}\n", estimate.before);
         }
     }

@@ -149,7 +149,8 @@ impl<'a> Problem<'a> {
     fn project(&self, by_starts: &DMatrix<f64>, from: &DVector<f64>) -> Option<DVector<f64>> {
         let mut left = from.clone();
         for (border, change) in self.borders.windows(2).zip(self.corrections(by_starts, from)?) {
-            let (begin, count) = (border[0], border[1] - border[0]);
+            let begin = border[0];
+            let count = border[1] - border[0];
             let taken = by_starts.rows(begin, count) * change;
             left.rows_mut(begin, count).iter_mut().zip(taken.iter()).for_each(|(left, taken)| *left -= taken);
         }
@@ -206,7 +207,8 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
         let by_starts = self.by_starts(&self.boat_at(&self.at), residuals)?;
         let mut columns = Vec::with_capacity(self.knobs.len());
         for i in 0..self.knobs.len() {
-            let (mut up, mut down) = (self.at.clone(), self.at.clone());
+            let mut up = self.at.clone();
+            let mut down = self.at.clone();
             up[i] += PARAMETER_STEP;
             down[i] -= PARAMETER_STEP;
             let up = self.weighed(&self.boat_at(&up), &self.starts)?;

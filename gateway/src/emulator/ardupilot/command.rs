@@ -30,7 +30,9 @@ impl ArduPilot {
         let has_position = matches!(long.command, MavCmd::MAV_CMD_DO_SET_HOME | MavCmd::MAV_CMD_DO_REPOSITION);
         let whole = |param: f32| (if has_position { 1e7 } else { 1.0 } * f64::from(param)).round() as i32;
         let COMMAND_LONG_DATA { param1, param2, param3, param4, command, .. } = *long;
-        let (x, y, frame) = (whole(long.param5), whole(long.param6), MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT);
+        let x = whole(long.param5);
+        let y = whole(long.param6);
+        let frame = MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT;
         let int = COMMAND_INT_DATA { param1, param2, param3, param4, x, y, command, frame, ..Default::default() };
         self.take_command_int(now, from, &int);
     }
@@ -158,7 +160,8 @@ impl ArduPilot {
     fn command_yaw_speed(&mut self, now: SimTime, command: &COMMAND_INT_DATA) -> MavResult {
         let Some(own) = self.sensed.own.filter(|_| self.mode == RoverMode::Guided) else { return FAILED };
         let own_rad = (command.param3 > 0.0).then_some(own.nav.psi_rad);
-        let (heading_rad, speed_m_s) = (f64::from(command.param1).to_radians(), f64::from(command.param2));
+        let heading_rad = f64::from(command.param1).to_radians();
+        let speed_m_s = f64::from(command.param2);
         result_of(self.set_points.take_heading(now, heading_rad, own_rad, speed_m_s).is_ok())
     }
 

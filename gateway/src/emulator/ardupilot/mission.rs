@@ -233,7 +233,9 @@ fn type_of(message: &MavMessage) -> Option<MavMissionType> {
 /// An item in the older message, whose positions are in degrees.
 pub(super) fn int_from_float(item: &MISSION_ITEM_DATA) -> MISSION_ITEM_INT_DATA {
     let MISSION_ITEM_DATA { param1, param2, param3, param4, z, seq, command, frame, current, autocontinue, .. } = *item;
-    let (x, y, mission_type) = (e7(item.x.into()), e7(item.y.into()), item.mission_type);
+    let x = e7(item.x.into());
+    let y = e7(item.y.into());
+    let mission_type = item.mission_type;
     let item = MISSION_ITEM_INT_DATA { param1, param2, param3, param4, x, y, z, seq, ..Default::default() };
     MISSION_ITEM_INT_DATA { command, frame, current, autocontinue, mission_type, ..item }
 }
@@ -242,7 +244,8 @@ fn float_from_int(item: &MISSION_ITEM_INT_DATA) -> MISSION_ITEM_DATA {
     let MISSION_ITEM_INT_DATA { param1, param2, param3, param4, z, seq, command, frame, .. } = *item;
     let MISSION_ITEM_INT_DATA { target_system, target_component, current, autocontinue, mission_type, .. } = *item;
     let at = lat_lon((item.x, item.y));
-    let (x, y) = (at.lat_deg as f32, at.lon_deg as f32);
+    let x = at.lat_deg as f32;
+    let y = at.lon_deg as f32;
     let item = MISSION_ITEM_DATA { param1, param2, param3, param4, x, y, z, seq, command, frame, ..Default::default() };
     MISSION_ITEM_DATA { target_system, target_component, current, autocontinue, mission_type, ..item }
 }

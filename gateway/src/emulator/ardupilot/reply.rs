@@ -36,7 +36,8 @@ impl ArduPilot {
             }
             MavMessage::LOG_REQUEST_LIST(_) => MavMessage::LOG_ENTRY(LOG_ENTRY_DATA::default()),
             MavMessage::LOG_REQUEST_DATA(wanted) => {
-                let (id, ofs) = (wanted.id, wanted.ofs);
+                let id = wanted.id;
+                let ofs = wanted.ofs;
                 MavMessage::LOG_DATA(LOG_DATA_DATA { id, ofs, ..LOG_DATA_DATA::default() })
             }
             MavMessage::FILE_TRANSFER_PROTOCOL(request) => {

@@ -170,7 +170,8 @@ impl SetPoints {
         if !is_global(target.coordinate_frame) {
             return Err("set-point ignored: its frame");
         }
-        let (velocity, yaw) = ([target.vx, target.vy], [target.yaw, target.yaw_rate]);
+        let velocity = [target.vx, target.vy];
+        let yaw = [target.yaw, target.yaw_rate];
         let asked =
             Target::new(target.type_mask, 0.0, place.unwrap_or(Ned { north: f64::NAN, east: f64::NAN }), velocity, yaw);
         self.follow(now, &asked, speed_max_m_s)
@@ -273,7 +274,8 @@ impl SetPoints {
     /// means no override.
     pub(super) fn take_channels(&mut self, now: SimTime, channels: &RC_CHANNELS_OVERRIDE_DATA) {
         let share = |us: u16| if us == 0 || us == u16::MAX { 0.0 } else { 0.002 * (f64::from(us) - 1500.0) };
-        let (throttle, steering) = (share(channels.chan3_raw), share(channels.chan1_raw));
+        let throttle = share(channels.chan3_raw);
+        let steering = share(channels.chan1_raw);
         self.manual = Some((now, throttle.clamp(-1.0, 1.0), steering.clamp(-1.0, 1.0)));
     }
 

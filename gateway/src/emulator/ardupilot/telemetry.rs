@@ -285,8 +285,10 @@ impl ArduPilot {
     }
 
     fn local_position(&self, now: SimTime) -> Option<LOCAL_POSITION_NED_DATA> {
-        let (nav, origin) = (self.sensed.own?.nav, self.origin?);
-        let (at, velocity) = (nav.at(), nav.velocity_m_s());
+        let nav = self.sensed.own?.nav;
+        let origin = self.origin?;
+        let at = nav.at();
+        let velocity = nav.velocity_m_s();
         Some(LOCAL_POSITION_NED_DATA {
             time_boot_ms: boot_ms(now),
             x: (at.north - origin.north) as f32,

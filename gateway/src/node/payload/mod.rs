@@ -93,7 +93,8 @@ impl Passage {
     fn open(port: &PayloadPort, shell: &Shell) -> Result<Passage, Box<dyn std::error::Error>> {
         let payload = Arc::new(Payload::new(port, shell));
         let way = Arc::new(Way::open(&payload)?);
-        let (clients, to) = (Arc::clone(&payload), Arc::clone(&way));
+        let clients = Arc::clone(&payload);
+        let to = Arc::clone(&way);
         let serve = move |slot: &Slot, client: &TcpStream| to.serve(&clients, slot, client);
         let name = format!("payload {}", port.name);
         let passage = Passage { port: TcpPort::open(port.listen, &name, CLIENTS_MAX, serve)?, payload };

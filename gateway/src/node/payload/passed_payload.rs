@@ -145,7 +145,8 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         for (min_mib, want) in [(0, [4, 1]), (u64::MAX, [0, 1])] {
             let file = folder.path().join(format!("{min_mib}.mcap"));
-            let (kind, facts) = (Kind::Gateway, Facts::new());
+            let kind = Kind::Gateway;
+            let facts = Facts::new();
             let opening = Opening { kind, began_utc_ns: 0, facts, more: vec![], teams: vec![] };
             let recorder = Recorder::begin(NewFile::create(&file).expect("a file"), &opening).expect("it begins");
             let (input, output) = loop_input();

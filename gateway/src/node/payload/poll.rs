@@ -136,7 +136,9 @@ impl Questions<'_> {
     ) -> io::Result<Answer> {
         self.payload.record_bytes(talk, *number, true, question.as_bytes());
         stream.write_all(question.as_bytes())?;
-        let (asked, mut length, mut piece) = (clock::now(), 0, [0; 4096]);
+        let asked = clock::now();
+        let mut length = 0;
+        let mut piece = [0; 4096];
         while clock::since(asked) < limit && !self.turn.is_wanted_within(Duration::ZERO) {
             match stream.read(&mut piece) {
                 Ok(0) => {

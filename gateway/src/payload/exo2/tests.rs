@@ -55,7 +55,8 @@ fn a_sonde_that_echoes_and_prompts_is_read_whatever_ends_its_lines() {
 
 #[test]
 fn numbers_are_named_and_unknown_codes_keep_theirs() {
-    let (mut sonde, mut conversation) = (Sonde::default(), Conversation::default());
+    let mut sonde = Sonde::default();
+    let mut conversation = Conversation::default();
     let mut say = |outward, text: &str| conversation.read_bytes(outward, text.as_bytes(), &mut sonde);
     say(true, "para\r");
     say(false, "1 999\r\n");
@@ -85,7 +86,8 @@ fn a_server_of_http_is_read_with_and_without_lengths() {
     assert_eq!(measured(&mut sonde, &[('>', get), ('<', &data)], 1), Vec::<Vec<_>>::new(), "it may go on");
     // One connection for all, by lengths.
     let answer = |text: &str| format!("HTTP/1.1 200 OK\nContent-Length:{}\n\n{text}", text.len());
-    let (codes, data) = (answer("1 12"), answer("20.5 35.25"));
+    let codes = answer("1 12");
+    let data = answer("20.5 35.25");
     assert_eq!(
         values(&[('>', post), ('<', &codes), ('>', get), ('<', &data), ('>', get), ('<', &data)]),
         [want.clone(), want.clone()].concat()
@@ -122,7 +124,8 @@ fn nothing_is_guessed_of_what_is_no_answer() {
 
 #[test]
 fn a_line_without_end_takes_no_memory() {
-    let (mut sonde, mut conversation) = (Sonde::default(), Conversation::default());
+    let mut sonde = Sonde::default();
+    let mut conversation = Conversation::default();
     for outward in [false, true] {
         for _ in 0..100 {
             conversation.read_bytes(outward, &[b'1'; 10_000], &mut sonde);

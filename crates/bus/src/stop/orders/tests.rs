@@ -34,7 +34,8 @@ fn a_stop_is_said_again_until_the_boat_answers_and_told_once() {
     assert_eq!(times, [0, 10, 20, 40, 80]);
     let done: Vec<StopNews> =
         orders.take_news().into_iter().filter(|news| matches!(news, StopNews::Done { .. })).collect();
-    let (vehicle, state) = ("blue_one".to_owned(), stopped.to_owned());
+    let vehicle = "blue_one".to_owned();
+    let state = stopped.to_owned();
     assert_eq!(done, [StopNews::Done { vehicle, command: StopCommand::EStop, state, after: MS(90) }]);
     assert!(orders.unfinished().is_empty());
 }

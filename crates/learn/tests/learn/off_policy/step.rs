@@ -62,7 +62,8 @@ fn two_steps_of_td3_are_those_of_numpy() {
         set(&mut learner.critics[i], phase);
         set(&mut learner.target_critics[i], phase + 2.0);
     }
-    let (minibatch, noise) = (minibatch(pairs(0.4, 1.0)), pairs(0.5, 0.5));
+    let minibatch = minibatch(pairs(0.4, 1.0));
+    let noise = pairs(0.5, 0.5);
     let first = learner.step(&minibatch, &noise, &settings);
     let second = learner.step(&minibatch, &noise, &settings);
     assert_eq!(first.actor, None);
@@ -83,7 +84,8 @@ fn two_steps_of_double_dqn_are_those_of_numpy() {
     let mut learner = DqnLearner::new(3, &[5], 4, 1);
     set(&mut learner.network, 7.0);
     set(&mut learner.target, 8.0);
-    let (minibatch, before) = (minibatch((0..ROWS).map(|i| (i * 3 % 4) as u16).collect()), learner.target.clone());
+    let minibatch = minibatch((0..ROWS).map(|i| (i * 3 % 4) as u16).collect());
+    let before = learner.target.clone();
     assert_reference("dqn.loss.1", &[learner.step(&minibatch, &settings)]);
     assert_eq!(learner.target, before);
     assert_reference("dqn.loss.2", &[learner.step(&minibatch, &settings)]);

@@ -20,9 +20,12 @@ fn moved(place: f32, action: f32) -> f32 {
 /// Random steps on the line. The cost is the squared distance from the middle, plus a cost for a
 /// second component other than 0.5. A fifth of the steps ignore the action.
 fn steps_on_a_line(count: usize) -> Replay<td3::Numbers> {
-    let (mut replay, stream) = (Replay::new(1, count), &mut Stream::new(2, "test/line"));
+    let mut replay = Replay::new(1, count);
+    let stream = &mut Stream::new(2, "test/line");
     for i in 0..count {
-        let (place, action, counts) = (stream.between(-1.0, 1.0) as f32, td3::drawn(stream), i % 5 != 0);
+        let place = stream.between(-1.0, 1.0) as f32;
+        let action = td3::drawn(stream);
+        let counts = i % 5 != 0;
         let next = moved(place, if counts { action[0] } else { 1.0 });
         let cost = next * next + if counts { 0.5 * (action[1] - 0.5) * (action[1] - 0.5) } else { 0.0 };
         // Steps that ignore the action start farther out, since being tagged is another state.
@@ -48,7 +51,8 @@ fn trained_td3(steps: usize, threads: usize) -> Td3Learner {
         smoothing: 0.05,
         ..fixture::td3()
     };
-    let (replay, stream) = (steps_on_a_line(4000), &mut Stream::new(3, "test/learning"));
+    let replay = steps_on_a_line(4000);
+    let stream = &mut Stream::new(3, "test/learning");
     let mut learner = Td3Learner::new(1, &[16, 16], 5);
     on_threads(threads, || {
         for _ in 0..steps {
@@ -99,9 +103,11 @@ fn shown(place: usize) -> [f32; LAST] {
 
 /// Random steps to the left and right in a row of places.
 fn steps_in_a_row(count: usize) -> Replay<u16> {
-    let (mut replay, stream) = (Replay::new(LAST, count), &mut Stream::new(2, "test/row"));
+    let mut replay = Replay::new(LAST, count);
+    let stream = &mut Stream::new(2, "test/row");
     for _ in 0..count {
-        let (place, action) = (stream.below(LAST as u64) as usize, stream.below(2) as u16);
+        let place = stream.below(LAST as u64) as usize;
+        let action = stream.below(2) as u16;
         let next = if action == 1 { place + 1 } else { place.saturating_sub(1) };
         replay.push(Transition {
             observation: &shown(place),
@@ -117,7 +123,8 @@ fn steps_in_a_row(count: usize) -> Replay<u16> {
 
 fn trained_dqn(steps: usize, threads: usize) -> DqnLearner {
     let settings = Dqn { minibatch: 300, learning_rate: 3e-3, discount: 0.8, target_every: 20, ..fixture::dqn() };
-    let (replay, stream) = (steps_in_a_row(2000), &mut Stream::new(3, "test/learning"));
+    let replay = steps_in_a_row(2000);
+    let stream = &mut Stream::new(3, "test/learning");
     let mut learner = DqnLearner::new(LAST, &[32], 2, 5);
     on_threads(threads, || (0..steps).for_each(|_| _ = learner.update(&replay, &settings, stream)));
     learner

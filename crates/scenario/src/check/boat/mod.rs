@@ -79,7 +79,8 @@ fn drive(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>) -> Optio
 }
 
 fn check_gps(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, gps: &Gps) {
-    let (latency_s, most_s) = (gps.latency_s, MOST_PERIODS_LATE * gps.period_s);
+    let latency_s = gps.latency_s;
+    let most_s = MOST_PERIODS_LATE * gps.period_s;
     if latency_s > most_s {
         let path = if document.has("gps.latency_s") { "gps.latency_s" } else { "gps.period_s" };
         let message = format!("latency_s is {latency_s}, expected at most {most_s}: {MOST_PERIODS_LATE} periods");
@@ -94,7 +95,8 @@ fn hull(raw: &raw::Boat, drive: &Drive) -> Hull {
         Drive::Thrusters { thruster, autopilot } => (2.0 * full_ahead_newton(&thruster.curve), autopilot.speed_max_m_s),
         Drive::Kinematic(kinematic) => (0.0, kinematic.speed_max_m_s),
     };
-    let (hull, length_m) = (&raw.hull, raw.length_m);
+    let hull = &raw.hull;
+    let length_m = raw.length_m;
     let Hull { mass_kg, x_g_m, surge_quadratic_kg_m, .. } = *hull;
     // A radius of gyration of a quarter of the length, shifted from the centre of gravity to
     // midships.
@@ -134,7 +136,9 @@ fn hull(raw: &raw::Boat, drive: &Drive) -> Hull {
 
 /// The windage, with estimates like those of the hull.
 fn windage(raw: &raw::Boat) -> Windage {
-    let (windage, length_m, beam_m) = (&raw.windage, raw.length_m, raw.beam_m);
+    let windage = &raw.windage;
+    let length_m = raw.length_m;
+    let beam_m = raw.beam_m;
     Windage {
         frontal_area_m2: windage.frontal_area_m2.unwrap_or(0.36 * beam_m * beam_m),
         lateral_area_m2: windage.lateral_area_m2.unwrap_or(0.16 * length_m * length_m),
@@ -148,7 +152,9 @@ fn windage(raw: &raw::Boat) -> Windage {
 /// A singular mass matrix would give unbounded acceleration.
 fn check_inertia(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, boat: &Boat) {
     let hull = &boat.hull;
-    let (m, x_g, i_z) = (hull.mass_kg, hull.x_g_m, hull.yaw_inertia_kg_m2);
+    let m = hull.mass_kg;
+    let x_g = hull.x_g_m;
+    let i_z = hull.yaw_inertia_kg_m2;
     if x_g.abs() > boat.length_m / 2.0 {
         let half_m = boat.length_m / 2.0;
         let message = format!("x_g_m is {x_g}, expected -{half_m} to {half_m}, within the hull");

@@ -13,7 +13,8 @@ pub(super) fn thruster(
     let curve = match (&raw.propeller, &raw.table_pct_newton) {
         (Some(propeller), None) => {
             let Propeller { k_ahead, k_astern, n_max_rad_s, n_min_rad_s } = *propeller;
-            let (k_astern, n_min_rad_s) = (k_astern.unwrap_or(k_ahead), n_min_rad_s.unwrap_or(n_max_rad_s));
+            let k_astern = k_astern.unwrap_or(k_ahead);
+            let n_min_rad_s = n_min_rad_s.unwrap_or(n_max_rad_s);
             ThrustCurve::Propeller(Propeller { k_ahead, k_astern, n_max_rad_s, n_min_rad_s })
         }
         (None, Some(rows)) => table(diagnostics, document, rows),

@@ -12,7 +12,8 @@ const STEEPEST: f64 = 0.08;
 const HIGHEST: f64 = 0.6;
 
 pub(super) fn waves(diagnostics: &mut Diagnostics, document: &Document<raw::Sea>, raw: &raw::Waves) -> Option<Waves> {
-    let (depth_m, wind) = (document.raw.depth_m, document.raw.wind.as_ref());
+    let depth_m = document.raw.depth_m;
+    let wind = document.raw.wind.as_ref();
     let is_jonswap = raw.spectrum == raw::Spectrum::Jonswap;
     if !is_jonswap && document.has("waves.gamma") {
         let message = format!("gamma is {}, expected none: it applies only to \"jonswap\"", raw.gamma);

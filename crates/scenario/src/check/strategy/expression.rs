@@ -131,7 +131,8 @@ impl Reader<'_, '_> {
             (Some(join @ (Join::Equal | Join::Unequal)), _, [a, b]) => self.equality(part, join, a, b),
             (Some(join), _, [a, b]) => {
                 let wanted = Kind::of(matches!(join, Join::And | Join::Or));
-                let (a, b) = (self.of_kind(a, &wanted), self.of_kind(b, &wanted));
+                let a = self.of_kind(a, &wanted);
+                let b = self.of_kind(b, &wanted);
                 Some((Expression::Join(join, Box::new((a?, b?))), Kind::of(join.is_truth())))
             }
             (_, operators::LOGICAL_NOT, [a]) => {
@@ -166,7 +167,8 @@ impl Reader<'_, '_> {
                 Some((Expression::Measure(measure, self.place(place, name)?), Kind::of(measure.is_truth())))
             }
             (Some(measure), [from, to]) if measure.is_of_two() => {
-                let (from, to) = (self.place(from, name), self.place(to, name));
+                let from = self.place(from, name);
+                let to = self.place(to, name);
                 Some((Expression::Between(measure, Box::new((from?, to?))), Kind::of(measure.is_truth())))
             }
             (Some(measure), _) if measure.is_of_two() => {
@@ -177,7 +179,8 @@ impl Reader<'_, '_> {
             _ if CALLS.contains(&name) => self.refuse(part, &format!("{given} two numbers")),
             _ => {
                 let known = [&CALLS[..], &Measure::names()].concat();
-                let (all, guess) = (known.join("(), "), did_you_mean(name, &known));
+                let all = known.join("(), ");
+                let guess = did_you_mean(name, &known);
                 self.refuse(part, &format!("calls {name}(), expected one of {all}(){guess}"))
             }
         }
@@ -201,8 +204,10 @@ impl Reader<'_, '_> {
     }
 
     fn equality(&mut self, part: &IdedExpr, join: Join, a: &IdedExpr, b: &IdedExpr) -> Option<Read> {
-        let (left, right) = (self.any(a), self.any(b));
-        let ((left, left_kind), (right, right_kind)) = (left?, right?);
+        let left = self.any(a);
+        let right = self.any(b);
+        let (left, left_kind) = left?;
+        let (right, right_kind) = right?;
         let is_variable = |side: &Expression| side.as_variable().is_some();
         let sides = match (&left_kind, &right_kind) {
             (Kind::Text(values), Kind::Text(text)) if is_variable(&left) && !is_variable(&right) => {
@@ -216,7 +221,8 @@ impl Reader<'_, '_> {
             }
             _ if left_kind == right_kind => (left, right),
             _ => {
-                let (left, right) = (in_words(&left, &left_kind), in_words(&right, &right_kind));
+                let left = in_words(&left, &left_kind);
+                let right = in_words(&right, &right_kind);
                 return self
                     .refuse(part, &format!("compares {left} with {right}, expected two values of the same kind"));
             }

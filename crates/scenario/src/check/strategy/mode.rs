@@ -61,7 +61,8 @@ fn check_conditions(scope: &mut Scope<'_>, modes: &[Mode]) {
     let is_known = |mode: usize| given[mode].r#in.is_some() == modes[mode].parent.is_some();
     for (i, mode) in modes.iter().enumerate().filter(|(i, _)| is_known(*i)) {
         let next = (i + 1..modes.len()).find(|other| modes[*other].parent == mode.parent && is_known(*other));
-        let (name, path) = (&mode.name, format!("mode.{i}.when"));
+        let name = &mode.name;
+        let path = format!("mode.{i}.when");
         match (&given[i].when, next) {
             (None, Some(next)) => {
                 let next = &modes[next].name;

@@ -76,13 +76,15 @@ fn rule(scope: &mut Scope<'_>, rule: usize, given: &raw::Rule) -> Rule {
 
 fn trigger(scope: &mut Scope<'_>, path: &str, on: &str) -> Option<Trigger> {
     let mut words = on.split_whitespace();
-    let (who, what) = (words.next().unwrap_or_default(), words.next().unwrap_or_default());
+    let who = words.next().unwrap_or_default();
+    let what = words.next().unwrap_or_default();
     if let (Some(who), Some(what), None) = (Who::by_name(who), What::by_name(what), words.next()) {
         return Some(Trigger { who, what });
     }
     let guess = nearest(who, &Who::names()).zip(nearest(what, &What::names()));
     let guess = guess.map(|(who, what)| format!(" (did you mean {who} {what}?)")).unwrap_or_default();
-    let (who, what) = (Who::names().join(", "), What::names().join(", "));
+    let who = Who::names().join(", ");
+    let what = What::names().join(", ");
     scope.note(path, &format!("is {on:?}, expected one of {who}, then one of {what}{guess}"));
     None
 }

@@ -259,7 +259,8 @@ impl Search<'_> {
             Expression::Variable(term) => self.tried[usize::from(*term)].ok_or(usize::from(*term)),
             Expression::Not(inner) => self.value(inner).map(|value| f64::from(u8::from(value == 0.0))),
             Expression::Join(join, sides) => {
-                let (a, b) = (self.value(&sides.0), self.value(&sides.1));
+                let a = self.value(&sides.0);
+                let b = self.value(&sides.1);
                 match join {
                     // One side may determine the value.
                     Join::And if [a, b].contains(&Ok(0.0)) => Ok(0.0),
@@ -270,7 +271,8 @@ impl Search<'_> {
             Expression::Choose(parts) => match self.value(&parts.0) {
                 Ok(holds) => self.value(if holds == 0.0 { &parts.2 } else { &parts.1 }),
                 Err(open) => {
-                    let (then, otherwise) = (self.value(&parts.1), self.value(&parts.2));
+                    let then = self.value(&parts.1);
+                    let otherwise = self.value(&parts.2);
                     then.ok().filter(|_| then == otherwise).ok_or(open)
                 }
             },

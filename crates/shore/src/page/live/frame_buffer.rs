@@ -27,7 +27,8 @@ pub(super) struct FrameBuffer {
 impl FrameBuffer {
     /// Adds a frame with its CDR. Returns whether frames before it were missed.
     pub(super) fn take(&mut self, frame: &Frame, cdr: &[u8], now: Instant) -> bool {
-        let (at, seq) = (frame.stamp.valid_ns, frame.stamp.seq);
+        let at = frame.stamp.valid_ns;
+        let seq = frame.stamp.seq;
         let missed = self.count > 0 && seq > self.stamp.seq.saturating_add(1);
         if at < self.stamp.valid_ns {
             self.past.clear();

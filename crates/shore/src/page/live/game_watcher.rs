@@ -57,7 +57,8 @@ impl GameWatcher {
     /// Shows one game after another until the view closes.
     pub(super) fn run(self) {
         let mut session = None;
-        let (mut said, mut attempts) = (String::new(), 0_u64);
+        let mut said = String::new();
+        let mut attempts = 0_u64;
         while !self.shared.is_closing() {
             // Commands to a game that has gone must not reach the next one.
             while self.commands.take_now().is_some() {}
@@ -75,7 +76,7 @@ impl GameWatcher {
                         said = reason;
                     }
                     attempts += 1;
-                    if attempts % ATTEMPTS == 0 {
+                    if attempts.is_multiple_of(ATTEMPTS) {
                         session = None;
                     }
                     clock::rest(LOOK_AGAIN);
@@ -103,7 +104,9 @@ impl GameWatcher {
             |e: &std::io::Error| (self.shared.tell)(&format!("cannot start a thread for queries to the game: {e}"));
         let query_thread = NodeThread::start(move || queries.ask(&until)).inspect_err(no_thread);
         let (requests, requested) = inbox(REQUESTS);
-        let (shared, bus, game) = (Arc::clone(&self.shared), session.bus.clone(), session.game.name.clone());
+        let shared = Arc::clone(&self.shared);
+        let bus = session.bus.clone();
+        let game = session.game.name.clone();
         let until = Arc::clone(&left);
         // The sim may reply slowly, and a stop must not wait for that.
         let request_thread =
@@ -156,7 +159,8 @@ impl GameSession {
         for vehicle in game.scenario().externals() {
             standing.push(subscriptions.clone().status(&bus, &game, vehicle)?);
         }
-        let (policies, pictures) = (BTreeMap::new(), BTreeMap::new());
+        let policies = BTreeMap::new();
+        let pictures = BTreeMap::new();
         Ok(GameSession { bus, game, policies, pictures, sim, _standing: standing })
     }
 

@@ -83,8 +83,11 @@ pub(super) fn operate(
         None if command != OperatorCommand::Status => shared.stops.cancel(Some(name)),
         None => {}
     }
-    let (generation, needs_token, word) = (state.generation, command.needs_token(), (&command).into());
-    let (at_work, named) = (Arc::clone(shared), name.to_owned());
+    let generation = state.generation;
+    let needs_token = command.needs_token();
+    let word = (&command).into();
+    let at_work = Arc::clone(shared);
+    let named = name.to_owned();
     let thread = start_thread("page-operate", move || {
         let reply = ask(&bus, &game, vehicle, &command);
         if let (Err(_), Some(stop)) = (&reply, stop) {

@@ -160,7 +160,9 @@ mod tests {
     ) -> Vec<(VehicleId, u64)> {
         let start = clock::now();
         let at = |ms| start + Duration::from_millis(ms);
-        let (mut schedule, mut now_ms, mut asked) = (QuerySchedule::default(), 0, vec![]);
+        let mut schedule = QuerySchedule::default();
+        let mut now_ms = 0;
+        let mut asked = vec![];
         while now_ms < until_ms {
             if let Some(turn) = schedule.next(wanted, listed, at(now_ms)) {
                 schedule.update(turn, at(now_ms), at(now_ms + took_ms), is_going);
@@ -204,7 +206,8 @@ mod tests {
 
     #[test]
     fn who_wants_utilities_too_does_not_wait_for_the_next_round() {
-        let (mut schedule, start) = (QuerySchedule::default(), clock::now());
+        let mut schedule = QuerySchedule::default();
+        let start = clock::now();
         let turn = |functions| Turn { vehicle: BOATS[0], functions, is_listed: false };
         schedule.update(turn(false), start, start, true);
         assert_eq!(schedule.next(&BTreeMap::from([(BOATS[0], false)]), &[], start), None);

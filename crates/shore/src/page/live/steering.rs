@@ -62,7 +62,8 @@ mod tests {
     fn one_page_steers_until_it_releases_closes_or_falls_silent() {
         let start = clock::now();
         let later = |s: f64| start + Duration::from_secs_f64(s);
-        let (a, b) = (VehicleId(0), VehicleId(1));
+        let a = VehicleId(0);
+        let b = VehicleId(1);
         let mut steering_locks = SteeringLocks::default();
         assert!(
             steering_locks.acquire(a, 1, start)

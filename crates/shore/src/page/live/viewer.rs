@@ -103,7 +103,8 @@ impl PageViewer {
                 Err("only a game in lockstep can run at unlimited speed".to_owned())
             }
             Some(factor) if !Control::SPEEDS.contains(&factor) => {
-                let (min, max) = (Control::SPEEDS.start(), Control::SPEEDS.end());
+                let min = Control::SPEEDS.start();
+                let max = Control::SPEEDS.end();
                 Err(format!("the speed is {factor}, expected {min} to {max}"))
             }
             _ => self.control(&state, Control::Speed(factor)),
@@ -205,7 +206,8 @@ impl Viewer for PageViewer {
         let sent = &mut self.sent;
         let text = reply
             .map(|Operated { vehicle, command, refused }| {
-                let (vehicle, refused) = (game.name_of(vehicle), refused.as_deref());
+                let vehicle = game.name_of(vehicle);
+                let refused = refused.as_deref();
                 PageMessage::Operated { vehicle, command, refused }.json()
             })
             .or_else(|| sent.next_events(&state))
@@ -353,7 +355,8 @@ mod tests {
     #[test]
     fn what_is_told_of_the_selected_boat_waits_until_there_is_room() {
         let shared = Arc::new(SharedState::new(inbox(1).0, Box::new(|_| ()), |_| Err(String::new())).unwrap());
-        let (scenario, now) = (scenario(), clock::now());
+        let scenario = scenario();
+        let now = clock::now();
         let info = GameInfo { version: String::new(), pace: "lockstep".to_owned(), scenario };
         let name = GameName::new("pond").unwrap();
         shared.state.lock().begin(Arc::new(LiveGame::new(name, info, &Water::default())));

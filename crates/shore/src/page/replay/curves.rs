@@ -35,7 +35,8 @@ impl Plotter {
             GameSeries::of_at_most(recording, SAMPLES.saturating_mul(boats).min(SAMPLES_MAX))
         });
         let boat = |vehicle: VehicleId| series.boats.get(vehicle.index());
-        let (one, another) = (vehicle.and_then(boat), other.and_then(boat));
+        let one = vehicle.and_then(boat);
+        let another = other.and_then(boat);
         let range = |(one, another): (&analysis::BoatSeries, &analysis::BoatSeries)| {
             one.track().zip(another.track()).map(|(one, another)| rounded(one.distance(another))).collect()
         };

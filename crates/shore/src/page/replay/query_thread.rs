@@ -190,7 +190,8 @@ mod tests {
 
     #[test]
     fn nothing_is_kept_for_a_reader_who_left_while_the_answer_was_worked_on() {
-        let ((began, begins), (go, goes)) = (channel(), channel());
+        let (began, begins) = channel();
+        let (go, goes) = channel();
         let helms: Option<Box<dyn Helms>> = Some(Box::new(SlowHelms(began, goes)));
         let thread =
             QueryThread::open(Sources { scenario: scenario(), helms, plotter: Plotter::default() }, Changes::default());

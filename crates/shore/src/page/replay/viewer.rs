@@ -50,7 +50,8 @@ pub(super) struct PageViewer {
 impl PageViewer {
     pub(super) fn new(shared: Arc<SharedReplay>, access: Access, viewer: u64) -> PageViewer {
         let times = &shared.source.frame_times;
-        let (from, to) = (times.first().copied().unwrap_or_default(), times.last().copied().unwrap_or_default());
+        let from = times.first().copied().unwrap_or_default();
+        let to = times.last().copied().unwrap_or_default();
         let Header { game, info, .. } = shared.source.recording.header();
         let gateways = info.scenario.externals().map(|vehicle| (vehicle, None)).collect();
         let hello =
@@ -106,7 +107,8 @@ impl PageViewer {
         let times = &self.shared.source.frame_times;
         let Some(frame) = self.frame_at(self.playback.at(now)) else { return };
         let to = (frame as i64).saturating_add(by).clamp(0, times.len() as i64 - 1) as usize;
-        let (one_on, moment) = (to == frame + 1, times[to]);
+        let one_on = to == frame + 1;
+        let moment = times[to];
         if one_on {
             self.playback.seek(moment, now);
         } else {
@@ -132,7 +134,8 @@ impl PageViewer {
             return None;
         }
         self.sent_playback = Some((self.playback.clone(), now));
-        let (source, times) = (&self.shared.source, &self.shared.source.frame_times);
+        let source = &self.shared.source;
+        let times = &self.shared.source.frame_times;
         let tell = PageMessage::Player {
             playing: self.playback.is_playing(),
             t_s: seconds(self.playback.at(now)),
@@ -212,7 +215,8 @@ impl PageViewer {
         let is_sent = |(sent, at): (usize, Instant)| sent == frame || now.saturating_duration_since(at) < SEND_INTERVAL;
         if self.statuses.is_empty() && !self.looked.is_some_and(is_sent) {
             self.looked = Some((frame, now));
-            let (source, at) = (&self.shared.source, self.shared.source.frame_times[frame]);
+            let source = &self.shared.source;
+            let at = self.shared.source.frame_times[frame];
             for (vehicle, sent) in &mut self.gateways {
                 let status = source.status(*vehicle, at);
                 if status == *sent {
