@@ -77,8 +77,8 @@ pub(super) fn report_publishers(
     let mut publishers = BTreeMap::new();
     for vehicle in scenario.externals() {
         let name = &scenario.vehicles[vehicle.index()].name;
-        for what in Reported::ALL {
-            publishers.insert((vehicle, what), bus.publisher(topic::report(game, what, name), Priority::Normal)?);
+        for (what, key) in [(Reported::Status, topic::status(game, name)), (Reported::Link, topic::link(game, name))] {
+            publishers.insert((vehicle, what), bus.publisher(key, Priority::Normal)?);
         }
     }
     Ok(publishers)
