@@ -5,13 +5,13 @@
 //! Signatures are neither written nor checked.
 
 mod framer;
-mod position;
+pub(crate) mod position;
 mod rover_mode;
 mod text;
 
 pub use ::mavlink::dialects::common as dialect;
 pub use framer::{Counts, FRAME_MAX, Frame, Framer, Received, Unreadable};
-pub(crate) use position::{LAT_MAX_E7, LON_MAX_E7, e7, lat_lon, on_globe};
+pub(crate) use position::{e7, lat_lon, on_globe};
 pub use rover_mode::RoverMode;
 pub use text::message_text;
 

@@ -8,7 +8,8 @@ use crate::mavlink::dialect::{
     MISSION_ACK_DATA, MISSION_COUNT_DATA, MISSION_CURRENT_DATA, MISSION_ITEM_DATA, MISSION_ITEM_INT_DATA,
     MISSION_REQUEST_DATA, MavCmd, MavFrame, MavMessage, MavMissionResult, MavMissionType,
 };
-use crate::mavlink::{LAT_MAX_E7, LON_MAX_E7, e7, lat_lon};
+use crate::mavlink::position::{LAT_MAX_E7, LON_MAX_E7};
+use crate::mavlink::{e7, lat_lon};
 use primitives::{LatLon, SimTime};
 
 /// Maximum number of items accepted.
