@@ -144,8 +144,8 @@ pub(crate) fn operator_url(page: &Page) -> String {
 fn address_of(page: &Page, token: Option<&str>) -> String {
     let token = token.map(|token| format!("#token={}", in_address(token))).unwrap_or_default();
     let mut address = page.address;
-    if let (true, Some(own)) = (address.ip().is_unspecified(), own_address()) {
-        address.set_ip(own);
+    if address.ip().is_unspecified() {
+        address.set_ip(own_address().unwrap_or(Ipv4Addr::LOCALHOST.into()));
     }
     format!("http://{address}/{token}")
 }

@@ -58,7 +58,6 @@ pub(super) fn cast(planner: &mut Planner, node: &Node) -> Result<Value, NetworkE
         }
         Value::Computed(row) => Value::Computed(Row { element, ..row }),
         Value::Constant(tensor) => {
-            planner.count_weights(Some(tensor.len()), 0)?;
             let numbers = match (&*tensor.numbers, element) {
                 (Numbers::Floats(floats), Element::Integer) => {
                     Numbers::Integers(floats.iter().map(|float| *float as i64).collect())
@@ -68,6 +67,7 @@ pub(super) fn cast(planner: &mut Planner, node: &Node) -> Result<Value, NetworkE
                 }
                 _ => return Ok(Value::Constant(tensor)),
             };
+            planner.count_weights(Some(tensor.len()), 0)?;
             Value::Constant(Tensor::new(tensor.shape, numbers))
         }
     })
@@ -187,7 +187,7 @@ pub(super) fn concat(planner: &mut Planner, node: &Node) -> Result<Value, Networ
 }
 
 /// The lists of constant integers that are all inputs of a node, as one list: a shape.
-fn joined_integers(planner: &Planner, node: &Node) -> Result<Option<Tensor>, NetworkError> {
+fn joined_integers(planner: &mut Planner, node: &Node) -> Result<Option<Tensor>, NetworkError> {
     let mut joined = vec![];
     for index in 0..node.proto.input.len() {
         let Value::Constant(tensor) = planner.value(node, index)? else { return Ok(None) };
@@ -197,6 +197,7 @@ fn joined_integers(planner: &Planner, node: &Node) -> Result<Option<Tensor>, Net
         }
         at_most("numbers of a constant", Some(joined.len()), PARAMETERS_MAX)?;
     }
+    planner.count_weights(Some(joined.len()), 0)?;
     Ok(Some(Tensor::new(vec![joined.len()], Numbers::Integers(joined))))
 }
 
@@ -241,8 +242,8 @@ fn slice_axis(
             (from..to).step_by(usize::try_from(step).unwrap_or(usize::MAX)).map(|i| i as usize).collect()
         }
         _ => {
-            let from = from_start(start).min(length - 1);
-            let to = from_start(end).max(-1);
+            let from = from_start(start).clamp(-1, length - 1);
+            let to = from_start(end).clamp(-1, length - 1);
             let size = usize::try_from(step.unsigned_abs()).unwrap_or(usize::MAX);
             (to + 1..=from).rev().step_by(size).map(|i| i as usize).collect()
         }
@@ -302,7 +303,8 @@ pub(super) fn transpose(planner: &mut Planner, node: &Node) -> Result<Value, Net
     let mut sorted = order.clone();
     sorted.sort_unstable();
     if !sorted.into_iter().eq(0..rank) {
-        return Err(node.wrong(format!("perm = {order:?}"), format!("each of {rank} axes once")));
+        let found = shown(&format!("{order:?}"));
+        return Err(node.wrong(format!("perm = {found}"), format!("each of {rank} axes once")));
     }
     transposed(planner, value, &order)
 }
@@ -350,6 +352,11 @@ pub(super) fn expanded_row(planner: &mut Planner, row: Row, shape: &[usize]) -> 
     picked(planner, row, shape.to_vec(), || strided(shape, &strides))
 }
 
+/// The indices of a shape's numbers, repeated to another shape.
+pub(super) fn repeated(before: &[usize], shape: &[usize]) -> Vec<u32> {
+    strided(shape, &repeating_strides(before, shape))
+}
+
 /// The strides by which a value repeats along its dimensions of 1, and along new leading ones.
 fn repeating_strides(before: &[usize], shape: &[usize]) -> Vec<usize> {
     let own = strides(before).into_iter().zip(before).map(|(stride, dim)| if *dim == 1 { 0 } else { stride });
@@ -374,6 +381,7 @@ pub(super) fn constant_of_shape(planner: &mut Planner, node: &Node) -> Result<Va
     let dims = asked.iter().map(|dim| usize::try_from(*dim).ok()).collect::<Option<Vec<usize>>>();
     let size = dims.as_deref().and_then(product);
     let size = at_most("numbers of a constant", size, VALUES_MAX)?;
+    planner.count_weights(Some(size), 0)?;
     let value = match node.tensor("value")?.and_then(|attribute| attribute.t.as_ref()) {
         Some(proto) => Some(Tensor::read(proto, "value")?),
         None => None,
@@ -413,7 +421,14 @@ fn rearranged(
     shape: Vec<usize>,
     from: impl FnOnce() -> Vec<u32>,
 ) -> Result<Value, NetworkError> {
+    if shape.len() > RANK_MAX {
+        let found = format!("{} dimensions", shape.len());
+        return Err(NetworkError::at("a value of the model", found, format!("at most {RANK_MAX}")));
+    }
     match value {
+        Value::Constant(_) if product(&shape) == Some(0) => {
+            Err(NetworkError::at("a constant of the model", "no numbers", "at least one"))
+        }
         Value::Constant(tensor) => {
             planner.count_weights(product(&shape), 0)?;
             let from = from();

@@ -7,7 +7,7 @@ use super::error::{shape_text, shown};
 use super::node::Node;
 use super::plan::{Element, Planner, Row, Value};
 use super::step::Work;
-use super::tensor::{Numbers, Tensor};
+use super::tensor::{Numbers, Tensor, product};
 use std::ops::Range;
 
 /// A function of one number. NaN in gives NaN out.
@@ -187,7 +187,7 @@ pub(super) fn binary(planner: &mut Planner, node: &Node, operation: Operation) -
     if let Some(integers) = integers(planner, node, operation)? {
         return Ok(Value::Constant(integers));
     }
-    // Sums and the like of integers are exact in floats, unlike quotients.
+    // Sums and the like of integers of up to 24 bits are exact in floats, unlike quotients.
     let is_whole = !matches!(operation, Operation::Divide | Operation::Power | Operation::Slope);
     let is_of_integers = |index| planner.value(node, index).is_ok_and(|value| value.is_integer());
     let element = match is_whole && (0..node.proto.input.len()).all(is_of_integers) {
@@ -203,11 +203,13 @@ pub(super) fn binary(planner: &mut Planner, node: &Node, operation: Operation) -
 }
 
 /// The result of an operation on two constants with integers, such as parts of a shape.
-fn integers(planner: &Planner, node: &Node, operation: Operation) -> Result<Option<Tensor>, NetworkError> {
+fn integers(planner: &mut Planner, node: &Node, operation: Operation) -> Result<Option<Tensor>, NetworkError> {
+    if node.proto.input.len() != 2 {
+        return Ok(None);
+    }
     let [Value::Constant(left), Value::Constant(right)] = [planner.value(node, 0)?, planner.value(node, 1)?] else {
         return Ok(None);
     };
-    let (Numbers::Integers(a), Numbers::Integers(b)) = (&*left.numbers, &*right.numbers) else { return Ok(None) };
     let function: fn(i64, i64) -> Option<i64> = match operation {
         Operation::Add => i64::checked_add,
         Operation::Subtract => i64::checked_sub,
@@ -218,37 +220,48 @@ fn integers(planner: &Planner, node: &Node, operation: Operation) -> Result<Opti
         Operation::Equal => |a, b| Some((a == b).into()),
         Operation::Power | Operation::Slope => return Ok(None),
     };
-    let shape = if a.len() >= b.len() { &left.shape } else { &right.shape };
-    let count = a.len().max(b.len());
-    let fits = [a, b].iter().all(|each| each.len() == count || each.len() == 1);
-    let numbers: Option<Vec<i64>> =
-        fits.then(|| (0..count).map(|i| function(a[i % a.len()], b[i % b.len()])).collect()).flatten();
-    match numbers {
-        Some(numbers) => Ok(Some(Tensor::new(shape.clone(), Numbers::Integers(numbers)))),
-        None => Err(node.wrong(format!("{a:?} with {b:?}"), "equally many integers, or one, and a result in 64 bits")),
+    if [&left, &right].iter().any(|tensor| matches!(&*tensor.numbers, Numbers::Floats(_))) {
+        return Ok(None);
     }
+    let (shape, [a, b]) = alike(planner, node, [&left, &right])?;
+    let numbers = a.into_iter().zip(b).map(|(a, b)| function(a, b)).collect::<Option<Vec<i64>>>();
+    let Some(numbers) = numbers else { return Err(node.wrong("an integer beyond 64 bits", "a smaller one")) };
+    Ok(Some(Tensor::new(shape, Numbers::Integers(numbers))))
 }
 
-/// Plans `Where` with a constant condition.
-pub(super) fn choose(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
-    let condition = planner.constant(node, 0)?;
-    let Numbers::Integers(condition) = &*condition.numbers else {
-        return Err(node.wrong("floats as input 0", "BOOL numbers"));
-    };
-    let choices = [planner.constant(node, 1)?, planner.constant(node, 2)?];
-    let [Numbers::Integers(if_true), Numbers::Integers(if_false)] = [&*choices[0].numbers, &*choices[1].numbers] else {
-        return Err(node.wrong("a choice between floats", "a choice between constant integers"));
-    };
-    let count = condition.len();
-    if [if_true, if_false].iter().any(|list| list.len() != count && list.len() != 1) || count == 0 {
-        let found = format!("{count} conditions, {} and {} numbers", if_true.len(), if_false.len());
-        return Err(node.wrong(found, "equally many"));
+/// The integers of constants, repeated to their common shape.
+fn alike<const COUNT: usize>(
+    planner: &mut Planner,
+    node: &Node,
+    tensors: [&Tensor; COUNT],
+) -> Result<(Vec<usize>, [Vec<i64>; COUNT]), NetworkError> {
+    let mut shape = vec![];
+    for tensor in tensors {
+        shape = broadcast(&shape, &tensor.shape).ok_or_else(|| {
+            let found = format!("{} with {}", shape_text(&shape), shape_text(&tensor.shape));
+            node.wrong(found, "shapes whose dimensions are equal or 1")
+        })?;
     }
-    let chosen = condition.iter().enumerate().map(|(i, is_true)| {
-        let list = if *is_true == 0 { if_false } else { if_true };
-        list[i % list.len()]
-    });
-    Ok(Value::Constant(Tensor::new(vec![count], Numbers::Integers(chosen.collect()))))
+    planner.count_weights(product(&shape).and_then(|size| size.checked_mul(COUNT)), 0)?;
+    let mut lists: [Vec<i64>; COUNT] = std::array::from_fn(|_| vec![]);
+    for (list, tensor) in lists.iter_mut().zip(tensors) {
+        let Numbers::Integers(integers) = &*tensor.numbers else {
+            return Err(node.wrong("constant floats", "constant integers"));
+        };
+        let from = arrangement::repeated(&tensor.shape, &shape);
+        *list = from.into_iter().map(|i| integers[i as usize]).collect();
+    }
+    Ok((shape, lists))
+}
+
+/// Plans `Where` for constant integers.
+pub(super) fn choose(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
+    let [condition, if_true, if_false] =
+        [planner.constant(node, 0)?, planner.constant(node, 1)?, planner.constant(node, 2)?];
+    let (shape, [conditions, a, b]) = alike(planner, node, [&condition, &if_true, &if_false])?;
+    let choices = conditions.into_iter().zip(a.into_iter().zip(b));
+    let chosen = choices.map(|(is_true, (a, b))| if is_true == 0 { b } else { a });
+    Ok(Value::Constant(Tensor::new(shape, Numbers::Integers(chosen.collect()))))
 }
 
 /// Applies an operation to two rows of equal shapes, or of shapes that broadcast to one.

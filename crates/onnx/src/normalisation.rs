@@ -36,6 +36,9 @@ pub(super) fn batch(planner: &mut Planner, node: &Node) -> Result<Value, Network
     if node.integer("training_mode", 0)? != 0 {
         return Err(node.wrong("training_mode = 1", "training_mode = 0: export the model in evaluation mode"));
     }
+    if node.integer("spatial", 1)? != 1 {
+        return Err(node.wrong("spatial = 0", "spatial = 1: one factor per channel"));
+    }
     let input = planner.row(node, 0)?;
     let [scale, bias, mean, variance] = channels(planner, node, &input)?;
     let epsilon = node.float("epsilon", 1e-5)?;

@@ -168,6 +168,9 @@ impl Planner {
             step.take(&mut self.values);
         }
         let floats = self.values[row.place].to_vec();
+        if floats.iter().any(|float| float.is_nan()) {
+            return Err(NetworkError::at("a constant of the model", "NaN", "numbers"));
+        }
         self.values.truncate(values);
         self.placed.retain(|_, place| place.end <= values);
         self.count_weights(Some(floats.len()), 0)?;
@@ -210,6 +213,9 @@ impl Planner {
     }
 
     fn room(&mut self, size: Option<usize>) -> Result<Range<usize>, NetworkError> {
+        if size == Some(0) {
+            return Err(NetworkError::at("a value of the model", "no numbers", "at least one"));
+        }
         let start = self.values.len();
         let end = size.and_then(|size| start.checked_add(size));
         let end = at_most("numbers in an evaluation", end, VALUES_MAX)?;

@@ -60,7 +60,8 @@ fn needed(graph: &GraphProto) -> BTreeSet<&str> {
     let mut needed: BTreeSet<&str> = graph.output.iter().map(|info| info.name.as_str()).collect();
     for node in graph.node.iter().rev() {
         if computes(node, &needed) {
-            needed.extend(node.input.iter().map(String::as_str));
+            // Inputs that are left out have no name.
+            needed.extend(node.input.iter().map(String::as_str).filter(|name| !name.is_empty()));
         }
     }
     needed

@@ -104,13 +104,14 @@ pub(super) fn gather_elements(planner: &mut Planner, node: &Node) -> Result<Valu
     let input = planner.row(node, 0)?;
     let axis = node.axis(node.integer("axis", 0)?, input.shape.len())?;
     check_is_last(node, &input.shape, axis)?;
-    let Value::Computed(indices) = planner.value(node, 1)? else {
-        return Err(node.wrong("constant indices", "computed ones; use Gather"));
+    let indices = match planner.value(node, 1)? {
+        Value::Computed(row) if row.element == Element::Integer => row,
+        _ => return Err(node.wrong("other indices", "computed integers; use Gather for constant ones")),
     };
     let row_size = input.shape[axis];
-    let rows = input.place.len() / row_size;
-    let fits = indices.shape.len() == input.shape.len() && indices.shape[..axis] == input.shape[..axis];
-    if !fits || rows == 0 {
+    let mut shape = input.shape.clone();
+    shape[axis] = indices.shape.get(axis).copied().unwrap_or(0);
+    if shape != indices.shape {
         let found = format!("{} by {}", shape_text(&input.shape), shape_text(&indices.shape));
         return Err(node.wrong(found, "shapes that differ only in the last axis"));
     }
@@ -148,6 +149,9 @@ impl Reduction {
             // The maximum is subtracted first to prevent overflow.
             Reduction::LogSumExp => {
                 let greatest = greatest();
+                if greatest.is_infinite() {
+                    return greatest;
+                }
                 greatest + libm::logf(row.iter().fold(0.0, |sum, x| sum + libm::expf(x - greatest)))
             }
         }

@@ -40,6 +40,10 @@ impl Tensor {
         let Some(shape) = shape else {
             return Err(NetworkError::tensor(name, "a negative dimension", "dimensions of 0 or more"));
         };
+        // Only lists can be empty, such as the shape of a single number.
+        if product(&shape) == Some(0) && shape.len() > 1 {
+            return Err(NetworkError::tensor(name, shape_text(&shape), "dimensions of 1 or more"));
+        }
         let count = at_most(&format!("numbers of tensor `{}`", shown(name)), product(&shape), PARAMETERS_MAX)?;
         // Fields hold 16-bit floats and booleans as 32-bit integers.
         let bits = || listed(proto, &low_halves(&proto.int32_data), u16::from_le_bytes).into_iter();

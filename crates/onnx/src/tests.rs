@@ -164,6 +164,10 @@ fn tensors_that_cannot_be_used_are_refused() {
         (|g| _ = g.initializer[0].float_data.pop(), "tensor `w`: found 5 numbers, expected 6 for the shape 2 x 3"),
         (|g| g.initializer[0].raw_data = Some(vec![0; 25]), "tensor `w`: found 6 numbers, expected 6"),
         (|g| g.initializer[0].dims[0] = -2, "tensor `w`: found a negative dimension"),
+        (
+            |g| g.initializer[0].dims = vec![1 << 40, 0],
+            "tensor `w`: found the shape 1099511627776 x 0, expected dimensions",
+        ),
         (|g| g.initializer[0].dims[0] = i64::MAX, "numbers of tensor `w`: found 18446744073709551615"),
         (|g| g.initializer[0].dims = vec![1; 9], "tensor `w`: found 9 dimensions, expected at most 8"),
         (|g| g.initializer[0].data_type = 8, "tensor `w`: found STRING numbers, expected FLOAT, FLOAT16, BFLOAT16"),
@@ -276,6 +280,12 @@ fn arrangements_that_do_not_fit_are_refused() {
         (|g| with_integers(g, "Expand", &[&[1, 2]]), "(Expand): found the shape 1 x 3 expanded to [1, 2]"),
         (|g| with_integers(g, "Expand", &[&[-1, 3]]), "(Expand): found the shape 1 x 3 expanded to [-1, 3]"),
         (|g| with_integers(g, "Expand", &[&[1 << 40, 3]]), "numbers in an evaluation: found 3298534883333"),
+        (|g| with_integers(g, "Expand", &[&[0, 3]]), "a value of the model: found no numbers, expected at least one"),
+        (|g| with_integers(g, "Gather", &[&[]]), "a value of the model: found no numbers"),
+        (
+            |g| with_integers(g, "Slice", &[&[0], &[i64::MAX], &[1], &[-(1 << 44)]]),
+            "found the empty range 0 to 9223372036854775807 of axis 1",
+        ),
         (|g| with_integers(g, "ReduceMean", &[&[2]]), "(ReduceMean): found axis 2, expected an axis of 2 dimensions"),
         (|g| with_integers(g, "Add", &[&[1, 2, 3]]), "(Add): found integers as input 1, expected FLOAT numbers"),
     ]);
@@ -344,4 +354,28 @@ fn only_the_first_output_of_a_normalisation_can_be_used() {
     assert!(error.contains("found a use of the output `mask`"), "{error}");
     model.graph.as_mut().expect("the model has a graph").output.pop();
     Network::read(&model.encode_to_vec()).expect("the mask is unused");
+}
+
+/// The shape of a view may be computed from constants.
+#[test]
+fn constant_integers_are_computed_when_the_file_is_read() {
+    for (operator, lists, want) in [
+        ("Max", &[&[1, 1][..], &[0, 3], &[1, 2]][..], true),
+        ("Max", &[&[1, 3]], true),
+        ("Mul", &[&[1, 3], &[1]], true),
+        ("Add", &[&[1, 3], &[1]], false),
+        ("Where", &[&[1, 0], &[1, 9], &[9, 3]], true),
+    ] {
+        let mut model = sound();
+        let graph = graph(&mut model);
+        let names: Vec<String> = (0..lists.len()).map(|i| format!("list {i}")).collect();
+        for (name, list) in names.iter().zip(lists) {
+            let proto =
+                TensorProto { data_type: INT64, int64_data: list.to_vec(), ..tensor(name, &[list.len() as i64], &[]) };
+            graph.initializer.push(proto);
+        }
+        with_node(graph, node("Reshape", &["sums", "shape"], "z"));
+        graph.node.insert(0, node(operator, &names.iter().map(String::as_str).collect::<Vec<_>>(), "shape"));
+        assert_eq!(Network::read(&model.encode_to_vec()).is_ok(), want, "{operator} of {lists:?}");
+    }
 }

@@ -18,18 +18,21 @@ pub fn set_built_in(files: BuiltIn) {
 /// `scenarios/seas/gale.toml`, however the path is written.
 #[must_use]
 pub fn built_in(path: &Path) -> Option<&'static [u8]> {
-    // A path typed within `scenarios` lacks its name.
-    let whole = std::path::absolute(path).ok()?;
+    // A path typed within `scenarios` lacks its name. Without a working folder, there is only what
+    // was typed.
+    let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     let mut parts = vec![];
     for component in whole.components() {
         match component {
-            Component::Normal(part) => parts.push(part.to_str()?),
+            Component::Normal(part) => parts.push(part),
             Component::ParentDir => _ = parts.pop(),
             _ => {}
         }
     }
     match parts[..] {
-        [.., "scenarios", folder, name] => BUILT_IN.get()?(&format!("{folder}/{name}")),
+        [.., root, folder, name] if root == "scenarios" => {
+            BUILT_IN.get()?(&format!("{}/{}", folder.to_str()?, name.to_str()?))
+        }
         _ => None,
     }
 }

@@ -175,7 +175,7 @@ impl Sheet {
         let text = self.text(row, column);
         let found = if text.is_empty() { "empty".to_owned() } else { text.to_owned() };
         // A setting computed as full ahead may exceed it by a rounding error.
-        let slack = 1e-9 * low.abs().max(high.abs());
+        let slack = 1e-9 * (high - low);
         match self.parse(text) {
             Some(number) if (low - slack..=high + slack).contains(&number) => Ok(number.clamp(low, high)),
             _ => {
@@ -251,12 +251,15 @@ fn utf_8(bytes: Vec<u8>) -> Result<Vec<u8>, String> {
     }
 }
 
-/// What separates the columns: a semicolon or a tab if the first line has one, else commas.
+/// What separates the columns: the commonest of comma, semicolon and tab in the first line.
 fn separator(bytes: &[u8]) -> u8 {
     let mut lines = bytes.split(|byte| *byte == b'\n');
     let header = lines.find(|line| !line.trim_ascii().is_empty() && !line.starts_with(b"#")).unwrap_or_default();
-    let others = [b';', b'\t'].into_iter().find(|separator| header.trim_ascii().contains(separator));
-    others.unwrap_or(b',')
+    // Every other part is within quotes.
+    let plain = header.split(|byte| *byte == b'"').step_by(2);
+    let count = |separator: u8| plain.clone().flatten().filter(|byte| **byte == separator).count();
+    // The last one of equally common ones counts.
+    [b'\t', b';', b','].into_iter().max_by_key(|separator| count(*separator)).unwrap_or(b',')
 }
 
 /// A normalised column name: `Port (rad/s)` is `port_rad_s`.
@@ -364,6 +367,7 @@ mod tests {
             b"t_s,a\ns,\n0,1\n1.5,3\n",
             b"# a comment; with a semicolon\nt_s,a\n0,1\n1.5,3\n",
             b"t_s,a\n0,1\n1.5,3\n1",
+            b"t_s, \ta\n0,1\n1.5,3\n",
             &utf_16,
         ] {
             let sheet = Sheet::read("in.csv", bytes).unwrap_or_else(|error| panic!("{error}"));
