@@ -46,7 +46,7 @@ proptest! {
 
     #[test]
     fn a_file_with_bytes_taken_out_or_twice_does_not_panic(
-        model in 0..3_usize,
+        model in 0..MODELS.len(),
         from in any::<prop::sample::Index>(),
         to in any::<prop::sample::Index>(),
         at in any::<prop::sample::Index>(),
