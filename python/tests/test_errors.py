@@ -15,7 +15,7 @@ import squall
         ({"game": "nowhere"}, "games has no 'nowhere': expected a path that ends with .toml, or one of .*surveyor_2v2"),
         ({"game": "/nowhere/game.toml"}, "game.toml"),
         ({"game": "uneven_3v2"}, "the teams have 3 and 2 boats"),
-        ({"decision_s": 0.25}, "decision_s is 0.25, expected a multiple of 0.1 s"),
+        ({"decision_s": 0.25}, "decision_s is 0.25, expected a multiple of the game's decision_s"),
         ({"decision_s": 0}, "decision_s is 0, expected a multiple"),
         ({"decision_s": float("nan")}, "decision_s is NaN"),
         ({"episode_max_s": -1}, "episode_max_s is -1, expected more than 0"),
