@@ -6,10 +6,10 @@ use super::NetworkError;
 use super::elementwise::{self, Function};
 use super::error::{shape_text, shown};
 use super::limit::{PARAMETERS_MAX, RANK_MAX, VALUES_MAX, at_most};
-use super::node::Node;
+use super::node::{Node, from_start};
 use super::plan::{Element, Planner, Row, Value};
 use super::proto::{self, data_type_name};
-use super::step::{Blocks, Step, Work};
+use super::step::{Step, Work};
 use super::tensor::{Numbers, Tensor, product};
 
 pub(super) fn constant(_: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
@@ -46,7 +46,7 @@ pub(super) fn cast(planner: &mut Planner, node: &Node) -> Result<Value, NetworkE
     let is_among = |types: &[i32]| types.iter().any(|each| i64::from(*each) == to);
     let element = if is_among(&proto::FLOATS) {
         Element::Float
-    } else if is_among(&[proto::INT32, proto::INT64]) {
+    } else if is_among(&proto::INTEGERS) {
         Element::Integer
     } else {
         return Err(node.wrong(format!("a Cast to {}", data_type_name(to)), "a Cast to FLOAT or INT64"));
@@ -179,8 +179,8 @@ pub(super) fn concat(planner: &mut Planner, node: &Node) -> Result<Value, Networ
     let mut at = 0;
     for row in rows {
         let size = row.place.len() / count;
-        let blocks = Blocks { count, size, from: (0, size), to: (at, whole) };
-        planner.steps.push(Step { work: Work::Copy(blocks), input: row.place, output: output.place.clone() });
+        let work = Work::Spread { size, offset: at, distance: whole };
+        planner.steps.push(Step { work, input: row.place, output: output.place.clone() });
         at += size;
     }
     Ok(Value::Computed(output))
@@ -233,19 +233,18 @@ fn slice_axis(
 ) -> Result<Value, NetworkError> {
     let shape = shape_of(&value).to_vec();
     let length = shape[axis] as i64;
-    let from_start = |index: i64| if index < 0 { index.saturating_add(length) } else { index };
+    let start_at = from_start(start, shape[axis]);
+    let end_at = from_start(end, shape[axis]);
     let selected: Vec<usize> = match step {
         0 => return Err(node.wrong("step 0", "another step")),
         1.. => {
-            let from = from_start(start).clamp(0, length);
-            let to = from_start(end).clamp(0, length);
-            (from..to).step_by(usize::try_from(step).unwrap_or(usize::MAX)).map(|i| i as usize).collect()
+            let range = start_at.clamp(0, length)..end_at.clamp(0, length);
+            range.step_by(usize::try_from(step).unwrap_or(usize::MAX)).map(|i| i as usize).collect()
         }
         _ => {
-            let from = from_start(start).clamp(-1, length - 1);
-            let to = from_start(end).clamp(-1, length - 1);
+            let range = end_at.clamp(-1, length - 1) + 1..=start_at.clamp(-1, length - 1);
             let size = usize::try_from(step.unsigned_abs()).unwrap_or(usize::MAX);
-            (to + 1..=from).rev().step_by(size).map(|i| i as usize).collect()
+            range.rev().step_by(size).map(|i| i as usize).collect()
         }
     };
     if selected.is_empty() {
@@ -264,11 +263,10 @@ pub(super) fn gather(planner: &mut Planner, node: &Node) -> Result<Value, Networ
     let Numbers::Integers(integers) = &*indices.numbers else {
         return Err(node.wrong("floats as input 1", "INT64 numbers"));
     };
-    let length = shape[axis] as i64;
-    let index = |index: &i64| {
-        let from_start = if *index < 0 { index.saturating_add(length) } else { *index };
-        let wrong = || node.wrong(format!("index {index}"), format!("an index of {length} numbers"));
-        if (0..length).contains(&from_start) { Ok(from_start as usize) } else { Err(wrong()) }
+    let length = shape[axis];
+    let index = |index: &i64| match usize::try_from(from_start(*index, length)) {
+        Ok(at) if at < length => Ok(at),
+        _ => Err(node.wrong(format!("index {index}"), format!("an index of {length} numbers"))),
     };
     let selected = integers.iter().map(index).collect::<Result<Vec<usize>, _>>()?;
     select(planner, value, axis, &selected, &indices.shape)
@@ -306,16 +304,11 @@ pub(super) fn transpose(planner: &mut Planner, node: &Node) -> Result<Value, Net
         let found = shown(&format!("{order:?}"));
         return Err(node.wrong(format!("perm = {found}"), format!("each of {rank} axes once")));
     }
-    transposed(planner, value, &order)
-}
-
-/// The value with its axes in another order.
-fn transposed(planner: &mut Planner, value: Value, order: &[usize]) -> Result<Value, NetworkError> {
-    let (shape, strides) = permuted(shape_of(&value), order);
+    let (shape, strides) = permuted(shape_of(&value), &order);
     rearranged(planner, value, shape.clone(), || strided(&shape, &strides))
 }
 
-/// Like [`transposed`].
+/// The row with its axes in another order.
 pub(super) fn transposed_row(planner: &mut Planner, row: Row, order: &[usize]) -> Result<Row, NetworkError> {
     let (shape, strides) = permuted(&row.shape, order);
     picked(planner, row, shape.clone(), || strided(&shape, &strides))
@@ -330,55 +323,52 @@ fn permuted(before: &[usize], order: &[usize]) -> (Vec<usize>, Vec<usize>) {
 /// Plans `Expand` to a constant shape.
 pub(super) fn expand(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
     let value = planner.value(node, 0)?;
-    let asked = planner.integers(node, 1)?.unwrap_or_default();
-    let dims = asked.iter().map(|dim| usize::try_from(*dim).ok()).collect::<Option<Vec<usize>>>();
+    let (asked, dims) = asked_shape(planner, node, 1)?;
     let shape = dims.and_then(|dims| elementwise::broadcast(shape_of(&value), &dims));
     let Some(shape) = shape.filter(|shape| shape.len() <= RANK_MAX) else {
         let found = format!("{} expanded to {asked:?}", shape_text(shape_of(&value)));
         return Err(node.wrong(found, "dimensions that are equal or 1"));
     };
-    expanded(planner, value, shape)
+    let before = shape_of(&value).to_vec();
+    rearranged(planner, value, shape.clone(), || repeated(&before, &shape))
 }
 
-/// Repeats a value along its dimensions of 1.
-fn expanded(planner: &mut Planner, value: Value, shape: Vec<usize>) -> Result<Value, NetworkError> {
-    let strides = repeating_strides(shape_of(&value), &shape);
-    rearranged(planner, value, shape.clone(), || strided(&shape, &strides))
-}
-
-/// Like [`expanded`].
+/// The row, repeated to a shape along its dimensions of 1.
 pub(super) fn expanded_row(planner: &mut Planner, row: Row, shape: &[usize]) -> Result<Row, NetworkError> {
-    let strides = repeating_strides(&row.shape, shape);
-    picked(planner, row, shape.to_vec(), || strided(shape, &strides))
+    let before = row.shape.clone();
+    picked(planner, row, shape.to_vec(), || repeated(&before, shape))
 }
 
-/// The indices of a shape's numbers, repeated to another shape.
+/// The indices of a shape's numbers, repeated to another shape along its dimensions of 1 and along
+/// new leading ones.
 pub(super) fn repeated(before: &[usize], shape: &[usize]) -> Vec<u32> {
-    strided(shape, &repeating_strides(before, shape))
+    let own = strides(before).into_iter().zip(before).map(|(stride, dim)| if *dim == 1 { 0 } else { stride });
+    let strides: Vec<usize> = vec![0; shape.len() - before.len()].into_iter().chain(own).collect();
+    strided(shape, &strides)
 }
 
-/// The strides by which a value repeats along its dimensions of 1, and along new leading ones.
-fn repeating_strides(before: &[usize], shape: &[usize]) -> Vec<usize> {
-    let own = strides(before).into_iter().zip(before).map(|(stride, dim)| if *dim == 1 { 0 } else { stride });
-    vec![0; shape.len() - before.len()].into_iter().chain(own).collect()
+/// Input `index` of a node, a shape: as typed, and its dimensions if none is negative.
+fn asked_shape(planner: &Planner, node: &Node, index: usize) -> Result<(Vec<i64>, Option<Vec<usize>>), NetworkError> {
+    let asked = planner.integers(node, index)?.unwrap_or_default();
+    let dims = asked.iter().map(|dim| usize::try_from(*dim).ok()).collect();
+    Ok((asked, dims))
 }
 
 /// Plans `Shape`: the dimensions of its input, all of which are constant.
 pub(super) fn shape(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
     let value = planner.value(node, 0)?;
     let dims: Vec<i64> = shape_of(&value).iter().map(|dim| *dim as i64).collect();
-    let rank = dims.len() as i64;
-    let at = |index: i64| if index < 0 { index.saturating_add(rank) } else { index }.clamp(0, rank) as usize;
+    let rank = dims.len();
+    let at = |index: i64| from_start(index, rank).clamp(0, rank as i64) as usize;
     let start = at(node.integer("start", 0)?);
-    let end = at(node.integer("end", rank)?);
+    let end = at(node.integer("end", rank as i64)?);
     let dims = dims.get(start..end).unwrap_or_default().to_vec();
     Ok(Value::Constant(Tensor::new(vec![dims.len()], Numbers::Integers(dims))))
 }
 
 /// Plans `ConstantOfShape`.
 pub(super) fn constant_of_shape(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
-    let asked = planner.integers(node, 0)?.unwrap_or_default();
-    let dims = asked.iter().map(|dim| usize::try_from(*dim).ok()).collect::<Option<Vec<usize>>>();
+    let (_, dims) = asked_shape(planner, node, 0)?;
     let size = dims.as_deref().and_then(product);
     let size = at_most("numbers of a constant", size, VALUES_MAX)?;
     planner.count_weights(Some(size), 0)?;

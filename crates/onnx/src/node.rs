@@ -87,12 +87,16 @@ impl<'a> Node<'a> {
 
     /// An axis of a tensor with `rank` dimensions; negative values count from the end.
     pub(super) fn axis(&self, axis: i64, rank: usize) -> Result<usize, NetworkError> {
-        let from_start = if axis < 0 { axis.saturating_add_unsigned(rank as u64) } else { axis };
-        match usize::try_from(from_start) {
+        match usize::try_from(from_start(axis, rank)) {
             Ok(axis) if axis < rank => Ok(axis),
             _ => Err(self.wrong(format!("axis {axis}"), format!("an axis of {rank} dimensions"))),
         }
     }
+}
+
+/// An index among `length` elements; negative ones count from the end.
+pub(super) fn from_start(index: i64, length: usize) -> i64 {
+    if index < 0 { index.saturating_add_unsigned(length as u64) } else { index }
 }
 
 /// A node's name or, without one, its output's.

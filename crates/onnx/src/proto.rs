@@ -21,6 +21,8 @@ pub(super) const DOUBLE: i32 = 11;
 pub(super) const BFLOAT16: i32 = 16;
 /// The types of floats.
 pub(super) const FLOATS: [i32; 4] = [FLOAT, FLOAT16, DOUBLE, BFLOAT16];
+/// The types of integers that are computed.
+pub(super) const INTEGERS: [i32; 2] = [INT32, INT64];
 /// `TensorProto.DataLocation.EXTERNAL`.
 pub(super) const EXTERNAL: i32 = 1;
 

@@ -17,10 +17,6 @@ use xxhash_rust::xxh3::xxh3_128;
 /// broadcasting. The last is from ONNX 1.23; later semantics are unknown.
 const VERSIONS: RangeInclusive<i64> = 7..=28;
 
-/// Allowed types of outputs. Indices are output as floats regardless.
-const OUTPUT_TYPES: [i32; 6] =
-    [proto::FLOAT, proto::FLOAT16, proto::DOUBLE, proto::BFLOAT16, proto::INT32, proto::INT64];
-
 /// How the file of a large model begins in a repository without its large files.
 const LFS_POINTER: &[u8] = b"version https://git-lfs.github.com/spec/";
 
@@ -104,10 +100,7 @@ fn inputs(planner: &mut Planner, graph: &GraphProto) -> Result<Vec<Port>, Networ
     let constants: BTreeSet<&str> = graph.initializer.iter().map(|tensor| tensor.name.as_str()).collect();
     let mut ports = vec![];
     for info in graph.input.iter().filter(|info| !constants.contains(info.name.as_str())) {
-        let Some(shape) = shape(info, &proto::FLOATS)? else {
-            return Err(NetworkError::tensor(&info.name, "an input without a shape", "a shape"));
-        };
-        let shape: Vec<usize> = shape.into_iter().map(|dim| dim.unwrap_or(1)).collect();
+        let shape = shape(info)?;
         if shape.contains(&0) {
             return Err(NetworkError::tensor(&info.name, shape_text(&shape), "dimensions of 1 or more"));
         }
@@ -125,16 +118,16 @@ fn inputs(planner: &mut Planner, graph: &GraphProto) -> Result<Vec<Port>, Networ
     Ok(ports)
 }
 
-/// The declared dimensions, if any. The first may lack a size.
-fn shape(info: &ValueInfoProto, allowed: &[i32]) -> Result<Option<Vec<Option<usize>>>, NetworkError> {
+/// The dimensions of an input. The first, the batch, counts as 1 if it lacks a size.
+fn shape(info: &ValueInfoProto) -> Result<Vec<usize>, NetworkError> {
     let wrong = |found: String, expected: &str| Err(NetworkError::tensor(&info.name, found, expected));
     let Some(tensor) = info.r#type.as_ref().and_then(|r#type| r#type.tensor_type.as_ref()) else {
         return wrong("something that is not a tensor".to_owned(), "a tensor of FLOAT numbers");
     };
-    if !allowed.contains(&tensor.elem_type) {
+    if !proto::FLOATS.contains(&tensor.elem_type) {
         return wrong(data_type_name(tensor.elem_type.into()), "FLOAT numbers");
     }
-    let Some(shape) = &tensor.shape else { return Ok(None) };
+    let Some(shape) = &tensor.shape else { return wrong("an input without a shape".to_owned(), "a shape") };
     if shape.dim.len() > RANK_MAX {
         return wrong(format!("{} dimensions", shape.dim.len()), &format!("at most {RANK_MAX}"));
     }
@@ -142,17 +135,17 @@ fn shape(info: &ValueInfoProto, allowed: &[i32]) -> Result<Option<Vec<Option<usi
     for (i, dim) in shape.dim.iter().enumerate() {
         match dim.dim_value {
             Some(number) => match usize::try_from(number) {
-                Ok(number) => dims.push(Some(number)),
+                Ok(number) => dims.push(number),
                 Err(_) => return wrong(format!("dimension {i} of {number}"), "dimensions of 1 or more"),
             },
-            None if i == 0 => dims.push(None),
+            None if i == 0 => dims.push(1),
             None => {
                 let found = format!("dimension {i} without a size (`{}`)", shown(dim.dim_param()));
                 return wrong(found, "a size for every dimension except the first");
             }
         }
     }
-    Ok(Some(dims))
+    Ok(dims)
 }
 
 fn constants(planner: &mut Planner, graph: &GraphProto, needed: &BTreeSet<&str>) -> Result<(), NetworkError> {
@@ -233,7 +226,8 @@ fn outputs(
 fn deviation(info: &ValueInfoProto, found: &[usize]) -> Option<String> {
     let tensor = info.r#type.as_ref()?.tensor_type.as_ref()?;
     let name = shown(&info.name);
-    if !OUTPUT_TYPES.contains(&tensor.elem_type) {
+    // Indices are output as floats.
+    if !proto::FLOATS.contains(&tensor.elem_type) && !proto::INTEGERS.contains(&tensor.elem_type) {
         let declared = data_type_name(tensor.elem_type.into());
         return Some(format!("output `{name}`: declared as {declared}, computed as floats"));
     }

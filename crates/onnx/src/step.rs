@@ -31,7 +31,12 @@ pub(super) enum Work {
         reduction: Reduction,
         row_size: usize,
     },
-    Copy(Blocks),
+    /// Copies blocks of `size` to an offset of the output and then at this distance.
+    Spread {
+        size: usize,
+        offset: usize,
+        distance: usize,
+    },
     /// Copies the numbers at these indices of the input.
     Pick(Vec<u32>),
     /// Copies, from each row of the input, the numbers at computed indices.
@@ -39,16 +44,6 @@ pub(super) enum Work {
         row_size: usize,
         indices: Range<usize>,
     },
-}
-
-/// Blocks of numbers at regular intervals.
-pub(super) struct Blocks {
-    pub(super) count: usize,
-    pub(super) size: usize,
-    /// Offset of the first block, and distance between blocks, in the input.
-    pub(super) from: (usize, usize),
-    /// The same in the output.
-    pub(super) to: (usize, usize),
 }
 
 impl Step {
@@ -63,7 +58,12 @@ impl Step {
             Work::Softmax { scale, row_size } => scale.apply(*row_size, input, output),
             Work::ArgMax { tie, row_size } => tie.apply(*row_size, input, output),
             Work::Reduce { reduction, row_size } => reduction.apply(*row_size, input, output),
-            Work::Copy(blocks) => blocks.copy(input, output),
+            Work::Spread { size, offset, distance } => {
+                for (i, block) in input.chunks_exact(*size).enumerate() {
+                    let at = offset + i * distance;
+                    output[at..at + size].copy_from_slice(block);
+                }
+            }
             Work::Pick(from) => output.iter_mut().zip(from).for_each(|(to, from)| *to = input[*from as usize]),
             Work::Lookup { row_size, indices } => look_up(*row_size, input, &before[indices.clone()], output),
         }
@@ -79,16 +79,6 @@ fn look_up(row_size: usize, input: &[f32], indices: &[f32], output: &mut [f32]) 
         for (to, index) in to.iter_mut().zip(indices) {
             let from_start = if *index < 0.0 { index + row_size as f32 } else { *index };
             *to = if from_start >= 0.0 { row.get(from_start as usize).copied().unwrap_or(f32::NAN) } else { f32::NAN };
-        }
-    }
-}
-
-impl Blocks {
-    fn copy(&self, input: &[f32], output: &mut [f32]) {
-        let mut place = (self.from.0, self.to.0);
-        for _ in 0..self.count {
-            output[place.1..place.1 + self.size].copy_from_slice(&input[place.0..place.0 + self.size]);
-            place = (place.0 + self.from.1, place.1 + self.to.1);
         }
     }
 }

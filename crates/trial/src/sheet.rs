@@ -147,10 +147,9 @@ impl Sheet {
             return Ok(false);
         }
         for (head, unit) in self.heads.iter().zip(record) {
-            // As the end of a name, so that `N` is `newton` and `deg/s` is `deg_s`.
-            let of_port = plain_head(&format!("port {unit}"));
-            let end = of_port.strip_prefix("port").unwrap_or(&of_port);
-            if !unit.is_empty() && head.contains('_') && !head.ends_with(end) {
+            let words = words(unit);
+            let end = format!("_{}", plain_unit(&words));
+            if !words.is_empty() && head.contains('_') && !head.ends_with(&end) {
                 let message = format!("{head} has the unit {unit}, expected that of its name");
                 return Err(self.mistake(Some(line), message));
             }
@@ -264,20 +263,30 @@ fn separator(bytes: &[u8]) -> u8 {
 
 /// A normalised column name: `Port (rad/s)` is `port_rad_s`.
 fn plain_head(head: &str) -> String {
-    let spelt = head.trim_start_matches('\u{feff}').to_lowercase().replace('%', "pct");
-    let words: Vec<&str> = spelt.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).collect();
-    let joined = words.join("_");
+    let joined = words(head.trim_start_matches('\u{feff}'));
     for side in ["port", "starboard"] {
-        let unit = joined.strip_prefix(side).and_then(|rest| rest.strip_prefix('_'));
-        let known = match unit {
-            Some("n" | "newtons") => "newton",
-            Some("percent" | "per_cent") => "pct",
-            Some("rad_per_s" | "radps" | "rads") => "rad_s",
-            _ => continue,
-        };
-        return format!("{side}_{known}");
+        if let Some(unit) = joined.strip_prefix(side).and_then(|rest| rest.strip_prefix('_')) {
+            return format!("{side}_{}", plain_unit(unit));
+        }
     }
     joined
+}
+
+/// The words of a name or a unit, in lower case and joined: `deg/s` is `deg_s`.
+fn words(text: &str) -> String {
+    let spelt = text.to_lowercase().replace('%', "pct");
+    let words: Vec<&str> = spelt.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).collect();
+    words.join("_")
+}
+
+/// A unit as column names spell it.
+fn plain_unit(unit: &str) -> &str {
+    match unit {
+        "n" | "newtons" => "newton",
+        "percent" | "per_cent" => "pct",
+        "rad_per_s" | "radps" | "rads" => "rad_s",
+        other => other,
+    }
 }
 
 /// A limit in at most six digits, rather than 13.225999999999999.
