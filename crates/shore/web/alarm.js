@@ -1,5 +1,6 @@
 // Alarms of real boats: visible and audible until someone acknowledges them.
 
+import { keep, recall } from './storage.js';
 import { fill, make, plain, show, write } from './words.js';
 
 const MUTED_KEY = 'squall.muted';
@@ -12,19 +13,11 @@ const LOUDNESS = 0.25;
 /** Maximum number of alarms shown one by one. */
 const SHOWN_MAX = 4;
 
-function remembered() {
-  try {
-    return localStorage.getItem(MUTED_KEY) === 'yes';
-  } catch {
-    return false;
-  }
-}
-
 /** The sound. Browsers allow it after the first press on the page. */
 class Sound {
   constructor() {
     this.context = null;
-    this.muted = remembered();
+    this.muted = recall(MUTED_KEY) === 'yes';
     /** Tones played so far, for tests. */
     this.played = 0;
     this.last_ms = -Infinity;
@@ -43,11 +36,7 @@ class Sound {
 
   setMuted(muted) {
     this.muted = muted;
-    try {
-      localStorage.setItem(MUTED_KEY, muted ? 'yes' : 'no');
-    } catch {
-      // Not stored: it lasts as long as the page.
-    }
+    keep(MUTED_KEY, muted ? 'yes' : 'no');
   }
 
   /** Plays the tones unless they have just been played. */

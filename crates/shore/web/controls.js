@@ -1,6 +1,7 @@
 // The buttons: pause, step, speed, halt, E-stop, and what the chart shows.
 
 import { Ask, closeAsk } from './ask.js';
+import { keep, recallObject } from './storage.js';
 import { options, show, write } from './words.js';
 
 const SPEEDS = [0.5, 1, 2, 5, 10, 50];
@@ -11,21 +12,14 @@ const REAL = 'The game has real boats, so its speed is fixed.';
 
 const byId = (id) => document.getElementById(id);
 
-/** What the chart showed last time; some browsers store nothing. */
-function remembered() {
-  const all = { names: true, trails: true, circles: true, waves: true, chart: true, legend: false };
-  try {
-    return { ...all, ...JSON.parse(localStorage.getItem(SHOWN_KEY) ?? '{}') };
-  } catch {
-    return all;
-  }
-}
+/** What the chart shows unless another choice is stored. */
+const SHOWN = { names: true, trails: true, circles: true, waves: true, chart: true, legend: false };
 
 export class Controls {
   /** `send(message)` goes to the server. */
   constructor(send) {
     this.send = send;
-    this.shown = remembered();
+    this.shown = { ...SHOWN, ...recallObject(SHOWN_KEY) };
     this.shownVersion = 0;
     this.mode = null;
     this.rights = false;
@@ -66,11 +60,7 @@ export class Controls {
     this.shown[what] = !this.shown[what];
     this.shownVersion += 1;
     byId(`show-${what}`).setAttribute('aria-pressed', String(this.shown[what]));
-    try {
-      localStorage.setItem(SHOWN_KEY, JSON.stringify(this.shown));
-    } catch {
-      // Not stored: it lasts as long as the page.
-    }
+    keep(SHOWN_KEY, JSON.stringify(this.shown));
   }
 
   control(what) {

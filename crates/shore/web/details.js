@@ -3,6 +3,7 @@
 import { MARKS } from './game.js';
 import { Operate } from './operate.js';
 import { Rose } from './rose.js';
+import { keep, recall } from './storage.js';
 import { bearing, fill, make, number, options, plain, show, write } from './words.js';
 
 const COLLECTIVE = 'all together';
@@ -11,24 +12,8 @@ const UNSEEN = 'No utilities yet for this decision. Step once to compute them.';
 /** Whether a report has functions without their utilities. */
 export const isBare = (report) => report?.functions?.length > 0 && !report.functions.some((each) => each.utilities?.length > 0);
 
-const KEY = 'squall.rose';
-
 /** Whether the rose is unfolded. */
-function remembered() {
-  try {
-    return localStorage.getItem(KEY) !== 'false';
-  } catch {
-    return true;
-  }
-}
-
-function remember(open) {
-  try {
-    localStorage.setItem(KEY, String(open));
-  } catch {
-    // Not stored: it lasts as long as the page.
-  }
-}
+const ROSE_KEY = 'squall.rose';
 
 export class Details {
   /** `on` has `follow()`, `drive()` and `close()`, and what `Operate` needs. */
@@ -79,8 +64,8 @@ export class Details {
     this.variables.id = 'variables';
     // The facts fit on one line, so that the rose below is visible as a whole.
     this.picture = make('details', 'helm-picture', '', make('summary', '', 'Helm'), make('div', 'helm-rose', '', this.chooser, this.canvas, this.key));
-    this.picture.open = remembered();
-    this.picture.addEventListener('toggle', () => remember(this.picture.open));
+    this.picture.open = recall(ROSE_KEY) !== 'false';
+    this.picture.addEventListener('toggle', () => keep(ROSE_KEY, String(this.picture.open)));
     this.helmBox = make('div', '', '', this.policyBox, this.behaviourHead = make('h3', '', 'Behaviours'), this.behaviours, this.variableHead = make('h3', '', 'Variables'), this.variables);
     this.body = make('div', 'boat', '', head, this.summary, this.steeringNote, this.operate.element, this.picture, this.reason, this.facts,
       make('h3', '', 'Thrust'), this.thrust, this.helmBox);

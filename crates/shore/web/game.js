@@ -61,6 +61,8 @@ export class Game {
     this.indexOf = new Map(chart.vehicles.map((vehicle, index) => [vehicle.name, index]));
     this.count = count;
     this.teams = chart.vehicles.map((vehicle) => vehicle.team);
+    /** Who plays for each team. */
+    this.players = chart.teams.map((_, team) => this.playersOf(team));
     Object.assign(this, {
       fromX: floats(count), fromY: floats(count), fromH: floats(count),
       toX: floats(count), toY: floats(count), toH: floats(count),
@@ -254,7 +256,7 @@ export class Game {
 
   /** `learned 3 : 3 strategy 3` */
   get scoreWords() {
-    const teams = this.chart.teams.map((_, team) => [this.playersOf(team), this.score[team] ?? '–']);
+    const teams = this.chart.teams.map((_, team) => [this.players[team], this.score[team] ?? '–']);
     if (teams.length !== 2) return teams.map(([name, points]) => `${name} ${points}`).join(', ');
     const [[home, own], [other, theirs]] = teams;
     return `${home} ${own} : ${theirs} ${other}`;

@@ -1,5 +1,6 @@
 // The event list, newest first. Pressing an event selects its boat and, in a replay, its moment.
 
+import { keep, recallObject } from './storage.js';
 import { clock, clockShort, fill, make, plain, show, write } from './words.js';
 
 /** Maximum number of lines; there may be thousands of events. */
@@ -15,15 +16,6 @@ const KINDS = {
 };
 
 const FOLDED_KEY = 'squall.events-folded';
-
-/** Whether the events are folded, by tab. */
-function remembered() {
-  try {
-    return JSON.parse(localStorage.getItem(FOLDED_KEY)) ?? {};
-  } catch {
-    return {};
-  }
-}
 
 /** Highlighted events. */
 const LOUD = ['captured', 'grabbed', 'ended', 'e_stopped', 'agent_lost', 'quarantined', 'nav_lost', 'failsafe', 'collided'];
@@ -49,18 +41,15 @@ export class Log {
     this.fold = document.getElementById('events-fold');
     this.newest = document.getElementById('events-newest');
     this.box = document.getElementById('events-box');
-    this.chosen = remembered();
+    /** Whether the events are folded, by tab. */
+    this.chosen = recallObject(FOLDED_KEY) ?? {};
     this.tab = 'boats';
     // A low page has no space for both the events and a boat's helm.
     this.low = matchMedia('(max-height: 999px)');
     this.low.addEventListener('change', () => this.showFold());
     this.fold.addEventListener('click', () => {
       this.chosen[this.tab] = !this.folded;
-      try {
-        localStorage.setItem(FOLDED_KEY, JSON.stringify(this.chosen));
-      } catch {
-        // Not stored: it lasts as long as the page.
-      }
+      keep(FOLDED_KEY, JSON.stringify(this.chosen));
       this.showFold();
     });
   }

@@ -2,6 +2,7 @@
 
 import { drawDiagram, partAt, sampleAt } from './diagram.js';
 import { palette, teamColour } from './palette.js';
+import { keep, recall } from './storage.js';
 import { bearing, clock, make, number, options, plain, show, write } from './words.js';
 
 const KEY = 'squall.plots';
@@ -22,14 +23,6 @@ const PLOTS = [
   ['Range', ['range_m'], metres, false],
 ];
 
-function remembered() {
-  try {
-    return localStorage.getItem(KEY) === 'true';
-  } catch {
-    return false;
-  }
-}
-
 export class Plots {
   /** `on` has `send(message)`, `seek(t_s)`, and `moved()`, called when the chart's size changes. */
   constructor(on) {
@@ -39,7 +32,7 @@ export class Plots {
     this.other = make('select');
     this.other.id = 'plot-other';
     this.other.setAttribute('aria-label', 'Range to');
-    this.open = remembered();
+    this.open = recall(KEY) === 'true';
     this.asked = '';
     this.curves = null;
     this.button.addEventListener('click', () => this.toggle());
@@ -66,11 +59,7 @@ export class Plots {
 
   toggle() {
     this.open = !this.open;
-    try {
-      localStorage.setItem(KEY, String(this.open));
-    } catch {
-      // Not stored: it lasts as long as the page.
-    }
+    keep(KEY, String(this.open));
     this.on.moved();
   }
 

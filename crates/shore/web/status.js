@@ -29,7 +29,7 @@ export class Status {
     this.values = chart.teams.map((team, index) => {
       const value = make('span', 'value', '–');
       value.id = `score-${idOf(team.name)}`;
-      const box = make('div', `team team-${index}`, '', make('span', 'swatch'), make('span', 'name', game.playersOf(index)), value);
+      const box = make('div', `team team-${index}`, '', make('span', 'swatch'), make('span', 'name', game.players[index]), value);
       box.title = `Team ${plain(team.name)}`;
       return { box, value };
     });

@@ -1,6 +1,7 @@
 // Light and dark: follows the system until the user switches.
 
 import { readColours } from './palette.js';
+import { keep, recall } from './storage.js';
 
 const KEY = 'squall.theme';
 const SYSTEM = '(prefers-color-scheme: dark)';
@@ -8,12 +9,8 @@ const SYSTEM = '(prefers-color-scheme: dark)';
 const system = matchMedia(SYSTEM);
 
 function remembered() {
-  try {
-    const theme = localStorage.getItem(KEY);
-    return ['light', 'dark'].includes(theme) ? theme : null;
-  } catch {
-    return null;
-  }
+  const theme = recall(KEY);
+  return ['light', 'dark'].includes(theme) ? theme : null;
 }
 
 export class Theme {
@@ -38,12 +35,7 @@ export class Theme {
     const wanted = this.dark ? 'light' : 'dark';
     // The system's own setting is not stored, so that the page keeps following it.
     this.chosen = (wanted === 'dark') === system.matches ? null : wanted;
-    try {
-      if (this.chosen) localStorage.setItem(KEY, this.chosen);
-      else localStorage.removeItem(KEY);
-    } catch {
-      // Not stored: it lasts as long as the page.
-    }
+    keep(KEY, this.chosen);
     this.apply();
   }
 
