@@ -1,6 +1,7 @@
 //! `squall gateway`: the commands of the boat's program, and emulated boats for real back seats.
 
 mod emulate;
+mod sitl;
 
 use anyhow::Result;
 use clap::Subcommand;
@@ -18,11 +19,14 @@ enum Command {
     Boat(gateway_cli::Command),
     /// Emulates a boat for a real back seat, using the real boat's sentences.
     Emulate(emulate::Args),
+    /// Simulates a boat for ArduPilot's own firmware in software (SITL), as its JSON physics back end.
+    Sitl(sitl::Args),
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     match &args.command {
         Command::Boat(command) => gateway_cli::run(command, env!("SQUALL_COMMIT")),
         Command::Emulate(args) => emulate::run(args),
+        Command::Sitl(args) => sitl::run(args),
     }
 }

@@ -26,6 +26,7 @@ mod proxy;
 mod recording;
 mod refusals;
 mod shore;
+mod sitl;
 mod support;
 mod talk;
 mod two_hosts;

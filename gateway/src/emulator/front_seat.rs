@@ -2,30 +2,40 @@
 
 use super::Port;
 use crate::nmea::Operator;
-use messages::Order;
 use messages::picture::OwnBoat;
+use messages::{Order, VehicleTruth};
 use primitives::SimTime;
 
 /// The front seat.
 pub trait FrontSeat: Send {
     /// Sets the receiver's clock: UTC, ns since 1970.
-    fn set_clock(&mut self, now: SimTime, utc_ns: u64);
+    fn set_clock(&mut self, _now: SimTime, _utc_ns: u64) {}
 
     /// Receives bytes from a port. Replies are sent with the next telemetry.
-    fn receive(&mut self, now: SimTime, port: Port, bytes: &[u8]);
+    fn receive(&mut self, _now: SimTime, _port: Port, _bytes: &[u8]) {}
 
     /// The next log message, if any.
     fn take_remark(&mut self) -> Option<String>;
 
     /// The operator in control, if that depends on ports.
-    fn operator(&self) -> Option<Operator>;
+    fn operator(&self) -> Option<Operator> {
+        None
+    }
 
     /// Updates the sensor measurements.
-    fn observe(&mut self, now: SimTime, own: &OwnBoat);
+    fn observe(&mut self, _now: SimTime, _own: &OwnBoat) {}
+
+    /// Whether it has sensors of its own and needs the boat's true motion.
+    fn needs_truth(&self) -> bool {
+        false
+    }
+
+    /// Receives the boat's true motion.
+    fn observe_truth(&mut self, _now: SimTime, _truth: &VehicleTruth) {}
 
     /// The boat's order to its thrusters now.
     fn order(&mut self, now: SimTime) -> Order;
 
     /// Appends the telemetry that is due.
-    fn telemetry(&mut self, now: SimTime, out: &mut Vec<u8>);
+    fn telemetry(&mut self, _now: SimTime, _out: &mut Vec<u8>) {}
 }

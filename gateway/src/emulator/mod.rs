@@ -1,5 +1,5 @@
-//! An emulated Surveyor: commands in, telemetry out, without sockets or clocks; and an emulated
-//! ArduPilot boat, in `ardupilot`.
+//! An emulated Surveyor: commands in, telemetry out, without sockets or clocks; an emulated
+//! ArduPilot boat, in `ardupilot`; and ArduPilot's own firmware, in `sitl`.
 //!
 //! It is as strict and as tolerant as a Surveyor is known to be: it sends telemetry even in
 //! standby, follows only the operator in control, and reads four to six fields. By default it has
@@ -10,10 +10,12 @@ mod autopilot;
 mod battery;
 mod front_seat;
 mod sensed;
+mod sitl;
 mod telemetry;
 
 pub use ardupilot::{ArduPilot, SYSTEM};
 pub use front_seat::FrontSeat;
+pub use sitl::{Servos, Sitl};
 pub use telemetry::Extra;
 
 use crate::geodesy::LocalFrame;

@@ -5,9 +5,9 @@ use super::LOOK;
 use super::error::NodeError;
 use super::game_terms::{declination_rad, pace_factor};
 use super::node_event::NodeEvent;
+use super::sitl_port::SitlPort;
 use crate::bridge::Event;
-use crate::config::BoatProtocol;
-use crate::emulator::{ArduPilot, Emulator, Extra, FrontSeat, Plan, Port};
+use crate::emulator::{ArduPilot, Emulator, Extra, FrontSeat, Plan, Port, Servos};
 use crate::link::{BoatLink, Link, LinkAddress, LinkEvent, LinkSettings};
 use crate::nmea::Operator;
 use crate::nmea::date_and_time;
@@ -15,9 +15,11 @@ use agent::{Mind, MindRunner};
 use bus::game_search::{self, GameSearch};
 use bus::{Patience, Place, Priority, Publisher, SimState, SimWatch, Watched};
 use messages::topic::{self, GameName};
-use messages::{Order, Picture, Role};
+use messages::{Frame, Order, Picture, Role};
+use primitives::frame::LatLon;
 use primitives::{SimTime, VehicleId, codec};
 use recording::utc;
+use std::net::SocketAddr;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -30,22 +32,8 @@ pub struct EmulatorSettings {
     pub place: Place,
     /// The boat's name in the game.
     pub vehicle: String,
-    /// Its protocol. The settings from `declination_rad` to `extra` are for a Surveyor.
-    pub protocol: BoatProtocol,
-    /// Where the back seat connects.
-    pub listen: LinkAddress,
-    /// Where the primary operator connects or listens, if used.
-    pub primary: Option<LinkAddress>,
-    /// Declination, east positive, rad; `None` uses the World Magnetic Model.
-    pub declination_rad: Option<f64>,
-    /// Without a command for this long the boat goes to standby, s; `None` means never.
-    pub watchdog_s: Option<f64>,
-    /// Whether a set-point that is not a whole number leaves the previous one in force.
-    pub integers: bool,
-    /// Sentences in addition to a Surveyor's.
-    pub extra: Vec<Extra>,
-    /// Initial charge of its battery, as a fraction; `None` is full and never drains.
-    pub charge: Option<f64>,
+    /// Its front seat.
+    pub front_seat: FrontSeatSettings,
     /// How long to look for the game.
     pub wait: Duration,
     /// After this long without a picture the sim counts as dead.
@@ -54,8 +42,48 @@ pub struct EmulatorSettings {
     pub stop: Arc<AtomicBool>,
 }
 
+/// The settings of an emulated boat's front seat.
+pub enum FrontSeatSettings {
+    /// A Surveyor's.
+    Surveyor {
+        /// Where the back seat connects.
+        listen: LinkAddress,
+        /// Where the primary operator connects, if used.
+        primary: Option<LinkAddress>,
+        /// Declination, east positive, rad; `None` uses the World Magnetic Model.
+        declination_rad: Option<f64>,
+        /// Without a command for this long the boat goes to standby, s; `None` means never.
+        watchdog_s: Option<f64>,
+        /// Whether a set-point that is not a whole number leaves the previous one in force.
+        integers: bool,
+        /// Sentences in addition to a Surveyor's.
+        extra: Vec<Extra>,
+        /// Initial charge of its battery, as a fraction; `None` is full and never drains.
+        charge: Option<f64>,
+    },
+    /// Imitates an ArduPilot boat's.
+    ArduPilot {
+        /// Where the back seat connects.
+        listen: LinkAddress,
+        /// A ground station that waits for the boat, if used.
+        ground_station: Option<LinkAddress>,
+        /// Initial charge of its battery, as a fraction; `None` is full and never drains.
+        charge: Option<f64>,
+    },
+    /// ArduPilot's own firmware, as *software in the loop*.
+    Sitl {
+        /// Where the firmware asks for its boat's motion, by UDP.
+        listen: SocketAddr,
+        /// Its outputs for the thrusters.
+        servos: Servos,
+    },
+}
+
 /// Maximum bytes of commands that may wait: more than a back seat sends in a minute.
 const UNREAD_MAX: usize = 256 * 1024;
+
+/// Maximum frames that may wait: more than a game publishes while one is read.
+const FRAMES_MAX: usize = 64;
 
 /// Input from the links and the sim since the last poll.
 #[derive(Default)]
@@ -64,6 +92,8 @@ struct Incoming {
     unread: usize,
     remarks: Vec<String>,
     picture: Option<Vec<u8>>,
+    /// The true state of the game, if the front seat needs it.
+    frames: Vec<Vec<u8>>,
 }
 
 /// Emulates a boat until the game is over, or until it is stopped.
@@ -80,34 +110,18 @@ pub fn emulate(settings: &EmulatorSettings, notify: &mut dyn FnMut(NodeEvent<'_>
     pace_factor(&info.pace, true)?;
     let scenario = &info.scenario;
     let datum = scenario.field.plan.datum;
-    let surveyor = |declination_rad| Plan {
-        datum,
-        declination_rad,
-        watchdog_s: settings.watchdog_s,
-        integers: settings.integers,
-        extra: settings.extra.clone(),
-        began: date_and_time(utc::now_ns()),
-        charge: settings.charge,
-    };
-    let front_seat: Box<dyn FrontSeat> = match settings.protocol {
-        BoatProtocol::Surveyor => {
-            let plan = surveyor(declination_rad(settings.declination_rad, datum)?);
-            Box::new(Emulator::new(plan))
-        }
-        BoatProtocol::Mavlink => Box::new(ArduPilot::new(datum, settings.charge)),
-    };
     let incoming = Arc::new(Watched::new(Incoming::default()));
     let pictures = Arc::clone(&incoming);
     let _subscription = bus.subscribe(topic::picture(&game, scenario, scenario.team_of(vehicle)), move |bytes| {
         // Only the newest: a boat does not act on an outdated picture.
         pictures.visit(|incoming| incoming.picture = Some(bytes.to_vec()));
     })?;
-    let back_seat = open(&settings.listen, Port::Secondary, &incoming)?;
-    notify(NodeEvent::Listening { what: "back seat", reach: &back_seat.reach() });
-    let primary = settings.primary.as_ref().map(|address| open(address, Port::Primary, &incoming)).transpose()?;
-    if let Some(primary) = &primary {
-        notify(NodeEvent::Listening { what: "primary operator", reach: &primary.reach() });
-    }
+    let (front_seat, links) = open_front_seat(&settings.front_seat, datum, &incoming, notify)?;
+    let frames = Arc::clone(&incoming);
+    let _truth = front_seat
+        .needs_truth()
+        .then(|| bus.subscribe(topic::frame(&game), move |bytes| frames.visit(|incoming| incoming.keep_frame(bytes))));
+    let _truth = _truth.transpose()?;
     let names = [settings.vehicle.clone()];
     let mut say = |reason: &str| notify(NodeEvent::Looking { reason });
     let sim = SimWatch::open(&bus, &game, Patience::of_player(settings.silence))?;
@@ -120,7 +134,7 @@ pub fn emulate(settings: &EmulatorSettings, notify: &mut dyn FnMut(NodeEvent<'_>
         ticket: joined.ticket,
         sim,
         now: SimTime::ZERO,
-        links: [Some(back_seat), primary],
+        links,
         orders: bus
             .publisher(topic::orders(&game, scenario, &[scenario.team_of(vehicle)], &bus.id()), Priority::Normal)?,
         operator: Some(Operator::Secondary),
@@ -129,6 +143,59 @@ pub fn emulate(settings: &EmulatorSettings, notify: &mut dyn FnMut(NodeEvent<'_>
     let result = node.run(&settings.stop, &incoming, notify);
     bus.close();
     result
+}
+
+/// The front seat and its links: to the back seat, and to the primary operator or ground station.
+type Opened = (Box<dyn FrontSeat>, [Option<Link>; 2]);
+
+/// Opens the front seat of a boat on a field with this datum.
+fn open_front_seat(
+    settings: &FrontSeatSettings,
+    datum: LatLon,
+    incoming: &Arc<Watched<Incoming>>,
+    notify: &mut dyn FnMut(NodeEvent<'_>),
+) -> Result<Opened, NodeError> {
+    let mut open_both = |listen: &LinkAddress, other: &Option<LinkAddress>| {
+        let back_seat = open(listen, Port::Secondary, incoming)?;
+        notify(NodeEvent::Listening { what: "back seat", reach: &back_seat.reach() });
+        let other = other.as_ref().map(|address| open(address, Port::Primary, incoming)).transpose()?;
+        if let Some(other) = &other {
+            notify(NodeEvent::Listening { what: "primary operator", reach: &other.reach() });
+        }
+        Ok::<_, NodeError>([Some(back_seat), other])
+    };
+    match settings {
+        FrontSeatSettings::Surveyor {
+            listen,
+            primary,
+            declination_rad: set_rad,
+            watchdog_s,
+            integers,
+            extra,
+            charge,
+        } => {
+            let plan = Plan {
+                datum,
+                declination_rad: declination_rad(*set_rad, datum)?,
+                watchdog_s: *watchdog_s,
+                integers: *integers,
+                extra: extra.clone(),
+                began: date_and_time(utc::now_ns()),
+                charge: *charge,
+            };
+            Ok((Box::new(Emulator::new(plan)), open_both(listen, primary)?))
+        }
+        FrontSeatSettings::ArduPilot { listen, ground_station, charge } => {
+            Ok((Box::new(ArduPilot::new(datum, *charge)), open_both(listen, ground_station)?))
+        }
+        FrontSeatSettings::Sitl { listen, servos } => {
+            let port = SitlPort::open(*listen, *servos)?;
+            let LatLon { lat_deg, lon_deg } = datum;
+            let reach = format!("udp://{}, started with --home {lat_deg},{lon_deg},0,0", port.address());
+            notify(NodeEvent::Listening { what: "firmware", reach: &reach });
+            Ok((Box::new(port), [None, None]))
+        }
+    }
 }
 
 /// Opens a port of the boat.
@@ -152,8 +219,14 @@ impl Incoming {
         }
     }
 
+    fn keep_frame(&mut self, bytes: &[u8]) {
+        if self.frames.len() < FRAMES_MAX {
+            self.frames.push(bytes.to_vec());
+        }
+    }
+
     fn is_something(&self) -> bool {
-        !self.bytes.is_empty() || !self.remarks.is_empty() || self.picture.is_some()
+        !self.bytes.is_empty() || !self.remarks.is_empty() || self.picture.is_some() || !self.frames.is_empty()
     }
 }
 
@@ -196,7 +269,8 @@ impl EmulatorNode {
     ) -> Result<(), NodeError> {
         while !stop.load(Ordering::Relaxed) {
             incoming.wait(LOOK, Incoming::is_something);
-            let Incoming { bytes, remarks, picture, .. } = incoming.visit(std::mem::take);
+            let Incoming { bytes, remarks, picture, frames, .. } = incoming.visit(std::mem::take);
+            frames.iter().for_each(|bytes| self.observe_truth(bytes));
             remarks.into_iter().for_each(|text| self.remark(text, notify));
             for (port, bytes) in &bytes {
                 let now = self.now;
@@ -221,6 +295,15 @@ impl EmulatorNode {
             }
         }
         Ok(())
+    }
+
+    /// Passes the boat's part of a frame to its front seat.
+    fn observe_truth(&mut self, bytes: &[u8]) {
+        let Ok(frame) = codec::decode::<Frame>(bytes) else { return };
+        let truth = self.runner.minds().next().and_then(|(vehicle, _)| frame.vehicles.get(vehicle.index()));
+        if let Some(truth) = truth {
+            self.front_seat().observe_truth(frame.stamp.valid_ns, truth);
+        }
     }
 
     fn front_seat(&mut self) -> &mut dyn FrontSeat {

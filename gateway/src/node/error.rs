@@ -30,6 +30,14 @@ pub enum NodeError {
         /// The cause.
         source: std::io::Error,
     },
+    /// The port for ArduPilot's firmware cannot be opened.
+    #[error("the SITL port {listen}: {source}; choose another with --listen")]
+    SitlPort {
+        /// The address.
+        listen: SocketAddr,
+        /// The cause.
+        source: std::io::Error,
+    },
     /// Another gateway has the link.
     #[error(transparent)]
     Locked(#[from] LinkLockError),

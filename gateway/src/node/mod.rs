@@ -20,12 +20,14 @@ mod node_event;
 mod payload;
 mod report;
 mod settings;
+#[cfg(feature = "emulator")]
+mod sitl_port;
 mod subscriptions;
 mod tcp_port;
 mod terminal_key;
 
 #[cfg(feature = "emulator")]
-pub use emulator::{EmulatorSettings, emulate};
+pub use emulator::{EmulatorSettings, FrontSeatSettings, emulate};
 pub use error::NodeError;
 pub use guard::guard;
 pub use machine_check::machine_checks;

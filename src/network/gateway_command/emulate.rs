@@ -7,7 +7,7 @@ use command_line::leaf_args::LeafArgs;
 use command_line::number::{seconds, within};
 use gateway::emulator::Extra;
 use gateway::link::LinkAddress;
-use gateway::node::{EmulatorSettings, NodeEvent};
+use gateway::node::{EmulatorSettings, FrontSeatSettings, NodeEvent};
 use gateway_cli::log_line::Log;
 use gateway_cli::protocol_arg::ProtocolArg;
 use std::process::ExitCode;
@@ -48,6 +48,13 @@ pub(crate) struct Args {
     /// Battery charge at the start, per cent, or none for a full battery that does not drain
     #[arg(long, value_name = "PCT", default_value = "100", value_parser = or_none(within(0.0, 100.0, "per cent")))]
     charge_pct: OrNone,
+    #[command(flatten)]
+    common: CommonArgs,
+}
+
+/// The options of every emulated boat.
+#[derive(clap::Args)]
+pub(super) struct CommonArgs {
     /// How long to look for the game, s
     #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
     wait_s: f64,
@@ -73,6 +80,17 @@ enum ExtraArg {
     Zda,
 }
 
+impl ExtraArg {
+    fn extra(&self) -> Extra {
+        match self {
+            ExtraArg::Rmc => Extra::Rmc,
+            ExtraArg::Hdt => Extra::Hdt,
+            ExtraArg::Hdg => Extra::Hdg,
+            ExtraArg::Zda => Extra::Zda,
+        }
+    }
+}
+
 /// A number, displayed as "none" if missing.
 #[derive(Clone, Copy, Debug)]
 struct OrNone(Option<f64>);
@@ -89,43 +107,51 @@ fn address(option: &str, text: &str) -> Result<LinkAddress> {
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
+    let front_seat = front_seat(args)?;
+    emulate(&args.vehicle, front_seat, &args.common)
+}
+
+fn front_seat(args: &Args) -> Result<FrontSeatSettings> {
     let listen = address("--listen", &args.listen)?;
-    let primary = match (&args.primary, &args.ground_station, args.protocol) {
-        (None, None, _) => None,
-        (Some(text), _, ProtocolArg::Surveyor) => Some(address("--primary", text)?),
-        (_, Some(text), ProtocolArg::Mavlink) => {
-            Some(LinkAddress::to_connect(text).map_err(|e| anyhow!("--ground-station: {e}"))?)
+    let charge = args.charge_pct.0.map(|pct| 0.01 * pct);
+    match (args.protocol, &args.primary, &args.ground_station) {
+        (ProtocolArg::Surveyor, _, Some(_)) => bail!("--ground-station requires --protocol mavlink"),
+        (ProtocolArg::Mavlink, Some(_), _) => {
+            bail!("--primary requires --protocol surveyor; for MAVLink, use --ground-station")
         }
-        (Some(_), ..) => bail!("--primary requires --protocol surveyor; for MAVLink, use --ground-station"),
-        (_, Some(_), _) => bail!("--ground-station requires --protocol mavlink"),
-    };
-    let stop = stop::on_ctrl_c_or_parent(args.for_parent)?;
-    let extra = |kind: &ExtraArg| match kind {
-        ExtraArg::Rmc => Extra::Rmc,
-        ExtraArg::Hdt => Extra::Hdt,
-        ExtraArg::Hdg => Extra::Hdg,
-        ExtraArg::Zda => Extra::Zda,
-    };
-    let leaf = args.leaf.clone().in_water();
+        (ProtocolArg::Surveyor, primary, None) => Ok(FrontSeatSettings::Surveyor {
+            listen,
+            primary: primary.as_deref().map(|text| address("--primary", text)).transpose()?,
+            declination_rad: args.declination_deg.map(f64::to_radians),
+            watchdog_s: args.watchdog_s.0,
+            integers: args.integers,
+            extra: args.extra.iter().map(ExtraArg::extra).collect(),
+            charge,
+        }),
+        (ProtocolArg::Mavlink, None, station) => {
+            let connect = |text| LinkAddress::to_connect(text).map_err(|e| anyhow!("--ground-station: {e}"));
+            let ground_station = station.as_deref().map(connect).transpose()?;
+            Ok(FrontSeatSettings::ArduPilot { listen, ground_station, charge })
+        }
+    }
+}
+
+/// Runs a boat with this front seat until its game is over.
+pub(super) fn emulate(vehicle: &str, front_seat: FrontSeatSettings, common: &CommonArgs) -> Result<ExitCode> {
+    let stop = stop::on_ctrl_c_or_parent(common.for_parent)?;
+    let leaf = common.leaf.clone().in_water();
     let settings = EmulatorSettings {
         place: leaf.place()?,
         game: leaf.game,
-        vehicle: args.vehicle.clone(),
-        protocol: args.protocol.protocol(),
-        listen,
-        primary,
-        declination_rad: args.declination_deg.map(f64::to_radians),
-        watchdog_s: args.watchdog_s.0,
-        integers: args.integers,
-        extra: args.extra.iter().map(extra).collect(),
-        charge: args.charge_pct.0.map(|pct| 0.01 * pct),
-        wait: Duration::from_secs_f64(args.wait_s),
-        silence: Duration::from_secs_f64(args.silence_s),
+        vehicle: vehicle.to_owned(),
+        front_seat,
+        wait: Duration::from_secs_f64(common.wait_s),
+        silence: Duration::from_secs_f64(common.silence_s),
         stop,
     };
-    let log = Log::new(args.for_parent);
+    let log = Log::new(common.for_parent);
     let mut notify = |event: NodeEvent<'_>| match event {
-        NodeEvent::Looking { reason } => log.remark(format!("{}: looking for the game: {reason}", args.vehicle)),
+        NodeEvent::Looking { reason } => log.remark(format!("{vehicle}: looking for the game: {reason}")),
         // The parent process may have requested any free port.
         NodeEvent::Listening { what, reach } => log.print(format!("{what} at {reach}\n")),
         NodeEvent::Event { at_s, event } => log.event(at_s, event),
@@ -133,6 +159,6 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     };
     let emulated = gateway::node::emulate(&settings, &mut notify);
     log.end(String::new());
-    emulated.with_context(|| format!("the emulator of {}", args.vehicle))?;
+    emulated.with_context(|| format!("the emulator of {vehicle}"))?;
     Ok(ExitCode::SUCCESS)
 }
