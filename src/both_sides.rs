@@ -2,6 +2,7 @@
 //! the points summed.
 
 use anyhow::{Result, bail};
+use command_line::explain::UsageError;
 use primitives::id::TeamId;
 use scenario::Scenario;
 use sim::Report;
@@ -25,7 +26,10 @@ impl BothSides {
         };
         let teams = [0, 1].map(|team| (scenario.teams[team].name.clone(), name(team)));
         if strategies(scenario) == strategies(exchanged) {
-            bail!("both teams use the strategy {}, so exchanging strategies has no effect", teams[0].1);
+            bail!(UsageError(format!(
+                "both teams use the strategy {}, so exchanging strategies has no effect",
+                teams[0].1
+            )));
         }
         Ok(BothSides { teams })
     }

@@ -1,9 +1,9 @@
 //! `squall check` and `squall schema`: validate scenario files and print their schemas.
 
 use crate::kinds::KINDS;
-use crate::{explain, screen, style};
-use anyhow::{Result, anyhow, bail};
-use scenario::{Kind, check_file, load, schema};
+use crate::{explain, scenario_files, screen, style};
+use anyhow::{Result, bail};
+use scenario::{Kind, check_file, did_you_mean, load, schema};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -17,13 +17,14 @@ pub(crate) struct Args {
 #[derive(clap::Args)]
 pub(crate) struct SchemaArgs {
     /// Kind of file: game, field, rules, boat, sea, strategy, tournament, gateway, rewards, training or sweep
-    kind: String,
+    #[arg(value_parser = kind)]
+    kind: Kind,
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let mut errors = 0;
     for file in &args.files {
-        if file.extension().is_none_or(|end| end != "toml") {
+        if !scenario_files::is_toml(file) {
             errors += 1;
             screen::print(&format!("{}: not a scenario file, expected NAME.toml\n", file.display()));
             continue;
@@ -57,10 +58,12 @@ fn warnings(file: &Path, kind: Kind) -> Vec<String> {
 }
 
 pub(crate) fn print_schema(args: &SchemaArgs) -> Result<ExitCode> {
-    let kinds = || KINDS.iter().map(|kind| kind.name()).collect::<Vec<_>>().join(", ");
-    let kind = KINDS.iter().copied().find(|kind| kind.name() == args.kind);
-    let kind =
-        kind.ok_or_else(|| anyhow!("unknown kind of scenario file {:?}; expected one of {}", args.kind, kinds()))?;
-    screen::print(&(serde_json::to_string_pretty(&schema(kind))? + "\n"));
+    screen::print(&(serde_json::to_string_pretty(&schema(args.kind))? + "\n"));
     Ok(ExitCode::SUCCESS)
+}
+
+fn kind(word: &str) -> Result<Kind, String> {
+    let names: Vec<&str> = KINDS.iter().map(|kind| kind.name()).collect();
+    let found = KINDS.iter().copied().find(|kind| kind.name() == word);
+    found.ok_or_else(|| format!("expected one of {}{}", names.join(", "), did_you_mean(word, &names)))
 }

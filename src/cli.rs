@@ -1,9 +1,10 @@
 //! The command line as a whole: grouped help, first steps, shell completion scripts, man pages.
 
 use crate::{Cli, screen};
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{ArgMatches, Command, CommandFactory};
+use command_line::explain::UsageError;
 use command_line::number;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -60,7 +61,8 @@ pub(crate) fn command() -> Command {
             text.push_str(&format!("{group}:\n{lines}\n"));
         }
     }
-    text.push_str("`squall COMMAND --help` prints details and examples.");
+    text.push_str("`squall COMMAND --help` prints details and examples.\n");
+    text.push_str("Exit codes: 0 success, 1 failure, 2 a mistake in the command line, 130 Ctrl-C.");
     command.help_template("{about}\n\n{usage-heading} {usage}{after-help}\n\nOptions:\n{options}").after_help(text)
 }
 
@@ -111,6 +113,11 @@ pub(crate) fn completions(args: &CompletionArgs) -> ExitCode {
 }
 
 pub(crate) fn man(args: &ManArgs) -> Result<ExitCode> {
+    if let Some(command) = args.folder.to_str().filter(|name| command().find_subcommand(name).is_some()) {
+        bail!(UsageError(format!(
+            "{command} is a command, whose page is squall {command} --help; expected a folder for all pages, such as man1"
+        )));
+    }
     crate::output_file::make_folder(&args.folder)?;
     clap_mangen::generate_to(Cli::command(), &args.folder)
         .with_context(|| format!("cannot write man pages to {}", args.folder.display()))?;
@@ -142,6 +149,34 @@ mod tests {
                 "{}: {examples:?}",
                 one.get_name()
             );
+        }
+    }
+
+    /// All options with a value, each after its commands.
+    fn options(command: &Command, before: &[String]) -> Vec<Vec<String>> {
+        let own = command.get_arguments().filter(|arg| arg.get_action().takes_values());
+        let own = own.filter_map(|arg| Some([before, &[format!("--{}", arg.get_long()?)]].concat()));
+        let below = command.get_subcommands();
+        let below = below.flat_map(|one| options(one, &[before, &[one.get_name().to_owned()]].concat()));
+        own.chain(below).collect()
+    }
+
+    #[test]
+    fn every_option_names_the_values_that_it_allows() {
+        const RAW: [&str; 7] =
+            ["invalid digit", "number too", "zero for non", "float", "empty string", "socket", "tip:"];
+        let all = number::with_negative_numbers(command());
+        let options = options(&all, &[]);
+        assert!(options.len() > 100, "{}", options.len());
+        for option in options {
+            for value in ["-1", "abc", "1e999", "99999999999999999999999", "1.5.", ""] {
+                let line = ["squall".to_owned()].into_iter().chain(option.clone()).chain([value.to_owned()]);
+                let Err(error) = all.clone().try_get_matches_from(line) else { continue };
+                let text = error.to_string();
+                let is_explained = error.kind() != ErrorKind::ValueValidation
+                    || ["expected", "allowed", "there is no"].iter().any(|words| text.contains(words));
+                assert!(is_explained && !RAW.iter().any(|raw| text.contains(raw)), "{option:?} {value:?}: {text}");
+            }
         }
     }
 

@@ -1,8 +1,9 @@
 //! Command line arguments that select a game and override its file; shared by `run` and `sim`.
 
 use crate::output_file;
-use crate::scenario_files;
-use anyhow::{Context, Result, bail};
+use crate::{scenario_files, screen};
+use anyhow::{Context, Error, Result, bail};
+use command_line::explain::UsageError;
 use command_line::number::whole;
 use scenario::{Files, Kind, Overrides, Scenario, Setting};
 use sim::Report;
@@ -86,6 +87,15 @@ impl GameArgs {
         output_file::write_json(path, "the results", &serde_json::json!({ "games": games, "sum": sum }))
     }
 
+    /// Says so if a rehearsal differs from the game in nothing.
+    pub(crate) fn remark_on_rehearsal(&self) -> Result<()> {
+        let overrides = Overrides { simulate_all: false, ..self.overrides()? };
+        if self.rehearse && scenario::load_with(&self.scenario, &overrides)?.externals().next().is_none() {
+            screen::remark("--rehearse has no effect: this game has no real boats");
+        }
+        Ok(())
+    }
+
     /// The overrides of the game file.
     pub(crate) fn overrides(&self) -> Result<Overrides> {
         let mut settings = self.settings.clone();
@@ -103,11 +113,17 @@ impl GameArgs {
         let beside = self.scenario.parent().unwrap_or(Path::new(""));
         let folder = beside.parent().unwrap_or(Path::new("..")).join(Kind::STRATEGY.folder());
         let named = [("blue", &self.blue), ("red", &self.red)];
-        let named = named.into_iter().filter_map(|(team, file)| Some((team, file.as_deref()?)));
-        for (team, file) in named.chain(self.strategy.iter().map(|(team, file)| (team.as_str(), file.as_str()))) {
-            let path = scenario_files::find_beside(file, Kind::STRATEGY, Some(&folder))?;
+        let named =
+            named.into_iter().filter_map(|(team, file)| Some((format!("--{team} <STRATEGY>"), team, file.as_deref()?)));
+        let of_teams = self.strategy.iter().map(|(team, file)| {
+            let option = "--strategy <TEAM=FILE>".to_owned();
+            (option, team.as_str(), file.as_str())
+        });
+        for (option, team, file) in named.chain(of_teams) {
+            let path = scenario_files::find_beside(file, Kind::STRATEGY, Some(&folder));
+            let path = path.map_err(|e: Error| UsageError(format!("invalid value '{file}' for '{option}': {e}")))?;
             if overrides.strategies.insert(team.to_owned(), path).is_some() {
-                bail!("the strategy of team {team} is given twice, expected one");
+                bail!(UsageError(format!("the strategy of team {team} is given twice, expected one")));
             }
         }
         Ok(overrides)

@@ -5,6 +5,8 @@ use crate::trial_command::{read_sheet, tick, usual_tick_s};
 use crate::water_args::{self, WaterArgs, within};
 use crate::{output_file, screen};
 use anyhow::{Context, Result, bail};
+use command_line::explain::UsageError;
+use command_line::scenario_files::existing;
 use primitives::SimTime;
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
@@ -17,7 +19,7 @@ pub(crate) struct Args {
     boat: String,
     /// Recorded data, as CSV. Columns: t_s, commands as for `squall trial --orders`, heading_deg, surge_m_s,
     /// yaw_rate_deg_s and, if available, sway_m_s, x_m and y_m
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = existing)]
     log: PathBuf,
     /// Parameters to fit, separated by commas [default: surge_linear, surge_quadratic, sway_linear, yaw_linear,
     /// yaw_quadratic, yaw_lift, port_gain, starboard_gain and lag, if the boat has them]
@@ -44,7 +46,10 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     }
     let out = args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}_identified.toml", boat.name)));
     if out.canonicalize().is_ok_and(|out| path.canonicalize().is_ok_and(|path| path == out)) {
-        bail!("--out {} is the boat from which the fit starts; choose another file", out.display());
+        bail!(UsageError(format!(
+            "--out {} is the boat from which the fit starts; choose another file",
+            out.display()
+        )));
     }
     let parameters = identify::parameters(&args.fit, &boat)?;
     let log = Log::of_sheet(&read_sheet(&args.log)?, &boat)?;

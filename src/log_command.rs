@@ -6,6 +6,8 @@ use crate::water_args::within;
 use crate::{output_file, recording_file, screen};
 use analysis::{Comparison, GameSeries, Summary};
 use anyhow::{Context, Result};
+use command_line::explain::UsageError;
+use command_line::scenario_files::existing;
 use recording::{Bag, Damaged, Kind, Recording};
 use scenario::Scenario;
 use std::collections::BTreeSet;
@@ -21,9 +23,9 @@ mod quality;
 #[derive(clap::Args)]
 #[command(after_help = AFTER_HELP)]
 pub(crate) struct Args {
-    /// Recording to analyse
-    #[arg(required_unless_present_any = ["compare", "quality"])]
-    file: Option<PathBuf>,
+    /// Recording to analyse; two with --compare, any number with --quality
+    #[arg(required = true, value_name = "FILE", value_parser = existing)]
+    files: Vec<PathBuf>,
     /// Prints only the events
     #[arg(long)]
     events: bool,
@@ -49,12 +51,11 @@ pub(crate) struct Args {
     #[command(flatten)]
     film: gif::FilmArgs,
     /// Compares two recordings, for example a game on the water and its simulation
-    #[arg(long, num_args = 2, value_names = ["A", "B"], conflicts_with_all = ["file", "events"])]
-    compare: Option<Vec<PathBuf>>,
+    #[arg(long, conflicts_with = "events")]
+    compare: bool,
     /// Reports the quality of play in these recordings: chatter, standing still, edges, contacts, orbits
-    #[arg(long, num_args = 1.., value_name = "GAME")]
-    #[arg(conflicts_with_all = ["file", "events", "csv", "plot", "alog", "gif", "compare"])]
-    quality: Option<Vec<PathBuf>>,
+    #[arg(long, conflicts_with_all = ["events", "csv", "plot", "alog", "gif", "compare"])]
+    quality: bool,
     /// With --compare: maximum time between matching events, s
     #[arg(long, value_name = "S", default_value_t = 5.0, value_parser = within(0.0, 3600.0, "s"), requires = "compare")]
     tolerance_s: f64,
@@ -65,11 +66,14 @@ The summary lists the topics. A table has one row per message, with these except
 per input (inputs), per word (say) and per sentence (link).";
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
-    match (&args.compare, &args.quality, &args.file) {
-        (Some(files), ..) => compare(args, files)?,
-        (None, Some(files), _) => quality::print(files, args.json.as_deref())?,
-        (None, None, Some(file)) => look_at(args, file)?,
-        (None, None, None) => anyhow::bail!("expected a recording, --compare or --quality"),
+    match args.files.as_slice() {
+        files if args.quality => quality::print(files, args.json.as_deref())?,
+        [a, b] if args.compare => compare(args, [a, b])?,
+        [file] if !args.compare => look_at(args, file)?,
+        files => {
+            let wanted = if args.compare { "two with --compare" } else { "one, or several with --quality" };
+            anyhow::bail!(UsageError(format!("recordings given: {}, expected {wanted}", files.len())))
+        }
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -141,11 +145,10 @@ fn csv(args: &Args, file: &Path, source: (&Bag, Option<&Scenario>), topic: &str)
     Ok(())
 }
 
-fn compare(args: &Args, files: &[PathBuf]) -> Result<()> {
-    let [a, b] = files else { anyhow::bail!("--compare requires two recordings") };
+fn compare(args: &Args, [a, b]: [&Path; 2]) -> Result<()> {
     let recordings = [recording_file::open(a, "read")?, recording_file::open(b, "read")?];
     let series = recordings.each_ref().map(GameSeries::of);
-    for (file, series) in files.iter().zip(&series) {
+    for (file, series) in [a, b].iter().zip(&series) {
         if let Some(remark) = series.damaged.remark() {
             screen::remark(&format!("{}: {remark}", file.display()));
         }

@@ -130,10 +130,7 @@ fn main() -> ExitCode {
     let done = cli.command.map_or_else(|| Ok(cli::first()), run);
     match done.and_then(|code| screen::check_output().map(|()| code)) {
         Ok(code) => code,
-        Err(error) => {
-            screen::complain(&explain::error(&error));
-            ExitCode::FAILURE
-        }
+        Err(error) => explain::report(&error),
     }
 }
 

@@ -39,10 +39,10 @@ impl Minds {
         Minds { teams, proposals: proposals.collect(), recording: Arc::clone(&recording) }
     }
 
-    /// The helm report and the order of the vehicle's mind when it repeats this decision, if it
-    /// can.
+    /// The helm report, with the utilities of all functions, and the order of the vehicle's mind when
+    /// it repeats this decision, if it can.
     pub(crate) fn report_of(&mut self, vehicle: VehicleId, decision: u64) -> Option<(HelmReport, Order)> {
-        let order = self.decide(vehicle, decision)?;
+        let order = self.decide(vehicle, decision, true)?;
         Some((self.report(vehicle)?, order))
     }
 
@@ -52,8 +52,9 @@ impl Minds {
         team.runner.mind(vehicle).and_then(Mind::report)
     }
 
-    /// The order of the vehicle's mind when it repeats this decision, if it can.
-    pub(crate) fn decide(&mut self, vehicle: VehicleId, decision: u64) -> Option<Order> {
+    /// The order of the vehicle's mind when it repeats this decision, if it can. Its report has the
+    /// utilities of all functions if they are `shown`, which takes most of the time.
+    pub(crate) fn decide(&mut self, vehicle: VehicleId, decision: u64, shown: bool) -> Option<Order> {
         let index = self.recording.scenario().team_of(vehicle).index();
         if self.teams[index].runner.decided() > Some(decision) {
             // Minds cannot go backwards: start again.
@@ -69,7 +70,7 @@ impl Minds {
                 let until = proposals.partition_point(|(at, _)| *at <= now);
                 proposals[..until].last().iter().for_each(|(_, proposal)| runner.propose(proposal, picture.stamp));
             }
-            runner.minds_mut().for_each(|(_, mind)| mind.show(*seq == decision));
+            runner.minds_mut().for_each(|(_, mind)| mind.show(shown && *seq == decision));
             runner.decide(picture.stamp, |_| Some(&picture));
         }
         let is_decided = runner.decided() == Some(decision);

@@ -2,7 +2,8 @@
 
 use crate::kinds::KINDS;
 use crate::{output_file, scenario_files, screen};
-use anyhow::{Result, anyhow, bail};
+use anyhow::{Result, bail};
+use command_line::explain::UsageError;
 use experiment::sweep::Sweep;
 use experiment::tournament::Tournament;
 use scenario::{Kind, did_you_mean};
@@ -67,12 +68,13 @@ pub(crate) fn copy(args: &CopyArgs) -> Result<ExitCode> {
         [] => {
             let known: Vec<String> = KINDS.iter().copied().filter(is_asked).flat_map(scenario_files::names).collect();
             let known: Vec<&str> = known.iter().map(String::as_str).collect();
-            bail!("there is no file {}{}; list all files with: squall files", args.name, did_you_mean(name, &known));
+            let guess = did_you_mean(name, &known);
+            bail!(UsageError(format!("there is no file {}{guess}; list all files with: squall files", args.name)));
         }
         [(one, _), (other, _), ..] => {
             let one = one.folder();
             let other = other.folder();
-            return Err(anyhow!("several files have the name {name}, expected {one}/{name} or {other}/{name}"));
+            bail!(UsageError(format!("several files have the name {name}, expected {one}/{name} or {other}/{name}")));
         }
     };
     let path = write(kind, args.as_name.as_deref().unwrap_or(name), content)?;
@@ -84,7 +86,7 @@ pub(crate) fn copy(args: &CopyArgs) -> Result<ExitCode> {
 fn write(kind: Kind, name: &str, content: &[u8]) -> Result<PathBuf> {
     let path = Path::new("scenarios").join(kind.folder()).join(format!("{name}.toml"));
     if path.exists() {
-        bail!("the file {} exists already; choose another name", path.display());
+        bail!(UsageError(format!("the file {} exists already; choose another name", path.display())));
     }
     if let Some(folder) = path.parent() {
         output_file::make_folder(folder)?;

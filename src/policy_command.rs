@@ -3,7 +3,8 @@
 use crate::minds::Minds;
 use crate::{helm_text, recording_file, screen};
 use anyhow::{Context, Result, bail};
-use command_line::number::whole;
+use command_line::number::{seconds, whole};
+use command_line::scenario_files::existing;
 use onnx::Network;
 use primitives::input_file;
 use scenario::action::{self, ActionSpace};
@@ -18,15 +19,16 @@ use std::time::Instant;
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Policy: an ONNX model
+    #[arg(value_parser = existing)]
     file: PathBuf,
     /// Explains a decision in this recording
-    #[arg(long, value_name = "RECORDING", requires_all = ["vehicle", "at"])]
+    #[arg(long, value_name = "RECORDING", requires_all = ["vehicle", "at"], value_parser = existing)]
     game: Option<PathBuf>,
     /// With --game: name of the boat, which must use a policy
     #[arg(long, value_name = "NAME", requires = "game")]
     vehicle: Option<String>,
     /// With --game: time of the decision, s
-    #[arg(long, value_name = "SECONDS", requires = "game", allow_negative_numbers = true)]
+    #[arg(long, value_name = "SECONDS", requires = "game", value_parser = seconds)]
     at: Option<f64>,
     /// Number of inputs to list, the most influential first
     #[arg(long, value_name = "COUNT", default_value_t = 12, value_parser = whole::<usize>(0, u64::MAX))]

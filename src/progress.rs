@@ -57,6 +57,11 @@ impl Progress {
         self.bar.reset_eta();
     }
 
+    /// Adds to the number of items.
+    pub(crate) fn expect(&self, more: u64) {
+        self.bar.inc_length(more);
+    }
+
     /// Sets the number of items done.
     pub(crate) fn set(&self, done: u64) {
         self.bar.set_position(done);

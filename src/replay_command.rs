@@ -3,6 +3,7 @@
 use crate::progress::Progress;
 use crate::{recording_file, screen};
 use anyhow::{Context, Result};
+use command_line::scenario_files::existing;
 use recording::{FRAME, Recording};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -12,6 +13,7 @@ mod check;
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Recording to replay
+    #[arg(value_parser = existing)]
     pub(crate) file: PathBuf,
     /// Reruns the game from its recorded inputs, without minds, and reports whether the result is identical
     #[arg(long)]

@@ -65,6 +65,7 @@ pub(crate) fn run(args: &Args, player: &mut dyn Player) -> Result<ExitCode> {
         return play_when_saved(args, player);
     }
     let scenario = args.play.load()?;
+    args.play.remark_on_rehearsal()?;
     let stop = stop::on_ctrl_c()?;
     play_once(args, player, &scenario, &stop)
 }

@@ -4,8 +4,10 @@
 use crate::plot::trial as plot;
 use crate::screen;
 use crate::water_args::{self, WaterArgs, degrees, within};
-use anyhow::{Context, Result, anyhow, bail};
+use anyhow::{Context, Result, bail};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use command_line::explain::UsageError;
+use command_line::scenario_files::existing;
 use primitives::{SimTime, angle};
 use scenario::boat::{Boat, Drive};
 use sim::hull::Planar;
@@ -21,7 +23,7 @@ pub(crate) struct Args {
     boat: String,
     /// Replays the commands in this CSV file. Columns: t_s, and either port and starboard (both in _rad_s, _pct or
     /// _newton), or thrust_pct and rudder_pct, or speed_m_s and heading_deg
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = existing)]
     orders: Option<PathBuf>,
     /// Standard manoeuvre to perform
     #[arg(long, value_name = "NAME", value_parser = manoeuvre_name())]
@@ -98,7 +100,10 @@ pub(crate) struct StartArgs {
 impl StartArgs {
     fn start(&self, boat: &Boat) -> Result<Start> {
         if self.start_thrust_pct.is_some() && !matches!(boat.drive, Drive::Kinematic(_)) {
-            bail!("--start-thrust-pct is for kinematic boats; {} has thrusters, which start at rest", boat.name);
+            bail!(UsageError(format!(
+                "--start-thrust-pct is for kinematic boats; {} has thrusters, which start at rest",
+                boat.name
+            )));
         }
         Ok(Start {
             psi_rad: angle::rad_from_compass_deg(self.start_heading_deg),
@@ -135,7 +140,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     match (&args.orders, args.manoeuvre) {
         (Some(path), _) => replay(args, path, &boat, &mut trial_boat),
         (None, Some(named)) => manoeuvre(args, named, &boat, &mut trial_boat),
-        (None, None) => bail!("expected --orders or --manoeuvre"),
+        (None, None) => bail!(UsageError("expected --orders or --manoeuvre".to_owned())),
     }
 }
 
@@ -182,7 +187,7 @@ fn replay(args: &Args, path: &Path, boat: &Boat, trial_boat: &mut TrialBoat) -> 
         bail!("{}: all commands have the same time; set the duration of the trial with --duration-s", path.display());
     }
     let samples = trial::replay(trial_boat, &orders, duration)?;
-    let csv = args.csv.as_deref().ok_or_else(|| anyhow!("--orders requires --csv FILE for the track"))?;
+    let csv = args.csv.as_deref().ok_or_else(|| UsageError("--orders requires --csv FILE for the track".to_owned()))?;
     write_track(csv, &samples, args.with_orders)?;
     if let Some(plot) = &args.plot {
         plot::write(plot, &format!("{}: {}", boat.name, path.display()), &samples)?;

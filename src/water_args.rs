@@ -1,5 +1,6 @@
 //! Command line arguments for the boat and its water; shared by `trial` and `identify`.
 
+use command_line::explain::UsageError;
 use command_line::number::whole;
 pub(crate) use command_line::number::within;
 
@@ -50,7 +51,7 @@ pub(crate) fn sea(path: &Path, seed: u64) -> Result<Sea> {
 /// Loads a boat from a file, or by its name in `scenarios/boats`; returns it with its file and its
 /// randomised values.
 pub(crate) fn boat(named: &str, seed: u64) -> Result<(Boat, PathBuf, Vec<Drawn>)> {
-    let path = scenario_files::find(named, Kind::BOAT)?;
+    let path = scenario_files::find(named, Kind::BOAT).map_err(|error| UsageError(error.to_string()))?;
     let drawn = scenario::draw_file::<scenario::Boat>(&path, seed);
     let (boat, drawn) = drawn.with_context(|| format!("cannot load the boat {}", path.display()))?;
     Ok((boat, path, drawn))

@@ -8,6 +8,7 @@ use crate::plot::film::{Moment, Stage};
 use crate::plot::pixels;
 use crate::water_args::within;
 use anyhow::{Context, Result, bail};
+use command_line::explain::UsageError;
 use command_line::number::whole;
 use gif::{DisposalMethod, Encoder, Repeat};
 use primitives::Ned;
@@ -38,7 +39,8 @@ pub(super) struct FilmArgs {
     #[arg(long, value_name = "S", requires = "gif", value_parser = within(0.0, 1e7, "s"))]
     to: Option<f64>,
     /// With --gif: playback speed, as a multiple of real time
-    #[arg(long, value_name = "FACTOR", requires = "gif", default_value = "10x", value_parser = game_args::speed)]
+    #[arg(long, value_name = "FACTOR", requires = "gif", default_value = "10x", allow_hyphen_values = true)]
+    #[arg(value_parser = game_args::speed)]
     speed: f64,
     /// With --gif: width of the animation, pixels
     #[arg(long, value_name = "PIXELS", requires = "gif", default_value_t = 800, value_parser = whole::<u32>(200, 2000))]
@@ -101,7 +103,7 @@ fn moments<'a>(
     let from_s = args.from.unwrap_or(0.0);
     let to_s = args.to.unwrap_or(f64::INFINITY);
     if to_s <= from_s {
-        bail!("--to is {to_s} s, expected more than --from, {from_s} s");
+        bail!(UsageError(format!("--to is {to_s} s, expected more than --from, {from_s} s")));
     }
     let mut moments = vec![];
     let mut trails: VecDeque<(f64, Vec<Ned>)> = VecDeque::new();

@@ -37,7 +37,7 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let stop = stop::on_ctrl_c_or_parent(args.for_parent)?;
-    stop::exit_when_late(&stop, None);
+    stop::exit_when_late(&stop);
     let names = args.vehicle.join(", ");
     let load = |path: &PathBuf| {
         scenario::load_file::<scenario::strategy::Strategy>(path)

@@ -8,6 +8,7 @@ use crate::game_args::GameArgs;
 use crate::{output_file, scenario_files};
 use anyhow::{Context, Result, anyhow, bail};
 use bus::keys::Identity;
+use command_line::explain::UsageError;
 use gateway::config::{BoatProtocol, Gateway};
 use recording::{LentFile, NewFile};
 use scenario::{Kind, Scenario};
@@ -58,7 +59,7 @@ impl LoopArgs {
             return Ok(None);
         }
         if names.is_empty() {
-            bail!("--emulate requires a game with at least one external boat");
+            bail!(UsageError("--emulate requires a game with at least one external boat".to_owned()));
         }
         if names.len() > BOATS_MAX {
             bail!("{} boats of this game are real, expected at most {BOATS_MAX} with --emulate", names.len());

@@ -3,6 +3,7 @@
 use anyhow::{Result, anyhow, bail};
 use bus::token::TOKEN_VARIABLE;
 use bus::{Net, Token};
+use command_line::explain::UsageError;
 use command_line::leaf_args::AccessArgs;
 use command_line::number::endpoint;
 use messages::topic::GameName;
@@ -40,10 +41,10 @@ impl HubArgs {
         listen.iter_mut().try_for_each(with_port)?;
         let keys = self.access.keys()?;
         match (&keys, listen.iter().find(|endpoint| !bus::is_loopback(endpoint))) {
-            (None, Some(open)) if !self.insecure => bail!(
+            (None, Some(open)) if !self.insecure => bail!(UsageError(format!(
                 "{open} can be reached from other machines, where anyone can see and stop the game: create keys with \
                  `squall keys new` and use --keys, or use --insecure on a private network"
-            ),
+            ))),
             _ => {}
         }
         // With keys, certificates define the rights, so no token is needed.

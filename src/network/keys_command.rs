@@ -2,9 +2,10 @@
 
 use super::hub_args::own_address;
 use crate::screen;
-use anyhow::{Result, anyhow, bail};
+use anyhow::{Result, bail};
 use bus::keys::{self, Bundle, Identity};
-use command_line::number::whole;
+use command_line::explain::UsageError;
+use command_line::number::{host, whole};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -41,7 +42,7 @@ struct NewArgs {
     #[arg(long)]
     operator: bool,
     /// Name or address of the sim, besides localhost; repeatable [default: this machine's name and address]
-    #[arg(long = "host", value_name = "HOST")]
+    #[arg(long = "host", value_name = "HOST", value_parser = host)]
     hosts: Vec<String>,
     /// Validity of the keys, days
     #[arg(long, value_name = "DAYS", default_value_t = 90, value_parser = whole::<u32>(1, 3650))]
@@ -76,10 +77,14 @@ fn new(args: &NewArgs) -> Result<()> {
     identities.extend(args.observer.then_some(Identity::Observer));
     identities.extend(args.operator.then_some(Identity::Operator));
     if let [Identity::Sim] = identities[..] {
-        bail!("no node could join; request keys with --team, --gateway, --observer or --operator");
+        bail!(UsageError(
+            "no node could join; request keys with --team, --gateway, --observer or --operator".to_owned()
+        ));
     }
     identities.sort();
-    identities.dedup();
+    if let Some([twice, _]) = identities.windows(2).find(|pair| pair[0] == pair[1]) {
+        bail!(UsageError(format!("{twice} is given twice, expected once")));
+    }
     if let Some(there) =
         identities.iter().map(|identity| args.folder.join(identity.to_string())).find(|path| path.exists())
     {
@@ -101,8 +106,8 @@ fn new(args: &NewArgs) -> Result<()> {
 }
 
 fn named(text: &str) -> Result<Identity> {
-    let wrong = |_| anyhow!("{text:?} is not a valid name, expected 1 to 48 of the characters a-z A-Z 0-9 _ -");
-    text.parse().map_err(wrong)
+    let wrong = "is not a valid name, expected 1 to 48 of the characters a-z A-Z 0-9 _ -";
+    text.parse().map_err(|_| UsageError(format!("{text:?} {wrong}")).into())
 }
 
 fn show(folder: &Path) -> Result<()> {

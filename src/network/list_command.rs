@@ -37,6 +37,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
                 bus.close();
             }
             Err(error @ (BusError::Keys(_) | BusError::NeedsKeys(_))) => screen::remark(&error.to_string()),
+            Err(error) if args.leaf.connects_to(place) => return Err(error.into()),
             // No answer means no game.
             Err(_) => {}
         }

@@ -12,10 +12,10 @@ use std::process::Command;
 #[derive(Clone, clap::Args)]
 pub(crate) struct PaceArgs {
     /// Pace of the game: lockstep, realtime, or a multiple of real time such as 4x
-    #[arg(long, default_value = "lockstep")]
+    #[arg(long, default_value = "lockstep", allow_hyphen_values = true)]
     pub(crate) pace: Pace,
     /// In lockstep: initial speed limit, as a multiple of real time; the page can change it [default: none]
-    #[arg(long, value_name = "FACTOR", value_parser = speed)]
+    #[arg(long, value_name = "FACTOR", allow_hyphen_values = true, value_parser = speed)]
     pub(crate) speed: Option<f64>,
     /// How long to wait for missing agents and gateways before starting without them, s
     #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]

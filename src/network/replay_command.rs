@@ -6,6 +6,7 @@ use super::replay_helms::ReplayHelms;
 use crate::replay_command;
 use crate::{screen, stop};
 use anyhow::{Result, bail};
+use command_line::explain::UsageError;
 use shore::page::replay::{Recorded, ReplayView};
 use std::path::Path;
 use std::process::ExitCode;
@@ -23,7 +24,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let file = &args.replay.file;
     if args.replay.check {
         if args.page.is_given() {
-            bail!("--check shows no page; omit --listen, --token, --page-token-file and --host");
+            bail!(UsageError("--check shows no page; omit --listen, --token, --page-token-file and --host".to_owned()));
         }
         return replay_command::check(file);
     }

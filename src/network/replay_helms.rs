@@ -42,7 +42,7 @@ impl Helms for ReplayHelms {
     fn report(&mut self, vehicle: VehicleId, decision: u64, _functions: bool) -> HelmAnswer {
         // Decide again: recording all objective functions would take megabytes a second, and
         // strategies are deterministic. Comparison with the recorded order verifies this.
-        let Some(order) = self.minds.decide(vehicle, decision) else {
+        let Some(order) = self.minds.decide(vehicle, decision, true) else {
             let reason = "no picture of this moment was recorded".to_owned();
             return HelmAnswer { reason: Some(reason), computed: true, ..HelmAnswer::default() };
         };

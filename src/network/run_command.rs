@@ -13,6 +13,7 @@ use anyhow::{Result, bail};
 use bus::Token;
 use bus::keys::{Bundle, Identity};
 use clap::{ArgGroup, Args as _, FromArgMatches};
+use command_line::explain::UsageError;
 use command_line::number::whole;
 use recording::{LentFile, NewFile};
 use scenario::{Scenario, Vehicle};
@@ -57,7 +58,13 @@ const SPEED_TO_WATCH: f64 = 10.0;
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     if args.page.is_given() && !args.view {
-        bail!("--listen, --token, --page-token-file, --host, --chart and --open require --view");
+        bail!(UsageError("--listen, --token, --page-token-file, --host, --chart and --open require --view".to_owned()));
+    }
+    if args.pace.join_s < 1.0 && !args.run.in_process {
+        bail!(UsageError(format!(
+            "--join-s is {} s, expected at least 1 s: the agents start with the game",
+            args.pace.join_s
+        )));
     }
     if args.run.in_process {
         return run_command::run(&args.run, &mut InProcess);

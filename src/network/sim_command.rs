@@ -43,6 +43,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let seed = args.play.seed(&scenario);
     let scenario = if args.afloat.is_empty() { scenario } else { sim::afloat(&scenario, seed, &args.afloat)? };
     args.play.check_result_file()?;
+    if !args.for_parent {
+        args.play.remark_on_rehearsal()?;
+    }
     let stop = stop::on_ctrl_c_or_parent(args.for_parent)?;
     let game = match &args.game {
         Some(game) => game.clone(),

@@ -7,6 +7,7 @@ use crate::stop;
 use crate::style::Names;
 use anyhow::{Context, Result, bail};
 use command_line::leaf_args::LeafArgs;
+use command_line::scenario_files::existing;
 use shore::page::View;
 use shore::page::live::LiveView;
 use std::path::{Path, PathBuf};
@@ -21,7 +22,7 @@ mod training;
 pub(crate) struct Args {
     /// What to show: the JSON report of a tournament, the folder of a league, sweep or training, or a recording
     /// [default: a running game]
-    #[arg(conflicts_with_all = ["game", "connect"])]
+    #[arg(conflicts_with_all = ["game", "connect"], value_parser = existing)]
     report: Option<PathBuf>,
     #[command(flatten)]
     leaf: LeafArgs,

@@ -42,7 +42,7 @@ const EVENTS: usize = 6;
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let stop = stop::on_ctrl_c()?;
-    stop::exit_when_late(&stop, None);
+    stop::exit_when_late(&stop);
     let observer = Observer::connect(&args.leaf)?;
     let pause = Duration::from_secs_f64(1.0 / f64::from(args.rate));
     match &args.helm {

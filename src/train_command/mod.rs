@@ -52,7 +52,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     // Learning uses all threads, however few games there are.
     let jobs = args.jobs.threads(usize::MAX).get();
     let stop = stop::on_ctrl_c()?;
-    stop::exit_when_late(&stop, Some("stopped during an update; --resume continues from the previous one"));
+    stop::remark_when_late(&stop, "finishing the update to save its state; press Ctrl-C again to stop at once");
     let mut trainer = begin(args, training, &folder, jobs)?;
     let mut files = Files::open(&folder, &base(&args.training, trainer.training()), &trainer)?;
     let recordings = args.record_every.map(|every| record(&mut trainer, &folder, every)).transpose()?;
@@ -66,14 +66,20 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         folder.display(),
         size / 1000
     ));
+    if done > 0 {
+        progress.print(&format!("resuming after {done} samples"));
+    }
     let mut told_stage = None;
     while !trainer.is_over() {
         let is_enough = args.until.is_some_and(|until| trainer.samples().0 >= until);
         if is_enough || stop.load(Ordering::Relaxed) {
             progress.end();
-            let at = files::Files::state(&folder);
-            let from = if at.exists() { "continue with --resume" } else { "no state has been saved yet" };
-            screen::remark(&format!("stopped after {} samples; {from}", trainer.samples().0));
+            let samples = trainer.samples().0;
+            if samples > done {
+                files.keep_state(samples, &trainer.state())?;
+            }
+            let next = if samples > 0 { "; --resume continues from there" } else { "" };
+            screen::remark(&format!("stopped after {samples} samples{next}"));
             return Ok(if is_enough { ExitCode::SUCCESS } else { stop::interrupted() });
         }
         let update = trainer.update()?;
@@ -90,7 +96,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
             let how = play_command(&trainer, &folder).filter(|_| update.is_best);
             how.iter().for_each(|how| progress.print(&format!("           {how}")));
         }
-        if update.can_be_resumed {
+        if update.games_restart {
             files.keep_state(update.samples, &trainer.state())?;
         }
     }

@@ -178,9 +178,10 @@ fn mistakes_are_explained() {
             &[recording, "--csv", "whales"][..],
             "there is no topic \"whales\" in this recording; there are events, frame",
         ),
-        (&["--compare", recording, "nowhere.mcap"], "cannot read nowhere.mcap"),
-        (&["--compare", recording], "2 values"),
-        (&["--quality", recording, "nowhere.mcap"], "cannot read nowhere.mcap"),
+        (&["--compare", recording, "nowhere.mcap"], "there is no file nowhere.mcap"),
+        (&["--compare", recording], "recordings given: 1, expected two with --compare"),
+        (&[recording, recording], "recordings given: 2, expected one"),
+        (&["--quality", recording, "nowhere.mcap"], "there is no file nowhere.mcap"),
         (&[recording, "--plot", toml], "cannot create the folder"),
     ] {
         let refused = program::refusal(program::project(), &[&["log"], args].concat());

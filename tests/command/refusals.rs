@@ -45,6 +45,26 @@ fn every_mistake_is_refused_and_explained() {
 }
 
 #[test]
+fn mistakes_in_the_command_line_exit_with_2_and_name_the_next_step() {
+    let dir = tempfile::tempdir().unwrap();
+    let utf_16: Vec<u8> = "\u{feff}fild = 1\r\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
+    std::fs::write(dir.path().join("game.mcap"), "").unwrap();
+    std::fs::write(dir.path().join("wide.toml"), utf_16).unwrap();
+    std::fs::write(dir.path().join("Mine.TOML"), "").unwrap();
+    let cases = include_str!("mistakes.txt").lines().filter(|line| !line.starts_with('#'));
+    let wrong = cases.filter_map(|case| {
+        let [code, line, want] = case.split(" | ").collect::<Vec<_>>()[..] else { panic!("{case}") };
+        let output = command(&dir, &words(line)).output().unwrap();
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        let is_right = output.status.code() == code.parse().ok() && said.contains(want) && !said.contains("os error");
+        (!is_right).then(|| format!("{line}: expected {code} and {want:?}, found {} and {said}", output.status))
+    });
+    let wrong: Vec<String> = wrong.collect();
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(std::fs::read_dir(&dir).unwrap().count() == 3, "a mistake leaves no files");
+}
+
+#[test]
 fn errors_show_the_line_with_a_caret_and_colours_where_they_are_wanted() {
     let dir = tempfile::tempdir().unwrap();
     let game = "base = \"GAME\"\nduration_s = \"12\"\nsea = ../gale.toml\n";
@@ -60,6 +80,13 @@ fn errors_show_the_line_with_a_caret_and_colours_where_they_are_wanted() {
                 a.toml:3:7: ../gale.toml is not in quotes, expected \"../gale.toml\"\n  |\n3 | sea = ../gale.toml\n  |       ^^^^^^^^^^^^\n";
     assert_eq!(plain, want);
     assert_eq!(said(&["--color", "never"], None), plain);
+    // The values of an axis are settings with the same mistake, which no line of a file has.
+    let sweep =
+        format!("base = {:?}\n[[axis]]\nkey = \"sea.wind.sped_m_s\"\nvalues = [1, 2]\n", scenario("sweeps/wind.toml"));
+    std::fs::write(dir.path().join("s.toml"), sweep).unwrap();
+    let checked = command(&dir, &["check", "s.toml"]).output().unwrap().stdout;
+    let checked = String::from_utf8(checked).unwrap();
+    assert!(checked.matches("sped_m_s").count() == 1 && checked.starts_with("s.toml:3:"), "{checked}");
     let coloured = said(&["--color", "always"], Some("1"));
     assert!(coloured.contains("\u{1b}[1;31ma.toml:2:14:\u{1b}[0m"), "{coloured:?}");
     assert!(!said(&[], Some("1")).contains('\u{1b}'));

@@ -175,7 +175,7 @@ fn the_quality_of_a_tournament_is_that_of_its_recorded_games() {
         printed(project(), &words(&format!("run {game} {how}")));
         recordings.push(only_file(&runs));
     }
-    let told = printed(project(), &["log", "--quality", &recordings[0], &recordings[1], "--json", &quality]);
+    let told = printed(project(), &["log", &recordings[0], &recordings[1], "--quality", "--json", &quality]);
     assert!(said.ends_with(&told) && told.starts_with("quality of play in 2 games"), "{said}\n{told}");
     let quality = json(&quality);
     assert_eq!(json(&report)["quality"], quality);

@@ -84,6 +84,19 @@ fn a_training_goes_on_from_its_state_as_if_it_had_not_stopped() {
     }
     child.kill().unwrap();
     child.wait().unwrap();
+    // Then stop twice between two states: all work is kept, and the tables keep their lines.
+    let samples = || {
+        let updates = String::from_utf8(read(&cut, "updates.csv")).unwrap();
+        updates.lines().skip(1).last().map(|line| line.split(',').next().unwrap().parse().unwrap()).unwrap_or(0_u64)
+    };
+    for _ in 0..2 {
+        let until = (samples() + 500).to_string();
+        printed(here, &["train", "short.toml", "--out", "cut", "--resume", "--until", &until]);
+        let stopped = samples();
+        let told = printed(here, &["train", "short.toml", "--out", "cut", "--resume", "--until", "0"]);
+        assert!(told.contains(&format!("resuming after {stopped} samples")), "{told}");
+        assert_eq!(samples(), stopped);
+    }
     printed(here, &["train", "short.toml", "--out", "cut", "--resume"]);
     for name in ["best.onnx", "last.onnx", "state.bin", "updates.csv", "evaluations.csv", "episodes.csv"] {
         assert!(read(&here.join("whole"), name) == read(&cut, name), "{name} is another after --resume");

@@ -165,6 +165,9 @@ fn check_ends(plan: &Plan, played: &Played) -> Vec<String> {
         let is_early = end.is_some_and(|end| end.at < sim_ended);
         if is_early && !plan.forges() {
             wrong.push(format!("agent {agent} gives up during the game: {reason}"));
+        } else if plan.faults.is_empty() && !plan.forges() {
+            // Messages get lost even so.
+            wrong.push(format!("agent {agent} misses the end of the game: {reason}"));
         }
     }
     wrong

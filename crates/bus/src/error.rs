@@ -84,8 +84,35 @@ pub enum BusError {
     },
 }
 
-/// zenoh's error, without the source location that it appends.
+/// zenoh's error, without the source location that it appends and the endpoints that it repeats.
 pub(crate) fn reason(error: &zenoh::Error) -> String {
     let text = error.to_string();
-    text.split(" at /").next().unwrap_or(&text).trim_end_matches(['!', ' ']).to_owned()
+    let text = text.split(" at /").next().unwrap_or(&text).trim_end_matches(['!', ' ']);
+    if text.starts_with("Unable to connect to any of") {
+        return "nothing answers there; check the address and the port, and that the sim runs".to_owned();
+    }
+    match text.rsplit_once(": ").filter(|_| text.starts_with("Can not create a new")) {
+        Some((_, cause)) => cause.to_owned(),
+        None => text.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_refused_endpoint_is_explained_without_zenohs_notation() {
+        for (text, want) in [
+            ("Unable to connect to any of [Single(tcp/10.0.0.5:1)]! at /a/b.rs:1.", "nothing answers there; check"),
+            (
+                "Can not create a new TCP listener bound to tcp/10.0.0.5:1: [10.0.0.5:1: Address already in use (os error \
+                 98) at /a/b.rs:1.]",
+                "Address already in use (os error 98)",
+            ),
+            ("Invalid key [x]!", "Invalid key [x]"),
+        ] {
+            assert!(reason(&text.into()).starts_with(want), "{}", reason(&text.into()));
+        }
+    }
 }

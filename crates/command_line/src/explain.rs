@@ -1,13 +1,44 @@
 //! Explains errors in scenario files, each with the line in question.
 
-use crate::style;
+use crate::{style, terminal};
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use anyhow::Error;
 use primitives::printable;
 use scenario::{Problem, Problems};
+use std::fmt;
+use std::process::ExitCode;
 
 /// The width limit of a quoted line, columns.
 const COLUMNS: usize = 100;
+
+/// A mistake in the command line that the parser of arguments cannot find.
+#[derive(Debug)]
+pub struct UsageError(pub String);
+
+impl fmt::Display for UsageError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for UsageError {}
+
+/// Prints an error and returns the exit code: 2 for a mistake in the command line, as after errors of
+/// the parser, otherwise 1.
+pub fn report(error: &Error) -> ExitCode {
+    let is_option = |problem: &Problem| problem.place().starts_with("--");
+    let is_usage = |cause: &(dyn std::error::Error + 'static)| {
+        let problems = cause.downcast_ref::<Problems>();
+        cause.is::<UsageError>() || problems.is_some_and(|Problems(problems)| problems.iter().all(is_option))
+    };
+    let text = self::error(error);
+    if error.chain().any(is_usage) {
+        terminal::complain_as("error", &format!("{text}\n\nFor more information, try '--help'."));
+        return ExitCode::from(2);
+    }
+    terminal::complain(&text);
+    ExitCode::FAILURE
+}
 
 /// An error with all its causes; for scenario files, with all problems.
 pub fn error(error: &Error) -> String {
@@ -36,7 +67,7 @@ pub fn line(error: &Error) -> String {
 }
 
 /// A message without the system's error numbers: ` (os error 2)`.
-fn without_number(message: &str) -> String {
+pub(crate) fn without_number(message: &str) -> String {
     let mut parts = message.split(" (os error ");
     let first = parts.next().unwrap_or_default().to_owned();
     parts.fold(first, |text, part| text + part.split_once(')').map_or("", |(_, rest)| rest))

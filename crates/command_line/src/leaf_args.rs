@@ -1,7 +1,8 @@
 //! Command line arguments for how a process reaches a game: where it is, its name, keys and token.
 
+use crate::explain::UsageError;
 use crate::number::endpoint;
-use anyhow::{Context, Result, anyhow, ensure};
+use anyhow::{Context, Result, bail, ensure};
 use bus::keys::Bundle;
 use bus::token::TOKEN_VARIABLE;
 use bus::{Net, Place, Token};
@@ -95,6 +96,11 @@ impl LeafArgs {
         bus::local_gateways().into_iter().filter(is_meant).collect()
     }
 
+    /// Whether these are the endpoints given on the command line.
+    pub fn connects_to(&self, net: &Net) -> bool {
+        !self.connect.is_empty() && net.connect == self.connect
+    }
+
     /// The same arguments for an emulated boat. Without a name, they select the only water on
     /// this machine.
     #[must_use]
@@ -154,11 +160,11 @@ fn local_endpoint(known: &[bus::Entry]) -> Result<String> {
     match if games.is_empty() { water } else { games }.as_slice() {
         [] => Ok(format!("tcp/127.0.0.1:{}", bus::DEFAULT_PORT)),
         [entry] => Ok(entry.endpoint.clone()),
-        several => Err(several_games(several.iter().map(|entry| entry.game.as_str()))),
+        several => bail!(several_games(several.iter().map(|entry| entry.game.as_str()))),
     }
 }
 
-fn several_games<'a>(names: impl Iterator<Item = &'a str>) -> anyhow::Error {
+fn several_games<'a>(names: impl Iterator<Item = &'a str>) -> UsageError {
     let names: Vec<&str> = names.collect();
-    anyhow!("several games run on this machine; select one with --game: {}", names.join(", "))
+    UsageError(format!("several games run on this machine; select one with --game: {}", names.join(", ")))
 }

@@ -54,6 +54,16 @@ pub fn endpoint(text: &str) -> Result<String, String> {
     is_endpoint.then(|| text.to_owned()).ok_or_else(wrong)
 }
 
+/// Parses the name or the IP address of a machine from the command line.
+///
+/// # Errors
+/// If it has other characters than those of names and addresses.
+pub fn host(text: &str) -> Result<String, String> {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_.:".contains(c);
+    let is_host = !text.is_empty() && text.chars().all(is_plain);
+    is_host.then(|| text.to_owned()).ok_or_else(|| "expected a name or an IP address, such as boat.local".to_owned())
+}
+
 /// Lets all options take negative numbers, so that their parsers report the allowed range; clap would
 /// report an unknown option.
 #[must_use]

@@ -1,8 +1,8 @@
 //! Opens a recording given by the user, and reports damage in it.
 
 use crate::terminal;
-use anyhow::{Context, Result};
-use recording::{Bag, Recording};
+use anyhow::{Context, Error, Result};
+use recording::{Bag, Recording, RecordingError};
 use std::path::Path;
 
 /// Opens the recording of a game; errors name the purpose `to`, for example "replay".
@@ -13,7 +13,11 @@ pub fn open(file: &Path, to: &str) -> Result<Recording> {
 
 /// Opens a recording of any kind.
 pub fn open_any(file: &Path, to: &str) -> Result<Bag> {
-    let bag = Bag::open(file).with_context(|| format!("cannot {to} {}", file.display()))?;
+    let bag = Bag::open(file).map_err(|error| match error {
+        // It names the file.
+        RecordingError::File { .. } => Error::new(error),
+        error => Error::new(error).context(format!("cannot {to} {}", file.display())),
+    })?;
     if let [first, ..] = &bag.damage[..] {
         let places = bag.damage.len();
         let of = if places == 1 { String::new() } else { format!(" (the first of {places} damaged ranges)") };

@@ -42,7 +42,10 @@ pub fn find(word: &str, kind: Kind) -> Result<PathBuf> {
 /// The same, but searches the folder `beside` first for a name.
 pub fn find_beside(word: &str, kind: Kind, beside: Option<&Path>) -> Result<PathBuf> {
     let given = PathBuf::from(word);
-    if word.contains(['/', '\\']) || given.extension().is_some_and(|end| end == "toml") || given.is_file() {
+    if given.extension().is_some_and(|end| end == "mcap") {
+        bail!("{word} is a recording, expected a {kind}; show it with squall replay, or analyse it with squall log");
+    }
+    if word.contains(['/', '\\']) || is_toml(&given) || given.is_file() {
         return match other_kind(kinds(), &given, kind) {
             Some(other) => bail!("{word} is a {other}, expected a {kind}{}", where_it_goes(other)),
             None if given.exists() || built_in(&given).is_some() => Ok(given),
@@ -51,6 +54,9 @@ pub fn find_beside(word: &str, kind: Kind, beside: Option<&Path>) -> Result<Path
                 let there =
                     names_in(given.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new(".")));
                 let there: Vec<&str> = there.iter().map(String::as_str).collect();
+                if !word.contains('/') && contents(kind, &name).is_some() {
+                    bail!("there is no file {word}, but there is a built-in {kind} of the name {name}");
+                }
                 bail!("there is no file {word}{}", did_you_mean(&name, &there))
             }
         };
@@ -85,9 +91,9 @@ fn unknown(word: &str, kind: Kind, folders: &[PathBuf]) -> anyhow::Error {
 fn where_it_goes(kind: Kind) -> String {
     let place = match kind.name() {
         "game" => "play it with squall run",
-        "strategy" => "use it with --blue or --red",
-        "sea" => "use it with --sea",
-        "field" => "use it with --field",
+        "strategy" => "use it with squall run GAME --blue or --red",
+        "sea" => "use it with squall run GAME --sea",
+        "field" => "use it with squall run GAME --field",
         "tournament" => "play it with squall tournament",
         "sweep" => "run it with squall sweep",
         "training" => "run it with squall train",
@@ -109,8 +115,29 @@ fn names_in(folder: &Path) -> BTreeSet<String> {
 }
 
 fn name_of(path: &Path) -> Option<String> {
-    let is_toml = path.extension().is_some_and(|end| end == "toml");
-    is_toml.then(|| path.file_stem()?.to_str().map(str::to_owned))?
+    is_toml(path).then(|| path.file_stem()?.to_str().map(str::to_owned))?
+}
+
+/// Whether the name of a file ends as those of scenario files, on Windows also with capitals.
+pub fn is_toml(path: &Path) -> bool {
+    path.extension().is_some_and(|end| end.eq_ignore_ascii_case("toml"))
+}
+
+/// Parses an argument that names an existing file or folder of any kind.
+///
+/// # Errors
+/// If there is none; suggests a similar name.
+pub fn existing(word: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(word);
+    if path.exists() {
+        return Ok(path);
+    }
+    let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    let files = std::fs::read_dir(folder).into_iter().flatten().filter_map(std::result::Result::ok);
+    let there: Vec<String> = files.map(|file| file.file_name().to_string_lossy().into_owned()).collect();
+    let there: Vec<&str> = there.iter().map(String::as_str).collect();
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    Err(format!("there is no file {word}{}", did_you_mean(&name, &there)))
 }
 
 /// Parses an argument that names a file of this kind.

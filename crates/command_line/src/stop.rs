@@ -28,15 +28,23 @@ pub fn on_ctrl_c() -> anyhow::Result<Arc<AtomicBool>> {
 }
 
 /// Ends the process soon after the flag is set, even if it is still busy or waits for the network:
-/// for commands that leave complete files whenever they end. Prints `remark` then, if there is one.
-pub fn exit_when_late(stop: &Arc<AtomicBool>, remark: Option<&'static str>) {
+/// for commands that leave complete files whenever they end.
+pub fn exit_when_late(stop: &Arc<AtomicBool>) {
+    when_late(stop, || std::process::exit(130));
+}
+
+/// Prints a remark soon after the flag is set, for commands that take long to stop.
+pub fn remark_when_late(stop: &Arc<AtomicBool>, remark: &'static str) {
+    when_late(stop, move || terminal::remark(remark));
+}
+
+fn when_late(stop: &Arc<AtomicBool>, act: impl FnOnce() + Send + 'static) {
     const LATE: Duration = Duration::from_millis(1400);
     let flag = Arc::clone(stop);
     std::thread::spawn(move || {
         wait(&flag);
         clock::rest(LATE);
-        remark.into_iter().for_each(terminal::remark);
-        std::process::exit(130);
+        act();
     });
 }
 

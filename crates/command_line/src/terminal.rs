@@ -1,8 +1,7 @@
 //! Text for the user, on standard output and standard error, with colours if the terminal supports
 //! them.
 
-use crate::program;
-use crate::style;
+use crate::{explain, program, style};
 use anstream::AutoStream;
 use anyhow::{Result, bail};
 use primitives::printable;
@@ -76,11 +75,16 @@ fn is_written(control: &str, text: &str) -> bool {
 
 /// Prints an error, which may contain colours.
 pub fn complain(text: &str) {
+    complain_as(program::name(), text);
+}
+
+/// Prints an error after this word in place of the program's name.
+pub fn complain_as(who: &str, text: &str) {
     let text = printable::coloured_message(text);
-    drop(writeln!(anstream::stderr(), "{} {text}", style::bad(&format!("{}:", program::name()))));
+    drop(writeln!(anstream::stderr(), "{} {text}", style::bad(&format!("{who}:"))));
 }
 
 /// Prints a text to standard error, where it does not mix with results.
 pub fn remark(text: &str) {
-    drop(writeln!(anstream::stderr(), "{}", printable::message(text)));
+    drop(writeln!(anstream::stderr(), "{}", printable::message(&explain::without_number(text))));
 }

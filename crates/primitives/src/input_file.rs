@@ -49,6 +49,25 @@ pub fn read_text(path: &Path, bytes_max: u64) -> Result<String, Error> {
     String::from_utf8(read(path, bytes_max)?).map_err(|_| Error::new(ErrorKind::InvalidData, "it is not UTF-8"))
 }
 
+/// A text in UTF-8. Programs of Windows write UTF-16 with a byte order mark as "Unicode text", which is
+/// converted.
+///
+/// # Errors
+/// If such a text is damaged.
+pub fn utf_8(bytes: Vec<u8>) -> Result<Vec<u8>, String> {
+    let order: fn([u8; 2]) -> u16 = match bytes.get(..2) {
+        Some(b"\xff\xfe") => u16::from_le_bytes,
+        Some(b"\xfe\xff") => u16::from_be_bytes,
+        _ => return Ok(bytes),
+    };
+    let (units, rest) = bytes[2..].as_chunks();
+    let text = char::decode_utf16(units.iter().map(|unit| order(*unit))).collect::<Result<String, _>>();
+    match text {
+        Ok(text) if rest.is_empty() => Ok(text.into_bytes()),
+        _ => Err("damaged UTF-16 text, expected UTF-8".to_owned()),
+    }
+}
+
 fn is_file(metadata: &Metadata) -> Result<(), Error> {
     let not_a_file = || Error::new(ErrorKind::InvalidInput, "it is not a file");
     metadata.is_file().then_some(()).ok_or_else(not_a_file)

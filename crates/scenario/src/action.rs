@@ -21,7 +21,7 @@ pub enum ActionSpace {
 }
 
 /// A policy's choice.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Action {
     /// The index of one of several actions.
     Discrete(usize),

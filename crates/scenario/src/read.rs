@@ -1,6 +1,6 @@
 //! Reads a file by path: text, bases, merging, and validation by its schema.
 
-use super::diagnostics::Diagnostics;
+use super::diagnostics::{Diagnostics, NAME_EXPECTED, is_name};
 use super::kept::{self, KeptDocument};
 use super::kind::Kind;
 use super::schema::declared;
@@ -9,6 +9,7 @@ use super::syntax;
 use super::tree::{Node, Value};
 use super::validate::validated;
 use crate::policy::{self, PartialSpec, PolicyModel};
+use primitives::input_file;
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -120,7 +121,12 @@ fn document_of_tree<T: DeserializeOwned>(
     let (value, wrong) = if let Some(value) = value {
         (value, vec![])
     } else {
-        diagnostics.is_name(start, "the file's name", &name);
+        if !is_name(&name) {
+            let lower = name.to_lowercase();
+            let next = if is_name(&lower) { format!("; rename it to {lower}.toml") } else { String::new() };
+            let why = format!("the file's name is {name:?}, expected {NAME_EXPECTED}{next}");
+            diagnostics.note_file(path.to_owned(), why);
+        }
         let drawn = diagnostics.drawn.len();
         let (mut value, wrong) = validated(diagnostics, &tree, declared(kind), owner);
         value["name"] = name.clone().into();
@@ -199,7 +205,7 @@ pub(super) fn tree(
 /// Reads one file into the virtual text.
 fn text_of(diagnostics: &mut Diagnostics, path: &Path, asked_at: Option<usize>) -> Option<(usize, Arc<str>)> {
     let bytes = match diagnostics.files.read(path, LARGEST_BYTES) {
-        Ok(bytes) => bytes,
+        Ok(bytes) => input_file::utf_8(bytes.to_vec()).unwrap_or_else(|_| bytes.to_vec()),
         Err(error) => {
             let why = format!("cannot be read ({error}), expected a file");
             match asked_at {

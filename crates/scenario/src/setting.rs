@@ -1,8 +1,11 @@
 //! Settings: overrides of single values in scenario files, as in `--set sea.waves.hs_m=0.3` or a
 //! sweep.
 
+use super::guess::did_you_mean;
 use super::kind::Kind;
+use super::schema::declared;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use std::path::PathBuf;
 
 /// An override of a value in all files of a kind in a game, checked as if it were in the file.
@@ -34,6 +37,25 @@ const PREFIXES: [(&str, Kind); 8] = [
     ("strategy", Kind::STRATEGY),
 ];
 
+/// The full keys that end with this one: `sea.wind` for `wind`. The shortest come first.
+fn complete(key: &str) -> Vec<String> {
+    fn collect(found: &mut Vec<String>, about: &Value, path: &str, end: &str) {
+        for (name, about) in about["properties"].as_object().into_iter().flatten() {
+            let path = format!("{path}.{name}");
+            collect(found, about, &path, end);
+            found.extend(path.ends_with(end).then_some(path));
+        }
+    }
+    let mut found = vec![];
+    // A key of a strategy begins with its team, and the others are tables of the game.
+    let is_kind = |(prefix, _): &&(&str, Kind)| !["link", "fault", "strategy"].contains(prefix);
+    for (prefix, kind) in PREFIXES.iter().filter(is_kind) {
+        collect(&mut found, declared(*kind), prefix, &format!(".{key}"));
+    }
+    found.sort_by_key(String::len);
+    found
+}
+
 impl Setting {
     /// Parses a setting from the command line. A value that is not TOML is a string.
     ///
@@ -56,10 +78,16 @@ impl Setting {
     pub fn new(key: &str, value: String, path: PathBuf, (line, column): (usize, usize)) -> Result<Setting, String> {
         let setting = Setting { key: key.to_owned(), value, path, line, column };
         setting.target().is_some().then_some(setting).ok_or_else(|| {
-            let kinds = PREFIXES.map(|(prefix, _)| prefix).join(", ");
+            let kinds = PREFIXES.map(|(prefix, _)| prefix);
+            let complete = complete(key);
+            let guess = match complete.first() {
+                Some(one) => format!(" (did you mean {one}?)"),
+                None => did_you_mean(key.split('.').next().unwrap_or_default(), &kinds),
+            };
             format!(
-                "the key {key:?} does not begin with a kind of file, expected one of {kinds}, then a key, for example \
-                 sea.waves.hs_m"
+                "the key {key:?} does not begin with a kind of file, expected one of {}, then a key, for example \
+                 sea.waves.hs_m{guess}",
+                kinds.join(", ")
             )
         })
     }
@@ -117,6 +145,15 @@ mod tests {
         }
         for text in ["sea.waves.hs_m", "=3", "sea=3", "sea..hs_m=3", "weather.wind=3", "sea.waves=", "strategy.x=1"] {
             assert!(Setting::parse(text).is_err(), "{text}");
+        }
+        for (text, guess) in [
+            ("wind=20", "sea.wind"),
+            ("duration_s=60", "game.duration_s"),
+            ("hs_m=1", "sea.waves.hs_m"),
+            ("seas.wind=1", "sea"),
+        ] {
+            let error = Setting::parse(text).expect_err(text);
+            assert!(error.ends_with(&format!("(did you mean {guess}?)")), "{error}");
         }
         // A value must not smuggle in another key.
         let smuggled = Setting::parse("sea.a=1\nb = 2").expect("a text");

@@ -81,7 +81,12 @@ impl<'a> Validator<'a> {
         let number = node.as_number()?;
         let bound = |key: &str, none: f64| schema.get(key).and_then(Json::as_f64).unwrap_or(none);
         if !number.is_finite() || !(bound("minimum", f64::MIN)..=bound("maximum", f64::MAX)).contains(&number) {
-            let found = if number.is_nan() { "nan".to_owned() } else { number.to_string() };
+            let found = match number {
+                // In full, it would have up to 300 digits.
+                large if large.is_finite() && large.abs() >= 1e15 => format!("{large:e}"),
+                nan if nan.is_nan() => "nan".to_owned(),
+                number => number.to_string(),
+            };
             return self.wrong(node, &found, &allowed(schema));
         }
         Some(if let Value::Whole(whole) = node.value { whole.into() } else { number.into() })
@@ -251,7 +256,15 @@ impl<'a> Validator<'a> {
     }
 
     fn wrong_type(&mut self, node: &Node, schema: &Json) -> Option<Json> {
-        self.wrong(node, &found(node), &kind_of(schema))
+        let mut expected = kind_of(schema);
+        if let Value::Text(text) = &node.value
+            && expected.contains("number")
+            && has_unit(text)
+            && let Some(unit) = unit_of(self.key())
+        {
+            expected += &format!(" without a unit, in {unit}");
+        }
+        self.wrong(node, &found(node), &expected)
     }
 
     fn wrong(&mut self, node: &Node, found: &str, expected: &str) -> Option<Json> {
@@ -361,6 +374,28 @@ fn found(node: &Node) -> String {
         Value::Truth(truth) => truth.to_string(),
         Value::Date(date) => date.clone(),
     }
+}
+
+/// Whether a text is a number with a unit, such as `20kn`.
+fn has_unit(text: &str) -> bool {
+    text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)) && text.parse::<f64>().is_err()
+}
+
+/// The unit in a key's name.
+fn unit_of(key: &str) -> Option<&'static str> {
+    const UNITS: [(&str, &str); 10] = [
+        ("_rad_s", "rad/s"),
+        ("_m_s", "m/s"),
+        ("_kn", "knots"),
+        ("_deg", "degrees"),
+        ("_newton", "newton"),
+        ("_kg", "kg"),
+        ("_pct", "per cent"),
+        ("_nmi", "nautical miles"),
+        ("_m", "m"),
+        ("_s", "s"),
+    ];
+    UNITS.into_iter().find(|(end, _)| key.ends_with(end)).map(|(_, unit)| unit)
 }
 
 /// The allowed values, in words.

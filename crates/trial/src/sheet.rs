@@ -3,6 +3,7 @@
 //! Reads what loggers and spreadsheets write: columns separated by commas, semicolons or tabs,
 //! decimal commas, UTF-16, a line of units, and a last line that a power loss cut off.
 
+use primitives::input_file::utf_8;
 use std::io::Read;
 use thiserror::Error;
 
@@ -232,22 +233,6 @@ fn line_of(bytes: &[u8], position: &csv::Position) -> u64 {
     let rest = bytes.get(position.byte() as usize..).unwrap_or_default();
     let lines = rest.split(|byte| *byte == b'\n').map(|line| line.strip_suffix(b"\r").unwrap_or(line));
     position.line() + lines.take_while(|line| line.is_empty() || line.starts_with(b"#")).count() as u64
-}
-
-/// The text of a file in UTF-8, without its byte order mark: Excel writes UTF-16 as "Unicode
-/// text".
-fn utf_8(bytes: Vec<u8>) -> Result<Vec<u8>, String> {
-    let order: fn([u8; 2]) -> u16 = match bytes.get(..2) {
-        Some(b"\xff\xfe") => u16::from_le_bytes,
-        Some(b"\xfe\xff") => u16::from_be_bytes,
-        _ => return Ok(bytes),
-    };
-    let (units, rest) = bytes[2..].as_chunks();
-    let text = char::decode_utf16(units.iter().map(|unit| order(*unit))).collect::<Result<String, _>>();
-    match text {
-        Ok(text) if rest.is_empty() => Ok(text.into_bytes()),
-        _ => Err("damaged UTF-16 text, expected UTF-8".to_owned()),
-    }
 }
 
 /// What separates the columns: the commonest of comma, semicolon and tab in the first line.

@@ -2,7 +2,8 @@
 
 use super::preflight_report;
 use super::swing_guide::{Guide, guided_checks};
-use anyhow::{Context, Result, anyhow, bail};
+use crate::link_arg::to_connect;
+use anyhow::{Context, Result, bail};
 use bus::game_search::GameSearch;
 use command_line::leaf_args::LeafArgs;
 use command_line::number::seconds;
@@ -34,8 +35,8 @@ const GAME_WAIT: Duration = Duration::from_secs(5);
 pub struct Args {
     /// Link to the boat: tcp://HOST:PORT, udp://HOST:PORT, udp-listen://0.0.0.0:14550 or
     /// serial:///dev/ttyUSB0?baud=38400 (4800 to 921600 baud)
-    #[arg(long, value_name = "URL")]
-    link: String,
+    #[arg(long, value_name = "URL", value_parser = to_connect)]
+    link: LinkAddress,
     /// How long to listen, s [default: 10, or 30 with --vehicle]
     #[arg(long, value_name = "S", value_parser = seconds)]
     for_s: Option<f64>,
@@ -57,7 +58,7 @@ pub struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
-    let address = LinkAddress::to_connect(&args.link).map_err(|e| anyhow!("--link: {e}"))?;
+    let address = args.link.clone();
     let gateway = super::gateway_file(args.config.as_deref())?;
     let stop = stop::on_ctrl_c()?;
     let (sender, events) = sync_channel(4096);

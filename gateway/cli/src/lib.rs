@@ -5,6 +5,7 @@
 mod check;
 mod console;
 mod guard;
+pub mod link_arg;
 pub mod log_line;
 mod mission_file;
 mod preflight_report;

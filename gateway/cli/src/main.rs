@@ -26,8 +26,5 @@ fn main() -> ExitCode {
     let Cli { color, command } = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     terminal::set_colour(color);
     let done = leaf_args::restart_with_threads_for_keys().and_then(|()| gateway_cli::run(&command, COMMIT));
-    done.and_then(|code| terminal::check_output().map(|()| code)).unwrap_or_else(|error| {
-        terminal::complain(&explain::error(&error));
-        ExitCode::FAILURE
-    })
+    done.and_then(|code| terminal::check_output().map(|()| code)).unwrap_or_else(|error| explain::report(&error))
 }

@@ -1,7 +1,8 @@
 //! `gateway stop`: stops a boat directly over its link; nothing else needs to run.
 
+use crate::link_arg::to_connect;
 use crate::protocol_arg::ProtocolArg;
-use anyhow::{Result, anyhow, bail};
+use anyhow::{Result, bail};
 use bus::{LinkLock, ask_gateway, clock};
 use command_line::number::seconds;
 use command_line::terminal;
@@ -29,7 +30,8 @@ const EVENTS_MAX: usize = 4096;
 pub struct Args {
     /// Link to the boat: tcp://HOST:PORT, udp://HOST:PORT, udp-listen://0.0.0.0:14550 or
     /// serial:///dev/ttyUSB0?baud=38400 (4800 to 921600 baud)
-    link: String,
+    #[arg(value_parser = to_connect)]
+    link: LinkAddress,
     /// Protocol of the boat
     #[arg(long, value_name = "PROTOCOL", value_enum, default_value_t = ProtocolArg::Surveyor)]
     protocol: ProtocolArg,
@@ -39,7 +41,7 @@ pub struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
-    let address = LinkAddress::to_connect(&args.link).map_err(|e| anyhow!("LINK: {e}"))?;
+    let address = args.link.clone();
     // A gateway that holds the link would drive its boat on.
     if stopped_by_its_gateway(&address) {
         return Ok(ExitCode::SUCCESS);

@@ -2,8 +2,10 @@
 
 use super::log_line::{Log, full};
 use super::{guard, preflight_report};
-use anyhow::{Context, Result, anyhow};
+use crate::link_arg::to_connect;
+use anyhow::{Context, Result};
 use bus::{Registration, Token};
+use command_line::explain::UsageError;
 use command_line::leaf_args::LeafArgs;
 use command_line::number::{address, seconds};
 use command_line::{program, stop};
@@ -30,8 +32,8 @@ pub struct Args {
     vehicle: String,
     /// Link to the boat: tcp://HOST:PORT, udp://HOST:PORT, udp-listen://0.0.0.0:14550 or
     /// serial:///dev/ttyUSB0?baud=38400 (4800 to 921600 baud)
-    #[arg(long, value_name = "URL")]
-    link: String,
+    #[arg(long, value_name = "URL", value_parser = to_connect)]
+    link: LinkAddress,
     /// Payload to forward and record, for example camera=tcp://192.168.1.23:5001; append ,listen=HOST:PORT for the
     /// address that serves it, and ,exo2 or ,exo2=http to record the values of an EXO2 sonde; repeatable
     #[arg(long, value_name = "NAME=URL", conflicts_with = "at_game_pace")]
@@ -78,9 +80,9 @@ pub struct Args {
 }
 
 pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
-    let link = LinkAddress::to_connect(&args.link).map_err(|e| anyhow!("--link: {e}"))?;
+    let link = args.link.clone();
     let gateway = super::gateway_file(args.config.as_deref())?;
-    PayloadPort::check(&args.payload).map_err(|e| anyhow!("--payload: {e}"))?;
+    PayloadPort::check(&args.payload).map_err(|e| UsageError(format!("--payload: {e}")))?;
     let preflight = preflight(args, &link, &gateway)?;
     let stop = stop::on_ctrl_c_or_parent(args.for_parent)?;
     let record = recording(args)?;

@@ -133,7 +133,9 @@ fn help_and_hints_name_this_program() {
     }
     // Emulated boats exist only in the simulator.
     assert!(!folder.run(&["emulate", "--help"]).0.status.success());
-    assert!(folder.run(&["replay", "nothing.mcap"]).1.starts_with("squall-gateway: cannot replay nothing.mcap"));
+    assert!(
+        folder.run(&["replay", "nothing.mcap"]).1.starts_with("squall-gateway: cannot read the recording nothing.mcap")
+    );
 }
 
 #[test]

@@ -48,13 +48,24 @@ pub(super) fn run(threads: &Arc<Threads>, address: &LinkAddress) {
                 let took = clock::since(begun_at);
                 // An attempt that nobody answered has taken its wait already.
                 let retry_in = if took < wait / 2 { wait } else { wait.saturating_sub(took) };
-                threads.emit(LinkEvent::Failed { reason: format!("{address}: {e}"), retry_in });
+                threads.emit(LinkEvent::Failed { reason: format!("{address}: {}", in_words(&e)), retry_in });
                 retry_in
             }
         };
         if threads.stops_within(wait) {
             return;
         }
+    }
+}
+
+/// An error of connecting, and what to check.
+fn in_words(error: &io::Error) -> String {
+    match error.kind() {
+        ErrorKind::ConnectionRefused => {
+            "connection refused: nothing listens there; check the address and the port, and that the boat is on"
+                .to_owned()
+        }
+        _ => error.to_string(),
     }
 }
 

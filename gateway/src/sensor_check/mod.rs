@@ -100,6 +100,8 @@ pub struct SensorCheck {
     pub received: BTreeMap<String, Received>,
     /// Number of bytes received.
     bytes: usize,
+    /// Whether lines of the received bytes begin as NMEA sentences do.
+    has_sentences: bool,
     /// The data that the gateway could use.
     usable: BTreeMap<Usable, Received>,
     /// The MAVLink vehicles whose heartbeats were received, as text.
@@ -140,6 +142,7 @@ impl SensorCheck {
             framer,
             received: BTreeMap::new(),
             bytes: 0,
+            has_sentences: false,
             usable: BTreeMap::new(),
             heard: BTreeSet::new(),
             protocol: Protocol::new(gateway),
@@ -162,6 +165,7 @@ impl SensorCheck {
         // A separate framer counts by name. The reports come from the gateway's own codec, so that
         // the check judges what the gateway would use.
         self.bytes += bytes.len();
+        self.has_sentences |= bytes.starts_with(b"$") || bytes.windows(3).any(|part| part == b"\r\n$");
         self.count(now, bytes);
         let mut reports = vec![];
         self.protocol.read(now, bytes, &mut |report| reports.push(report));
@@ -311,7 +315,9 @@ impl SensorCheck {
                 let count = bad_checksum + overlong + broken;
                 format!("received {count} lines, none of them a valid sentence: {} {}", last.line, last.why)
             }),
-            Framer::Mavlink(_) => None,
+            Framer::Mavlink(_) => self.has_sentences.then(|| {
+                format!("received {} bytes of NMEA sentences, expected MAVLink: choose the boat's --config", self.bytes)
+            }),
         };
         match lines {
             Some(lines) => lines,

@@ -95,6 +95,10 @@ fn a_link_without_sentences_says_what_came() {
         let check = checked(stream, 10.0);
         assert!(check.received.is_empty() && check.unread() == want, "{}", check.unread());
     }
+    let gateway = crate::config::default_gateway();
+    let mut check = SensorCheck::new(&Gateway { protocol: BoatProtocol::Mavlink, ..gateway });
+    check.receive(SimTime::ZERO, TELEMETRY.as_bytes());
+    assert!(check.unread().contains("bytes of NMEA sentences, expected MAVLink"), "{}", check.unread());
 }
 
 #[test]

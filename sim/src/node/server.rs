@@ -38,6 +38,8 @@ const REPORT_EVERY: Duration = Duration::from_millis(100);
 const RECORD_EVERY: Duration = Duration::from_secs(1);
 /// How long agents have to leave when the game is over.
 const SHUTDOWN: Duration = Duration::from_secs(2);
+/// Time after which the end of the game is sent again to those that stay.
+const SEND_END_AGAIN: Duration = Duration::from_millis(200);
 
 pub(super) struct GameServer<'w> {
     pub(super) contest: Contest,
@@ -411,9 +413,7 @@ impl<'w> GameServer<'w> {
 
     /// Sends the end of the game to all nodes and waits briefly for agents to leave.
     pub(super) fn shut_down(&mut self) -> Result<(), NodeError> {
-        for (picture, publisher) in self.contest.pictures().to_vec().into_iter().zip(&self.pictures) {
-            publisher.send(&messages::Picture { over: true, ..picture })?;
-        }
+        self.send_end()?;
         let frame = Frame { over: true, ..Frame::clone(&self.frame()) };
         self.frames.send(&frame)?;
         // Real boats hold from now on, even if the game ends early.
@@ -421,13 +421,27 @@ impl<'w> GameServer<'w> {
         self.is_news = true;
         self.send_run(Phase::Over, 0.0)?;
         let start = clock::now();
-        // The last message may get lost; an agent that leaves has received it. The wait is limited,
-        // because an agent may hang.
+        let mut sent = start;
+        // Any message may get lost, and an agent without this one reports a lost sim; one that leaves
+        // has received it. The wait is limited, because an agent may hang.
         while !self.agents.is_empty() && clock::since(start) < SHUTDOWN {
             self.listen(Duration::from_millis(20));
+            if clock::since(sent) >= SEND_END_AGAIN {
+                self.send_end()?;
+                sent = clock::now();
+            }
         }
         self.declarations.clear();
         self.bus.close();
+        Ok(())
+    }
+
+    /// Sends all agents the last pictures.
+    fn send_end(&mut self) -> Result<(), NodeError> {
+        let pictures = self.contest.pictures().to_vec().into_iter().zip(&self.pictures);
+        for (picture, publisher) in pictures {
+            publisher.send(&messages::Picture { over: true, ..picture })?;
+        }
         Ok(())
     }
 

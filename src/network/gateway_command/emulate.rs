@@ -1,13 +1,15 @@
 //! `squall gateway emulate`: a simulated boat for a real back seat or ground station.
 
 use crate::stop;
-use anyhow::{Context, Result, anyhow, bail};
+use anyhow::{Context, Result, bail};
 use clap::ValueEnum;
+use command_line::explain::UsageError;
 use command_line::leaf_args::LeafArgs;
 use command_line::number::{seconds, within};
 use gateway::emulator::Extra;
 use gateway::link::LinkAddress;
 use gateway::node::{EmulatorSettings, FrontSeatSettings, NodeEvent};
+use gateway_cli::link_arg::{to_connect, to_listen};
 use gateway_cli::log_line::Log;
 use gateway_cli::protocol_arg::ProtocolArg;
 use std::process::ExitCode;
@@ -23,18 +25,18 @@ pub(crate) struct Args {
     protocol: ProtocolArg,
     /// Address for the back seat: tcp://HOST:PORT, udp://HOST:PORT, pty, pty:///LINK or
     /// serial:///dev/ttyUSB0?baud=38400
-    #[arg(long, value_name = "URL")]
-    listen: String,
+    #[arg(long, value_name = "URL", value_parser = to_listen)]
+    listen: LinkAddress,
     /// Address for the primary operator, who takes control with any command and returns it with OP2_ON in the text
     /// field
-    #[arg(long, value_name = "URL")]
-    primary: Option<String>,
+    #[arg(long, value_name = "URL", value_parser = to_listen)]
+    primary: Option<LinkAddress>,
     /// Address of a ground station that waits for the boat, for example udp://127.0.0.1:14550 for QGroundControl
     /// (MAVLink only)
-    #[arg(long, value_name = "URL", conflicts_with = "primary")]
-    ground_station: Option<String>,
+    #[arg(long, value_name = "URL", conflicts_with = "primary", value_parser = to_connect)]
+    ground_station: Option<LinkAddress>,
     /// Magnetic declination, degrees east [default: from the World Magnetic Model, for the field and today]
-    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG", value_parser = within(-180.0, 180.0, "degrees"))]
     declination_deg: Option<f64>,
     /// Time without a command after which the boat goes to standby, s, or none; the real boat's value is unknown
     #[arg(long, value_name = "S", default_value = "none", value_parser = or_none(seconds))]
@@ -102,38 +104,35 @@ fn or_none(number: impl Fn(&str) -> Result<f64, String> + Clone) -> impl Fn(&str
     }
 }
 
-fn address(option: &str, text: &str) -> Result<LinkAddress> {
-    LinkAddress::to_listen(text).map_err(|e| anyhow!("{option}: {e}"))
-}
-
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let front_seat = front_seat(args)?;
     emulate(&args.vehicle, front_seat, &args.common)
 }
 
 fn front_seat(args: &Args) -> Result<FrontSeatSettings> {
-    let listen = address("--listen", &args.listen)?;
+    let listen = args.listen.clone();
     let charge = args.charge_pct.0.map(|pct| 0.01 * pct);
-    match (args.protocol, &args.primary, &args.ground_station) {
-        (ProtocolArg::Surveyor, _, Some(_)) => bail!("--ground-station requires --protocol mavlink"),
+    let wrong = match (args.protocol, &args.primary, &args.ground_station) {
+        (ProtocolArg::Surveyor, primary, None) => {
+            return Ok(FrontSeatSettings::Surveyor {
+                listen,
+                primary: primary.clone(),
+                declination_rad: args.declination_deg.map(f64::to_radians),
+                watchdog_s: args.watchdog_s.0,
+                integers: args.integers,
+                extra: args.extra.iter().map(ExtraArg::extra).collect(),
+                charge,
+            });
+        }
+        (ProtocolArg::Mavlink, None, ground_station) => {
+            return Ok(FrontSeatSettings::ArduPilot { listen, ground_station: ground_station.clone(), charge });
+        }
+        (ProtocolArg::Surveyor, _, Some(_)) => "--ground-station requires --protocol mavlink",
         (ProtocolArg::Mavlink, Some(_), _) => {
-            bail!("--primary requires --protocol surveyor; for MAVLink, use --ground-station")
+            "--primary requires --protocol surveyor; for MAVLink, use --ground-station"
         }
-        (ProtocolArg::Surveyor, primary, None) => Ok(FrontSeatSettings::Surveyor {
-            listen,
-            primary: primary.as_deref().map(|text| address("--primary", text)).transpose()?,
-            declination_rad: args.declination_deg.map(f64::to_radians),
-            watchdog_s: args.watchdog_s.0,
-            integers: args.integers,
-            extra: args.extra.iter().map(ExtraArg::extra).collect(),
-            charge,
-        }),
-        (ProtocolArg::Mavlink, None, station) => {
-            let connect = |text| LinkAddress::to_connect(text).map_err(|e| anyhow!("--ground-station: {e}"));
-            let ground_station = station.as_deref().map(connect).transpose()?;
-            Ok(FrontSeatSettings::ArduPilot { listen, ground_station, charge })
-        }
-    }
+    };
+    bail!(UsageError(wrong.to_owned()))
 }
 
 /// Runs a boat with this front seat until its game is over.

@@ -4,7 +4,8 @@ use super::axis::{Axis, AxisValue, Target};
 use crate::tournament::{Entrant, check_entries};
 use scenario::keys::FilePath;
 use scenario::{
-    Diagnostics, Document, GameVariants, Overrides, Problems, Scenario, ScenarioFile, StrategyFiles, tidied_path,
+    Diagnostics, Document, GameVariants, Overrides, Problem, Problems, Scenario, ScenarioFile, StrategyFiles,
+    tidied_path,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -98,6 +99,9 @@ impl ScenarioFile for Sweep {
                 read(&values);
             }
         }
+        // Each value is read as a setting of its own: the same problem, but a line that no file has.
+        let of_axes = problems.iter_mut().filter(|problem: &&mut Problem| problem.path == self.path);
+        of_axes.for_each(|problem| problem.source.clear());
         problems.sort();
         problems.dedup();
         if problems.is_empty() { Ok(()) } else { Err(Problems(problems)) }

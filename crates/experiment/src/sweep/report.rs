@@ -47,7 +47,7 @@ pub struct Report {
     pub effects: Vec<Effect>,
     /// The interactions of pairs of axes, the significant ones first.
     pub interactions: Vec<Interaction>,
-    /// The games with the worst score difference of each entry.
+    /// The games that each entry did not win, with the worst score difference.
     pub worst: Vec<Worst>,
     /// Games that could not start.
     pub failures: Vec<Failure>,
@@ -198,7 +198,7 @@ fn point_report(plan: &Plan, observed: &Observations, names: &[String], point: u
     }
 }
 
-/// The games that each entry lost by the largest margin, or won by the smallest.
+/// The games that each entry lost or drew, the largest margin first.
 fn worst(plan: &Plan, rows: &[Row]) -> Vec<Worst> {
     let mut worst = vec![];
     for (entry, entrant) in plan.sweep().entries.iter().enumerate() {
@@ -206,6 +206,7 @@ fn worst(plan: &Plan, rows: &[Row]) -> Vec<Worst> {
         let measured = of_entry.filter_map(|row| Some((row, row.result.as_ref().ok()?)));
         let mut games: Vec<(f64, &Row, &Metrics)> =
             measured.map(|(row, metrics)| (metrics.of("score_difference"), row, metrics)).collect();
+        games.retain(|(difference, ..)| *difference <= 0.0);
         games.sort_by(|(one, a, _), (other, b, _)| one.total_cmp(other).then(a.job.index.cmp(&b.job.index)));
         worst.extend(games.into_iter().take(WORST).map(|(_, Row { job, digest, .. }, metrics)| Worst {
             entry: entrant.name.clone(),

@@ -10,6 +10,8 @@ use std::ops::Deref;
 pub struct VectorEnvironment {
     pub(crate) games: Games,
     shown: Shown,
+    /// The actions of all steps, while a caller collects them.
+    pub(crate) actions: Option<Vec<Action>>,
 }
 
 impl Deref for VectorEnvironment {
@@ -63,7 +65,7 @@ impl VectorEnvironment {
             final_states: vec![],
         };
         games.show(shown.rows());
-        let mut environment = VectorEnvironment { games, shown };
+        let mut environment = VectorEnvironment { games, shown, actions: None };
         environment.note_states();
         Ok(environment)
     }
@@ -114,6 +116,7 @@ impl VectorEnvironment {
     /// If the number of actions is not the number of rows.
     pub fn step(&mut self, actions: &[Action]) -> Result<(), SetupError> {
         self.games.step(actions, self.shown.rows())?;
+        self.actions.iter_mut().for_each(|collected| collected.extend_from_slice(actions));
         self.note_states();
         Ok(())
     }
@@ -126,7 +129,7 @@ impl VectorEnvironment {
         }
         let size = self.setup().observation_size();
         let (rows, per_game) = self.rows();
-        let VectorEnvironment { games, shown } = self;
+        let VectorEnvironment { games, shown, .. } = self;
         let Shown { observations, final_observations, states, final_states, .. } = shown;
         for (states, observations, is_last) in
             [(states, &*observations, false), (final_states, &*final_observations, true)]

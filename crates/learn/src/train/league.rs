@@ -55,8 +55,8 @@ impl League {
         self.kept = self.past.len();
     }
 
-    pub(super) fn past(&self) -> impl Iterator<Item = PolicyModel> {
-        self.past.iter().filter_map(PastSelf::model)
+    pub(super) fn past(&self) -> &[PastSelf] {
+        &self.past
     }
 
     /// Stores a past policy, up to `most` of them, and returns it as an opponent.
@@ -119,7 +119,7 @@ impl Record {
 }
 
 impl PastSelf {
-    fn model(&self) -> Option<PolicyModel> {
+    pub(super) fn model(&self) -> Option<PolicyModel> {
         let name = format!("after {} samples", self.samples);
         PolicyModel::read(&name, &self.onnx, PartialSpec::default()).ok()
     }

@@ -17,11 +17,12 @@ use crate::environment::{Finished, Player, Setup, SetupError, VectorEnvironment,
 use crate::nn::{Perceptron, SHARD, Trace};
 use crate::ppo::{ActorCritic, Lesson};
 use crate::training::{CriticInput, Ppo, Stage, Training};
+use league::PastSelf;
 use primitives::stream::Stream;
 use rayon::prelude::*;
 use rollout::Rollout;
 use scenario::policy::{PolicySpec, options_metadata};
-use state::State;
+use state::{PlayedUpdate, State};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -49,6 +50,8 @@ pub struct Trainer {
     /// By stage: updates between restarts of all games.
     updates_per_epoch: Vec<u64>,
     state: State,
+    /// Whether the games are still at their last restart, and the state after it.
+    is_behind: bool,
 }
 
 /// Statistics of an update.
@@ -68,8 +71,8 @@ pub struct Progress {
     pub evaluated: Option<Evaluated>,
     /// Whether the current policy is the best so far.
     pub is_best: bool,
-    /// Whether the training can be resumed from here; see [`Trainer::state`].
-    pub can_be_resumed: bool,
+    /// Whether all games restart: the smallest state, from which a training run resumes at once.
+    pub games_restart: bool,
 }
 
 struct Update {
@@ -124,8 +127,19 @@ impl Trainer {
         let updates_per_epoch = setups.iter().map(|setup| updates_per_epoch(&training, setup)).collect();
         let environment = environment(&training, &setups, &state, threads, None)?;
         let pool = pool(threads);
-        let watches = None;
-        Ok(Trainer { training, setups, judges, threads, pool, environment, watches, updates_per_epoch, state })
+        let (watches, is_behind) = (None, !state.played.is_empty());
+        Ok(Trainer {
+            training,
+            setups,
+            judges,
+            threads,
+            pool,
+            environment,
+            watches,
+            updates_per_epoch,
+            state,
+            is_behind,
+        })
     }
 
     /// Adds watches for all episodes from now on except those of evaluations. Numbers count up
@@ -138,7 +152,7 @@ impl Trainer {
     /// # Panics
     /// After an update since the training was started or resumed: games would restart.
     pub fn watch(&mut self, watches: Watches) -> Result<(), SetupError> {
-        assert_eq!(self.state.updates_of_epoch, 0, "watches must be added before the first update");
+        assert!(self.state.updates_of_epoch == 0 || self.is_behind, "watches must be added before the first update");
         self.watches = Some(watches);
         self.environment = environment(&self.training, &self.setups, &self.state, self.threads, self.watches.as_ref())?;
         Ok(())
@@ -174,7 +188,7 @@ impl Trainer {
         self.state.stage >= self.training.stage.len()
     }
 
-    /// The state from which a training run can be resumed; valid where [`Progress::can_be_resumed`].
+    /// The state from which a training run can be resumed.
     #[must_use]
     pub fn state(&self) -> Vec<u8> {
         self.state.write(&self.training)
@@ -213,10 +227,17 @@ impl Trainer {
     /// # Panics
     /// If all stages are complete.
     pub fn update(&mut self) -> Result<Progress, SetupError> {
+        if std::mem::take(&mut self.is_behind) {
+            play_again(&mut self.environment, &self.state.played)?;
+        }
         let stage = self.state.stage;
         let mut stream = Stream::new(self.training.seed.wrapping_add(self.state.updates), "update");
         let of_stage = &self.training.stage[stage];
-        self.environment.games.set_weights(self.state.league.weights(of_stage, &self.training.league));
+        let weights = self.state.league.weights(of_stage, &self.training.league);
+        self.environment.games.set_weights(weights.iter().copied());
+        if self.state.played.is_empty() {
+            self.state.past_at_restart = self.state.league.past().to_vec();
+        }
         let (done, all) = self.samples();
         let done = (done, done as f32 / all.max(1) as f32);
         let Trainer { environment, pool, state, training, .. } = self;
@@ -226,6 +247,8 @@ impl Trainer {
             Learner::Dqn(of) => of.update(environment, pool, done.0, &mut stream)?,
         };
         let Update { counted, reward, finished, learnt, .. } = update;
+        let actions = environment.actions.replace(vec![]).unwrap_or_default();
+        state.played.push(PlayedUpdate { weights, actions, kept: None });
         state.updates += 1;
         state.updates_of_epoch += 1;
         state.samples += counted;
@@ -236,9 +259,9 @@ impl Trainer {
         let name = |one: Finished| (numbered(one), self.opponent_name(stage, one.standing.side.opponent));
         let finished = finished.into_iter().map(name).collect();
         let (evaluated, is_best) = self.after_update()?;
-        let can_be_resumed = self.begin_anew(evaluated.as_ref())?;
+        let games_restart = self.begin_anew(evaluated.as_ref())?;
         let samples = self.state.samples;
-        Ok(Progress { samples, stage, learnt, reward, finished, evaluated, is_best, can_be_resumed })
+        Ok(Progress { samples, stage, learnt, reward, finished, evaluated, is_best, games_restart })
     }
 
     fn opponent_name(&self, stage: usize, opponent: usize) -> String {
@@ -259,6 +282,8 @@ impl Trainer {
             let model = self.model().map_err(diverged)?;
             let kept = self.state.league.keep(self.state.samples, model, league.most);
             kept.into_iter().for_each(|model| self.environment.games.add_opponent(Player::Model(model)));
+            let played = self.state.played.last_mut();
+            played.into_iter().for_each(|played| played.kept = self.state.league.past().last().cloned());
         }
         let last = self.state.evaluations.last().map_or(0, |last| last.samples);
         let is_last = self.state.samples_of_stage >= self.training.stage[self.state.stage].samples;
@@ -292,9 +317,10 @@ impl Trainer {
         if !is_over && state.updates_of_epoch < self.updates_per_epoch[state.stage] {
             return Ok(false);
         }
-        // Elsewhere, resuming would require the state of every helm in every game. After a restart
-        // of all games, the state is only the learner and the opponents.
+        // Elsewhere, a state would need every helm in every game: it holds the actions since the last
+        // restart instead. After a restart, it is only the learner and the opponents.
         (state.epoch, state.updates_of_epoch) = (state.epoch + 1, 0);
+        (state.past_at_restart, state.played) = (vec![], vec![]);
         if is_over {
             (state.stage, state.samples_of_stage) = (state.stage + 1, 0);
             state.learner.begin_stage();
@@ -339,14 +365,30 @@ fn environment(
 ) -> Result<VectorEnvironment, SetupError> {
     // Nothing is played after the last stage.
     let mut setup = setups[state.stage.min(setups.len() - 1)].clone();
-    setup.opponents.extend(state.league.past().map(|model| (0.0, Player::Model(model))));
+    let past: &[PastSelf] = if state.played.is_empty() { state.league.past() } else { &state.past_at_restart };
+    setup.opponents.extend(past.iter().filter_map(PastSelf::model).map(|model| (0.0, Player::Model(model))));
     let stage = &training.stage[state.stage.min(setups.len() - 1)];
-    let weights = state.league.weights(stage, &training.league);
+    let at_restart = state.played.first().map(|played| played.weights.clone());
+    let weights = at_restart.unwrap_or_else(|| state.league.weights(stage, &training.league));
     setup.opponents.iter_mut().zip(weights).for_each(|((weight, _), drawn)| *weight = drawn);
     let seed = (training.seed << (2 * SEEDS_BITS)).wrapping_add(state.epoch << SEEDS_BITS) % EVALUATION_SEED;
     let first = first_number(training, state.epoch);
     let watches = watches.cloned().map(|watches| -> Watches { Arc::new(move |number| watches(first + number)) });
-    VectorEnvironment::new(setup, training.games as usize, threads, seed, watches)
+    let mut environment = VectorEnvironment::new(setup, training.games as usize, threads, seed, watches)?;
+    environment.actions = Some(vec![]);
+    Ok(environment)
+}
+
+/// Brings games at their restart to the state after these updates.
+fn play_again(environment: &mut VectorEnvironment, updates: &[PlayedUpdate]) -> Result<(), SetupError> {
+    for update in updates {
+        environment.games.set_weights(update.weights.iter().copied());
+        update.actions.chunks(environment.rows().0).try_for_each(|actions| environment.step(actions))?;
+        let kept = update.kept.iter().filter_map(PastSelf::model);
+        kept.for_each(|model| environment.games.add_opponent(Player::Model(model)));
+    }
+    environment.actions = Some(vec![]);
+    Ok(())
 }
 
 fn first_number(training: &Training, epoch: u64) -> u64 {

@@ -1,15 +1,16 @@
 //! The state from which a training run is resumed.
 
 use super::evaluation::Played;
-use super::league::League;
+use super::league::{League, PastSelf};
 use super::learner::Learner;
 use crate::environment::SetupError;
 use crate::training::Training;
+use agent::Action;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 use xxhash_rust::xxh3::xxh3_64;
 
-/// A training run's state at a restart of all games.
+/// A training run's state after an update.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct State {
     pub(super) learner: Learner,
@@ -24,6 +25,21 @@ pub(super) struct State {
     pub(super) league: League,
     pub(super) evaluations: Vec<Evaluated>,
     pub(super) best: Option<Best>,
+    /// The past policies at the last restart of all games; empty until the first update after it.
+    pub(super) past_at_restart: Vec<PastSelf>,
+    /// The updates since then: played again, they bring the games to this state.
+    pub(super) played: Vec<PlayedUpdate>,
+}
+
+/// What an update did to the games.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct PlayedUpdate {
+    /// The opponents' draw weights.
+    pub(super) weights: Vec<f64>,
+    /// Steps × rows.
+    pub(super) actions: Vec<Action>,
+    /// The past policy that became an opponent after the steps.
+    pub(super) kept: Option<PastSelf>,
 }
 
 /// An evaluation of a policy.
@@ -104,6 +120,8 @@ impl State {
             league: League::default(),
             evaluations: vec![],
             best: None,
+            past_at_restart: vec![],
+            played: vec![],
         }
     }
 

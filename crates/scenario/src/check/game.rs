@@ -20,7 +20,7 @@ use primitives::time::SimTime;
 use rules::Rules;
 use rules::field::Field;
 use std::collections::BTreeSet;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// A vehicle whose start position is not yet known.
 pub(super) struct Entry {
@@ -245,12 +245,17 @@ fn check_teams(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) {
     let overrides = &diagnostics.overrides;
     let names = teams.join(", ");
     let replaced = overrides.strategies.keys().map(String::as_str).find(is_unknown);
-    let message = replaced.map(|team| format!("unknown team {team:?}, expected one of {names}")).or_else(|| {
-        let changed = overrides.settings.iter().find(|setting| setting.team().as_ref().is_some_and(is_unknown))?;
-        Some(format!("{}: unknown team, expected one of {names} after strategy", changed.key))
+    let replaced = replaced.map(|team| {
+        let option = PathBuf::from(format!("--strategy {team}"));
+        (option, format!("unknown team {team:?}, expected one of {names}"))
     });
-    if let Some(message) = message {
-        diagnostics.note_if_intact(document.at(""), message);
+    let unknown = replaced.or_else(|| {
+        let changed = overrides.settings.iter().find(|setting| setting.team().as_ref().is_some_and(is_unknown))?;
+        let message = format!("{}: unknown team, expected one of {names} after strategy", changed.key);
+        Some((changed.path.clone(), message))
+    });
+    if let Some((path, message)) = unknown.filter(|_| !diagnostics.sources.is_broken_file(document.at(""))) {
+        diagnostics.note_file(path, message);
     }
 }
 
