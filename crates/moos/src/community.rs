@@ -6,7 +6,7 @@ use crate::remote::Remote;
 use crate::server::Server;
 use crate::wire::{Kind, Msg};
 use messages::refusal::Refusals;
-use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::collections::{BTreeMap, BTreeSet};
 use std::net::{Ipv4Addr, SocketAddr};
 use std::str::FromStr;
 
@@ -157,8 +157,8 @@ impl Community {
         self.published.clear();
     }
 
-    /// The values that applications have published since the last call.
-    pub fn take_heard(&mut self) -> VecDeque<Msg> {
+    /// The newest values that applications have published since the last call.
+    pub fn take_heard(&mut self) -> Vec<Msg> {
         let (heard, notes) = match &self.link {
             Link::Served(server) => server.visit(|database, _| database.take_heard()),
             Link::Remote(remote) => {

@@ -5,9 +5,11 @@
 //! registration, and refuses a second client of the same name. Unlike MOOSDB, everything that
 //! clients can fill has a limit, and whatever it drops is counted.
 
+use crate::mail::Mail;
+use crate::pattern::{matches, patterns};
 use crate::wire::{self, Kind, Msg};
 use bus::Watched;
-use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// Maximum number of clients.
@@ -18,12 +20,8 @@ const NAME_MAX: usize = 128;
 const VARIABLES_MAX: usize = 8192;
 /// Maximum number of subscriptions of a client, of each kind.
 const SUBSCRIPTIONS_MAX: usize = 8192;
-/// Maximum length of unread mail of a client, bytes.
-const MAIL_MAX: usize = 8 << 20;
 /// Maximum length of all values, bytes.
 const STORED_MAX: usize = 64 << 20;
-/// Maximum number of messages for the bridge itself between two of its reads.
-const HEARD_MAX: usize = 4096;
 /// The name under which the database and the bridge publish.
 pub const BRIDGE: &str = "squall";
 /// Interval of the database's own variables, s.
@@ -61,53 +59,6 @@ impl std::fmt::Display for Dropped {
         let texts: Vec<String> =
             texts.iter().filter(|(count, _)| *count > 0).map(|(count, text)| format!("{count} x {text}")).collect();
         f.write_str(&texts.join(", "))
-    }
-}
-
-/// Unread mail of a client: encoded messages, which all recipients share.
-#[derive(Default)]
-pub struct Mail {
-    /// The messages, oldest first.
-    pub messages: VecDeque<Arc<[u8]>>,
-    bytes: usize,
-    /// The answer to a clock comparison, which must begin a packet.
-    pub timing: Option<Msg>,
-    /// Whether the client has left.
-    pub is_closed: bool,
-}
-
-impl Mail {
-    /// Adds a message; returns how many old ones it displaced.
-    pub(crate) fn push(&mut self, message: &Arc<[u8]>) -> u64 {
-        self.bytes += message.len();
-        self.messages.push_back(Arc::clone(message));
-        let mut displaced = 0;
-        // As MOOS clients do with unsent mail: half of it goes, so that this stays rare.
-        if self.bytes > MAIL_MAX {
-            while self.bytes > MAIL_MAX / 2 {
-                let Some(old) = self.messages.pop_front() else { break };
-                self.bytes -= old.len();
-                displaced += 1;
-            }
-        }
-        displaced
-    }
-
-    /// Unread mail as one packet that begins with `first`; none without any message.
-    pub fn take_packet(&mut self, first: Option<&Msg>) -> Option<Vec<u8>> {
-        let mut encoded = Vec::new();
-        first.into_iter().for_each(|msg| wire::encode(msg, &mut encoded));
-        let mut length = encoded.len();
-        let fits = |message: &&Arc<[u8]>| {
-            length += message.len();
-            length <= wire::PACKET_MAX / 2
-        };
-        let count = self.messages.iter().take_while(fits).count();
-        let taken: Vec<Arc<[u8]>> = self.messages.drain(..count).collect();
-        self.bytes -= taken.iter().map(|message| message.len()).sum::<usize>();
-        let first = first.map(|_| encoded.as_slice());
-        let is_empty = first.is_none() && taken.is_empty();
-        (!is_empty).then(|| wire::packet(first.into_iter().chain(taken.iter().map(|message| &**message))))
     }
 }
 
@@ -149,11 +100,13 @@ pub struct Database {
     variables: BTreeMap<String, Msg>,
     stored: usize,
     clients: Vec<Client>,
-    /// Values that clients have published under names that the bridge reads, oldest first.
-    heard: VecDeque<Msg>,
+    /// The newest value of each variable that the bridge reads, if it has changed.
+    heard: BTreeMap<String, Msg>,
     reads: BTreeSet<String>,
     /// Notes for the person who runs the bridge.
     notes: Vec<String>,
+    /// Clients whose clocks were reported.
+    skewed: BTreeSet<String>,
     opened_s: f64,
     status_s: f64,
     /// What was dropped so far.
@@ -169,9 +122,10 @@ impl Database {
             variables: BTreeMap::new(),
             stored: 0,
             clients: Vec::new(),
-            heard: VecDeque::new(),
+            heard: BTreeMap::new(),
             reads,
             notes: Vec::new(),
+            skewed: BTreeSet::new(),
             opened_s: now_s,
             status_s: f64::NEG_INFINITY,
             dropped: Dropped::default(),
@@ -200,10 +154,11 @@ impl Database {
         }
         // The difference of two clocks at most: the packet was on its way as well.
         let skew_s = if hello.time_s.is_finite() { now_s - hello.time_s } else { 0.0 };
-        if skew_s.abs() > SKEW_MAX_S {
+        let is_other = skew_s.abs() > SKEW_MAX_S;
+        if is_other && self.skewed.len() < CLIENTS_MAX && self.skewed.insert(name.to_owned()) {
             let community = &self.community;
             self.notes.push(format!(
-                "{community}: the MOOS time of {name} differs by {:.0} s: does its mission have this MOOSTimeWarp?",
+                "{community}: the MOOS time of {name:?} differs by {:.0} s: does its mission have this MOOSTimeWarp?",
                 skew_s.abs()
             ));
         }
@@ -236,12 +191,9 @@ impl Database {
         for msg in messages {
             match msg.kind {
                 Kind::NOTIFY => {
-                    let is_read = self.reads.contains(&msg.key);
                     let msg = Msg { source: name.to_owned(), ..msg };
-                    if is_read && self.heard.len() < HEARD_MAX {
-                        self.heard.push_back(msg.clone());
-                    } else if is_read {
-                        self.dropped.over_limit += 1;
+                    if self.reads.contains(&msg.key) {
+                        self.heard.insert(msg.key.clone(), msg.clone());
                     }
                     self.notify(msg, now_s);
                 }
@@ -312,9 +264,9 @@ impl Database {
         }
     }
 
-    /// The values for the bridge since the last call, and notes for the person who runs it.
-    pub fn take_heard(&mut self) -> (VecDeque<Msg>, Vec<String>) {
-        (std::mem::take(&mut self.heard), self.take_notes())
+    /// The newest values for the bridge since the last call, and notes for the person who runs it.
+    pub fn take_heard(&mut self) -> (Vec<Msg>, Vec<String>) {
+        (std::mem::take(&mut self.heard).into_values().collect(), self.take_notes())
     }
 
     /// Notes for the person who runs the bridge since the last call.
@@ -403,44 +355,10 @@ impl Client {
     }
 }
 
-/// The patterns of a subscription for sources and variables, and its interval, as MOOS clients
-/// (with commas) and `pymoos2` (with blanks) write them.
-fn patterns(msg: &Msg) -> [String; 3] {
-    let text = msg.as_text().unwrap_or_default();
-    let value = |name: &str| {
-        let words = text.split([',', ' ']).filter_map(|word| word.split_once('='));
-        words.filter(|(key, _)| key.trim().eq_ignore_ascii_case(name)).map(|(_, value)| value.trim().to_owned()).next()
-    };
-    let pattern = |name| value(name).unwrap_or_else(|| "*".to_owned());
-    [pattern("AppPattern"), pattern("VarPattern"), value("Interval").unwrap_or_default()]
-}
-
-/// Whether a pattern matches: `*` any characters, `?` one.
-fn matches(pattern: &str, text: &str) -> bool {
-    let (pattern, text) = (pattern.as_bytes(), text.as_bytes());
-    let (mut p, mut t) = (0, 0);
-    // Where to resume after the last star: with one more character under it.
-    let mut resume = None;
-    while t < text.len() {
-        match pattern.get(p) {
-            Some(b'*') => {
-                resume = Some((p + 1, t));
-                p += 1;
-            }
-            Some(wanted) if *wanted == b'?' || *wanted == text[t] => (p, t) = (p + 1, t + 1),
-            _ => {
-                let Some((after_star, under_star)) = resume else { return false };
-                resume = Some((after_star, under_star + 1));
-                (p, t) = (after_star, under_star + 1);
-            }
-        }
-    }
-    pattern[p..].iter().all(|rest| *rest == b'*')
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mail::MAIL_MAX;
     use crate::wire::Framer;
 
     const NOW_S: f64 = 1_000.0;
@@ -504,9 +422,6 @@ mod tests {
             database.receive("pA", vec![notify("NAV_X", 1.0)], NOW_S);
             assert_eq!(read(&mail[0]), [], "{spec}");
         }
-        for (pattern, text, want) in [("*", "", true), ("a*c", "abcbc", true), ("a*c", "ab", false), ("", "a", false)] {
-            assert_eq!(matches(pattern, text), want, "{pattern} {text}");
-        }
     }
 
     #[test]
@@ -552,8 +467,9 @@ mod tests {
         assert!(database.stored <= STORED_MAX && database.dropped.over_limit > 100, "{:?}", database.dropped);
         (0..VARIABLES_MAX).for_each(|i| database.notify(notify(&format!("X{i}"), 0.0), NOW_S));
         assert_eq!(database.variables.len(), VARIABLES_MAX);
-        let flood: Vec<Msg> = (0..2 * HEARD_MAX).map(|_| notify("DESIRED_SPEED", 0.0)).collect();
+        let flood: Vec<Msg> = (0..9000).map(|i| notify("DESIRED_SPEED", f64::from(i))).collect();
         database.receive("pA", flood, NOW_S);
-        assert_eq!(database.take_heard().0.len(), HEARD_MAX);
+        let heard: Vec<f64> = database.take_heard().0.iter().map(|msg| msg.number).collect();
+        assert_eq!(heard, [8999.0], "the newest value alone");
     }
 }

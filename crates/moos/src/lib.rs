@@ -10,6 +10,8 @@ pub mod clock;
 pub mod community;
 pub mod database;
 mod game;
+pub mod mail;
+mod pattern;
 mod remote;
 mod requests;
 mod server;

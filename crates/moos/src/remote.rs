@@ -1,11 +1,12 @@
 //! A client of somebody else's MOOSDB that reconnects automatically.
 
 use crate::clock::MoosClock;
-use crate::database::{Dropped, Mail};
+use crate::database::Dropped;
+use crate::mail::Mail;
 use crate::server::{End, Packets};
 use crate::wire::{self, Kind, Msg};
 use bus::{Watched, clock, start_thread};
-use std::collections::{BTreeSet, VecDeque};
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write};
 use std::net::{Shutdown, TcpStream, ToSocketAddrs};
 use std::sync::Arc;
@@ -14,8 +15,6 @@ use std::time::Duration;
 
 /// The name of the bridge among the clients.
 const NAME: &str = "squall_bridge";
-/// Maximum number of values between two reads of the bridge.
-const HEARD_MAX: usize = 4096;
 /// Maximum time for connecting, and for writing.
 const CONNECT_MAX: Duration = Duration::from_secs(2);
 /// Pause between two attempts.
@@ -26,7 +25,8 @@ const TIMING: Duration = Duration::from_secs(1);
 /// The state that the threads share with the bridge.
 #[derive(Default)]
 struct State {
-    heard: VecDeque<Msg>,
+    /// The newest value of each variable, if it has changed.
+    heard: BTreeMap<String, Msg>,
     notes: Vec<String>,
     is_connected: bool,
     dropped: Dropped,
@@ -69,9 +69,11 @@ impl Remote {
     }
 
     /// The values and notes since the last call, and whether the database is connected.
-    pub fn take_heard(&self) -> (VecDeque<Msg>, Vec<String>, bool) {
-        self.state
-            .visit(|state| (std::mem::take(&mut state.heard), std::mem::take(&mut state.notes), state.is_connected))
+    pub fn take_heard(&self) -> (Vec<Msg>, Vec<String>, bool) {
+        self.state.visit(|state| {
+            let heard = std::mem::take(&mut state.heard).into_values().collect();
+            (heard, std::mem::take(&mut state.notes), state.is_connected)
+        })
     }
 
     /// What was dropped so far.
@@ -152,7 +154,7 @@ impl Link {
         let writer = stream.try_clone().and_then(|stream| self.start_writer(stream));
         writer.map_err(|e| e.to_string())?;
         while let Some(messages) = packets.next_packet() {
-            self.state.visit(|state| state.keep(messages));
+            self.state.visit(|state| state.keep(messages, &self.reads));
         }
         self.state.visit(|state| {
             state.dropped.stalled += u64::from(packets.end == End::Stalled);
@@ -192,12 +194,10 @@ impl Link {
 
 impl State {
     /// Keeps values of other applications.
-    fn keep(&mut self, messages: Vec<Msg>) {
+    fn keep(&mut self, messages: Vec<Msg>, reads: &BTreeSet<String>) {
         for msg in messages.into_iter().filter(|msg| msg.kind == Kind::NOTIFY && msg.source != NAME) {
-            if self.heard.len() < HEARD_MAX {
-                self.heard.push_back(msg);
-            } else {
-                self.dropped.over_limit += 1;
+            if reads.contains(&msg.key) {
+                self.heard.insert(msg.key.clone(), msg);
             }
         }
     }
@@ -230,8 +230,8 @@ mod tests {
                 database.notify(Msg::text(Kind::NOTIFY, "DEPLOY", "true", now_s), now_s);
             });
             remote.publish(&Msg::number(Kind::NOTIFY, "NAV_X", 1.0, MOOS.now_s()));
-            let at_remote = remote.take_heard().0.pop_front();
-            let at_server = server.visit(|database, _| database.take_heard().0.pop_front());
+            let at_remote = remote.take_heard().0.pop();
+            let at_server = server.visit(|database, _| database.take_heard().0.pop());
             for (heard, msg) in heard.iter_mut().zip([at_remote, at_server]) {
                 msg.into_iter().for_each(|msg| *heard = msg.key);
             }

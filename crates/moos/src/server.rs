@@ -5,7 +5,8 @@
 //! connection.
 
 use crate::clock::MoosClock;
-use crate::database::{CLIENTS_MAX, Database, Mail};
+use crate::database::{CLIENTS_MAX, Database};
+use crate::mail::Mail;
 use crate::wire::{self, Framer, Kind, Msg};
 use bus::{Watched, clock, start_thread};
 use std::io::{self, Read, Write};

@@ -134,7 +134,7 @@ impl Shoreside<'_> {
 
     /// Passes people's commands to the boats of this bridge.
     fn pass_commands(&mut self, community: &mut Community) {
-        let mut heard: Vec<Msg> = community.take_heard().into();
+        let mut heard = community.take_heard();
         if let Some(share) = &mut self.share {
             let known = reads(self.scenario);
             heard.extend(share.receive().into_iter().filter(|msg| known.contains(&msg.key)));
