@@ -33,7 +33,7 @@ struct State {
 }
 
 /// A connection to a MOOSDB, or the attempts to open one.
-pub struct Remote {
+pub(crate) struct Remote {
     state: Arc<Watched<State>>,
     mail: Arc<Watched<Mail>>,
     is_closed: Arc<AtomicBool>,
@@ -44,7 +44,7 @@ impl Remote {
     ///
     /// # Errors
     /// If the system cannot start a thread.
-    pub fn open(address: &str, reads: BTreeSet<String>, moos: MoosClock) -> io::Result<Remote> {
+    pub(crate) fn open(address: &str, reads: BTreeSet<String>, moos: MoosClock) -> io::Result<Remote> {
         let remote = Remote { state: Arc::default(), mail: Arc::default(), is_closed: Arc::default() };
         let link = Link {
             state: Arc::clone(&remote.state),
@@ -59,7 +59,7 @@ impl Remote {
     }
 
     /// Queues a message; without a connection it is dropped, because the next one replaces it.
-    pub fn publish(&self, msg: &Msg) {
+    pub(crate) fn publish(&self, msg: &Msg) {
         if self.state.visit(|state| state.is_connected) {
             let mut encoded = Vec::new();
             wire::encode(&Msg { source: NAME.to_owned(), ..msg.clone() }, &mut encoded);
@@ -69,7 +69,7 @@ impl Remote {
     }
 
     /// The values and notes since the last call, and whether the database is connected.
-    pub fn take_heard(&self) -> (Vec<Msg>, Vec<String>, bool) {
+    pub(crate) fn take_heard(&self) -> (Vec<Msg>, Vec<String>, bool) {
         self.state.visit(|state| {
             let heard = std::mem::take(&mut state.heard).into_values().collect();
             (heard, std::mem::take(&mut state.notes), state.is_connected)
@@ -78,7 +78,7 @@ impl Remote {
 
     /// What was dropped so far.
     #[must_use]
-    pub fn dropped(&self) -> Dropped {
+    pub(crate) fn dropped(&self) -> Dropped {
         self.state.visit(|state| state.dropped)
     }
 }

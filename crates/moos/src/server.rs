@@ -23,10 +23,10 @@ const WRITE_MAX: Duration = Duration::from_secs(2);
 const LOOK_AGAIN: Duration = Duration::from_millis(500);
 
 /// A database that accepts clients.
-pub struct Server {
+pub(crate) struct Server {
     shared: Shared,
     /// The address to which clients connect.
-    pub address: SocketAddr,
+    pub(crate) address: SocketAddr,
     is_closed: Arc<AtomicBool>,
 }
 
@@ -51,7 +51,7 @@ impl Server {
     ///
     /// # Errors
     /// If the port is in use or the system refuses.
-    pub fn open(address: SocketAddr, database: Database, moos: MoosClock) -> io::Result<Server> {
+    pub(crate) fn open(address: SocketAddr, database: Database, moos: MoosClock) -> io::Result<Server> {
         let listener = TcpListener::bind(address)?;
         let address = listener.local_addr()?;
         let shared = Shared { database: Arc::new(Watched::new(database)), moos };
@@ -62,7 +62,7 @@ impl Server {
     }
 
     /// Reads or changes the database at the current MOOS time.
-    pub fn visit<R>(&self, visit: impl FnOnce(&mut Database, f64) -> R) -> R {
+    pub(crate) fn visit<R>(&self, visit: impl FnOnce(&mut Database, f64) -> R) -> R {
         let now_s = self.shared.moos.now_s();
         self.shared.database.visit(|database| visit(database, now_s))
     }
@@ -119,9 +119,10 @@ fn serve(shared: &Shared, stream: &TcpStream, is_closed: &AtomicBool) {
     let now_s = moos.now_s();
     let (welcome, mail) = match database.visit(|database| database.admit(&hello, now_s)) {
         Ok(admitted) => admitted,
-        Err(refusal) => {
+        Err(reason) => {
             // The client has gone if this fails.
-            drop((&mut &*stream).write_all(&wire::packet_of(&[refusal])));
+            let poison = Msg::text(Kind::POISON, "", &reason, now_s);
+            drop((&mut &*stream).write_all(&wire::packet_of(&[poison])));
             return;
         }
     };
