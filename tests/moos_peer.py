@@ -28,6 +28,8 @@ from pymoos2.dtos.contacts.NodeRecord import NodeRecord
 LIMIT_S = 40.0
 PORT, SHORE_PORT = 19101, 19100
 SIM = "tcp/127.0.0.1:19102"
+# Where this listens as pShare, and where the bridge does.
+SHARE, SHARE_BRIDGE = ("127.0.0.1", 19103), ("127.0.0.1", 19104)
 ROUND_TRIPS = 2000
 # The red boat waits on blue's side, 20 m in front of the blue one.
 GAME = """base = "pav01_vs_pav01.toml"
@@ -259,8 +261,23 @@ def shoreside():
     return viewer
 
 
+def share(udp, boat):
+    udp.settimeout(LIMIT_S)
+    keys, wanted = set(), {"NODE_REPORT", "VIEW_POLYGON", "VIEW_MARKER", "FLAG_SUMMARY", "BLUE_SCORES", "AQUATICUS_GAME_ALL"}
+    end = time.time() + LIMIT_S
+    while not wanted <= keys and time.time() < end:
+        keys.add(MOOSMsg.deserialize(udp.recv(65536))[0].key)
+    check(wanted <= keys, "pShare gets what the shoreside publishes")
+    for key, value in [("DEPLOY_ALL", "false"), ("DEPLOY_BLUE_ONE", "true")]:
+        udp.sendto(MOOSMsg(MSG_NOTIFY, key, sval=value).serialize(), SHARE_BRIDGE)
+        boat.wait(f"a command by pShare: {key}={value}", lambda value=value: boat.values["DEPLOY"] == value)
+    udp.sendto(b"no message", SHARE_BRIDGE)
+
+
 def main(squall):
     processes = []
+    udp = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    udp.bind(SHARE)
 
     def start(*args):
         processes.append(subprocess.Popen([squall, *args], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
@@ -275,25 +292,28 @@ def main(squall):
         try:
             sim = start("sim", "moos", "--game", "moos", "--pace", "realtime", "--listen", SIM)
             start("agent", "--vehicle", "red_one", "--connect", SIM)
-            bridge = start("moos", "--vehicle", f"blue_one=:{PORT}", "--shore", f":{SHORE_PORT}", "--connect", SIM)
+            bridge = start("moos", "--vehicle", f"blue_one=:{PORT}", "--shore", f":{SHORE_PORT}", "--connect", SIM,
+                           "--pshare", "{}:{}".format(*SHARE), "--pshare-listen", "{}:{}".format(*SHARE_BRIDGE))
             end = time.time() + LIMIT_S
             while time.time() < end and not can_connect(PORT):
                 time.sleep(0.1)
             boat = Boat("pPeer", PORT, "NAV_X", "NAV_Y", "NAV_SPEED", "NODE_REPORT", "NODE_REPORT_LOCAL", "TAGGED", "HAS_FLAG",
-                        "FLAG_SUMMARY", "BLUE_SCORES", "TAG_RESULT_BLUE_ONE", "FLAG_GRAB_REPORT", "TAGGED_VEHICLES", "DB_CLIENTS")
+                        "FLAG_SUMMARY", "BLUE_SCORES", "TAG_RESULT_BLUE_ONE", "FLAG_GRAB_REPORT", "TAGGED_VEHICLES", "DB_CLIENTS", "DEPLOY")
             second = MOOSCommClient("localhost", PORT, "pPeer")
             with contextlib.suppress(ConnectionError), contextlib.redirect_stdout(io.StringIO()):
                 second._connect()
             check(not second.is_connected, "a second client of the same name is refused")
             drive(boat)
             viewer = shoreside()
+            share(udp, boat)
             kill(boat)
             deaf = strangers(boat)
             check_latency()
             check(sim.poll() is None and bridge.poll() is None, "game and bridge are running")
             bridge.send_signal(signal.SIGTERM)
             said = bridge.communicate(timeout=LIMIT_S)[1]
-            check("malformed" in said and "refused connections" in said, "the bridge has reported what it dropped")
+            check("shoreside: dropped or refused: 1 x malformed" in said and "refused connections" in said,
+                  "the bridge has reported what it dropped")
             check(sim.poll() is None, "the game continues without the bridge")
             del deaf, viewer
         finally:
