@@ -13,7 +13,7 @@ use std::time::Duration;
 
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Boats to connect. NAME serves a MOOSDB on the next free port from --port, NAME=:PORT or NAME=IP:PORT on this
+    /// Boats to connect. NAME serves a MOOSDB on the next port from --port, NAME=:PORT or NAME=IP:PORT on this
     /// one; NAME=tcp/HOST:PORT uses a running MOOSDB
     #[arg(long, num_args = 1.., value_name = "NAME[=ADDRESS]", value_parser = boat)]
     vehicle: Vec<(String, Option<Address>)>,
