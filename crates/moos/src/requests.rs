@@ -183,7 +183,9 @@ mod tests {
         assert_eq!(requests.judge(&scenario, &picture(3.0, &[]), own.vehicle), [], "once");
         let tag = |by| Event::Tagged { vehicle: VehicleId(2), cause: TagCause::Opponent(VehicleId(by)) };
         let grab = |by| Event::Grabbed { vehicle: VehicleId(by), flag: FlagId(1) };
-        let events = [tag(1), tag(0), grab(1), grab(0), tag(99)];
+        let others = picture(3.5, &[tag(1), grab(1), tag(99)]);
+        assert_eq!(requests.judge(&scenario, &others, own.vehicle), [], "other boats' successes");
+        let events = [tag(0), grab(0)];
         let decided = requests.judge(&scenario, &picture(4.0, &events), own.vehicle);
         assert_eq!(
             decided.iter().map(|answer| answer.0.as_str()).collect::<Vec<_>>(),
