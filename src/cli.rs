@@ -14,7 +14,7 @@ const GROUPS: [(&str, &[&str]); 6] = [
     ("Play", &["demo", "run", "tournament", "sweep"]),
     ("Learn", &["train", "policy"]),
     ("Watch", &["view", "watch", "list", "replay", "log", "helm"]),
-    ("Over a network, and real boats", &["sim", "agent", "gateway", "keys"]),
+    ("Over a network, and real boats", &["sim", "agent", "gateway", "moos", "keys"]),
     ("Boats and seas", &["sea", "trial", "identify"]),
     ("Files", &["files", "copy", "new", "strategy", "check", "schema", "completions", "man"]),
 ];

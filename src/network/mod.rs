@@ -10,6 +10,7 @@ mod helm_query;
 mod hub_args;
 mod keys_command;
 mod list_command;
+mod moos_command;
 mod pace_args;
 mod page_args;
 mod replay_command;
@@ -58,6 +59,11 @@ pub(crate) enum Command {
     /// Brings real boats into games, and lets real back seats drive simulated ones.
     #[command(after_help = "Examples:\n  squall gateway emulate --help\n  squall gateway surveyor --help")]
     Gateway(gateway_command::Args),
+    /// Connects MOOS applications to a game: a MOOSDB for each boat, and one for pMarineViewer.
+    #[command(
+        after_help = "Examples:\n  squall moos --team blue\n  squall moos --vehicle blue_one=:9001 blue_two=tcp/localhost:9002 --shore :9000"
+    )]
+    Moos(moos_command::Args),
     /// Creates keys for untrusted networks: they encrypt links and define each node's rights.
     #[command(after_help = "Examples:\n  squall keys new keys --help")]
     Keys(keys_command::Args),
@@ -82,6 +88,7 @@ pub(crate) fn run(command: &Command) -> Result<ExitCode> {
         Command::Replay(args) => replay_command::run(args),
         Command::Helm(args) => helm_command::run(args),
         Command::Gateway(args) => gateway_command::run(args),
+        Command::Moos(args) => moos_command::run(args),
         Command::Keys(args) => keys_command::run(args),
         Command::List(args) => list_command::run(args),
     }

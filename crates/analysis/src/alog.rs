@@ -217,23 +217,26 @@ impl Log {
         }
     }
 
-    /// A node report: comma-separated `key=value`, `TIME` in UTC seconds. `TYPE` is the shape that
-    /// viewers draw.
     fn node_report(&self, at_s: f64, scenario: &Scenario, (place, sample, nav): (usize, &Sample, &Nav)) -> String {
-        let vehicle = &scenario.vehicles[place];
-        let group = scenario.teams.get(vehicle.team.index()).map_or("", |team| team.name.as_str());
-        let length_m = scenario.boat_of(primitives::VehicleId::at(place)).length_m;
-        format!(
-            "NAME={},TYPE=kayak,TIME={:.2},X={},Y={},SPD={},HDG={},DEPTH=0,LENGTH={length_m},MODE={},GROUP={group}",
-            vehicle.name,
-            self.start_utc_s + at_s,
-            decimal(nav.east_m, 2),
-            decimal(nav.north_m, 2),
-            decimal(nav.speed_m_s(), 2),
-            decimal(compass_deg_from_rad(nav.psi_rad), 2),
-            mode(sample),
-        )
+        node_report(scenario, (place, nav), self.start_utc_s + at_s, mode(sample))
     }
+}
+
+/// A node report of the boat in this place: comma-separated `key=value`, `TIME` in seconds. `TYPE`
+/// is the shape that viewers draw.
+#[must_use]
+pub fn node_report(scenario: &Scenario, (place, nav): (usize, &Nav), time_s: f64, mode: &str) -> String {
+    let vehicle = &scenario.vehicles[place];
+    let group = scenario.teams.get(vehicle.team.index()).map_or("", |team| team.name.as_str());
+    let length_m = scenario.boat_of(primitives::VehicleId::at(place)).length_m;
+    format!(
+        "NAME={},TYPE=kayak,TIME={time_s:.2},X={},Y={},SPD={},HDG={},DEPTH=0,LENGTH={length_m},MODE={mode},GROUP={group}",
+        vehicle.name,
+        decimal(nav.east_m, 2),
+        decimal(nav.north_m, 2),
+        decimal(nav.speed_m_s(), 2),
+        decimal(compass_deg_from_rad(nav.psi_rad), 2),
+    )
 }
 
 /// Writes an event under the names used by the referees of the Aquaticus test-bed, and again as

@@ -6,6 +6,7 @@ mod keys;
 mod mavlink;
 mod message;
 mod model;
+mod moos;
 mod nmea;
 mod page;
 mod recording;
@@ -36,13 +37,14 @@ pub struct Target {
 }
 
 /// All targets.
-pub const TARGETS: [Target; 12] = [
+pub const TARGETS: [Target; 13] = [
     address::TARGET,
     exo2::TARGET,
     keys::TARGET,
     mavlink::TARGET,
     message::TARGET,
     model::TARGET,
+    moos::TARGET,
     nmea::TARGET,
     page::TARGET,
     recording::TARGET,

@@ -1,0 +1,281 @@
+//! The bridge: finds a game, opens the communities, joins with the boats, and serves them until the
+//! game is over.
+
+use crate::boat::{self, BoatMind};
+use crate::clock::MoosClock;
+use crate::community::{Address, Community};
+use crate::share::Share;
+use crate::shoreside::{self, Shoreside};
+use agent::node::NodeError;
+use bus::game_search::{GameSearch, NotFound};
+use bus::{Bus, Place, Watched, clock};
+use gateway::geodesy::LocalFrame;
+use messages::run_state::RunState;
+use messages::topic::{self, GameName};
+use scenario::Scenario;
+use std::collections::BTreeSet;
+use std::net::{Ipv4Addr, SocketAddr};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+use thiserror::Error;
+
+/// Interval of notes about dropped messages.
+const REPORT: Duration = Duration::from_secs(1);
+/// How long applications can read the end of the game before their database closes.
+const LINGER: Duration = Duration::from_millis(500);
+
+/// What to connect.
+pub struct Settings {
+    /// The game to join. `None`: the only one available.
+    pub game: Option<GameName>,
+    /// The address of the sim.
+    pub place: Place,
+    /// Maximum time to search for the sim and to wait for free boats.
+    pub wait: Duration,
+    /// Without a picture for this long, the sim counts as gone.
+    pub silence: Duration,
+    /// Set from outside to leave the game.
+    pub stop: Arc<AtomicBool>,
+    /// Boats by name, with the addresses of their databases; without one, the next port.
+    pub boats: Vec<(String, Option<Address>)>,
+    /// A team, all of whose boats are connected.
+    pub team: Option<String>,
+    /// The first port of boats without an address.
+    pub first_port: u16,
+    /// The shoreside's database.
+    pub shore: Option<Address>,
+    /// Addresses of pShare that get what the shoreside publishes.
+    pub share_to: Vec<SocketAddr>,
+    /// Where commands from pShare arrive.
+    pub share_listen: Option<SocketAddr>,
+}
+
+/// What the bridge reports.
+pub enum News<'a> {
+    /// No game found yet, or a boat is not free.
+    Looking(&'a str),
+    /// The communities are open.
+    Open(Vec<String>),
+    /// The boats are in the game.
+    Joined(&'a str),
+    /// Something for the person who runs the bridge.
+    Note(String),
+}
+
+/// Why the bridge has ended.
+#[derive(Debug, Error)]
+pub enum BridgeError {
+    /// There is no game.
+    #[error(transparent)]
+    NotFound(#[from] NotFound),
+    /// The game or the arguments do not allow it.
+    #[error("{0}")]
+    Impossible(String),
+    /// The boats could not join, or lost the game.
+    #[error(transparent)]
+    Node(#[from] NodeError),
+    /// The network failed.
+    #[error(transparent)]
+    Bus(#[from] bus::BusError),
+}
+
+impl From<String> for BridgeError {
+    fn from(reason: String) -> BridgeError {
+        BridgeError::Impossible(reason)
+    }
+}
+
+/// Where reports go.
+pub type Tell<'a> = &'a (dyn Fn(News<'_>) + Sync);
+
+/// A game and the communities connected to it.
+struct Bridge<'a> {
+    bus: Bus,
+    game: GameName,
+    scenario: Scenario,
+    moos: MoosClock,
+    boats: Vec<Arc<Watched<Community>>>,
+    shore: Option<Arc<Watched<Community>>>,
+    settings: &'a Settings,
+    tell: Tell<'a>,
+    /// Set when the boats' game is over.
+    is_over: AtomicBool,
+}
+
+/// Serves the communities until the game is over.
+///
+/// # Errors
+/// [`BridgeError`].
+pub fn serve(settings: &Settings, tell: Tell<'_>) -> Result<(), BridgeError> {
+    let mut search = GameSearch::new(settings.wait, &settings.stop);
+    let mut looking = |reason: &str| tell(News::Looking(reason));
+    let (bus, game, info) = search.game(&mut looking, &settings.place, settings.game.as_ref())?;
+    let moos = MoosClock::of_pace(&info.pace)?;
+    let scenario = info.scenario;
+    if settings.shore.is_some() {
+        shoreside::check_keys(&bus)?;
+    }
+    let open = |name: &str, address: &Address, reads: BTreeSet<String>| {
+        Community::open(name, address, reads, moos).map(|community| Arc::new(Watched::new(community)))
+    };
+    let boats = boats(settings, &scenario)?;
+    let boats: Result<Vec<_>, String> =
+        boats.iter().map(|(name, address)| open(name, address, boat::reads())).collect();
+    let boats = boats?;
+    let shore = settings.shore.as_ref();
+    let shore = shore.map(|address| open("shoreside", address, shoreside::reads(&scenario))).transpose()?;
+    let is_over = AtomicBool::new(false);
+    let bridge = Bridge { bus, game, scenario, moos, boats, shore, settings, tell, is_over };
+    tell(News::Open(bridge.opened()));
+    bridge.run()
+}
+
+impl Bridge<'_> {
+    /// The places of the communities, and what missions have to say to match the game.
+    fn opened(&self) -> Vec<String> {
+        let place = |community: &Arc<Watched<Community>>| {
+            community.visit(|community| format!("{}: {}", community.name, community.place))
+        };
+        let mut lines: Vec<String> = self.boats.iter().chain(&self.shore).map(place).collect();
+        let datum = self.scenario.field.plan.datum;
+        lines.push(format!(
+            "mission files: MOOSTimeWarp = {}, LatOrigin = {}, LongOrigin = {}",
+            self.moos.warp, datum.lat_deg, datum.lon_deg
+        ));
+        lines
+    }
+
+    fn run(&self) -> Result<(), BridgeError> {
+        let mut shoreside = self.shoreside()?;
+        let speed = Arc::new(Watched::new(None));
+        let newest = Arc::clone(&speed);
+        let receive = move |bytes: &[u8]| {
+            let state = serde_json::from_slice::<RunState>(bytes).ok();
+            newest.visit(|speed| *speed = state.and_then(|state| state.speed));
+        };
+        let _run_state = self.bus.subscribe(topic::run(&self.game), receive)?;
+        let is_ended = || self.is_over.load(Ordering::Relaxed) || self.settings.stop.load(Ordering::Relaxed);
+        let played = std::thread::scope(|scope| {
+            scope.spawn(|| self.report(&speed, &is_ended));
+            let shore =
+                shoreside.as_mut().map(|shoreside| scope.spawn(|| shoreside.serve(&self.bus, &self.game, &is_ended)));
+            let played = if self.boats.is_empty() { Ok(()) } else { self.play() };
+            if !self.boats.is_empty() {
+                clock::rest(LINGER);
+                self.is_over.store(true, Ordering::Relaxed);
+            }
+            let shown = shore.map(|shore| shore.join().expect("the shoreside does not panic"));
+            self.is_over.store(true, Ordering::Relaxed);
+            played.and(shown.unwrap_or(Ok(())).map_err(BridgeError::from))
+        });
+        self.bus.close();
+        played
+    }
+
+    /// Plays with the boats until the game is over.
+    fn play(&self) -> Result<(), BridgeError> {
+        let name = |community: &Arc<Watched<Community>>| community.visit(|community| community.name.clone());
+        let Settings { place, wait, silence, stop, .. } = self.settings;
+        let settings = agent::node::Settings {
+            game: Some(self.game.clone()),
+            place: place.clone(),
+            vehicles: self.boats.iter().map(name).collect(),
+            wait: *wait,
+            silence: *silence,
+            strategy: None,
+            policy_wait: Duration::ZERO,
+            stop: Arc::clone(stop),
+        };
+        let make = |scenario: &Scenario, vehicle: primitives::VehicleId| -> Box<dyn agent::Mind> {
+            let wanted = &scenario.vehicles[vehicle.index()].name;
+            let community = self.boats.iter().find(|community| name(community) == *wanted);
+            let community = Arc::clone(community.expect("only boats with a community are requested"));
+            Box::new(BoatMind::new(Arc::new(scenario.clone()), vehicle, community, self.moos))
+        };
+        let mut tell = |news: agent::node::News<'_>| match news {
+            agent::node::News::Looking { reason } => (self.tell)(News::Looking(reason)),
+            agent::node::News::Joined { game } => (self.tell)(News::Joined(game)),
+            agent::node::News::Left { refused } if refused.total() > 0 => {
+                (self.tell)(News::Note(format!("refused or missed: {refused}")));
+            }
+            agent::node::News::Left { .. } => {}
+        };
+        let played = agent::node::serve_minds(&settings, &make, &mut tell);
+        self.boats.iter().for_each(|community| community.visit(boat::publish_end));
+        Ok(played?)
+    }
+
+    fn shoreside(&self) -> Result<Option<Shoreside<'_>>, BridgeError> {
+        let Some(community) = self.shore.clone() else { return Ok(None) };
+        let Settings { share_to, share_listen, .. } = self.settings;
+        let any: SocketAddr = (Ipv4Addr::UNSPECIFIED, 0).into();
+        let open = |listen| {
+            Share::open(listen, share_to.clone()).map_err(|e| format!("cannot open pShare's port at {listen}: {e}"))
+        };
+        let is_shared = share_listen.is_some() || !share_to.is_empty();
+        Ok(Some(Shoreside {
+            scenario: &self.scenario,
+            frame: LocalFrame::new(self.scenario.field.plan.datum),
+            community,
+            share: is_shared.then(|| open(share_listen.unwrap_or(any))).transpose()?,
+            boats: self.boats.clone(),
+            moos: self.moos,
+            redraw_s: f64::NEG_INFINITY,
+        }))
+    }
+
+    /// Reports what was dropped, once a second at most, and a pace that MOOS does not follow.
+    fn report(&self, speed: &Watched<Option<f64>>, is_ended: &dyn Fn() -> bool) {
+        let mut last = vec![String::new(); self.boats.len() + 1];
+        let mut told_speed = self.moos.warp;
+        let mut due = clock::now();
+        while !is_ended() {
+            clock::rest(LINGER / 5);
+            let is_due = clock::since(due) >= REPORT;
+            due = if is_due { clock::now() } else { due };
+            for (community, last) in self.boats.iter().chain(&self.shore).zip(&mut last) {
+                let (notes, counts) = community.visit(|community| {
+                    let (dropped, refused) = (community.dropped().to_string(), community.refusals.to_string());
+                    let texts: Vec<String> = [dropped, refused].into_iter().filter(|text| !text.is_empty()).collect();
+                    (community.tend(), format!("{}: dropped or refused: {}", community.name, texts.join(", ")))
+                });
+                notes.into_iter().for_each(|note| (self.tell)(News::Note(note)));
+                if is_due && !counts.ends_with(": ") && *last != counts {
+                    (self.tell)(News::Note(counts.clone()));
+                    *last = counts;
+                }
+            }
+            if let Some(speed) = speed.visit(|speed| speed.take()).filter(|speed| *speed != told_speed) {
+                let warp = self.moos.warp;
+                (self.tell)(News::Note(format!("the game now runs at {speed}x, but MOOSTimeWarp stays {warp}")));
+                told_speed = speed;
+            }
+        }
+    }
+}
+
+/// The boats to connect and the addresses of their databases.
+fn boats(settings: &Settings, scenario: &Scenario) -> Result<Vec<(String, Address)>, String> {
+    let mut wanted = settings.boats.clone();
+    for (name, _) in &wanted {
+        scenario.vehicle_named(name).map_err(|e| e.to_string())?;
+    }
+    if let Some(team) = &settings.team {
+        let names = || scenario.teams.iter().map(|team| team.name.clone()).collect::<Vec<_>>().join(", ");
+        let index = scenario.teams.iter().position(|known| known.name == *team);
+        let index = index.ok_or_else(|| format!("there is no team {team:?}; there are {}", names()))?;
+        for boat in scenario.vehicles.iter().filter(|boat| boat.team.index() == index) {
+            if wanted.iter().all(|(name, _)| *name != boat.name) {
+                wanted.push((boat.name.clone(), None));
+            }
+        }
+    }
+    let mut ports = settings.first_port..=u16::MAX;
+    let addressed = wanted.into_iter().map(|(name, address)| {
+        let next = || Some(Address::Serve((Ipv4Addr::LOCALHOST, ports.next()?).into()));
+        let address = address.or_else(next).ok_or("there are not enough ports above --port")?;
+        Ok((name, address))
+    });
+    addressed.collect()
+}

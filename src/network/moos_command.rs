@@ -1,0 +1,93 @@
+//! `squall moos`: connects MOOS applications to a game.
+
+use crate::screen;
+use crate::stop;
+use anyhow::{Context, Result, anyhow, bail};
+use command_line::leaf_args::LeafArgs;
+use command_line::number::seconds;
+use moos::bridge::{self, News};
+use moos::community::Address;
+use std::net::{SocketAddr, ToSocketAddrs};
+use std::process::ExitCode;
+use std::time::Duration;
+
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// Boats to connect. NAME serves a MOOSDB on the next port from --port, NAME=:PORT or NAME=IP:PORT on this
+    /// one; NAME=tcp/HOST:PORT uses a running MOOSDB
+    #[arg(long, num_args = 1.., value_name = "NAME[=ADDRESS]", value_parser = boat)]
+    vehicle: Vec<(String, Option<Address>)>,
+    /// Connects all boats of this team, each with its own MOOSDB
+    #[arg(long, value_name = "TEAM")]
+    team: Option<String>,
+    /// First port for boats without an address
+    #[arg(long, value_name = "PORT", default_value_t = 9001)]
+    port: u16,
+    /// Shows the whole game to pMarineViewer in the MOOSDB at this address, for example :9000
+    #[arg(long, value_name = "ADDRESS")]
+    shore: Option<Address>,
+    /// Sends what the shoreside publishes to pShare there, for example shore.local:9300; may be repeated
+    #[arg(long, value_name = "HOST:PORT", requires = "shore")]
+    pshare: Vec<String>,
+    /// Receives commands such as DEPLOY_ALL from pShare here, for example 0.0.0.0:9301
+    #[arg(long, value_name = "IP:PORT", requires = "shore")]
+    pshare_listen: Option<SocketAddr>,
+    #[command(flatten)]
+    leaf: LeafArgs,
+    /// How long to look for the sim and wait for its boats to become free, s
+    #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
+    wait_s: f64,
+    /// How long to wait for a picture before treating the sim as dead, s (5 s if the sim leaves the network)
+    #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
+    silence_s: f64,
+}
+
+/// Parses a boat and, optionally, the address of its database.
+fn boat(text: &str) -> Result<(String, Option<Address>), String> {
+    match text.split_once('=') {
+        Some((name, address)) => Ok((name.to_owned(), Some(address.parse()?))),
+        None => Ok((text.to_owned(), None)),
+    }
+}
+
+fn resolved(place: &String) -> Result<SocketAddr> {
+    let mut found = place.to_socket_addrs().with_context(|| format!("--pshare {place}, expected HOST:PORT"))?;
+    found.next().ok_or_else(|| anyhow!("--pshare {place}: the host has no address"))
+}
+
+pub(crate) fn run(args: &Args) -> Result<ExitCode> {
+    if args.vehicle.is_empty() && args.team.is_none() && args.shore.is_none() {
+        bail!("nothing to connect: use --vehicle NAME or --team TEAM for boats, --shore :9000 for pMarineViewer");
+    }
+    let stop = stop::on_ctrl_c()?;
+    stop::exit_when_late(&stop, None);
+    let settings = bridge::Settings {
+        game: args.leaf.game.clone(),
+        place: args.leaf.place()?,
+        wait: Duration::from_secs_f64(args.wait_s),
+        silence: Duration::from_secs_f64(args.silence_s),
+        stop: stop.clone(),
+        boats: args.vehicle.clone(),
+        team: args.team.clone(),
+        first_port: args.port,
+        shore: args.shore.clone(),
+        share_to: args.pshare.iter().map(resolved).collect::<Result<_>>()?,
+        share_listen: args.pshare_listen,
+    };
+    for address in args.vehicle.iter().filter_map(|(_, address)| address.as_ref()).chain(&args.shore) {
+        if let Address::Serve(at) = address
+            && !at.ip().is_loopback()
+        {
+            screen::remark(&format!("{at}: anyone who reaches this address can command the boat: MOOS knows no keys"));
+        }
+    }
+    bridge::serve(&settings, &|news| match news {
+        News::Looking(reason) => screen::remark(&format!("looking for the game: {reason}")),
+        News::Open(lines) => lines.iter().for_each(|line| screen::remark(line)),
+        News::Joined(game) => screen::remark(&format!("joined {game}")),
+        News::Note(note) => screen::remark(&note),
+    })
+    .context("the MOOS bridge")?;
+    let stopped = stop.load(std::sync::atomic::Ordering::Relaxed);
+    Ok(if stopped { stop::interrupted() } else { ExitCode::SUCCESS })
+}
