@@ -14,6 +14,7 @@ mod pace_args;
 mod page_args;
 mod replay_command;
 mod replay_helms;
+mod ros_command;
 mod run_command;
 mod sim_command;
 mod view_command;
@@ -58,6 +59,11 @@ pub(crate) enum Command {
     /// Brings real boats into games, and lets real back seats drive simulated ones.
     #[command(after_help = "Examples:\n  squall gateway emulate --help\n  squall gateway surveyor --help")]
     Gateway(gateway_command::Args),
+    /// Shows a running game to ROS 2 as nodes, topics and services.
+    #[command(
+        after_help = "Examples:\n  squall ros bridge\n  squall ros bridge --vehicle blue_1 --operator\n  squall ros messages src/squall_msgs"
+    )]
+    Ros(ros_command::Args),
     /// Creates keys for untrusted networks: they encrypt links and define each node's rights.
     #[command(after_help = "Examples:\n  squall keys new keys --help")]
     Keys(keys_command::Args),
@@ -82,6 +88,7 @@ pub(crate) fn run(command: &Command) -> Result<ExitCode> {
         Command::Replay(args) => replay_command::run(args),
         Command::Helm(args) => helm_command::run(args),
         Command::Gateway(args) => gateway_command::run(args),
+        Command::Ros(args) => ros_command::run(args),
         Command::Keys(args) => keys_command::run(args),
         Command::List(args) => list_command::run(args),
     }

@@ -6,7 +6,7 @@ use super::helm_queries::HelmQueries;
 use super::policy_inbox::PolicyInbox;
 use super::settings::Settings;
 use super::talk::Talk;
-use crate::{MindRunner, mind_by, mind_of};
+use crate::{MindRunner, mind_of};
 use bus::game_search::Joined;
 use bus::{Bus, Declaration, Delivery, Latest, Patience, Priority, Publisher, SimState, SimWatch};
 use messages::refusal::{Refusal, Refusals};
@@ -60,8 +60,8 @@ impl AgentLoop {
         settings: &Settings,
     ) -> Result<AgentLoop, NodeError> {
         let scenario = &info.scenario;
-        let mind = |vehicle| match &settings.strategy {
-            Some(strategy) => mind_by(scenario, vehicle, strategy),
+        let mind = |vehicle| match &settings.mind {
+            Some(mind) => mind(scenario, vehicle),
             None => mind_of(scenario, vehicle),
         };
         // The sim rejects unknown names.

@@ -12,7 +12,7 @@ mod talk;
 pub mod team_inbox;
 
 pub use error::NodeError;
-pub use settings::Settings;
+pub use settings::{MindMaker, Settings};
 
 use agent_loop::AgentLoop;
 use bus::game_search::{self, GameSearch};
