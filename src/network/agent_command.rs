@@ -2,10 +2,11 @@
 
 use crate::screen;
 use crate::stop;
-use agent::node::{News, Settings};
+use agent::node::{MindMaker, News, Settings};
 use anyhow::{Context, Result};
 use command_line::leaf_args::LeafArgs;
 use command_line::number::seconds;
+use scenario::strategy::Strategy;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
@@ -40,17 +41,19 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     stop::exit_when_late(&stop);
     let names = args.vehicle.join(", ");
     let load = |path: &PathBuf| {
-        scenario::load_file::<scenario::strategy::Strategy>(path)
-            .with_context(|| format!("cannot use the strategy {}", path.display()))
+        scenario::load_file::<Strategy>(path).with_context(|| format!("cannot use the strategy {}", path.display()))
     };
-    let strategy = args.strategy.as_ref().map(load).transpose()?;
+    let by = |strategy: Strategy| -> Box<MindMaker> {
+        Box::new(move |scenario, boat| agent::mind_by(scenario, boat, &strategy))
+    };
+    let mind = args.strategy.as_ref().map(load).transpose()?.map(by);
     let settings = Settings {
         game: args.leaf.game.clone(),
         place: args.leaf.place()?,
         vehicles: args.vehicle.clone(),
         wait: Duration::from_secs_f64(args.wait_s),
         silence: Duration::from_secs_f64(args.silence_s),
-        strategy,
+        mind,
         policy_wait: Duration::from_secs_f64(args.policy_wait_s),
         stop: stop.clone(),
     };

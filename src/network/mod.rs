@@ -15,6 +15,7 @@ mod pace_args;
 mod page_args;
 mod replay_command;
 mod replay_helms;
+mod ros_command;
 mod run_command;
 mod sim_command;
 mod view_command;
@@ -64,6 +65,11 @@ pub(crate) enum Command {
         after_help = "Examples:\n  squall moos --team blue\n  squall moos --vehicle blue_one=:9001 blue_two=tcp/localhost:9002 --shore :9000"
     )]
     Moos(moos_command::Args),
+    /// Shows a running game to ROS 2 as nodes, topics and services.
+    #[command(
+        after_help = "Examples:\n  squall ros bridge\n  squall ros bridge --vehicle blue_1 --operator\n  squall ros messages src/squall_msgs"
+    )]
+    Ros(ros_command::Args),
     /// Creates keys for untrusted networks: they encrypt links and define each node's rights.
     #[command(after_help = "Examples:\n  squall keys new keys --help")]
     Keys(keys_command::Args),
@@ -89,6 +95,7 @@ pub(crate) fn run(command: &Command) -> Result<ExitCode> {
         Command::Helm(args) => helm_command::run(args),
         Command::Gateway(args) => gateway_command::run(args),
         Command::Moos(args) => moos_command::run(args),
+        Command::Ros(args) => ros_command::run(args),
         Command::Keys(args) => keys_command::run(args),
         Command::List(args) => list_command::run(args),
     }

@@ -188,7 +188,7 @@ fn add_agent(network: &SimulatedNetwork, i: usize, vehicles: Vec<String>, result
             vehicles: vehicles.clone(),
             wait: WAIT,
             silence: SILENCE,
-            strategy: None,
+            mind: None,
             policy_wait: Duration::ZERO,
             stop: Arc::new(AtomicBool::new(false)),
         };

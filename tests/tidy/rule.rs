@@ -10,7 +10,7 @@ use crate::tree::Tree;
 pub(crate) const LINES_MAX: usize = 500;
 
 /// The allowed dependencies of each of our crates, in any section, including planned folders.
-const MAY_IMPORT: [(&str, &[&str]); 24] = [
+const MAY_IMPORT: [(&str, &[&str]); 25] = [
     ("onnx", &[]),
     ("primitives", &[]),
     // `scenario` for tests alone: scenes are judged by the shipped rules files.
@@ -37,6 +37,8 @@ const MAY_IMPORT: [(&str, &[&str]); 24] = [
     ("shore", &["primitives", "rules", "scenario", "messages", "bus", "recording", "analysis"]),
     // `gateway` for the map of the field, `analysis` for the text of node reports.
     ("moos", &["primitives", "rules", "scenario", "messages", "bus", "agent", "gateway", "analysis"]),
+    // `gateway` for latitudes and longitudes of the field alone.
+    ("ros", &["primitives", "rules", "scenario", "messages", "bus", "agent", "gateway"]),
     ("learn", &["onnx", "primitives", "rules", "scenario", "messages", "sim", "agent", "arena", "recording"]),
     ("experiment", &["primitives", "rules", "scenario", "messages", "sim", "agent", "analysis", "arena"]),
     ("python", &["scenario", "experiment", "learn"]),

@@ -12,15 +12,12 @@ mod talk;
 pub mod team_inbox;
 
 pub use error::NodeError;
-pub use settings::Settings;
+pub use settings::{MindMaker, Settings};
 
-use crate::{Mind, mind_by, mind_of};
 use agent_loop::AgentLoop;
 use bus::game_search::{self, GameSearch};
 use messages::Role;
 use messages::refusal::Refusals;
-use primitives::VehicleId;
-use scenario::Scenario;
 
 /// What an agent reports to the program that runs it.
 pub enum News<'a> {
@@ -46,26 +43,10 @@ pub enum News<'a> {
 /// # Errors
 /// [`NodeError`], including the loss of the sim.
 pub fn serve(settings: &Settings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), NodeError> {
-    let make = |scenario: &Scenario, vehicle| match &settings.strategy {
-        Some(strategy) => mind_by(scenario, vehicle, strategy),
-        None => mind_of(scenario, vehicle),
-    };
-    serve_minds(settings, &make, tell)
-}
-
-/// Like [`serve`], with minds that the caller makes.
-///
-/// # Errors
-/// As for [`serve`].
-pub fn serve_minds(
-    settings: &Settings,
-    make: &dyn Fn(&Scenario, VehicleId) -> Box<dyn Mind>,
-    tell: &mut dyn FnMut(News<'_>),
-) -> Result<(), NodeError> {
     let mut search = GameSearch::new(settings.wait, &settings.stop);
     let mut report = |reason: &str| tell(News::Looking { reason });
     let (bus, game, info) = search.game(&mut report, &settings.place, settings.game.as_ref())?;
-    let mut agent = AgentLoop::open(&bus, &game, &info, (settings, make))?;
+    let mut agent = AgentLoop::open(&bus, &game, &info, settings)?;
     let place = &settings.place;
     let names = &settings.vehicles;
     let joined =

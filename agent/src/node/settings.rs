@@ -1,11 +1,16 @@
 //! The settings of an agent node.
 
+use crate::Mind;
 use bus::Place;
 use messages::topic::GameName;
-use scenario::strategy::Strategy;
+use primitives::VehicleId;
+use scenario::Scenario;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
+
+/// Makes the mind of a vehicle.
+pub type MindMaker = dyn Fn(&Scenario, VehicleId) -> Box<dyn Mind> + Send;
 
 /// Settings of an agent node.
 pub struct Settings {
@@ -19,8 +24,8 @@ pub struct Settings {
     pub wait: Duration,
     /// Without a picture for this long, the sim counts as gone.
     pub silence: Duration,
-    /// Overrides the scenario's strategy.
-    pub strategy: Option<Strategy>,
+    /// Makes the minds; `None`: by the scenario's strategies.
+    pub mind: Option<Box<MindMaker>>,
     /// In lockstep: maximum wait for a policy's proposal at every decision, limited to half of the
     /// scenario's patience.
     pub policy_wait: Duration,

@@ -27,3 +27,9 @@ pub fn suspended() -> Duration {
 pub fn rest(time: Duration) {
     runtime().sleep(time);
 }
+
+/// The current time since 1970, ns: for other systems that ask for it. Squall never compares it.
+#[must_use]
+pub fn unix_ns() -> i64 {
+    i64::try_from(time::OffsetDateTime::now_utc().unix_timestamp_nanos()).unwrap_or(i64::MAX)
+}

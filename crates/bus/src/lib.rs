@@ -28,6 +28,7 @@ mod open_files;
 mod parcel;
 mod place;
 mod query;
+mod ros_session;
 mod runtime;
 mod session;
 mod sim_liveness;
@@ -54,6 +55,7 @@ pub use net::{DEFAULT_PORT, Net, free_port, is_loopback, is_same_place};
 pub use parcel::Parcel;
 pub use place::{Place, PlacedSession};
 pub use query::Query;
+pub use ros_session::{RosPublisher, RosSession};
 pub use runtime::{Runtime, System, random_bytes, random_number, replace_runtime};
 pub use session::{
     Declaration, Encoding, OnBytes, OnLinkLost, OnQuery, OnToken, PendingQuery, Sender, Session, keys_meet,

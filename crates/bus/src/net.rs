@@ -128,7 +128,7 @@ impl Net {
         Ok(config)
     }
 
-    fn base(&self) -> Result<Config, BusError> {
+    pub(crate) fn base(&self) -> Result<Config, BusError> {
         let mut config = match &self.config_file {
             None => Config::default(),
             Some(path) => {

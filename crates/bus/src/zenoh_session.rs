@@ -17,15 +17,15 @@ use zenoh::qos::{self, CongestionControl};
 use zenoh::query::{ConsolidationMode, QueryTarget};
 use zenoh::sample::{Locality, SampleKind};
 
-pub(crate) struct ZenohSession(zenoh::Session);
+pub(crate) struct ZenohSession(pub(crate) zenoh::Session);
 
 /// Sends on one zenoh key.
-struct ZenohSender {
+pub(crate) struct ZenohSender {
     publisher: zenoh::pubsub::Publisher<'static>,
     is_heard: Arc<AtomicBool>,
 }
 
-fn failed(doing: &'static str, key: &str) -> impl FnOnce(zenoh::Error) -> BusError {
+pub(crate) fn failed(doing: &'static str, key: &str) -> impl FnOnce(zenoh::Error) -> BusError {
     move |e| BusError::Use { doing, key: key.to_owned(), reason: reason(&e) }
 }
 
@@ -53,19 +53,9 @@ impl ZenohSession {
             of_keys.unwrap_or(error)
         })
     }
-}
 
-fn open(config: zenoh::Config, what: String) -> Result<ZenohSession, BusError> {
-    let session = zenoh::open(config).wait().and_then(|session| linger::disable(&session).map(|()| session));
-    session.map(ZenohSession).map_err(|e| BusError::Open { what, reason: reason(&e) })
-}
-
-impl Session for ZenohSession {
-    fn id(&self) -> String {
-        self.0.zid().to_string()
-    }
-
-    fn publisher(&self, key: String, priority: Priority, delivery: Delivery) -> Result<Box<dyn Sender>, BusError> {
+    /// Prepares to publish on `key`.
+    pub(crate) fn sender(&self, key: String, priority: Priority, delivery: Delivery) -> Result<ZenohSender, BusError> {
         // Senders repeat what must arrive: in lockstep the sim repeats pictures and agents repeat
         // answers, and in real time a newer message follows. A waiting message would block the
         // thread that serves all links.
@@ -83,7 +73,22 @@ impl Session for ZenohSession {
         let flag = Arc::clone(&is_heard);
         let listener = publisher.matching_listener().callback(move |now| flag.store(now.matching(), Ordering::Relaxed));
         listener.background().wait().map_err(failed("publish on", &key))?;
-        Ok(Box::new(ZenohSender { publisher, is_heard }))
+        Ok(ZenohSender { publisher, is_heard })
+    }
+}
+
+pub(crate) fn open(config: zenoh::Config, what: String) -> Result<ZenohSession, BusError> {
+    let session = zenoh::open(config).wait().and_then(|session| linger::disable(&session).map(|()| session));
+    session.map(ZenohSession).map_err(|e| BusError::Open { what, reason: reason(&e) })
+}
+
+impl Session for ZenohSession {
+    fn id(&self) -> String {
+        self.0.zid().to_string()
+    }
+
+    fn publisher(&self, key: String, priority: Priority, delivery: Delivery) -> Result<Box<dyn Sender>, BusError> {
+        Ok(Box::new(self.sender(key, priority, delivery)?))
     }
 
     fn subscribe(&self, key: String, hears_own: bool, receive: OnBytes) -> Result<Declaration, BusError> {
@@ -173,13 +178,20 @@ impl Sender for ZenohSender {
     }
 
     fn send(&self, bytes: Vec<u8>, encoding: Encoding) -> Result<(), BusError> {
+        self.put(bytes, encoding, None)
+    }
+}
+
+impl ZenohSender {
+    /// Sends bytes, with an attachment if given.
+    pub(crate) fn put(&self, bytes: Vec<u8>, encoding: Encoding, attachment: Option<Vec<u8>>) -> Result<(), BusError> {
         use zenoh::bytes::Encoding as Name;
         let encoding = match encoding {
             Encoding::Cdr { schema, version } => Name::APPLICATION_CDR.with_schema(format!("{schema}@{version}")),
             Encoding::Json => Name::APPLICATION_JSON,
             Encoding::Bytes => Name::ZENOH_BYTES,
         };
-        let sent = self.publisher.put(bytes).encoding(encoding).wait();
+        let sent = self.publisher.put(bytes).encoding(encoding).attachment(attachment).wait();
         sent.map_err(failed("send on", self.publisher.key_expr().as_str()))
     }
 }

@@ -176,6 +176,14 @@ impl Bridge<'_> {
     /// Plays with the boats until the game is over.
     fn play(&self) -> Result<(), BridgeError> {
         let name = |community: &Arc<Watched<Community>>| community.visit(|community| community.name.clone());
+        let boats = self.boats.clone();
+        let moos = self.moos;
+        let make = move |scenario: &Scenario, vehicle: primitives::VehicleId| -> Box<dyn agent::Mind> {
+            let wanted = &scenario.vehicles[vehicle.index()].name;
+            let community = boats.iter().find(|community| name(community) == *wanted);
+            let community = Arc::clone(community.expect("only boats with a community are requested"));
+            Box::new(BoatMind::new(Arc::new(scenario.clone()), vehicle, community, moos))
+        };
         let Settings { place, wait, silence, stop, .. } = self.settings;
         let settings = agent::node::Settings {
             game: Some(self.game.clone()),
@@ -183,15 +191,9 @@ impl Bridge<'_> {
             vehicles: self.boats.iter().map(name).collect(),
             wait: *wait,
             silence: *silence,
-            strategy: None,
+            mind: Some(Box::new(make)),
             policy_wait: Duration::ZERO,
             stop: Arc::clone(stop),
-        };
-        let make = |scenario: &Scenario, vehicle: primitives::VehicleId| -> Box<dyn agent::Mind> {
-            let wanted = &scenario.vehicles[vehicle.index()].name;
-            let community = self.boats.iter().find(|community| name(community) == *wanted);
-            let community = Arc::clone(community.expect("only boats with a community are requested"));
-            Box::new(BoatMind::new(Arc::new(scenario.clone()), vehicle, community, self.moos))
         };
         let mut tell = |news: agent::node::News<'_>| match news {
             agent::node::News::Looking { reason } => (self.tell)(News::Looking(reason)),
@@ -201,7 +203,7 @@ impl Bridge<'_> {
             }
             agent::node::News::Left { .. } => {}
         };
-        let played = agent::node::serve_minds(&settings, &make, &mut tell);
+        let played = agent::node::serve(&settings, &mut tell);
         self.boats.iter().for_each(|community| community.visit(boat::publish_end));
         Ok(played?)
     }

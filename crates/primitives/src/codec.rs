@@ -47,11 +47,29 @@ pub enum DecodeError {
 /// Never: every message is a plain struct of numbers, lists and strings.
 #[must_use]
 pub fn encode<M: Message + Serialize>(message: &M) -> Vec<u8> {
+    encode_plain(message)
+}
+
+/// Encodes a message of another system, which has no stamp.
+///
+/// # Panics
+/// If a list has no length in advance: use plain structs of numbers, lists and strings.
+#[must_use]
+pub fn encode_plain<T: Serialize>(message: &T) -> Vec<u8> {
     // Large enough for most messages: growing costs as much as writing.
     let mut bytes = Vec::with_capacity(4096);
     bytes.extend(ENCAPSULATION);
-    cdr_encoding::to_writer::<M, LittleEndian, _>(&mut bytes, message).expect("a plain struct always encodes");
+    cdr_encoding::to_writer::<T, LittleEndian, _>(&mut bytes, message).expect("a plain struct always encodes");
     bytes
+}
+
+/// Decodes a message of another system, which has no stamp; none if it has another layout. Up to
+/// three bytes of padding may follow.
+#[must_use]
+pub fn decode_plain<T: DeserializeOwned>(bytes: &[u8]) -> Option<T> {
+    let body = bytes.strip_prefix(&ENCAPSULATION)?;
+    let (message, used) = cdr_encoding::from_bytes::<T, LittleEndian>(body).ok()?;
+    (body.len() - used < 4).then_some(message)
 }
 
 /// Decodes the message in `bytes`.

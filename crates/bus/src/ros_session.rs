@@ -1,0 +1,123 @@
+//! A session on the zenoh network of ROS 2 nodes (`rmw_zenoh`), separate from any game's network.
+//!
+//! Nothing here waits for a ROS 2 node: a link that cannot take a message at once loses it.
+
+use crate::error::reason;
+use crate::parcel::Parcel;
+use crate::session::{Declaration, Encoding, PendingQuery, Sender, Session};
+use crate::zenoh_session::{ZenohSender, ZenohSession, failed, open};
+use crate::{BusError, Delivery, Net, Priority, is_loopback};
+use messages::topic;
+use std::ops::Deref;
+use std::time::Duration;
+use zenoh::Wait;
+
+/// How long to wait for the tokens of games at a router: they arrive with its first answer.
+const LOOK: Duration = Duration::from_secs(1);
+
+/// A session on a ROS 2 network.
+pub struct RosSession {
+    session: ZenohSession,
+    /// Whether this process is the router, because no other was running.
+    pub is_router: bool,
+}
+
+/// Publishes one ROS 2 topic.
+pub struct RosPublisher(ZenohSender);
+
+impl RosSession {
+    /// Connects to the router at `endpoint` as a client. If none runs on this machine, becomes it.
+    ///
+    /// # Errors
+    /// [`BusError`] if the router is elsewhere and does not answer, if its port belongs to another
+    /// program, or if it is a Squall game.
+    pub fn open(endpoint: &str) -> Result<RosSession, BusError> {
+        let what = format!("of ROS 2 at {endpoint}");
+        let net = Net { connect: vec![endpoint.to_owned()], ..Net::default() };
+        match open(net.leaf()?, what.clone()) {
+            Ok(session) => {
+                if session.who_is_alive(&topic::everyone_alive(), LOOK)?.is_empty() {
+                    return Ok(RosSession { session, is_router: false });
+                }
+                session.close();
+                let reason = "a Squall game listens there: start the game with another --listen, or pass --router";
+                Err(BusError::Open { what, reason: reason.to_owned() })
+            }
+            // A mesh of ROS 2 nodes needs one known router to find each other.
+            Err(_) if is_loopback(endpoint) => {
+                Ok(RosSession { session: open(net.ros_router(endpoint)?, what)?, is_router: true })
+            }
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Prepares to publish on `key`.
+    ///
+    /// # Errors
+    /// [`BusError`] if the session is closed.
+    pub fn publisher(&self, key: String) -> Result<RosPublisher, BusError> {
+        self.session.sender(key, Priority::Normal, Delivery::Reliable).map(RosPublisher)
+    }
+
+    /// Calls `receive` with every request to the service at `key`, and the handle that answers it.
+    ///
+    /// # Errors
+    /// [`BusError`] if the session is closed.
+    pub fn serve(
+        &self,
+        key: String,
+        receive: impl Fn(Parcel, Box<dyn PendingQuery>) + Send + Sync + 'static,
+    ) -> Result<Declaration, BusError> {
+        let callback = move |query: zenoh::query::Query| {
+            receive(Parcel::of(query.payload(), query.attachment()), Box::new(query));
+        };
+        // Clients of ROS 2 ask only queryables that are complete.
+        let queryable = self.session.0.declare_queryable(key.clone()).complete(true).callback(callback).wait();
+        queryable.map(Declaration::new).map_err(failed("answer at", &key))
+    }
+}
+
+/// Tokens and subscriptions are those of any session.
+impl Deref for RosSession {
+    type Target = dyn Session;
+
+    fn deref(&self) -> &Self::Target {
+        &self.session
+    }
+}
+
+impl RosPublisher {
+    /// Whether the topic has a subscriber; messages without one need not be encoded.
+    #[must_use]
+    pub fn is_heard(&self) -> bool {
+        self.0.is_heard()
+    }
+
+    /// Sends a message with its attachment.
+    ///
+    /// # Errors
+    /// [`BusError`] if the session is closed.
+    pub fn send(&self, bytes: Vec<u8>, attachment: Vec<u8>) -> Result<(), BusError> {
+        self.0.put(bytes, Encoding::Bytes, Some(attachment))
+    }
+}
+
+impl Net {
+    /// The zenoh configuration of a router for ROS 2 nodes.
+    fn ros_router(&self, endpoint: &str) -> Result<zenoh::Config, BusError> {
+        let mut config = self.base()?;
+        for (key, value) in [
+            ("mode", "\"router\"".to_owned()),
+            ("listen/endpoints", format!("[{endpoint:?}]")),
+            // By gossip, nodes learn each other's addresses from the router.
+            ("scouting/gossip/enabled", "true".to_owned()),
+        ] {
+            config.insert_json5(key, &value).map_err(|e| BusError::Setting {
+                key: key.to_owned(),
+                value,
+                reason: reason(&e),
+            })?;
+        }
+        Ok(config)
+    }
+}

@@ -1,0 +1,18 @@
+//! The ROS 2 bridge: a game as nodes, topics and services of ROS 2 over `rmw_zenoh`.
+//!
+//! The bridge is a node like any other: an observer, and for boats that ROS 2 drives, their agent.
+//! Two sources never mix. What a boat's own sensors measured comes from its team's picture, and
+//! only for boats that the bridge drives. The truth comes from observers' frames, under `truth/`.
+//!
+//! Squall's north-east-down frames become REP 103 and REP 105 frames in [`convert`], nowhere else.
+//! Keys, tokens and attachments are in [`name`], type hashes in [`type_hash`].
+
+pub mod convert;
+pub mod diagnostics;
+pub mod markers;
+pub mod message;
+pub mod name;
+pub mod node;
+pub mod package;
+pub mod set_point;
+pub mod type_hash;

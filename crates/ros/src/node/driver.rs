@@ -1,0 +1,85 @@
+//! A mind that follows what ROS 2 asks of its boat.
+
+use super::Incoming;
+use super::graph::Graph;
+use crate::message::Twist;
+use crate::name::Node;
+use crate::set_point::{Follower, Numbered, SetPoint};
+use agent::Mind;
+use bus::{BusError, Latest, Watched, clock};
+use messages::refusal::{Refusal, Refusals};
+use messages::{Order, Picture, VehicleOrder};
+use primitives::VehicleId;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// A request lasts no longer than this, whatever the game time: a paused game does not begin again
+/// with the request of a program that has ended.
+const WALL_MAX: Duration = Duration::from_secs(5);
+
+/// The newest request for a boat.
+#[derive(Default)]
+pub(super) struct RequestCell(Watched<Option<(Numbered, Instant)>>);
+
+impl RequestCell {
+    fn put(&self, set_point: SetPoint) {
+        self.0.visit(|newest| {
+            let number = newest.map_or(0, |(newest, _)| newest.number) + 1;
+            *newest = Some((Numbered { number, set_point }, clock::now()));
+        });
+    }
+
+    fn newest(&self) -> Option<Numbered> {
+        let newest = self.0.visit(|newest| *newest);
+        newest.filter(|(_, at)| clock::since(*at) < WALL_MAX).map(|(newest, _)| newest)
+    }
+}
+
+/// Subscribes to the requests for a boat.
+pub(super) fn subscribe(
+    graph: &mut Graph,
+    node: &Node,
+    boat: VehicleId,
+    cell: &Arc<RequestCell>,
+    refusals: &Arc<Watched<Refusals>>,
+) -> Result<(), BusError> {
+    let take = |cell: &Arc<RequestCell>, refusals: &Arc<Watched<Refusals>>| {
+        let (cell, refusals) = (Arc::clone(cell), Arc::clone(refusals));
+        move |asked: Option<Result<SetPoint, Refusal>>| match asked {
+            Some(Ok(set_point)) => cell.put(set_point),
+            // A request that makes no sense ends the one before it: the boat holds.
+            Some(Err(refusal @ Refusal::BadNumber)) => {
+                refusals.visit(|refusals| refusals.count(refusal));
+                cell.put(SetPoint::Order(Order::Hold));
+            }
+            Some(Err(refusal)) => refusals.visit(|refusals| refusals.count(refusal)),
+            None => refusals.visit(|refusals| refusals.count(Refusal::Garbage)),
+        }
+    };
+    let name = &node.name;
+    let asked = take(cell, refusals);
+    graph.subscribe(node, &format!("/{name}/cmd_vel"), move |twist: Option<Twist>| {
+        asked(twist.as_ref().map(SetPoint::of_twist));
+    })?;
+    let asked = take(cell, refusals);
+    graph.subscribe(node, &format!("/{name}/order"), move |order: Option<VehicleOrder>| {
+        asked(order.as_ref().map(|order| SetPoint::of_order(boat, order)));
+    })
+}
+
+/// The mind of a boat that ROS 2 drives.
+pub(super) struct Driver {
+    pub(super) boat: VehicleId,
+    pub(super) cell: Arc<RequestCell>,
+    pub(super) follower: Follower,
+    /// Where pictures go on their way to ROS 2.
+    pub(super) incoming: Arc<Latest<Incoming>>,
+}
+
+impl Mind for Driver {
+    fn decide(&mut self, picture: &Picture) -> Order {
+        self.incoming.put(1 + usize::from(picture.team), Incoming::Picture(Box::new(picture.clone())));
+        let Some(own) = picture.own(self.boat) else { return Order::Hold };
+        self.follower.order(picture.stamp.valid_ns, &own.nav, self.cell.newest())
+    }
+}
