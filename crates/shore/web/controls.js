@@ -168,7 +168,7 @@ export class Controls {
     const going = !live || phase === 'playing' || phase === 'paused' || phase === undefined;
     this.button('pause', live ? (this.paused ? 'Resume' : 'Pause') : this.paused ? 'Play' : 'Pause', act && going, 'Pause or resume (space)');
     this.button('step', live ? 'Step' : 'Step +', act && going, 'One decision, then pause (s)');
-    this.button('halt', this.stopped ? 'End halt' : 'Halt all', act && !this.eStopped, 'Make all boats hold, or end the halt (h)');
+    this.button('halt', this.stopped ? 'End halt' : 'Halt all', act && !this.eStopped && phase !== 'over' && phase !== 'gone', 'Make all boats hold, or end the halt (h)');
     const key = this.real ? 'e' : 'Shift+E';
     const release = this.releases ? `Release the E-stop (${key})` : 'Only a page with the operator’s token can release real boats.';
     this.button('estop', this.eStopped ? 'Release E-stop' : 'E-stop', act && (!this.eStopped || this.releases), this.eStopped ? release : `Stop every boat now (${key})`);

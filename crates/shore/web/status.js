@@ -85,9 +85,7 @@ export class Status {
     if (state?.phase === 'gone') words = 'Lost the game: its server no longer answers. Waiting for another.';
     const ended = isAtItsEnd(game);
     if (ended) words = [`${game.scoreWords}. ${resultWords(game)}`, ...endWords(game)].join('\n');
-    const over = byId('over');
-    write(over, words);
-    show(over, words !== '');
+    this.tellMiddle(words);
     show(byId('watch'), ended && game.mode === 'replay');
   }
 
@@ -95,8 +93,15 @@ export class Status {
   tellNone(reason) {
     write(byId('phase'), 'no game');
     byId('phase').dataset.tone = 'warn';
-    write(byId('over'), `No game to show: ${reason}.\nTo start one, type this in a terminal: ${START}\nIt appears here by itself.`);
-    show(byId('over'), true);
+    this.tellMiddle(`No game to show: ${reason}.\nTo start one, type this in a terminal: ${START}\nIt appears here by itself.`);
+  }
+
+  /** Shows a text in the middle of the chart; one with a command can be copied. */
+  tellMiddle(words) {
+    const over = byId('over');
+    write(over, words);
+    show(over, words !== '');
+    over.classList.toggle('copied', words.includes('squall '));
   }
 
   agentWords(minds) {
