@@ -148,6 +148,7 @@ test('a failsafe is seen and heard until it is acknowledged, and no flood keeps 
   await sight.until('the alarm sounds again', (muted) => squall.sounded > muted, muted);
 
   // What it lacks is beside the button, which looks disabled and says the same.
+  await sight.press('#tab-boats');
   await sight.press('[data-vehicle=red_one]');
   await sight.until('the condition is listed', () => /Missing before arming:.*a fresh order/s.test(document.querySelector('.arming').textContent));
   assert.equal(await sight.page.getAttribute('#operate', 'aria-disabled'), 'true');
