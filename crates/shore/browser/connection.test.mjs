@@ -113,7 +113,7 @@ test('a page without a game says why and what to type, and shows the result of a
   const endpoint = `tcp/127.0.0.1:${await freePort()}`;
   const place = ['--game', name, '--connect', endpoint];
   const view = new Program(t, 'view', ...place, '--listen', '127.0.0.1:0');
-  const sight = await Sight.load(t, browser, await view.url());
+  const sight = await Sight.load(t, browser, await view.url(), { allows: NOBODY });
   await sight.until('the page says so', () => /No game to show: .*Unable to connect.*squall run surveyor_2v2/s.test(document.getElementById('over').textContent));
   assert.equal(await sight.text('#phase'), 'no game');
   const file = gameFile(t, 'brief', 'pav01_vs_pav01.toml', 'duration_s = 3');
