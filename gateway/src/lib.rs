@@ -17,6 +17,7 @@ mod game_clock;
 pub mod geodesy;
 pub mod geofence;
 pub mod link;
+mod lithium;
 pub mod mavlink;
 mod motion_check;
 mod nav_estimate;

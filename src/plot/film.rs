@@ -6,7 +6,7 @@ use messages::{Frame, VehicleTruth};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use primitives::{Ned, math};
-use scenario::{Scenario, Vehicle};
+use scenario::{Scenario, Source, Vehicle};
 
 /// The page's water colour.
 const WATER: RGBColor = RGBColor(227, 238, 244);
@@ -25,6 +25,18 @@ pub(crate) struct Stage<'a> {
     title: String,
     scenario: &'a Scenario,
     view: View,
+}
+
+/// Who plays for a team: the strategies of its simulated boats, or its name without any.
+fn players(scenario: &Scenario, team: usize) -> String {
+    let mut names: Vec<String> = vec![];
+    for vehicle in scenario.vehicles.iter().filter(|vehicle| vehicle.team.index() == team) {
+        let name = scenario.strategies[vehicle.strategy].name.replace('_', " ");
+        if vehicle.source == Source::Simulated && !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    if names.is_empty() { scenario.teams[team].name.clone() } else { names.join(" + ") }
 }
 
 /// A moment of a game.
@@ -89,12 +101,12 @@ impl Moment<'_> {
         let tenths = (10.0 * self.frame.stamp.valid_ns.as_s().max(0.0)).round() as u64;
         let clock = format!("{:02}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10);
         head.draw(&Text::new(clock, (wide - 12, y), style(BLACK, HPos::Right)))?;
-        let step = 150;
-        let teams = &self.stage.scenario.teams;
-        let mut x = wide / 2 - step * (teams.len() as i32 - 1) / 2;
-        for (i, (team, points)) in teams.iter().zip(&self.frame.score).enumerate() {
-            head.draw(&Text::new(format!("{} {points}", team.name), (x, y), style(colour::of_team(i), HPos::Center)))?;
-            x += step;
+        // `learned 3 : 3 strategy 3`, as on the page.
+        let sides: [(&str, i32, HPos); 2] = [(" :", 6, HPos::Right), ("", 8, HPos::Left)];
+        for (team, (points, (end, at, side))) in self.frame.score.iter().zip(sides).enumerate() {
+            let players = players(self.stage.scenario, team);
+            let text = if team == 0 { format!("{players} {points}{end}") } else { format!("{points} {players}") };
+            head.draw(&Text::new(text, (wide / 2 + at, y), style(colour::of_team(team), side)))?;
         }
         Ok(())
     }

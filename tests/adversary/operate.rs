@@ -31,10 +31,10 @@ fn reply(query: &Query, json: &str) {
     drop(query.reply(query.key_expr().clone(), json.to_owned()).wait());
 }
 
-/// The stranger's answer in the gateway's place: the boat is safed.
+/// The stranger's answer in the gateway's place: the boat is disarmed.
 fn forged_reply() -> String {
     let status =
-        GatewayStatus { vehicle: "blue_one".to_owned(), state: "safed".to_owned(), ..GatewayStatus::default() };
+        GatewayStatus { vehicle: "blue_one".to_owned(), state: "disarmed".to_owned(), ..GatewayStatus::default() };
     let reply = serde_json::to_value(OperatorReply { refused: None, status }).expect("JSON");
     serde_json::json!({ "answer": reply }).to_string()
 }
@@ -105,7 +105,7 @@ fn an_intercepted_proof_cannot_arm_a_boat_later() {
     for proof in proofs {
         let answers = intruder.ask("operate/blue_one", proof);
         assert!(answers.iter().all(|answer| answer.starts_with(b"{\"challenge\"")), "{answers:?}");
-        assert_eq!(rig.tell(OperatorCommand::Status).status.state, "safed");
+        assert_eq!(rig.tell(OperatorCommand::Status).status.state, "disarmed");
     }
 }
 
@@ -150,6 +150,6 @@ fn gateway_reports_cannot_be_forged() {
     let report = rig.sim.stop();
     assert!(report["run"]["refused"]["ticket"].as_u64().unwrap_or_default() >= 400, "{}", report["run"]);
     let log = run(&["log", record.to_str().expect("UTF-8"), "--csv", "status/blue_one"]);
-    assert!(log.status.success() && stdout(&log).contains("safed"), "{}", stderr(&log));
+    assert!(log.status.success() && stdout(&log).contains("disarmed"), "{}", stderr(&log));
     assert!(!stdout(&log).contains("FORGED"));
 }

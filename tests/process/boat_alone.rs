@@ -86,19 +86,19 @@ fn a_gateway_stops_its_boat_and_serves_operators_before_there_is_a_game() {
     afloat.set_going();
     let mut gateway = afloat.gateway();
     afloat.stops();
-    wait_until("it serves operators", || afloat.tell("status").contains("safed"));
+    wait_until("it serves operators", || afloat.tell("status").contains("disarmed"));
     let status = afloat.tell("status");
     assert!(status.contains("link        up") && status.contains("no game yet"), "{status}");
     assert!(afloat.tell("arm").contains("no game yet"), "nobody arms it");
     assert!(afloat.tell("estop").contains("e-stopped"));
     let released = afloat.tell("release");
-    assert!(released.contains("safed"), "by the gateway's own token: {released}");
+    assert!(released.contains("disarmed"), "by the gateway's own token: {released}");
     // A second gateway on this machine is refused without any effect on the boat.
     let output = afloat.command().output().expect("the program starts");
     assert!(!output.status.success());
     let said = stderr(&output);
     assert!(said.contains("another gateway on this machine has the link"), "{said}");
-    assert!(afloat.tell("status").contains("safed"));
+    assert!(afloat.tell("status").contains("disarmed"));
     // A stop over the link goes to the gateway that holds it.
     let output = run(&["gateway", "stop", &afloat.link]);
     assert!(output.status.success() && stdout(&output).contains("the gateway of blue_one has the link: e-stopped"));
@@ -130,11 +130,11 @@ fn enter_in_the_gateways_own_terminal_triggers_an_e_stop() {
     command.args(["-qfec", &words.join(" "), "/dev/null"]).current_dir(env!("CARGO_MANIFEST_DIR"));
     command.stdin(Stdio::piped()).stdout(Stdio::null());
     let mut terminal = Process::start(command);
-    wait_until("it is safed", || afloat.tell("status").contains("blue_one: safed"));
+    wait_until("it is disarmed", || afloat.tell("status").contains("blue_one: disarmed"));
     let Child { stdin, .. } = &mut terminal.0;
     let stdin = stdin.as_mut().expect("piped");
     std::thread::sleep(Duration::from_millis(300));
-    assert!(afloat.tell("status").contains("blue_one: safed"), "nothing was pressed");
+    assert!(afloat.tell("status").contains("blue_one: disarmed"), "nothing was pressed");
     stdin.write_all(b"\n").expect("a key");
     stdin.flush().expect("a key");
     wait_within(Duration::from_secs(2), "it is e-stopped", || afloat.tell("status").contains("e-stopped"));

@@ -38,7 +38,7 @@ impl Fleet {
 
     /// A console that has found both boats.
     fn console(&self) -> Console {
-        self.console_of(&["blue_one  safed", "red_one  safed"])
+        self.console_of(&["blue_one  disarmed", "red_one  disarmed"])
     }
 
     /// A console that has printed these lines.
@@ -121,7 +121,7 @@ impl Console {
 }
 
 const ALL_STOPPED: [&str; 2] = ["blue_one  e-stopped  after ", "red_one  e-stopped  after "];
-const ALL_SAFED: [&str; 2] = ["blue_one  safed  after ", "red_one  safed  after "];
+const ALL_DISARMED: [&str; 2] = ["blue_one  disarmed  after ", "red_one  disarmed  after "];
 
 #[test]
 fn a_console_stops_one_boat_or_all_and_releases_them() {
@@ -129,7 +129,7 @@ fn a_console_stops_one_boat_or_all_and_releases_them() {
     let mut console = fleet.console();
     console.ask("blue_one estop", &ALL_STOPPED[..1]);
     console.say("status");
-    console.wait_for(&["blue_one  e-stopped (by an E-stop of this boat), ", "red_one  safed, "]);
+    console.wait_for(&["blue_one  e-stopped (by an E-stop of this boat), ", "red_one  disarmed, "]);
     // Enter alone stops both boats.
     console.ask("", &ALL_STOPPED);
     // A stop takes every path. On a busy machine the slowest copy arrives after the reports, and one
@@ -137,12 +137,12 @@ fn a_console_stops_one_boat_or_all_and_releases_them() {
     std::thread::sleep(Duration::from_secs(2));
     // A stop of one boat outlasts the release of all.
     console.say("all release");
-    console.wait_for(&["red_one  safed"]);
+    console.wait_for(&["red_one  disarmed"]);
     console.say("blue_one arm");
     console.wait_for_complaint("blue_one refuses: an E-stop of this boat");
-    console.ask("blue_one release", &["blue_one  safed  after "]);
-    console.ask("red_one disarm", &ALL_SAFED[1..]);
-    console.ask("all disarm", &ALL_SAFED);
+    console.ask("blue_one release", &["blue_one  disarmed  after "]);
+    console.ask("red_one disarm", &ALL_DISARMED[1..]);
+    console.ask("all disarm", &ALL_DISARMED);
     console.say("blue_one dance");
     let (status, said) = console.end();
     assert!(status.success(), "{said}");
@@ -178,7 +178,7 @@ fn a_boat_that_does_not_report_its_stop_fails_the_console_and_tell() {
     let told = fleet.sim.refusal_of(&["gateway", "tell", "red_one", "estop"]);
     assert!(told.contains("red_one"), "{told}");
     let (status, said) = console.end();
-    assert!(!status.success() && said.contains("red_one does not report that it has stopped: safed"), "{said}");
+    assert!(!status.success() && said.contains("red_one does not report that it has stopped: disarmed"), "{said}");
     // Its stop was repeated for as long as the console ran.
     fleet.gateways[1].signal("CONT");
     let mut console = fleet.console_of(&["red_one  e-stopped"]);

@@ -4,6 +4,7 @@
 //! The loop has water with one boat, its emulator, a proxy that can be cut, the gateway, the game
 //! and its agents. The test observes the true thrust in the water game.
 
+use crate::boat_alone::tell;
 use crate::proxy::{PASS, Proxy, REFUSE, SWALLOW};
 use crate::support::{
     LIMIT, Process, Sim, newest, refusal_of, result_of, run, squall, squall_on_a_disk_of, stderr, stdout, temporary,
@@ -153,7 +154,7 @@ impl Loop {
         self.wait_for_state("e-stopped");
         assert!(self.ask(&OperatorCommand::Arm).refused.is_some_and(|reason| reason.contains("release it first")));
         assert!(self.sim.run(&["gateway", "tell", "all", "release"]).status.success());
-        self.wait_for_state("safed");
+        self.wait_for_state("disarmed");
     }
 
     /// Arms it as soon as it is ready.
@@ -194,7 +195,7 @@ impl Loop {
         self.gateway.kill();
         self.stops_within(Duration::from_millis(500));
         self.restart_gateway(more);
-        self.wait_for_state("safed");
+        self.wait_for_state("disarmed");
         self.arm();
     }
 
@@ -232,6 +233,18 @@ fn a_killed_sim_stops_the_boat_when_its_orders_are_too_old() {
     let mut all = Loop::under_way("none");
     all.sim.process.kill();
     all.stops_within(Duration::from_secs(1));
+}
+
+#[test]
+fn the_end_of_a_game_disarms_the_boat_without_a_failsafe() {
+    let Loop { sim, agents: _agents, gateway: _gateway, proxy: _proxy, water: _water } = Loop::under_way("none");
+    let game = sim.game.clone();
+    sim.stop();
+    wait_until("it is disarmed", || tell(&game, "status").contains("blue_one: disarmed"));
+    // Longer than an order is valid.
+    std::thread::sleep(Duration::from_secs(2));
+    let status = tell(&game, "status");
+    assert!(!status.contains("failsafe"), "{status}");
 }
 
 #[test]

@@ -226,12 +226,12 @@ class Soak:
         if order_us is not None:
             self.note(("ms", "order"), at, order_us[1] / 1e3)
         reply = self.measured("disarm", at, lambda: ask_gateway(place, name, "disarm"))
-        if reply is not None and reply["status"]["state"] != "safed":
+        if reply is not None and reply["status"]["state"] != "disarmed":
             self.problem(f"{name} is {reply['status']['state']!r} after it was disarmed")
         try:
             self.command("gateway", "tell", name, "arm", "--gateway", place)
         except (ValueError, subprocess.SubprocessError) as error:
-            # Not ready just now, as after a failsafe: it stays safed until the next time.
+            # Not ready just now, as after a failsafe: it stays disarmed until the next time.
             print(f"         {error}", flush=True)
 
     def end(self):

@@ -44,8 +44,8 @@ pub(crate) fn gateways(recording: &Recording) -> Vec<Gateway> {
 /// The gateway of a boat, from the recording of a game or of the gateway itself.
 #[must_use]
 pub fn gateway_of(bag: &Bag, boat: &str) -> Gateway {
-    // A gateway's recording starts with the gateway, which starts safed.
-    let state = (bag.kind == Kind::Gateway).then(|| "safed".to_owned());
+    // A gateway's recording starts with the gateway, which starts disarmed.
+    let state = (bag.kind == Kind::Gateway).then(|| "disarmed".to_owned());
     let mut gateway = Gateway { boat: boat.to_owned(), state, ..Gateway::default() };
     traffic(bag, &mut gateway);
     // Each status lists the failsafes so far, and a restarted gateway starts over: count each one

@@ -109,26 +109,26 @@ fn recording() -> Recording {
 }
 
 #[test]
-fn a_gateways_own_recording_begins_safed_and_tells_each_change() {
+fn a_gateways_own_recording_begins_disarmed_and_tells_each_change() {
     let state_after = |changes: &[&str]| {
         let kind = Kind::Gateway;
         let facts = Facts::new();
         let opening = Opening { kind, began_utc_ns: 0, facts, more: vec![], teams: vec![] };
         let mut writer = Writer::begin(Cursor::new(Vec::new()), &opening).expect("it begins");
         for to in changes {
-            let bytes = format!("{{\"event\":{{\"state\":{{\"from\":\"safed\",\"to\":\"{to}\"}}}}}}").into_bytes();
+            let bytes = format!("{{\"event\":{{\"state\":{{\"from\":\"disarmed\",\"to\":\"{to}\"}}}}}}").into_bytes();
             let entry = Entry::Message { topic: "event".to_owned(), schema: None, bytes, at: SimTime(1) };
             writer.write(&entry, 1).expect("it is written");
         }
         let bytes = writer.end(Facts::new()).expect("it ends").into_inner();
         let gateway = gateway_of(&Bag::of(bytes).expect("a recording"), "blue_one");
-        (gateway.state.expect("it begins safed"), gateway.failsafes)
+        (gateway.state.expect("it begins disarmed"), gateway.failsafes)
     };
-    assert_eq!(state_after(&[]), ("safed".to_owned(), vec![]));
+    assert_eq!(state_after(&[]), ("disarmed".to_owned(), vec![]));
     assert_eq!(state_after(&["armed", "e-stopped"]), ("e-stopped".to_owned(), vec![]));
-    let (state, failsafes) = state_after(&["armed", "failsafe: the link is down", "safed"]);
+    let (state, failsafes) = state_after(&["armed", "failsafe: the link is down", "disarmed"]);
     let causes: Vec<&str> = failsafes.iter().map(|failsafe| failsafe.cause.as_str()).collect();
-    assert_eq!((state.as_str(), causes), ("safed", vec!["the link is down"]));
+    assert_eq!((state.as_str(), causes), ("disarmed", vec!["the link is down"]));
 }
 
 #[test]

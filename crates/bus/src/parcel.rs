@@ -72,7 +72,7 @@ mod tests {
         let question = Parcel::question(b"status".to_vec());
         let answer = question.answer(KEY, b"armed".to_vec(), Some(&token));
         assert!(question.is_answered_by(KEY, &answer, &token));
-        let another_answer = Parcel { bytes: b"safed".to_vec(), ..answer.clone() };
+        let another_answer = Parcel { bytes: b"disarmed".to_vec(), ..answer.clone() };
         for (what, key, question, answer) in [
             ("another answer", KEY, &question, &another_answer),
             ("another key", "squall/pond/operate/red_one", &question, &answer),

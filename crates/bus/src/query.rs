@@ -61,7 +61,7 @@ impl Bus {
         };
         // Any node may declare that it answers for a boat's gateway, and zenoh routes a query to
         // the first that claims completeness: a stranger could swallow an E-stop and answer
-        // "safed". So all are queried, and only a sealed answer counts. A relay in the sim would
+        // "disarmed". So all are queried, and only a sealed answer counts. A relay in the sim would
         // have made each command depend on the sim's loop.
         let question = Parcel::question(payload);
         let mut refused = false;

@@ -123,7 +123,7 @@ pub enum OperatorCommand {
     Disarm,
     /// Standby, and no other command until release.
     EStop,
-    /// End the E-stop; the boat stays safed.
+    /// End the E-stop; the boat stays disarmed.
     Release,
     /// Hold position with the boat's own controller.
     StationKeep,
@@ -285,6 +285,10 @@ pub struct GatewayStatus {
     pub mode_age_s: Option<f64>,
     /// Battery, V.
     pub battery_v: Option<f64>,
+    /// Charge left, per cent: reported by the boat, or else estimated from the voltage; absent in
+    /// earlier versions.
+    #[serde(default)]
+    pub battery_pct: Option<f64>,
     /// Its age, s; absent in earlier versions.
     #[serde(default)]
     pub battery_age_s: Option<f64>,

@@ -2,7 +2,8 @@
 
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { Program, Sight, freePort, gameFile, openBrowser, until } from './harness.mjs';
+import { join } from 'node:path';
+import { Program, Sight, folder, freePort, gameFile, openBrowser, until } from './harness.mjs';
 
 let browser;
 before(async () => { browser = await openBrowser(); });
@@ -105,4 +106,21 @@ test('a silently dead connection is closed; an idle one is not', async (t) => {
   await sight.press('#pause');
   await sight.phase('playing');
   await sight.goesOn();
+});
+
+test('a page without a game says why and what to type, and shows the result of a game that has ended', async (t) => {
+  const name = `page-none-${process.pid}`;
+  const endpoint = `tcp/127.0.0.1:${await freePort()}`;
+  const place = ['--game', name, '--connect', endpoint];
+  const view = new Program(t, 'view', ...place, '--listen', '127.0.0.1:0');
+  const sight = await Sight.load(t, browser, await view.url(), { allows: NOBODY });
+  await sight.until('the page says so', () => /No game to show: .*Unable to connect.*squall run surveyor_2v2/s.test(document.getElementById('over').textContent));
+  assert.equal(await sight.text('#phase'), 'no game');
+  const file = gameFile(t, 'brief', 'pav01_vs_pav01.toml', 'duration_s = 3');
+  const record = join(folder(t), 'brief.mcap');
+  new Program(t, 'sim', file, '--pace', 'realtime', '--game', name, '--listen', endpoint, '--join-s', '0', '--record', record);
+  await sight.until('the game appears by itself', () => squall.frame !== null);
+  await sight.until('its result stays', () => squall.state.phase === 'gone' && document.getElementById('over').textContent);
+  assert.match(await sight.text('#over'), /^pav01 0 : 0 pav01\. A draw\.\nTo see it again, type: squall replay .*brief\.mcap\nWaiting for another game\./);
+  assert.equal(await sight.text('#phase'), 'game over');
 });

@@ -68,7 +68,7 @@ test('curves are those of the boats, in step with the chart, and a press on them
   await sight.until('no curves without a boat', () => !document.querySelector('.plot').checkVisibility());
 });
 
-test('the chart is kept as PNG, and a stretch of it as a film', async (t) => {
+test('the chart is kept as PNG, and a stretch of it as a video', async (t) => {
   const sight = await Sight.open(t, browser, `${await replay(t)}#t=30`, { ...SIZE, acceptDownloads: true });
   const [picture] = await Promise.all([sight.page.waitForEvent('download'), sight.press('#png')]);
   assert(/^pav01_vs_pav01.*_00-30\.\d\.png$/.test(picture.suggestedFilename()), picture.suggestedFilename());
@@ -84,5 +84,47 @@ test('the chart is kept as PNG, and a stretch of it as a film', async (t) => {
   const webm = readFileSync(await film.path());
   assert.deepEqual([...webm.subarray(0, 4)], [0x1a, 0x45, 0xdf, 0xa3], 'the file is EBML');
   assert(webm.includes('webm') && webm.length > 20_000, `${webm.length} bytes`);
-  await sight.until('the button can start a new film', () => document.getElementById('film').textContent === 'Film');
+  await sight.until('the button can start a new video', () => document.getElementById('film').textContent === 'Video');
+});
+
+/** The number of pictures, the size, and the colour of two pixels of the last picture of a GIF, decoded by the browser. */
+const DECODE = async (base64) => {
+  const data = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+  const decoder = new ImageDecoder({ data, type: 'image/gif' });
+  await decoder.tracks.ready;
+  await decoder.completed;
+  const { frameCount } = decoder.tracks.selectedTrack;
+  const { image } = await decoder.decode({ frameIndex: frameCount - 1 });
+  const canvas = new OffscreenCanvas(image.displayWidth, image.displayHeight);
+  const context = canvas.getContext('2d', { willReadFrequently: true });
+  context.drawImage(image, 0, 0);
+  const at = (x, y) => [...context.getImageData(x, y, 1, 1).data.slice(0, 3)];
+  return { frameCount, width: canvas.width, height: canvas.height, paper: at(4, 4), water: at(canvas.width - 4, 60) };
+};
+
+test('a stretch of the game is kept as a GIF that other programs read, on a phone too', async (t) => {
+  const url = `${await replay(t)}#t=30`;
+  for (const how of [SIZE, { size: { width: 390, height: 844 }, hasTouch: true, isMobile: true }]) {
+    const sight = await Sight.open(t, browser, url, { ...how, acceptDownloads: true });
+    const press = how.hasTouch ? (selector) => sight.page.tap(selector) : (selector) => sight.press(selector);
+    if (how.hasTouch) {
+      await press('#tab-game');
+      const [picture] = await Promise.all([sight.page.waitForEvent('download'), press('#png')]);
+      assert.match(picture.suggestedFilename(), /\.png$/);
+    }
+    await press('#gif');
+    const from_s = await sight.get(() => squall.t_s);
+    await press('#pause');
+    await sight.until('the replay continues', (from_s) => squall.t_s > from_s + 2, from_s);
+    const [kept] = await Promise.all([sight.page.waitForEvent('download'), press('#gif')]);
+    assert.match(kept.suggestedFilename(), /\.gif$/);
+    const gif = readFileSync(await kept.path());
+    const { frameCount, width, height, paper, water } = await sight.get(DECODE, gif.toString('base64'));
+    assert(frameCount >= 4 && width >= 380 && width <= 800 && height > 200, `${frameCount} pictures, ${width} by ${height}`);
+    const colours = await sight.get(() => ['--paper', '--water'].map((name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim()));
+    const parts = (colour) => [1, 3, 5].map((at) => Number.parseInt(colour.slice(at, at + 2), 16));
+    for (const [got, want] of [[paper, parts(colours[0])], [water, parts(colours[1])]]) assert(got.every((part, i) => Math.abs(part - want[i]) < 24), `${got}, not ${want}`);
+    t.diagnostic(`${frameCount} pictures, ${width} by ${height}, ${(gif.length / 1024).toFixed(0)} kB`);
+    await sight.close();
+  }
 });

@@ -118,6 +118,15 @@ test('an E-stop takes one press and holds every boat until it is released, which
     assert(fastest <= STANDS_M_S, `a boat goes again at ${fastest} m/s`);
   };
   await go();
+  await sight.page.focus('#sheet');
+  await sight.keys('e');
+  await sight.goesOn();
+  assert.equal(await sight.get(() => squall.events.some((each) => each.event === 'e_stopped')), false, 'no letter alone stops a simulation');
+  await sight.keys('E');
+  await sight.phase('E-STOPPED');
+  await sight.press('#estop');
+  await sight.press('#estop-confirm');
+  await sight.phase('playing');
   await sight.press('#estop');
   assert(!(await sight.page.isVisible('#estop-confirm')), 'one press stops without a question');
   await sight.phase('E-STOPPED');

@@ -177,3 +177,25 @@ test('names are written one way', async (t) => {
   assert.deepEqual(changed, []);
   assert.equal(await sight.get(() => document.querySelector('#pane-boat h2').innerText), 'red two');
 });
+
+test('a phone on its side shows the chart and the panel next to each other, and everything fits', async (t) => {
+  const url = await replay(t, 'pav01_vs_pav01');
+  const live = await new Program(t, 'run', scenario('games/pav01_vs_pav01.toml'), '--view', '--speed', '5x', '--no-record', '--listen', '127.0.0.1:0').url();
+  for (const [width, height] of [[844, 390], [932, 430], [667, 375]]) {
+    for (const [at, least] of [[url, 150], [live, 220]]) {
+      const sight = await Sight.open(t, browser, at, { size: { width, height }, hasTouch: true, isMobile: true });
+      const boxes = await sight.get(() => Object.fromEntries(['sheet', 'side', 'controls', 'pause', 'tab-events', 'estop', 'timeline', 'event-next'].map((id) => {
+        const box = document.getElementById(id).getBoundingClientRect();
+        return [id, { left: box.left, top: box.top, right: box.right, bottom: box.bottom, shown: box.width > 0 }];
+      })));
+      const where = `${width} by ${height}: ${JSON.stringify(boxes)}`;
+      assert(boxes.sheet.right <= boxes.side.left + 1 && boxes.sheet.top === boxes.side.top, where);
+      assert(boxes.sheet.bottom - boxes.sheet.top >= least, where);
+      for (const box of Object.values(boxes).filter(({ shown }) => shown)) assert(box.left >= 0 && box.top >= 0 && box.right <= width + 0.5 && box.bottom <= height + 0.5, where);
+      assert.deepEqual([boxes.estop.shown, boxes.timeline.shown], [at === live, at === url], where);
+      await sight.page.tap('#tab-events');
+      assert(await sight.page.isVisible('#pane-events'));
+      await sight.close();
+    }
+  }
+});

@@ -11,6 +11,7 @@ const DESK = { size: { width: 1400, height: 900 } };
 const HALL = { size: { width: 1920, height: 1080 } };
 const TABLET = { size: { width: 820, height: 1180 }, hasTouch: true };
 const PHONE = { size: { width: 390, height: 844 }, deviceScaleFactor: 2, hasTouch: true };
+const LANDSCAPE = { ...PHONE, size: { width: 844, height: 390 } };
 const WAVES = ['--sea', scenario('seas/fresh_breeze.toml')];
 const PAV01 = scenario('games/pav01_vs_pav01.toml');
 
@@ -138,12 +139,15 @@ const alarm = async (sight) => {
 
 const fast = live(PAV01, ...WAVES, '--speed', '10x');
 const calm = live(PAV01, '--speed', '10x');
+const fleet = live(scenario('games/fleet_20v20.toml'), '--speed', '5x', '--agents-per-process', '40');
+const hundred = live(scenario('games/fleet_100v100.toml'), '--speed', '5x', '--agents-per-process', '100');
+const pickState = (name) => (sight) => sight.press(`#boat-states [data-state="${name}"]`);
 const SCENES = {
   'live-waves-selected': [fast, DESK, 'light', at(135), select('blue_two')],
   'live-waves-dark': [fast, DESK, 'dark', at(60), select('red_two')],
   'live-calm': [calm, DESK, 'light', at(40)],
   'live-game-tab': [fast, DESK, 'light', at(20), keys('4')],
-  'estop': [calm, DESK, 'light', at(30), keys('e')],
+  'estop': [calm, DESK, 'light', at(30), keys('E')],
   'help': [calm, DESK, 'light', at(10), keys('?')],
   'replay': [replay(PAV01, ...WAVES), DESK, 'light', toGrab, select('red_two')],
   'replay-plots': [replay(PAV01, ...WAVES), DESK, 'light', toGrab, select('red_two'), plots],
@@ -166,12 +170,25 @@ const SCENES = {
   'chart': [withChart('geojson'), DESK, 'light', at(30)],
   'chart-dark': [withChart('geojson'), HALL, 'dark', at(30)],
   'chart-image': [withChart('image'), DESK, 'dark', at(30)],
+  'station-few': [station, HALL, 'light', armed, keys('1')],
+  'landscape-station': [station, LANDSCAPE, 'light', alarm],
+  'landscape-station-list': [station, LANDSCAPE, 'dark', alarm, keys('1')],
   'phone-chart': [withChart('geojson'), PHONE, 'light', at(30)],
   'phone': [fast, PHONE, 'light', at(60)],
   'phone-selected': [fast, PHONE, 'dark', at(60), select('blue_two')],
   'phone-game': [fast, PHONE, 'light', at(20), keys('4')],
   'phone-replay': [replay(PAV01, ...WAVES), PHONE, 'light', toGrab],
   'phone-replay-plots': [replay(PAV01, ...WAVES), PHONE, 'dark', toGrab, select('red_two'), plots],
+  'landscape': [fast, LANDSCAPE, 'light', at(60)],
+  'landscape-replay': [replay(PAV01, ...WAVES), LANDSCAPE, 'light', toGrab],
+  'landscape-replay-plots': [replay(PAV01, ...WAVES), LANDSCAPE, 'dark', toGrab, select('red_two'), plots],
+  'landscape-game': [fast, LANDSCAPE, 'dark', at(20), keys('4')],
+  'fleet': [fleet, DESK, 'light', at(40)],
+  'fleet-dark': [fleet, HALL, 'dark', at(40)],
+  'fleet-tagged': [fleet, DESK, 'light', at(40), pickState('tagged')],
+  'phone-fleet': [fleet, PHONE, 'light', at(40)],
+  'hundred': [hundred, DESK, 'light', at(60)],
+  'hundred-dark': [hundred, HALL, 'dark', at(60)],
   'phone-drive': [live(scenario('games/person_2v2.toml'), '--pace', 'realtime'), PHONE, 'light', at(2), select('blue_one'), (sight) => sight.press('#drive')],
 };
 /** Pages of reports. */

@@ -46,9 +46,9 @@ test('an operator arms, delegates and disarms a boat from the page, and everybod
   await arm(mine, 'blue_one');
   assert.match(await mine.text('#operated'), /blue one is armed/);
   await badge(theirs, 'blue_one', 'armed');
-  assert.match(await mine.text('#gateway'), /Link.*up.*Fix.*s ago.*Battery.*V, .*s ago.*In control.*secondary/s);
+  assert.match(await mine.text('#gateway'), /Link.*up.*Fix.*s ago.*Battery\d+\s% \(\d\d\.\d\sV\), .*s ago.*In control.*secondary.*Mode(thrust|standby), /s);
   await mine.press('#tab-boats');
-  await mine.until('the list shows the state', () => /Armed.*link.*fix [\d.]+\ss.*V/s.test(document.querySelector('[data-vehicle=blue_one] .badge-line').textContent));
+  await mine.until('the list shows the state', () => /Armed.*link.*fix [\d.]+\ss.*\d\s%/s.test(document.querySelector('[data-vehicle=blue_one] .badge-line').textContent));
   assert(await mine.get(() => document.querySelector('#boat-list [data-vehicle=blue_two] .badge-line') === null), 'a simulated boat has no badge');
 
   await mine.press('#tab-boat');
@@ -147,6 +147,16 @@ test('a failsafe is seen and heard until it is acknowledged, and no flood keeps 
   await sight.press('#mute');
   await sight.until('the alarm sounds again', (muted) => squall.sounded > muted, muted);
 
+  // What it lacks is beside the button, which looks disabled and says the same.
+  await sight.press('#tab-boats');
+  await sight.press('[data-vehicle=red_one]');
+  await sight.until('the condition is listed', () => /Missing before arming:.*a fresh order/s.test(document.querySelector('.arming').textContent));
+  assert.equal(await sight.page.getAttribute('#operate', 'aria-disabled'), 'true');
+  await sight.press('#operate');
+  assert(!(await sight.page.isVisible('#operate-confirm')), 'no question that would lead nowhere');
+  assert.match(await sight.text('#operated'), /red one cannot be armed yet\. Missing: .*a fresh order/);
+  await sight.press('#tab-boats');
+
   // Reset elsewhere, it stays until it is acknowledged here.
   const theirs = await Sight.open(t, browser, boats.url);
   await theirs.press('[data-vehicle=red_one]');
@@ -211,6 +221,45 @@ test('a boat holds a heading and changes mode on an operator’s command, and it
   await sight.press('#operate-disarm');
   await badge(sight, 'blue_one', 'disarmed');
   await sight.until('acknowledged', () => squall.alarms.length === 0);
+});
+
+test('badges cover no boat and no other badge, however close the boats are', async (t) => {
+  const boats = await realBoats(t);
+  for (const size of [{ width: 1400, height: 900 }, { width: 390, height: 844 }]) {
+    const sight = await Sight.open(t, browser, boats.url, { size });
+    for (const name of ['blue_one', 'red_one']) await badge(sight, name, 'disarmed');
+    await sight.page.focus('#sheet');
+    for (let zoom = 0; zoom < 7; zoom++) {
+      const covered = await sight.get(() => {
+        const areas = squall.badges.map(({ area }) => area).filter(Boolean);
+        const others = squall.hulls.map(({ left, top, right, bottom }) => [left, top, right, bottom]);
+        const overlap = (a, b) => a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3];
+        return { count: areas.length, covered: areas.some((area, i) => [...others, ...areas.slice(i + 1)].some((other) => overlap(area, other))) };
+      });
+      assert.deepEqual(covered, { count: 2, covered: false }, `after ${zoom} steps at ${size.width} px`);
+      const drawn = await sight.get(() => squall.drawn);
+      await sight.keys('-');
+      await sight.until('the chart is drawn again', (before) => squall.drawn > before + 3, drawn);
+    }
+    await sight.close();
+  }
+});
+
+test('the normal end of a game is no failsafe and no alarm', async (t) => {
+  const boats = await realBoats(t);
+  const sight = await Sight.open(t, browser, boats.url);
+  await badge(sight, 'blue_one', 'disarmed');
+  await arm(sight, 'blue_one');
+  await sight.page.focus('#sheet');
+  await sight.keys('4');
+  await sight.press('#stop');
+  await sight.press('#stop-confirm');
+  await sight.until('the result is shown', () => /^pav01 \d+ : \d+ pav01\. A draw\./.test(document.getElementById('over').textContent));
+  assert.match(await boats.gateways.blue_one.hears(/the game is over: disarming the boat/).then(([text]) => text), /disarming/);
+  const ended = await badge(sight, 'blue_one', 'ended');
+  assert.deepEqual([ended.label, await sight.get(() => squall.alarms), await sight.text('#phase')], ['Game over', [], 'game over']);
+  // Orders are stale by now.
+  assert(!/failsafe/.test(boats.gateways.blue_one.said), boats.gateways.blue_one.said);
 });
 
 test('the E-stop is large only where it stops real boats', async (t) => {

@@ -171,7 +171,7 @@ export class Alarms {
       const [words, acknowledge] = row.children;
       write(words.firstElementChild, alarm.boat ? plain(alarm.boat) : 'Page');
       const over = alarm.active ? '' : ' Over.';
-      write(words.lastElementChild, `${alarm.text}${over} ${alarm.at.toTimeString().slice(0, 8)}`);
+      write(words.lastElementChild, `${alarm.text}${over} · ${alarm.at.toTimeString().slice(0, 8)}`);
       const label = `Acknowledge: ${alarm.boat ? `${plain(alarm.boat)}, ` : ''}${alarm.text}`;
       if (acknowledge.getAttribute('aria-label') !== label) acknowledge.setAttribute('aria-label', label);
     });

@@ -29,20 +29,27 @@ function fitted(context, text) {
   return `${text.slice(0, length)}…`;
 }
 
-/** Draws the badge below a boat, within the chart. Returns the area taken: left, top, right, bottom, px. */
-export function drawBadge(context, view, reading, x, y, room) {
+/** The last position of each boat's badge around it, so that badges do not jump. */
+const places = new Map();
+const BELOW = 2;
+
+/** Draws a boat's badge where it covers no boat and no other badge, with a line to the boat if that is far. Returns the area taken: left,
+ * top, right, bottom, px; null without space. */
+export function drawBadge(context, view, labels, reading, x, y, room) {
   context.font = FONT;
   const text = view.width < NARROW ? reading.label : fitted(context, said(reading));
-  const width = context.measureText(text).width + 2 * PAD;
-  const left = Math.round(Math.min(view.width - width - 2, Math.max(2, x - width / 2)));
-  const below = y + room;
-  const top = Math.round(below + HEIGHT > view.height - 2 ? y - room - HEIGHT : below);
+  const width = Math.ceil(context.measureText(text).width + 2 * PAD);
+  const box = labels.fit(width, HEIGHT, x, y, room, places.get(reading.name) ?? BELOW);
+  if (box === null) return null;
+  const { left, top, place, out } = box;
+  if (out === room) places.set(reading.name, place);
   const [fill, ink, rim] = (LOOKS[reading.tone] ?? LOOKS.plain)();
+  context.lineWidth = 1.5;
+  if (out > room) drawLead(context, [x, y], [left + width / 2, top + HEIGHT / 2], room);
   context.beginPath();
   context.roundRect(left, top, width, HEIGHT, 4);
   context.fillStyle = fill;
   context.fill();
-  context.lineWidth = 1.5;
   context.strokeStyle = rim;
   context.stroke();
   context.fillStyle = ink;
@@ -50,6 +57,16 @@ export function drawBadge(context, view, reading, x, y, room) {
   context.textBaseline = 'middle';
   context.fillText(text, left + PAD, top + HEIGHT / 2 + 0.5);
   return [left, top, left + width, top + HEIGHT];
+}
+
+/** A line to a distant badge, clear of the hull. */
+function drawLead(context, [x, y], [toX, toY], room) {
+  const part = Math.min(1, room / Math.hypot(toX - x, toY - y));
+  context.beginPath();
+  context.moveTo(x + (toX - x) * part, y + (toY - y) * part);
+  context.lineTo(toX, toY);
+  context.strokeStyle = palette.ink;
+  context.stroke();
 }
 
 /** Creates an element for a badge. */

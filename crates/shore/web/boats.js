@@ -10,15 +10,15 @@ import { palette, teamColour } from './palette.js';
 const HULL = [[0.5, 0], [0.22, 0.42], [-0.15, 0.5], [-0.5, 0.4], [-0.5, -0.4], [-0.15, -0.5], [0.22, -0.42]];
 /** The second team's stripe across the hull. */
 const STRIPE = [[0.12, 0.62], [-0.12, 0.62], [-0.12, -0.62], [0.12, -0.62]];
-/** Minimum length of a hull, px: with few boats and with many. */
+/** Minimum length of a hull: as a share of the field's space for each boat, within limits in px. */
+const LENGTH_SHARE = 0.3;
+const LENGTH_MIN_PX = 10;
 const LENGTH_FEW_PX = 20;
-const LENGTH_MANY_PX = 13;
-const MANY = 60;
 /** Length of the line at the bow, s. */
 const AHEAD_S = 3;
 /** Size of a carried flag, px. */
 const FLAG_ROOM_PX = 24;
-/** With more boats than this, tagged boats fade, and only boats that are selected or pointed at show circles. */
+/** With more boats than this, boats out of play fade, and only boats that are selected or pointed at show circles and all letters. */
 const CROWD = 24;
 /** Opacity in a crowd of boats that are out of play. */
 const FADED = 0.4;
@@ -124,8 +124,10 @@ export class Boats {
     this.readings = [];
     /** Their geofences. */
     this.fences = [];
-    /** The areas of their badges on the chart: left, top, right, bottom, px. */
+    /** Their badges on the chart: index, and area: left, top, right, bottom, px. */
     this.badges = [];
+    /** The letters in the last picture, for tests: index, letter. */
+    this.letters = [];
   }
 
   /** Draws all boats at their current poses. */
@@ -146,15 +148,19 @@ export class Boats {
       this.drawHull(game, view, selected);
       this.drawRing(game, view, selected);
     }
+    this.labels.begin(game.vehicles, view, ratio);
+    this.blockHulls(game, view);
     this.drawMarks(game, view);
     this.drawBadges(game, view);
-    this.drawNames(game, view, shown, selected, ratio);
+    this.drawNames(game, view, shown, selected);
   }
 
   /** Lengths on the chart, px. */
   measure(game, view) {
     if (this.lengths.length !== game.count) this.lengths = new Float32Array(game.count);
-    const least = game.count > MANY ? LENGTH_MANY_PX : LENGTH_FEW_PX;
+    const { left, right, bottom, top } = view.bounds;
+    const room = view.scale * Math.sqrt(((right - left) * (top - bottom)) / Math.max(1, game.count));
+    const least = Math.min(LENGTH_FEW_PX, Math.max(LENGTH_MIN_PX, LENGTH_SHARE * room));
     for (let i = 0; i < game.count; i++) this.lengths[i] = Math.max(least, game.vehicles[i].length_m * view.scale);
   }
 
@@ -270,23 +276,34 @@ export class Boats {
     }
   }
 
-  /** Letters above boats with a fault or penalty. */
+  /** The marks shown as letters. In a crowd the hull alone says that a boat is out of play. */
+  lettersOf(game, index) {
+    const plain = game.count > CROWD && index !== this.selected && index !== this.hovered;
+    return plain ? game.marks[index] & ~(TAGGED | DISABLED) : game.marks[index];
+  }
+
+  /** Letters above boats with a fault or penalty. A crowd has no space for those that would cover boats or other letters. */
   drawMarks(game, view) {
     const { context } = this;
     context.font = '700 11px system-ui, sans-serif';
     context.textAlign = 'center';
     context.textBaseline = 'middle';
+    this.letters = [];
     for (let i = 0; i < game.count; i++) {
-      if (game.marks[i] === 0) continue;
+      const letters = this.lettersOf(game, i);
+      if (letters === 0) continue;
       context.globalAlpha = this.isFaded(game, i) ? FADED : 1;
       let x = view.xOf(game.x[i]) + this.lengths[i] * 0.35 + 5;
       const y = view.yOf(game.y[i]) - this.lengths[i] * 0.35 - 7;
       for (let mark = 0; mark < MARKS.length; mark++) {
-        if ((game.marks[i] & MARKS[mark][0]) === 0) continue;
+        if ((letters & MARKS[mark][0]) === 0) continue;
+        if (game.count > CROWD && !this.labels.claim(x - 6.5, y - 6.5, x + 6.5, y + 6.5)) break;
+        this.labels.block(x - 6.5, y - 6.5, x + 6.5, y + 6.5);
         context.fillStyle = palette.ink;
         context.fillRect(x - 6.5, y - 6.5, 13, 13);
         context.fillStyle = palette.paper;
         context.fillText(MARKS[mark][1], x, y + 0.5);
+        this.letters.push([i, MARKS[mark][1]]);
         x += 14;
       }
       if (game.marks[i] & NAV_LOST) this.drawLostRing(view.xOf(game.x[i]), view.yOf(game.y[i]), this.lengths[i]);
@@ -301,7 +318,8 @@ export class Boats {
       const [x, y] = [view.xOf(game.x[reading.index]), view.yOf(game.y[reading.index])];
       if (game.frames === 0 || x < 0 || y < 0 || x > view.width || y > view.height) continue;
       const room = this.lengths[reading.index] * 0.5 + (reading.index === this.selected ? 14 : 7);
-      this.badges.push(drawBadge(this.context, view, reading, x, y, room));
+      const area = drawBadge(this.context, view, this.labels, reading, x, y, room);
+      if (area) this.badges.push({ index: reading.index, area });
     }
   }
 
@@ -340,9 +358,8 @@ export class Boats {
     });
   }
 
-  drawNames(game, view, shown, selected, ratio) {
+  drawNames(game, view, shown, selected) {
     const { context, labels } = this;
-    labels.begin(game.vehicles, view, ratio);
     const strength = shown.names ? this.nameStrength(game, view) : 0;
     if (strength <= 0.02 && selected < 0 && this.hovered < 0) return;
     const single = (index, alpha, wanted) => {
@@ -352,7 +369,6 @@ export class Boats {
       context.globalAlpha = alpha;
       labels.draw(context, index, x, y, this.lengths[index] * 0.5 + 4 + (index === selected ? 8 : 0), wanted);
     };
-    this.blockHulls(game, view);
     if (selected >= 0) single(selected, 1, true);
     if (this.hovered >= 0 && this.hovered !== selected && this.hovered < game.count) single(this.hovered, 1, true);
     for (let i = 0; i < game.count && strength > 0.02; i++) {
@@ -361,18 +377,15 @@ export class Boats {
     context.globalAlpha = 1;
   }
 
-  /** Keeps names clear of boats and carried flags. */
+  /** Keeps letters, badges and names clear of boats and carried flags. */
   blockHulls(game, view) {
     const { labels } = this;
-    for (const badge of this.badges) labels.block(...badge);
     for (let i = 0; i < game.count; i++) {
       const x = view.xOf(game.x[i]);
       const y = view.yOf(game.y[i]);
       const [right, down] = this.extent(game, i);
       labels.block(x - right, y - down, x + right, y + down);
-      const half = this.lengths[i] * 0.3;
       if (game.carrying[i] >= 0) labels.block(x, y - FLAG_ROOM_PX, x + FLAG_ROOM_PX * 0.7, y);
-      if (game.marks[i] !== 0) labels.block(x + half, y - half - 14, x + half + 16, y - half);
     }
     (game.chart.field?.flags ?? []).forEach((flag, i) => {
       if (game.carrierOf(i) < 0) labels.block(view.xOf(flag.x), view.yOf(flag.y) - FLAG_ROOM_PX, view.xOf(flag.x) + 19, view.yOf(flag.y));

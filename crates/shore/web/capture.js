@@ -1,16 +1,35 @@
-// Saves the chart as a PNG image, or a section of the game as a film.
+// Saves the chart as a PNG image, or a section of the game as a video or a GIF.
 
+import { Gif } from './gif.js';
 import { palette } from './palette.js';
 import { clock, plain } from './words.js';
 import { notice } from './status.js';
 
 const FRAMES_PER_S = 25;
-/** Maximum length of a film, ms: browsers keep it in memory. */
-const FILM_MAX_MS = 10 * 60 * 1000;
+/** Types of video, by preference: Safari records no WebM. */
+const VIDEOS = ['video/webm', 'video/mp4'];
+/** Maximum length of a video, ms: browsers keep it in memory. */
+const VIDEO_MAX_MS = 10 * 60 * 1000;
+/** Interval of a GIF's pictures, its maximum length, ms, and its maximum width, px. */
+const GIF_EVERY_MS = 125;
+const GIF_MAX_MS = 60 * 1000;
+const GIF_WIDTH_MAX = 800;
 const HEAD_PX = 34;
 
-/** Offers the user a file to save. */
-function save(blob, name) {
+const byId = (id) => document.getElementById(id);
+
+/** Offers the user a file: to save or, on a phone, to share. */
+async function offer(blob, name) {
+  const files = [new File([blob], name, { type: blob.type })];
+  if (matchMedia('(pointer: coarse)').matches && navigator.canShare?.({ files })) {
+    try {
+      await navigator.share({ files });
+      return;
+    } catch (error) {
+      if (error.name === 'AbortError') return;
+      // The press was too long ago: save it instead.
+    }
+  }
   const link = document.createElement('a');
   link.href = URL.createObjectURL(blob);
   link.download = name;
@@ -24,10 +43,15 @@ export class Capture {
     this.layers = layers;
     this.game = game;
     this.canvas = document.createElement('canvas');
+    this.small = document.createElement('canvas');
     this.recorder = null;
-    this.button = document.getElementById('film');
-    document.getElementById('png').addEventListener('click', () => this.png());
-    this.button.addEventListener('click', () => this.film());
+    this.gif = null;
+    const records = typeof MediaRecorder === 'undefined' || !this.canvas.captureStream ? () => false : (type) => MediaRecorder.isTypeSupported(type);
+    this.type = VIDEOS.find(records);
+    byId('film').hidden = this.type === undefined;
+    byId('png').addEventListener('click', () => this.png());
+    byId('film').addEventListener('click', () => this.film());
+    byId('gif').addEventListener('click', () => this.animate());
   }
 
   get name() {
@@ -54,45 +78,76 @@ export class Capture {
   png() {
     this.compose();
     this.canvas.toBlob((blob) => {
-      if (blob) save(blob, `${this.name}.png`);
+      if (blob) offer(blob, `${this.name}.png`);
       else notice('The browser could not create the image.');
     });
   }
 
-  /** Starts a film, or ends and saves it. */
+  /** Starts a video, or ends and saves it. */
   film() {
     if (this.recorder) {
       this.recorder.stop();
       return;
     }
-    if (typeof MediaRecorder === 'undefined' || !MediaRecorder.isTypeSupported('video/webm')) {
-      notice('This browser cannot record films (WebM).');
-      return;
-    }
     this.compose();
     const parts = [];
-    const name = this.name;
-    const recorder = new MediaRecorder(this.canvas.captureStream(FRAMES_PER_S), { mimeType: 'video/webm', videoBitsPerSecond: 6e6 });
+    const { name, type } = this;
+    const recorder = new MediaRecorder(this.canvas.captureStream(FRAMES_PER_S), { mimeType: type, videoBitsPerSecond: 6e6 });
     recorder.ondataavailable = ({ data }) => data.size > 0 && parts.push(data);
     recorder.onstop = () => {
       clearTimeout(this.late);
       this.recorder = null;
       this.tell();
-      save(new Blob(parts, { type: 'video/webm' }), `${name}.webm`);
+      offer(new Blob(parts, { type }), `${name}.${type.split('/')[1]}`);
     };
     recorder.start(1000);
     this.recorder = recorder;
-    this.late = setTimeout(() => recorder.state === 'recording' && recorder.stop(), FILM_MAX_MS);
+    this.late = setTimeout(() => recorder.state === 'recording' && recorder.stop(), VIDEO_MAX_MS);
     this.tell();
   }
 
+  /** Starts a GIF, or ends and saves it. */
+  animate() {
+    const { gif, name } = this;
+    if (!gif) {
+      const { width, clientWidth, height } = this.layers[3];
+      const ratio = width / Math.max(1, clientWidth);
+      const scale = Math.min(1, GIF_WIDTH_MAX / clientWidth) / ratio;
+      Object.assign(this.small, { width: Math.round(width * scale), height: Math.round((height + HEAD_PX * ratio) * scale) });
+      this.gif = { name, file: new Gif(this.small.width, this.small.height), began_ms: performance.now(), at_ms: -Infinity, picture: null };
+      this.sample();
+    } else {
+      this.sample(true);
+      this.gif = null;
+      offer(gif.file.finish(), `${gif.name}.gif`);
+    }
+    this.tell();
+  }
+
+  /** Adds the previous picture to the GIF once it is known how long it was shown. */
+  sample(last = false) {
+    const { gif, small } = this;
+    const now_ms = performance.now();
+    if (!last && now_ms - gif.at_ms < GIF_EVERY_MS) return;
+    if (gif.picture) gif.file.add(gif.picture, now_ms - gif.at_ms);
+    this.compose();
+    const context = small.getContext('2d', { willReadFrequently: true });
+    context.drawImage(this.canvas, 0, 0, small.width, small.height);
+    gif.picture = context.getImageData(0, 0, small.width, small.height).data;
+    gif.at_ms = now_ms;
+    if (!last && now_ms - gif.began_ms > GIF_MAX_MS) this.animate();
+  }
+
   tell() {
-    this.button.textContent = this.recorder ? 'End film' : 'Film';
-    this.button.setAttribute('aria-pressed', String(this.recorder !== null));
+    for (const [id, on, text] of [['film', this.recorder, 'video'], ['gif', this.gif, 'GIF']]) {
+      byId(id).textContent = on ? `End ${text}` : text.replace('video', 'Video');
+      byId(id).setAttribute('aria-pressed', String(on !== null));
+    }
   }
 
   /** Call after each drawn picture. */
   drawn() {
     if (this.recorder) this.compose();
+    if (this.gif) this.sample();
   }
 }

@@ -132,10 +132,12 @@ export class Controls {
     closeAsk();
     this.mode = hello.mode;
     this.rights = Boolean(hello.rights);
+    this.real = hello.chart.vehicles.some(({ external }) => external);
     /** Whether it may release boats: for real ones the page needs the operator's token. */
-    this.releases = this.rights && (hello.operates || !hello.chart.vehicles.some(({ external }) => external));
+    this.releases = this.rights && (hello.operates || !this.real);
     this.stopped = false;
     this.eStopped = false;
+    byId('estop').setAttribute('aria-keyshortcuts', this.real ? 'e' : 'Shift+E');
     const live = hello.mode === 'live';
     show(byId('estop-place'), live);
     show(byId('halt-place'), live);
@@ -166,9 +168,10 @@ export class Controls {
     const going = !live || phase === 'playing' || phase === 'paused' || phase === undefined;
     this.button('pause', live ? (this.paused ? 'Resume' : 'Pause') : this.paused ? 'Play' : 'Pause', act && going, 'Pause or resume (space)');
     this.button('step', live ? 'Step' : 'Step +', act && going, 'One decision, then pause (s)');
-    this.button('halt', this.stopped ? 'End halt' : 'Halt all', act && !this.eStopped, 'Make all boats hold, or end the halt (h)');
-    const release = this.releases ? 'Release the E-stop (e)' : 'Only a page with the operator’s token can release real boats.';
-    this.button('estop', this.eStopped ? 'Release E-stop' : 'E-stop', act && (!this.eStopped || this.releases), this.eStopped ? release : 'Stop every boat now (e)');
+    this.button('halt', this.stopped ? 'End halt' : 'Halt all', act && !this.eStopped && phase !== 'over' && phase !== 'gone', 'Make all boats hold, or end the halt (h)');
+    const key = this.real ? 'e' : 'Shift+E';
+    const release = this.releases ? `Release the E-stop (${key})` : 'Only a page with the operator’s token can release real boats.';
+    this.button('estop', this.eStopped ? 'Release E-stop' : 'E-stop', act && (!this.eStopped || this.releases), this.eStopped ? release : `Stop every boat now (${key})`);
     this.button('stop', 'End game', act && phase !== 'over' && phase !== 'gone', 'End the game now');
     byId('estop').classList.toggle('released', this.eStopped);
     this.tellSpeed(live ? state?.speed : player?.speed, act, live && state?.can_speed === false, !live || state?.pace === 'lockstep');

@@ -170,7 +170,7 @@ export class Details {
     const report = helm?.report;
     // A helm keeps utilities only while someone looks; a paused game computes none.
     const unseen = isBare(report) && game.state?.phase === 'paused';
-    const words = unseen ? UNSEEN : report ? this.computedWords(helm) : helm?.reason ?? 'Waiting for its helm …';
+    const words = unseen ? UNSEEN : report ? this.computedWords(helm) : plain(helm?.reason ?? 'Waiting for its helm …');
     write(this.reason, words);
     show(this.reason, words !== '');
     show(this.helmBox, Boolean(report));

@@ -17,7 +17,7 @@ export const MARKS = [
   [TAGGED, 'T', 'tagged'],
   [DISABLED, 'X', 'out of action'],
   [OUTSIDE, 'O', 'outside the field'],
-  [AGENT_LOST, 'M', 'agent lost'],
+  [AGENT_LOST, 'A', 'agent lost'],
   [QUARANTINED, 'Q', 'quarantined'],
   [NAV_LOST, 'N', 'navigation lost'],
 ];
@@ -103,6 +103,11 @@ export class Game {
 
   get mode() {
     return this.hello?.mode ?? null;
+  }
+
+  /** Whether a running game has ended, also after its server has gone. */
+  get isOver() {
+    return this.over || this.state?.phase === 'over';
   }
 
   /** Forgets data of the boat selected before. */

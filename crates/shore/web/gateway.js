@@ -12,8 +12,16 @@ const BATTERY_OLD_S = 10;
 /** How each state begins, its label and its style. The rest of the text is the cause or the task. */
 const STATES = [
   ['e-stopped', 'stopped', 'E-stopped', 'bad'], ['failsafe', 'failsafe', 'Failsafe', 'bad'], ['armed', 'armed', 'Armed', 'good'],
-  ['delegated', 'delegated', 'Delegated', 'task'], ['safed', 'disarmed', 'Disarmed', 'plain'],
+  ['delegated', 'delegated', 'Delegated', 'task'], ['disarmed', 'disarmed', 'Disarmed', 'plain'],
+  // In recordings of earlier versions.
+  ['safed', 'disarmed', 'Disarmed', 'plain'],
 ];
+
+/** The modes of a boat's own controller, by the letter that gateways report. */
+const MODES = {
+  L: 'standby', T: 'thrust', C: 'heading', G: 'heading and speed', R: 'station keeping', N: 'river navigation', W: 'mission', I: 'autopilot',
+  3: 'compass calibration', H: 'to the recovery point', D: 'depth', S: 'gravity vector', F: 'receiving a mission', '!': 'boot loader',
+};
 
 const age = (seconds) => `${number(seconds, 1, 's')} ago`;
 
@@ -25,10 +33,15 @@ export function readStatus(game, index, now_ms) {
   if (!status) return { name, kind: 'unknown', label: 'No gateway', detail: '', tone: 'warn', facts: [], missing: [], alarms: [], failsafes: 0, silent_s: 0, link: false };
   // A recording shows ages at the time of the report.
   const waited_s = game.mode === 'live' ? Math.max(0, (now_ms - game.heard_ms.get(name)) / 1000) : 0;
-  const silent = waited_s > SILENT_S;
+  // The end of a game ends the reports too.
+  const ended = game.mode === 'live' && game.isOver && waited_s > SILENT_S;
+  const silent = waited_s > SILENT_S && !ended;
   const state = status.state ?? '';
   const [begins, kind, label, tone] = STATES.find(([word]) => state.startsWith(word)) ?? [state, 'other', state || '–', 'warn'];
   const detail = silent ? `no report from its gateway for ${number(waited_s, 0, 's')}; last state: ${state}` : state.slice(begins.length).replace(/^[:,\s]+/, '');
+  if (ended) {
+    return { name, kind: 'ended', said: 'ended', label: 'Game over', detail: `last state: ${label.toLowerCase()}`, tone: 'plain', silent_s: 0, facts: [], missing: [], alarms: [], fence: null, failsafes: 0, link: true };
+  }
   return {
     name, kind: silent ? 'silent' : kind, label: silent ? 'Silent' : label, detail, tone: silent ? 'bad' : tone, silent_s: silent ? waited_s : 0,
     said: kind, facts: factsOf(status, waited_s), fence: status.geofence ?? null, missing: status.missing ?? [], alarms: status.alarms ?? [], failsafes: status.failsafes?.length ?? 0, link: status.link === 'up' && !silent,
@@ -49,11 +62,7 @@ function factsOf(status, waited_s) {
   facts.push(Number.isFinite(fix_s)
     ? { name: 'Fix', short: `fix ${number(fix_s, 1, 's')}`, words: age(fix_s), bad: fix_s > FIX_OLD_S }
     : { name: 'Fix', short: 'no fix', words: 'none', bad: true });
-  if (Number.isFinite(status.battery_v)) {
-    const old = battery_s > BATTERY_OLD_S;
-    const told = Number.isFinite(battery_s) ? `, ${age(battery_s)}` : '';
-    facts.push({ name: 'Battery', short: `${number(status.battery_v, 1, 'V')}${old ? ` ${age(battery_s)}` : ''}`, words: `${number(status.battery_v, 1, 'V')}${told}`, bad: old });
-  }
+  if (Number.isFinite(status.battery_v)) facts.push(batteryFact(status, battery_s));
   const told = Number.isFinite(mode_s) ? `, ${age(mode_s)}` : '';
   const { clearance_m, stopping_m } = status.geofence ?? {};
   if (Number.isFinite(clearance_m)) {
@@ -61,10 +70,19 @@ function factsOf(status, waited_s) {
     facts.push({ name: 'Geofence', words: `${number(clearance_m, 1, 'm')} to its edge${stops}`, bad: clearance_m < (stopping_m ?? 0) });
   }
   if (status.operator) facts.push({ name: 'In control', words: `${status.operator}${told}`, bad: mode_s > CONTROL_OLD_S });
-  if (status.mode) facts.push({ name: 'Mode', words: `${status.mode}${told}`, bad: mode_s > CONTROL_OLD_S });
+  if (status.mode) facts.push({ name: 'Mode', words: `${MODES[status.mode] ?? status.mode}${told}`, bad: mode_s > CONTROL_OLD_S });
   const last = status.failsafes?.at(-1);
   if (last) facts.push({ name: 'Failsafes', words: `${status.failsafes.length}; latest: ${last.cause ?? last}`, bad: false });
   return facts;
+}
+
+/** The charge, if the gateway knows it, and the voltage. */
+function batteryFact({ battery_v, battery_pct }, age_s) {
+  const old = age_s > BATTERY_OLD_S;
+  const volts = number(battery_v, 1, 'V');
+  const left = Number.isFinite(battery_pct) ? number(battery_pct, 0, '%') : volts;
+  const since = Number.isFinite(age_s) ? `, ${age(age_s)}` : '';
+  return { name: 'Battery', short: `${left}${old ? ` ${age(age_s)}` : ''}`, words: `${left}${left === volts ? '' : ` (${volts})`}${since}`, bad: old };
 }
 
 /** The states of all real boats. */

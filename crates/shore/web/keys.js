@@ -12,9 +12,9 @@ const PAD = `left stick, after you press one of its buttons${isSecureContext ? '
 
 const HELP = [
   ['The chart', [['+  −', 'zoom'], ['arrows', 'move the chart'], ['f  0', 'fit the field'], ['[  ]', 'select the previous or next boat'],
-    ['o', 'follow the boat'], ['m', 'measure; Enter chooses the selected boat or the centre of the chart'], ['l', 'legend'], ['Geofence', 'draw one: Enter adds a corner, Backspace removes it'], ['Escape', 'close, stop driving, or deselect the boat'], ['1 to 4', 'boats, details, events, game']]],
+    ['o', 'follow the boat'], ['m', 'measure; Enter chooses the selected boat or the centre of the chart'], ['l', 'legend'], ['Geofence', 'draw one: Enter adds a corner, Backspace removes it'], ['Escape', 'close, stop driving, or deselect the boat'], ['/', 'find a boat in a large fleet'], ['1 to 4', 'boats, details, events, game']]],
   ['The game', [['space', 'pause or resume'], ['s', 'pause and step one decision'], [',  .', 'slower, faster'], ['h', 'halt all boats, or end the halt'],
-    ['e', 'E-stop without confirmation, or release it']]],
+    ['Shift+E', 'E-stop without confirmation, or release it; with real boats also e alone']]],
   ['Driving', [['d', 'drive the selected boat, if possible'], ['arrows, w a s d', 'course and speed'], ['Escape', 'stop driving'],
     ['gamepad', PAD]]],
   ['A replay', [['n  p', 'next or previous event'], [KINDS.map(([, key]) => key).join('  '),
@@ -41,7 +41,9 @@ export class Keys {
       f: () => page.fit(), 0: () => page.fit(), '[': () => page.selectNext(-1), ']': () => page.selectNext(1),
       o: () => page.toggleFollow(), m: () => page.measure.toggle(), l: () => page.controls.toggleShown('legend'), d: () => page.toggleDrive(), '?': () => this.toggleHelp(),
       s: () => page.controls.step(1), S: () => page.controls.step(-1), ',': () => page.controls.shiftSpeed(-1),
-      '.': () => page.controls.shiftSpeed(1), h: () => page.controls.halt(), e: () => page.controls.eStop(),
+      '.': () => page.controls.shiftSpeed(1), h: () => page.controls.halt(),
+      // A slip of the finger must not stop a simulation; with real boats every second counts.
+      e: () => page.controls.real && page.controls.eStop(), E: () => page.controls.eStop(), '/': () => page.find(),
       1: () => page.tab('boats'), 2: () => page.tab('boat'), 3: () => page.tab('events'), 4: () => page.tab('game'),
     };
   }

@@ -93,6 +93,23 @@ export class Labels {
     return true;
   }
 
+  /** Reserves a box of this size beside a position, at `first` in `PLACES` if that is free, or else nearby or farther away. Returns
+   * `{ left, top, place, out }`, the last in pixels from the position; null if there is no space. */
+  fit(width, height, x, y, room, first) {
+    for (const times of [1, ...FAR]) {
+      for (let i = -1; i < PLACES.length; i++) {
+        const place = i < 0 ? first : i;
+        const [alongX, alongY, outX, outY] = PLACES[place];
+        const out = room * times;
+        const left = Math.round(x + alongX * width + outX * out);
+        const top = Math.round(y + alongY * height + outY * out);
+        if (left < 2 || top < 2 || left + width > this.width - 2 || top + height > this.height - 2) continue;
+        if (this.claim(left, top, left + width, top + height)) return { left, top, place, out };
+      }
+    }
+    return null;
+  }
+
   /** Draws a name at least `room` pixels from its boat's centre, at its last position if that is free. Without free space it is left
    * out, unless `wanted`: then it is placed farther away. No name covers a boat or another name. */
   draw(context, index, x, y, room, wanted) {

@@ -3,6 +3,7 @@
 import { BadgeLine } from './badge.js';
 import { MARKS } from './game.js';
 import { palette, teamColour } from './palette.js';
+import { Roster } from './roster.js';
 import { bearing, fill, make, number, plain, show, write } from './words.js';
 
 const SVG = 'http://www.w3.org/2000/svg';
@@ -25,6 +26,8 @@ export class BoatList {
   /** `on` has `choose(name)`, for a pressed boat, and `hover(index)`, for the boat pointed at; -1 is none. */
   constructor(on) {
     this.place = document.getElementById('boat-list');
+    this.roster = new Roster(() => this.arrange());
+    this.place.before(this.roster.element);
     this.on = on;
     this.rows = [];
     /** The visible rows; others' curves are not drawn. */
@@ -54,11 +57,12 @@ export class BoatList {
   /** Up and down move through the list. */
   key(event) {
     const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
-    const at = this.rows.findIndex((row) => row.button === document.activeElement);
+    const shown = [...this.place.querySelectorAll('[data-vehicle]:not([hidden])')];
+    const at = shown.indexOf(document.activeElement);
     if (!step || at < 0) return;
     event.preventDefault();
     event.stopPropagation();
-    this.rows[Math.min(this.rows.length - 1, Math.max(0, at + step))].button.focus();
+    shown[Math.min(shown.length - 1, Math.max(0, at + step))].focus();
   }
 
   /** Whether it is visible, so that modes are needed. */
@@ -68,6 +72,10 @@ export class BoatList {
 
   greet(game) {
     this.rows = [];
+    this.groups = [];
+    this.game = game;
+    this.readings = [];
+    this.roster.greet(game);
     this.seen.clear();
     this.watch.disconnect();
     this.place.replaceChildren();
@@ -75,12 +83,41 @@ export class BoatList {
     teams.forEach((team, index) => {
       const members = game.vehicles.map((vehicle, at) => at).filter((at) => game.vehicles[at].team === index);
       if (members.length === 0) return;
-      const head = make('h3', `team-${index}`, '', make('span', 'swatch'), plain(team.name), make('small', '', ` ${members.length}`));
+      const head = make('h3', `team-${index}`, '', make('span', 'swatch'), plain(team.name), make('small'));
       this.place.append(head);
       const box = make('div', 'boat-rows');
       this.place.append(box);
+      const first = this.rows.length;
       fill(box, members, () => this.row(), (button, at) => this.begin(button, at, game.vehicles[at]));
+      this.groups.push({ head, box, rows: this.rows.slice(first), order: members.join() });
     });
+    this.arrange();
+  }
+
+  /** Shows the wanted boats of each team in the wanted order. */
+  arrange() {
+    const { game, place } = this;
+    const wanted = this.roster.tell(game, this.readings);
+    let none = true;
+    for (const group of this.groups) {
+      const { length } = group.rows;
+      let count = 0;
+      for (const { at, button } of group.rows) {
+        const isWanted = wanted(at);
+        count += isWanted;
+        show(button, isWanted);
+      }
+      write(group.head.lastElementChild, count === length ? ` ${length}` : ` ${count} of ${length}`);
+      show(group.head, count > 0);
+      none &&= count === 0;
+      // A row must not move away from the pointer or the focus.
+      if (group.order !== '' && place.matches(':hover, :focus-within')) continue;
+      const sorted = this.roster.sorted(game, group.rows);
+      const order = sorted.map(({ at }) => at).join();
+      if (order !== group.order) group.box.append(...sorted.map(({ button }) => button));
+      group.order = order;
+    }
+    show(this.roster.none, none);
   }
 
   row() {
@@ -106,7 +143,9 @@ export class BoatList {
   /** `readings` are the gateways' reports on real boats. */
   tell(game, readings) {
     this.selected = game.selected;
+    this.readings = readings;
     if (!this.visible) return;
+    this.arrange();
     for (const row of this.rows) {
       const { button, at } = row;
       const chosen = game.vehicles[at].name === game.selected;

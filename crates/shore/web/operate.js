@@ -50,18 +50,20 @@ export class Operate {
     Object.assign(this.missionButton, { type: 'button', id: 'mission', title: 'Upload a .sea file for the boat’s own controller to follow' });
     this.missionButton.addEventListener('click', () => this.file.click());
     this.modes = new ModeForm((what, command) => this.mode(what, command));
-    const row = make('div', 'operate-row asking', '', ...Object.values(this.buttons), this.missionButton, this.file, this.modes.element, this.box());
+    const { arm, ...others } = this.buttons;
+    const row = make('div', 'operate-row asking', '', ...Object.values(others), this.missionButton, this.file, this.modes.element, this.box());
     this.answer = make('p', 'note');
     this.answer.id = 'operated';
     this.answer.setAttribute('role', 'status');
     this.checks = make('ul', 'checks');
     this.checks.id = 'checks';
-    this.checkHead = make('h3', '', 'Before arming');
+    this.checkHead = make('p', '');
+    this.arming = make('div', 'arming', '', arm, make('div', '', '', this.checkHead, this.checks));
     this.facts = make('dl', 'facts');
     this.facts.id = 'gateway';
     this.row = row;
     this.element = make('section', 'operate', '', make('h3', '', 'Gateway'), make('p', 'badge-row', '', this.badge, this.cause),
-      row, this.answer, this.tokenForm(), this.checkHead, this.checks, this.facts);
+      this.arming, row, this.answer, this.tokenForm(), this.facts);
     this.element.setAttribute('aria-label', 'Real boat');
   }
 
@@ -107,6 +109,10 @@ export class Operate {
   press(word) {
     const [, text, question] = COMMANDS.find(([each]) => each === word);
     const { name } = this;
+    if (word === 'arm' && this.unready) {
+      this.tellAnswer(`${plain(name)} cannot be armed yet. ${this.unready}`);
+      return;
+    }
     const send = () => this.command(name, word);
     if (question === null) send();
     else this.asked.ask(question.replace('NAME', plain(name)), `Yes, ${text.toLowerCase()}`, send, word === 'release');
@@ -167,7 +173,8 @@ export class Operate {
     if (!reading) return;
     tellBadge(this.badge, reading);
     write(this.cause, reading.detail);
-    const live = game.mode === 'live';
+    // After the end of the game its server passes no commands on.
+    const live = game.mode === 'live' && reading.kind !== 'ended';
     const { operates, rights } = game.hello;
     show(this.row, live);
     show(this.token, live && !operates);
@@ -191,19 +198,22 @@ export class Operate {
     });
   }
 
-  /** What is currently missing before the boat can be armed, according to the gateway. */
-  tellChecks(live, { missing, said, kind }) {
-    const wanted = live && said !== undefined && said !== 'armed';
-    show(this.checkHead, wanted);
-    show(this.checks, wanted);
-    if (!wanted) return;
-    const known = kind !== 'silent';
-    const lines = !known ? ['unknown: the gateway is silent'] : missing.length > 0 ? missing : ['Ready to arm.'];
+  /** What is missing before the boat can be armed, according to its gateway, beside a button that looks disabled meanwhile. */
+  tellChecks(live, { missing, kind }) {
+    const { arm } = this.buttons;
+    show(this.arming, live && !arm.hidden);
+    const known = kind !== 'silent' && kind !== 'unknown';
+    const lines = !known ? ['a report of its gateway'] : missing.length > 0 ? missing : ['Ready to arm.'];
     const good = known && missing.length === 0;
+    this.unready = good ? '' : `Missing: ${lines.join('; ')}.`;
+    arm.setAttribute('aria-disabled', String(!good));
+    arm.title = this.unready;
+    write(this.checkHead, good ? '' : 'Missing before arming:');
+    show(this.checkHead, !good);
     fill(this.checks, lines, () => make('li', '', '', make('span', 'mark'), make('span')), (line, words) => {
       line.className = good ? 'good' : 'missing';
       write(line.firstElementChild, good ? '✓' : '✗');
-      write(line.lastElementChild, good ? words : `${known ? 'Missing: ' : ''}${words}`);
+      write(line.lastElementChild, words);
     });
   }
 }

@@ -13,7 +13,8 @@
 //   modes                         of all boats' helms, as sent; null before
 //   hulls, labels                 [{ name, left, top, right, bottom }]: areas of boats and names on the chart, px
 //   statuses                      of gateways, by boat
-//   badges, alarms, sounded       [{ name, kind, label, detail }] of real boats; [{ boat, text, active }] not acknowledged; tones played so far
+//   letters                       [{ name, letter }] of marks on the chart
+//   badges, alarms, sounded       [{ name, kind, label, detail, area }] of real boats, area as [left, top, right, bottom], px, or null; [{ boat, text, active }] not acknowledged; tones played so far
 //   fences, stops                 [{ outline, keepOuts }] of real boats; [{ name, stopping_m, clearance_m }]
 //   background                    whether an image or a shoreline is shown below the field
 //   drawn, fps, draw_ms           frames drawn; pictures per second; mean time to draw a picture
@@ -21,7 +22,7 @@
 //   measured                      { range_m, bearing_deg }; null before two ends are chosen
 //
 // Elements with stable ids: score-<team>, clock, rate, phase, rights, connection, notices, events, boat-list, rose,
-// rose-function, events-fold, show-plots, plots, plot-other, share, png, film, behaviours, variables, gateway, helm-reason, follow,
+// rose-function, events-fold, show-plots, plots, plot-other, share, png, film, gif, boat-search, boat-order, boat-states, behaviours, variables, gateway, helm-reason, follow,
 // drive, boat-facts, boat-badge, checks, operated, operate, operate-<command>, mission-file, operator-token, alarms, mute, acknowledge-all, show-chart, draw-
 // fence, fence-toml, fence-part, fence-<action>,
 // deselect, steering, pause, step, step-back, speed, halt, halt-confirm, halt-cancel, estop, estop-confirm, estop-cancel, stop,
@@ -65,6 +66,8 @@ import { plain, show, write } from './words.js';
 const TELL_MS = 200;
 /** The same for the list of boats. */
 const LIST_EVERY = 3;
+/** A page without a game says so after this time, ms. */
+const MISSING_MS = 1500;
 /** Maximum distance of the pointer from a boat, px. */
 const REACH_MOUSE_PX = 8;
 const REACH_TOUCH_PX = 22;
@@ -210,14 +213,20 @@ class Page {
     document.body.classList.add('unplayed');
     document.body.classList.remove('lost');
     show(byId('connection'), false);
-    write(byId('about'), text);
-    write(byId('phase'), failed ? 'no game' : 'preparing');
+    const ofReport = gameOfReport() !== null;
+    if (!failed || ofReport) write(byId('about'), text);
+    write(byId('phase'), !failed ? 'preparing' : ofReport ? 'no game' : 'connecting');
     this.waiting = true;
+    clearTimeout(this.missing);
+    // `squall run` opens the page before its game.
+    if (failed && !ofReport) this.missing = setTimeout(() => this.waiting && this.status.tellNone(text), MISSING_MS);
   }
 
   greet(hello) {
     const { game } = this;
     this.waiting = false;
+    clearTimeout(this.missing);
+    show(byId('over'), false);
     document.body.classList.remove('unplayed');
     write(byId('about'), hello.about ?? '');
     const before = game.selected;
@@ -404,6 +413,12 @@ class Page {
     this.select(event.vehicle);
     if (game.mode === 'replay') this.setFollowing(true);
     else this.view.centreOn(game.toX[index], game.toY[index]);
+  }
+
+  /** Opens the list of boats with its search field. */
+  find() {
+    this.tab('boats');
+    this.list.roster.find();
   }
 
   tab(name) {

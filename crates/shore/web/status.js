@@ -2,7 +2,10 @@
 
 import { bytes, clock, clockShort, fill, make, number, plain, show, write } from './words.js';
 
-const PHASES = { waiting: 'waiting', playing: 'playing', paused: 'paused', over: 'over', gone: 'gone' };
+const PHASES = { waiting: 'waiting', playing: 'playing', paused: 'paused', over: 'game over', gone: 'no game' };
+
+/** A command that starts a game. */
+const START = 'squall run surveyor_2v2';
 
 const byId = (id) => document.getElementById(id);
 
@@ -68,7 +71,7 @@ export class Status {
     if (game.mode === 'replay') return [game.player?.playing ? 'replay' : 'replay, paused', 'plain'];
     if (eStopped) return ['E-STOPPED', 'bad'];
     if (game.stopped) return ['halted', 'warn'];
-    const phase = game.state?.phase;
+    const phase = game.isOver ? 'over' : game.state?.phase;
     return [PHASES[phase] ?? phase ?? 'live', phase === 'playing' ? 'good' : 'warn'];
   }
 
@@ -79,13 +82,26 @@ export class Status {
     const waited = [...(state?.gateways ?? []).map((name) => `the gateway of ${plain(name)}`)];
     if (state?.minds && state.phase === 'waiting') waited.unshift(...this.agentWords(state.minds));
     if (state?.phase === 'waiting') words = waited.length > 0 ? `Waiting for ${waited.join(', ')}` : 'Waiting to start';
-    if (state?.phase === 'gone') words = 'Lost the game. Waiting for another.';
+    if (state?.phase === 'gone') words = 'Lost the game: its server no longer answers. Waiting for another.';
     const ended = isAtItsEnd(game);
-    if (ended) words = `${game.scoreWords}. ${resultWords(game)}`;
+    if (ended) words = [`${game.scoreWords}. ${resultWords(game)}`, ...endWords(game)].join('\n');
+    this.tellMiddle(words);
+    show(byId('watch'), ended && game.mode === 'replay');
+  }
+
+  /** Says why there is no game, and what to do. */
+  tellNone(reason) {
+    write(byId('phase'), 'no game');
+    byId('phase').dataset.tone = 'warn';
+    this.tellMiddle(`No game to show: ${reason}.\nTo start one, type this in a terminal: ${START}\nIt appears here by itself.`);
+  }
+
+  /** Shows a text in the middle of the chart; one with a command can be copied. */
+  tellMiddle(words) {
     const over = byId('over');
     write(over, words);
     show(over, words !== '');
-    show(byId('watch'), ended && game.mode === 'replay');
+    over.classList.toggle('copied', words.includes('squall '));
   }
 
   agentWords(minds) {
@@ -142,9 +158,16 @@ export class Status {
 }
 
 /** Whether the game, or its replay, stands at its end. */
-function isAtItsEnd({ mode, state, player, t_s }) {
-  if (mode !== 'replay') return state?.phase === 'over';
+function isAtItsEnd({ mode, isOver, player, t_s }) {
+  if (mode !== 'replay') return isOver;
   return Boolean(player) && !player.playing && t_s >= player.to_s - 1e-6 && player.to_s > player.from_s;
+}
+
+/** How to see a game again that ran elsewhere. */
+function endWords({ mode, state }) {
+  if (mode === 'replay') return [];
+  const { recording, phase } = state ?? {};
+  return [recording ? `To see it again, type: squall replay ${recording.file}` : 'It was not recorded.', ...(phase === 'gone' ? ['Waiting for another game.'] : [])];
 }
 
 function resultWords(game) {

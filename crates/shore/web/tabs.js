@@ -10,7 +10,7 @@ export class Tabs {
     this.name = 'boats';
     for (const name of NAMES) byId(`tab-${name}`).addEventListener('click', () => this.show(name));
     byId('tabs').addEventListener('keydown', (event) => this.key(event));
-    this.wide = matchMedia('(min-width: 900px)');
+    this.wide = matchMedia('(min-width: 900px) and (min-height: 561px)');
     this.wide.addEventListener('change', () => this.show(this.name));
   }
 
@@ -21,7 +21,10 @@ export class Tabs {
     document.body.dataset.tab = this.name;
     // A phone has no space for these below the chart.
     const place = wide ? byId('controls') : byId('pane-game');
-    if (byId('shown').parentElement !== place) place.insertBefore(byId('shown'), wide ? byId('help') : place.firstChild);
+    if (byId('shown').parentElement !== place) {
+      const before = wide ? byId('help') : place.firstChild;
+      for (const id of ['captures', 'shown']) place.insertBefore(byId(id), before);
+    }
     for (const each of NAMES) {
       const chosen = each === this.name;
       byId(`tab-${each}`).setAttribute('aria-selected', String(chosen));

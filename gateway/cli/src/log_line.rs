@@ -124,7 +124,8 @@ fn with_age(text: String, age_s: Option<f64>) -> String {
 }
 
 fn volts(status: &GatewayStatus) -> Option<String> {
-    status.battery_v.map(|volts| with_age(format!("{volts:.1} V"), status.battery_age_s))
+    let left = status.battery_pct.map_or(String::new(), |left_pct| format!(" ({left_pct:.0} %)"));
+    status.battery_v.map(|volts| with_age(format!("{volts:.1} V{left}"), status.battery_age_s))
 }
 
 fn geofence(report: &GeofenceReport) -> Option<String> {
@@ -190,7 +191,7 @@ mod tests {
     #[test]
     fn a_boat_that_was_stopped_is_red_and_any_other_state_is_not() {
         let told = |to: &str| text_of(&Event::State { from: "armed".to_owned(), to: to.to_owned() });
-        assert_eq!(told("safed"), "safed (was armed)");
+        assert_eq!(told("disarmed"), "disarmed (was armed)");
         for to in ["failsafe: the link is down", "e-stopped (by an E-stop of us)"] {
             assert_eq!(told(to), format!("{} (was armed)", style::bad(to)));
         }

@@ -72,7 +72,7 @@ pub(super) enum CommandArg {
     Disarm,
     /// Keeps the boat in standby until it is released
     Estop,
-    /// Ends the E-stop; the boat stays safed
+    /// Ends the E-stop; the boat stays disarmed
     Release,
     /// Keeps station, using the boat's own controller
     StationKeep,

@@ -215,7 +215,7 @@ fn a_gateway_serves_operators_and_its_recording_is_replayed_and_its_guard_stops_
     let boat = Boat::new();
     let mut gateway = folder.gateway(&boat);
     boat.wait_for(ZERO);
-    folder.run_until(&["tell", "blue_one", "status", "--game", "nowhere"], "blue_one: safed");
+    folder.run_until(&["tell", "blue_one", "status", "--game", "nowhere"], "blue_one: disarmed");
     let (output, said) = folder.run(&["tell", "blue_one", "arm", "--game", "nowhere"]);
     assert!(!output.status.success() && said.contains("no game yet"), "{said}");
     let (output, said) = folder.run(&["stop", &boat.link.reach()]);
@@ -227,7 +227,7 @@ fn a_gateway_serves_operators_and_its_recording_is_replayed_and_its_guard_stops_
 
     std::fs::remove_file(folder.0.path().join("run.mcap")).expect("it was recorded");
     let mut gateway = folder.gateway(&boat);
-    folder.run_until(&["tell", "blue_one", "status", "--game", "nowhere"], "blue_one: safed");
+    folder.run_until(&["tell", "blue_one", "status", "--game", "nowhere"], "blue_one: disarmed");
     gateway.0.kill().expect("it runs");
     gateway.0.wait().expect("it is killed");
     while boat.received.try_recv().is_ok() {}

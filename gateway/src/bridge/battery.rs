@@ -1,6 +1,8 @@
 //! The boat's battery, according to its own reports.
 
 use crate::config::BatteryWatch;
+use crate::lithium;
+use crate::protocol::Power;
 use primitives::SimTime;
 
 /// Warn if the boat has not reported its battery for this long, s.
@@ -12,6 +14,8 @@ pub(super) struct BatteryLog {
     watch: BatteryWatch,
     /// The voltage, V, and when it was received.
     volts: Option<(SimTime, f64)>,
+    /// Charge left as last reported by the boat, per cent.
+    left_pct: Option<f64>,
     /// Start of the current low-voltage period.
     low_since: Option<SimTime>,
     /// Time of the last battery sentence, and whether the silence has been reported.
@@ -21,14 +25,15 @@ pub(super) struct BatteryLog {
 impl BatteryLog {
     /// No data yet, on a new link.
     pub(super) fn new(watch: BatteryWatch, now: SimTime) -> BatteryLog {
-        BatteryLog { watch, volts: None, low_since: None, silence: (now, false) }
+        BatteryLog { watch, volts: None, left_pct: None, low_since: None, silence: (now, false) }
     }
 
-    pub(super) fn observe(&mut self, now: SimTime, volts: Option<f64>) {
+    pub(super) fn observe(&mut self, now: SimTime, power: &Power) {
         // Any battery sentence ends the silence, even without a voltage: the warning is about a
         // boat that does not report.
         self.silence = (now, false);
-        if let Some(volts) = volts {
+        self.left_pct = power.left_pct.or(self.left_pct);
+        if let Some(volts) = power.volts {
             self.volts = Some((now, volts));
             let low = volts < self.watch.volts_min;
             // Voltage sags under thrust: the debounce keeps a burst of full power from ending the
@@ -40,6 +45,13 @@ impl BatteryLog {
     /// The voltage, V, and its age, s.
     pub(super) fn volts(&self, now: SimTime) -> Option<(f64, f64)> {
         self.volts.map(|(at, volts)| (volts, (now - at).as_s()))
+    }
+
+    /// The charge left, per cent: as reported by the boat, or else estimated from the voltage.
+    pub(super) fn left_pct(&self) -> Option<f64> {
+        let cells = f64::from(self.watch.cells);
+        let estimate = self.volts.filter(|_| cells > 0.0).map(|(_, volts)| 100.0 * lithium::charge_left(volts / cells));
+        self.left_pct.or(estimate)
     }
 
     pub(super) fn is_low(&self, now: SimTime) -> bool {

@@ -100,7 +100,7 @@ pub struct Bridge {
 }
 
 impl Bridge {
-    /// A safed bridge without a link.
+    /// A disarmed bridge without a link.
     #[must_use]
     pub fn new(plan: Plan) -> Bridge {
         let Gateway { control, battery, currents, failsafe, .. } = &plan.gateway;
@@ -240,7 +240,7 @@ impl Bridge {
             Report::Station(text) => out.events.push(Event::Warning(text)),
             Report::ForeignOrder => self.control.echo.note_foreign(now),
             Report::Power(power) => {
-                self.battery.observe(now, power.volts);
+                self.battery.observe(now, &power);
                 let command = self.last_sent.map(|(_, command)| command);
                 self.alarms.take_power(now, &power, command, &mut out.events);
             }

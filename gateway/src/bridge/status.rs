@@ -42,6 +42,7 @@ impl Bridge {
             nav_age_s: known.map(|(_, age_s)| age_s),
             mode_age_s: self.control.age_s(now),
             battery_v: battery.map(|(volts, _)| volts),
+            battery_pct: self.battery.left_pct(),
             battery_age_s: battery.map(|(_, age_s)| age_s),
             last_sent: self.last_sent.as_ref().map(|(_, command)| text(command)).unwrap_or_default(),
             would_send: self.plan.dry_run.then(|| self.would_send.as_ref().map(text).unwrap_or_default()),

@@ -272,6 +272,9 @@ pub struct BatteryWatch {
     /// How long the voltage must stay below `volts_min`, s.
     #[schemars(range(min = 0, max = 600), extend("default" = 5))]
     pub debounce_s: f64,
+    /// Lithium cells in series, to estimate the charge of a boat that reports only its voltage; 0: unknown.
+    #[schemars(range(min = 0, max = 200), extend("default" = 0))]
+    pub cells: u8,
 }
 
 /// Currents reported by the boat. They raise alarms only, since their accuracy is not published.

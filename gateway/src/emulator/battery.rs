@@ -1,21 +1,10 @@
 //! The battery of an emulated boat: its thrusters drain it, and its voltage falls.
 
 use super::autopilot::speed_of_thrust;
+use crate::lithium;
 use messages::Order;
-use primitives::{SimTime, math};
+use primitives::SimTime;
 
-/// Voltage of a lithium cell at rest, by the fraction of charge left: typical of NMC cells.
-const CELL_V: [(f64, f64); 9] = [
-    (0.0, 3.00),
-    (0.05, 3.30),
-    (0.1, 3.42),
-    (0.2, 3.50),
-    (0.3, 3.57),
-    (0.5, 3.70),
-    (0.7, 3.85),
-    (0.9, 4.05),
-    (1.0, 4.18),
-];
 /// Maximum step, s: after a longer one the sim was away.
 const STEP_MAX_S: f64 = 10.0;
 
@@ -116,7 +105,7 @@ impl Battery {
     }
 
     fn rest_v(&self) -> f64 {
-        self.pack.cells * math::interpolate(CELL_V, self.left)
+        self.pack.cells * lithium::cell_volts(self.left)
     }
 }
 

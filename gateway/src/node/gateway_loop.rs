@@ -16,7 +16,7 @@ use crate::bridge::{Bridge, Event, Input, Output};
 use crate::game_clock::{GameClock, OrderTime};
 use crate::link::{BoatLink, LinkEvent};
 use crate::record::StepEncoder;
-use crate::supervisor::Scope;
+use crate::supervisor::{Scope, State};
 use bus::token::{self, Checked, Guard};
 use bus::{Bus, Declaration, Delivery, Priority, Publisher, Query, clock};
 use messages::external::{FleetCommand, GatewayCommand, OperatorCommand, OperatorReply, Reported};
@@ -276,6 +276,13 @@ impl GatewayLoop<'_> {
             Call::Order => self.take_order()?,
             Call::Frame(bytes) => self.take_frame(&bytes)?,
             Call::Release => self.step(Input::Fleet(FleetCommand::Release), None)?,
+            // Otherwise the end of every game would be a failsafe. A task of the boat's own
+            // controller continues: it needs no game.
+            Call::Over if self.bridge.state() == State::Armed => {
+                self.remark("the game is over: disarming the boat");
+                self.step(Input::Operator(OperatorCommand::Disarm), None)?;
+            }
+            Call::Over => {}
             // Its subject was read before.
             Call::Look => {}
             Call::Looking(reason) => (self.notify)(NodeEvent::Looking { reason: &reason }),

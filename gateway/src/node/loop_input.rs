@@ -29,6 +29,8 @@ pub(super) enum Call {
     Look,
     Release,
     Joined(Joined),
+    /// The game has ended.
+    Over,
     SimGone,
     /// There is no game yet, for this reason.
     Looking(String),
@@ -214,7 +216,7 @@ mod tests {
         assert_eq!(input.state_after(0, Duration::ZERO).as_deref(), Some("armed"));
         let count = input.stop(Stop::Disarm);
         assert_eq!(input.state_after(count, Duration::from_millis(1)), None);
-        output.show_state(output.stop_count(), "safed".to_owned());
-        assert_eq!(input.state_after(count, Duration::ZERO).as_deref(), Some("safed"));
+        output.show_state(output.stop_count(), "disarmed".to_owned());
+        assert_eq!(input.state_after(count, Duration::ZERO).as_deref(), Some("disarmed"));
     }
 }

@@ -5,6 +5,7 @@ use crate::supervisor::Scope;
 use bus::token::{Checked, Guard};
 use bus::{Bus, BusError, Declaration};
 use messages::external::{FleetCommand, GatewayCommand, OperatorCommand};
+use messages::run_state::{Phase, RunState};
 use messages::topic::{self, GameName};
 use messages::{Control, GameInfo};
 use primitives::{VehicleId, codec};
@@ -18,7 +19,7 @@ pub(super) fn subscribe(
     input: &LoopInput,
 ) -> Result<Vec<Declaration>, BusError> {
     let scenario = &info.scenario;
-    let [orders, queries, stops, controls, releases, frames] = std::array::from_fn(|_| input.clone());
+    let [orders, queries, stops, controls, releases, frames, runs] = std::array::from_fn(|_| input.clone());
     let take_order = move |bytes: &[u8]| {
         let Ok(order) = codec::decode(bytes) else { return };
         let mut latest_order = orders.latest_order.lock();
@@ -55,6 +56,11 @@ pub(super) fn subscribe(
             }
         })?,
         bus.subscribe(topic::released(game), move |_| releases.calls.put(Call::Release))?,
+        bus.subscribe(topic::run(game), move |bytes| {
+            if serde_json::from_slice(bytes).is_ok_and(|run: RunState| run.phase == Phase::Over) {
+                runs.calls.put(Call::Over);
+            }
+        })?,
     ];
     // Frames are published only if there is a subscriber.
     if scenario.externals().nth(1).is_some() {

@@ -219,14 +219,16 @@ impl Boat {
                 // Both messages may report the same battery; every board sends SYS_STATUS.
                 let volts = millivolts(status.voltage_battery);
                 self.has_volts = volts.is_some();
+                let left_pct = charge_pct(status.battery_remaining);
                 volts
                     .into_iter()
-                    .for_each(|volts| take(Report::Power(Power { volts: Some(volts), ..Power::default() })));
+                    .for_each(|volts| take(Report::Power(Power { volts: Some(volts), left_pct, ..Power::default() })));
             }
             MavMessage::BATTERY_STATUS(battery) if battery.id == 0 && !self.has_volts => {
                 let cells: Vec<f64> = battery.voltages.iter().filter_map(|cell| millivolts(*cell)).collect();
                 let volts = (!cells.is_empty()).then(|| cells.iter().sum());
-                take(Report::Power(Power { volts, ..Power::default() }));
+                let left_pct = charge_pct(battery.battery_remaining);
+                take(Report::Power(Power { volts, left_pct, ..Power::default() }));
             }
             MavMessage::SYSTEM_TIME(time) if time.time_unix_usec > 0 => {
                 let (_, time) = date_and_time(time.time_unix_usec.saturating_mul(1000));
@@ -302,6 +304,11 @@ fn quality(gps: &GPS_RAW_INT_DATA) -> FixQuality {
         // A base station knows its position because somebody entered it.
         GpsFixType::GPS_FIX_TYPE_STATIC => 7,
     })
+}
+
+/// The charge left, per cent, if known.
+fn charge_pct(value: i8) -> Option<f64> {
+    (0..=100).contains(&value).then(|| f64::from(value))
 }
 
 /// A voltage, V, if measured.

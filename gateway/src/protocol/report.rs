@@ -38,6 +38,8 @@ pub enum Report {
 pub struct Power {
     /// Voltage, V.
     pub volts: Option<f64>,
+    /// Charge left, per cent.
+    pub left_pct: Option<f64>,
     /// Current of the thrusters, port first, A.
     pub thruster_a: [Option<f64>; 2],
     /// Current of the bilge pumps, port first, A.

@@ -202,6 +202,7 @@ fn report(sentence: &Sentence, take: &mut dyn FnMut(Report)) {
         }
         Sentence::Battery(battery) => take(Report::Power(Power {
             volts: battery.volts,
+            left_pct: None,
             thruster_a: [battery.port_amps, battery.starboard_amps],
             bilge_a: [battery.port_bilge_amps, battery.starboard_bilge_amps],
         })),

@@ -170,7 +170,7 @@ impl fmt::Display for Task {
 impl fmt::Display for State {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            State::Safed => f.write_str("safed"),
+            State::Disarmed => f.write_str("disarmed"),
             State::Armed => f.write_str("armed"),
             State::Failsafe { cause, task: None } => write!(f, "failsafe: {cause}"),
             State::Failsafe { cause, task: Some(task) } => write!(f, "failsafe: {cause}; {task}"),

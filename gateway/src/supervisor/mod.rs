@@ -3,11 +3,11 @@
 //! ```text
 //!                    arm [ready]                       any condition fails
 //!        ┌────────┐ ────────────▶ ┌─────────┐ ───────────────────────────▶ ┌───────────────┐
-//!   ●──▶ │ Safed  │               │  Armed  │                              │ Failsafe(why) │
+//!   ●──▶ │Disarmed│               │  Armed  │                              │ Failsafe(why) │
 //!        └────────┘ ◀──────────── └─────────┘ ◀─────────────────────────── └───────────────┘
 //!          ▲ ▲  │      disarm          │                arm [ready]           │         ▲
 //!          │ │  │                      │ delegate [fit]                       │ disarm  │ a condition of
-//!          │ │  └──────────────────────┼──────────────────────────────────────┼──▶ Safed│ delegation fails
+//!          │ │  └──────────────────────┼──────────────────────────────────────┼▶Disarmed│ delegation fails
 //!          │ │   delegate [fit]        ▼                                      │         │
 //!          │ │                 ┌───────────────┐ ─────────────────────────────┼─────────┘
 //!          │ └──────────────── │ Delegated(to) │ ◀────────────────────────────┘ delegate [fit]
@@ -121,7 +121,7 @@ pub enum Task {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum State {
     /// Standby; waiting to be armed.
-    Safed,
+    Disarmed,
     /// Following orders from agents.
     Armed,
     /// Stopped by a failsafe until it is armed again.
@@ -184,11 +184,11 @@ pub(crate) struct Supervisor {
 }
 
 impl Supervisor {
-    /// A safed supervisor. With `arms_itself` it arms when it is ready for the first time, unless
+    /// A disarmed supervisor. With `arms_itself` it arms when it is ready for the first time, unless
     /// an operator makes a request before. After any later stop it must be armed by request, unless
     /// [`Conditions::may_rearm`] says otherwise.
     pub(crate) fn new(arms_itself: bool, actions: FailsafeActions) -> Supervisor {
-        Supervisor { state: State::Safed, stops: [false; 2], arms_itself, actions }
+        Supervisor { state: State::Disarmed, stops: [false; 2], arms_itself, actions }
     }
 
     /// The current state.
@@ -211,7 +211,7 @@ impl Supervisor {
         let before = self.state;
         let refusal = request.and_then(|request| self.take_request(now, request));
         let arms_itself = match self.state {
-            State::Safed => self.arms_itself,
+            State::Disarmed => self.arms_itself,
             State::Failsafe { cause: Cause::OrderStale, .. } => now.may_rearm,
             _ => false,
         };
@@ -222,7 +222,7 @@ impl Supervisor {
         // failsafe with its cause.
         self.check_failsafes(now);
         // Any change of state or request uses up self-arming.
-        self.arms_itself &= self.state == State::Safed && request.is_none();
+        self.arms_itself &= self.state == State::Disarmed && request.is_none();
         let changed = (self.state != before).then_some(before);
         Step { action: self.action(now), refusal, before: changed }
     }
@@ -236,7 +236,7 @@ impl Supervisor {
             }
             OperatorRequest::Arm => return self.enter(State::Armed, now.missing()),
             OperatorRequest::Delegate(task) => return self.enter(State::Delegated(task), now.unfit(task)),
-            OperatorRequest::Disarm => self.state = State::Safed,
+            OperatorRequest::Disarm => self.state = State::Disarmed,
         }
         None
     }
@@ -257,12 +257,12 @@ impl Supervisor {
     fn check_failsafes(&mut self, now: &Conditions) {
         self.state = match self.state {
             _ if self.is_stopped() => State::EStopped,
-            // After release the boat is safed, whatever its state before: somebody has to arm it.
-            State::EStopped => State::Safed,
+            // After release the boat is disarmed, whatever its state before: somebody has to arm it.
+            State::EStopped => State::Disarmed,
             State::Armed => now.causes().next().map_or(State::Armed, |cause| self.failsafe(now, cause)),
             State::Delegated(task) => now.unfit_failsafe(task).map_or(self.state, |cause| self.failsafe(now, cause)),
             State::Failsafe { cause, task: Some(task) } => self.watch_task(now, cause, task),
-            State::Safed | State::Failsafe { task: None, .. } => self.state,
+            State::Disarmed | State::Failsafe { task: None, .. } => self.state,
         };
     }
 
@@ -311,7 +311,7 @@ impl Supervisor {
             State::Armed => Action::Follow,
             State::Delegated(task) => Action::Task(task),
             State::Failsafe { task: Some(task), .. } => Action::Task(task),
-            State::Safed | State::Failsafe { task: None, .. } | State::EStopped => Action::Standby,
+            State::Disarmed | State::Failsafe { task: None, .. } | State::EStopped => Action::Standby,
         }
     }
 }

@@ -133,13 +133,15 @@ fn is_held(after: &Supervisor, now: &Conditions, step: &Step) -> bool {
 fn only_an_explicit_command_arms_but_once_at_first_and_after_stale_orders() {
     explore(|before, now, request, after, step| {
         if after.state == State::Armed && before.state != State::Armed {
-            let by_itself = before.arms_itself && before.state == State::Safed && !before.is_stopped();
+            let by_itself = before.arms_itself && before.state == State::Disarmed && !before.is_stopped();
             let again = now.may_rearm && matches!(before.state, State::Failsafe { cause: Cause::OrderStale, .. });
             let case = format!("{before:?}, {now:?}, {request:?} -> {step:?}");
             assert!(request == Some(OperatorRequest::Arm) || by_itself || again, "{case}");
         }
-        let used_up =
-            before.state != State::Safed || !before.arms_itself || request.is_some() || after.state != State::Safed;
+        let used_up = before.state != State::Disarmed
+            || !before.arms_itself
+            || request.is_some()
+            || after.state != State::Disarmed;
         assert_eq!(after.arms_itself, !used_up, "{before:?}, {now:?}, {request:?}");
     });
 }
@@ -201,7 +203,7 @@ fn after_a_failsafe_a_task_is_what_the_file_says_for_its_cause_and_needs_nothing
 }
 
 #[test]
-fn an_e_stop_beats_everything_until_each_is_released_and_leaves_the_boat_safed() {
+fn an_e_stop_beats_everything_until_each_is_released_and_leaves_the_boat_disarmed() {
     explore(|before, now, request, after, step| {
         let case = format!("{before:?}, {now:?}, {request:?} -> {step:?}");
         let stopped = after.is_stopped();
@@ -210,7 +212,7 @@ fn an_e_stop_beats_everything_until_each_is_released_and_leaves_the_boat_safed()
             assert_eq!(step.action, Action::Standby, "{case}");
         }
         if before.state == State::EStopped && !stopped {
-            assert!(matches!(request, Some(OperatorRequest::Release(_))) && after.state == State::Safed, "{case}");
+            assert!(matches!(request, Some(OperatorRequest::Release(_))) && after.state == State::Disarmed, "{case}");
         }
         for scope in [Scope::Boat, Scope::Fleet] {
             let now_on = after.stops[scope as usize];
@@ -245,7 +247,7 @@ fn every_failsafe_is_reported_with_its_true_cause_and_brings_standby_or_a_task()
             };
             assert!(is_true, "{case}");
         }
-        let at_rest = matches!(after.state, State::Safed | State::Failsafe { task: None, .. });
+        let at_rest = matches!(after.state, State::Disarmed | State::Failsafe { task: None, .. });
         if at_rest {
             assert_eq!(step.action, Action::Standby, "{case}");
         }

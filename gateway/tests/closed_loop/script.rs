@@ -252,6 +252,7 @@ fn value(rig: &Rig, name: &str) -> String {
         ["missing"] => rig.bridge.status(rig.now).missing.join("; "),
         ["alarms"] => rig.bridge.status(rig.now).alarms.join("; "),
         ["volts"] => rig.bridge.status(rig.now).battery_v.unwrap_or(f64::NAN).to_string(),
+        ["percent"] => rig.bridge.status(rig.now).battery_pct.unwrap_or(f64::NAN).to_string(),
         ["refused"] => rig.refused.clone().unwrap_or_default(),
         ["remark"] => rig.remark.clone(),
         ["events"] => format!("{:?}", rig.events),

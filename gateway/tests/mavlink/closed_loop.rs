@@ -45,10 +45,12 @@ fn a_boat_is_armed_driven_on_a_true_heading_and_disarmed() {
         assert_eq!(rig.mode(), (RoverMode::Guided, true), "{:?}", rig.events);
         let off_rad = wrap_pi(rig.boat.psi_rad - 1.0).abs();
         assert!(off_rad < 0.1 && (rig.boat.speed_m_s - 1.0).abs() < 0.2, "{drive:?}: {:?}", rig.boat);
+        let status = rig.bridge.status(rig.now);
+        assert_eq!(status.battery_pct, Some(100.0), "as the boat reports it, at {:?} V", status.battery_v);
         rig.operator(OperatorCommand::Disarm);
         assert_eq!(rig.mode(), HOLD, "at once");
         rig.run(15.0);
-        assert!(rig.boat.speed_m_s < 0.05 && rig.state() == "safed");
+        assert!(rig.boat.speed_m_s < 0.05 && rig.state() == "disarmed");
     }
 }
 
@@ -238,7 +240,7 @@ fn the_first_command_leaves_a_pilot_in_control_and_stops_a_boat_in_guided() {
         rig.give(&Input::LinkUp);
         rig.run(2.0);
         assert_eq!(rig.mode(), want);
-        assert!(matches!(rig.bridge.state().to_string().as_str(), "safed" | "failsafe: the link is lost"));
+        assert!(matches!(rig.bridge.state().to_string().as_str(), "disarmed" | "failsafe: the link is lost"));
     }
 }
 

@@ -85,6 +85,6 @@ impl StopCommand {
     /// Whether this state of a boat, as gateways spell it, shows the stop.
     #[must_use]
     pub fn is_shown_by(self, state: &str) -> bool {
-        state.starts_with("e-stopped") || (self == StopCommand::Disarm && state.starts_with("safed"))
+        state.starts_with("e-stopped") || (self == StopCommand::Disarm && state.starts_with("disarmed"))
     }
 }

@@ -45,11 +45,11 @@ fn what_was_published_may_be_older_than_the_stop() {
     let (mut orders, start) = orders(&["blue_one"]);
     orders.ask(start, Some("blue_one".to_owned()), StopCommand::Disarm);
     let published = Source::Published(start + MS(1));
-    let times = said(&mut orders, start, &[(5, "safed", published), (30, "armed", published)]);
+    let times = said(&mut orders, start, &[(5, "disarmed", published), (30, "armed", published)]);
     assert_eq!(times.len(), 6 + 14, "{times:?}");
     assert_eq!(orders.unfinished(), ["blue_one does not report that it has stopped: armed"]);
     orders.ask(start, Some("blue_one".to_owned()), StopCommand::Disarm);
-    let times = said(&mut orders, start, &[(5, "safed", Source::Published(start + MS(1)))]);
+    let times = said(&mut orders, start, &[(5, "disarmed", Source::Published(start + MS(1)))]);
     assert_eq!(times, [0, 10, 20, 40, 80, 160, 360, 560, 760, 960]);
     assert!(orders.unfinished().is_empty());
 }
@@ -79,14 +79,14 @@ fn what_is_told_again_counts_only_for_a_boat_that_is_not_heard_itself() {
     let (mut orders, start) = orders(&["blue_one"]);
     orders.ask(start, Some("blue_one".to_owned()), StopCommand::Disarm);
     // The sim heard it before the stop was requested.
-    orders.report(start + MS(40), "blue_one", "safed", Source::Relayed(start));
-    assert_eq!(orders.unfinished(), ["blue_one does not report that it has stopped: safed"]);
-    orders.report(start + MS(50), "blue_one", "safed", Source::Relayed(start + MS(1)));
+    orders.report(start + MS(40), "blue_one", "disarmed", Source::Relayed(start));
+    assert_eq!(orders.unfinished(), ["blue_one does not report that it has stopped: disarmed"]);
+    orders.report(start + MS(50), "blue_one", "disarmed", Source::Relayed(start + MS(1)));
     assert!(orders.is_done(start + MS(50)));
     let state = |orders: &StopOrders| orders.boats().next().and_then(|(_, boat)| boat.state.clone());
     orders.report(start + MS(100), "blue_one", "armed", Source::Published(start + MS(100)));
-    for (at, want) in [(900, "armed"), (1200, "safed")] {
-        orders.report(start + MS(at), "blue_one", "safed", Source::Relayed(start + MS(at)));
+    for (at, want) in [(900, "armed"), (1200, "disarmed")] {
+        orders.report(start + MS(at), "blue_one", "disarmed", Source::Relayed(start + MS(at)));
         assert_eq!(state(&orders).as_deref(), Some(want), "{at} ms");
     }
 }

@@ -73,6 +73,8 @@ impl GameWatcher {
                     let reason = missing.to_string();
                     if reason != said {
                         (self.shared.tell)(&format!("no game to show: {reason}"));
+                        self.shared.state.lock().missing.clone_from(&reason);
+                        self.shared.news.send_replace(());
                         said = reason;
                     }
                     attempts += 1;

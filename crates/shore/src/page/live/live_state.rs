@@ -55,6 +55,8 @@ pub(super) struct LiveState {
     pub(super) generation: u64,
     /// Whether the game has gone.
     pub(super) is_gone: bool,
+    /// Why there is no game to show; empty before the first search.
+    pub(super) missing: String,
     /// The run state, if the sim publishes it.
     pub(super) run: Option<RunState>,
     /// Increases with each change of the run.

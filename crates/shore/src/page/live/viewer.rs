@@ -30,6 +30,8 @@ pub(super) struct PageViewer {
 struct Sent {
     /// The number of the game.
     generation: u64,
+    /// Why there is no game.
+    missing: String,
     events: super::event_log::EventCursor,
     /// Number of the last run state sent, and when.
     run: Option<(u64, Instant)>,
@@ -185,7 +187,12 @@ impl Viewer for PageViewer {
 
     fn next_message(&mut self, now: Instant, budget: Budget) -> Option<Outgoing> {
         let mut state = self.shared.state.lock();
-        let game = state.game.clone()?;
+        let Some(game) = state.game.clone() else {
+            let is_new = self.sent.missing != state.missing;
+            self.sent.missing.clone_from(&state.missing);
+            let missing = PageMessage::Preparing { text: &state.missing, failed: true };
+            return is_new.then(|| Outgoing::Text(missing.json()));
+        };
         if self.sent.generation != state.generation {
             self.sent = Sent { generation: state.generation, ..Sent::default() };
             // This game may not have the boat; the page then selects another.
