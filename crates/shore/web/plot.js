@@ -1,5 +1,6 @@
 // One plot: a quantity of boats over time, with axes, a cursor and the values at it.
 
+import { Crowd, extentOf } from './crowd.js';
 import { sampleAt } from './diagram.js';
 import { palette, teamColour } from './palette.js';
 import { QUANTITIES, quantityOf, rangeOf, sectionOf } from './quantity.js';
@@ -10,7 +11,9 @@ import { clock, clockShort, make, options, plain, show, write } from './words.js
 /** Up to this many curves have their own colour and their value in the header; more are thin lines in their teams' colours. */
 const NAMED_MAX = 8;
 /** Maximum number of samples drawn in a plot. */
-const SAMPLES_MAX = 24_000;
+const SAMPLES_MAX = 16_000;
+/** A curve of many is pointed at within this, px. */
+const REACH_PX = 14;
 const FONT = '11px system-ui, sans-serif';
 const STEPS_S = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 30, 60, 120, 300, 600, 1200, 1800, 3600];
 const NONE = '';
@@ -76,6 +79,9 @@ export class Plot {
     this.built = '';
     this.drawn = '';
     this.focused = -1;
+    this.pointed = null;
+    this.crowd = new Crowd();
+    this.range = [0, 1];
     this.resized = new ResizeObserver(() => { this.drawn = ''; });
     this.resized.observe(this.place);
   }
@@ -124,6 +130,9 @@ export class Plot {
     show(this.other, this.quantity.to === true);
     const build = `${game.greeted} ${this.quantity.key} ${this.other.value} ${boats.join()} ${palette.version}`;
     const { span } = this.on;
+    // A crowd is drawn over several pictures.
+    const { job } = this.crowd;
+    if (job && build === this.built && job.size === `${width} ${height}`) return this.drawCrowd();
     const drawn = `${build} ${source.version} ${span.version} ${width} ${height}`;
     if (drawn === this.drawn) return false;
     this.drawn = drawn;
@@ -131,6 +140,8 @@ export class Plot {
       this.built = build;
       this.curves = this.curvesOf(game, boats, colourOf);
       this.chart?.destroy();
+      this.crowd.job = null;
+      this.focused = -1;
       this.chart = this.curves.length > 0 ? this.build(width, height) : null;
       write(this.values, '');
       this.told = '';
@@ -139,21 +150,74 @@ export class Plot {
     if (this.chart.width !== width || this.chart.height !== height) this.chart.setSize({ width, height });
     this.lists = this.curves.map((curve) => curve.read(source));
     this.times = source.times;
+    if (this.many) return this.beginCrowd(`${width} ${height}`);
     const most = Math.min(2 * width, Math.max(80, SAMPLES_MAX / this.curves.length));
     this.chart.setData(sectionOf(source.times, this.lists, span.from_s, span.to_s, most, this.quantity.round));
     return true;
   }
 
+  get many() {
+    return this.curves.length > NAMED_MAX;
+  }
+
+  /** Starts to draw many curves: in the end, the axes follow. */
+  beginCrowd(size) {
+    const { span } = this.on;
+    const [from_s, to_s] = [span.from_s, span.to_s];
+    const [low, high] = limits(this.quantity, ...extentOf(this.times, this.lists, from_s, to_s));
+    const { clientWidth: width, clientHeight: height } = this.chart.over;
+    const colours = this.curves.map(({ colour }) => colour);
+    this.crowd.begin({ size, times: this.times, lists: this.lists, colours, from_s, to_s, low, high, width, height, round: this.quantity.round });
+    return this.drawCrowd();
+  }
+
+  drawCrowd() {
+    const { job } = this.crowd;
+    if (!this.crowd.go()) return true;
+    if (this.crowd.canvas.parentElement !== this.chart.under) this.chart.under.replaceChildren(this.crowd.canvas);
+    this.section = [job.from_s, job.to_s];
+    this.range = [job.low, job.high];
+    this.drawFocused();
+    return true;
+  }
+
+  /** Draws the curve pointed at among many, with the axes. */
+  drawFocused() {
+    const [from_s, to_s] = this.section;
+    const list = this.lists[this.focused] ?? null;
+    this.chart.setData(list ? sectionOf(this.times, [list], from_s, to_s, SAMPLES_MAX, this.quantity.round) : [[from_s, to_s], [null, null]]);
+  }
+
+  /** Finds the curve pointed at among many. */
+  focus() {
+    if (!this.many || !this.section) return;
+    const { height } = this.chart.over.getBoundingClientRect();
+    let best = -1;
+    if (this.pointed) {
+      const at = sampleAt(this.times, this.pointed.t_s);
+      let least = (REACH_PX / height) * (this.range[1] - this.range[0]);
+      const value = this.range[1] - (this.pointed.y / height) * (this.range[1] - this.range[0]);
+      this.lists.forEach((list, i) => {
+        if (!(Math.abs(list?.[at] - value) < least)) return;
+        least = Math.abs(list[at] - value);
+        best = i;
+      });
+    }
+    if (best === this.focused) return;
+    this.focused = best;
+    this.drawFocused();
+  }
+
   build(width, height) {
-    const { quantity, curves, on } = this;
-    const many = curves.length > NAMED_MAX;
+    const { quantity, on, many } = this;
+    this.section = null;
+    const curves = many ? [{ name: 'pointed at', colour: palette.ink }] : this.curves;
     const paths = quantity.round ? courses : quantity.teams ? uPlot.paths.stepped({ align: 1 }) : undefined;
     const axis = { stroke: palette.faint, font: FONT, grid: { stroke: palette.grid, width: 1 }, ticks: { stroke: palette.grid, size: 4, width: 1 } };
     const chart = new uPlot({
       width, height, legend: { show: false }, padding: [8, 20, 0, 0],
-      cursor: { y: false, drag: { x: true, y: false, setScale: false }, points: { size: 6, show: many ? false : undefined }, focus: { prox: many ? 12 : -1 } },
-      focus: { alpha: many ? 0.25 : 1 },
-      scales: { x: { time: false, range: () => [on.span.from_s, on.span.to_s] }, y: { range: (_, low, high) => limits(quantity, low, high) } },
+      cursor: { y: false, drag: { x: true, y: false, setScale: false }, points: { size: 6, ...(many ? { show: false } : {}) } },
+      scales: { x: { time: false, range: () => this.section ?? [on.span.from_s, on.span.to_s] }, y: { range: (_, low, high) => (many ? this.range : limits(quantity, low, high)) } },
       axes: [
         { ...axis, size: 24, gap: 3, space: 64, incrs: STEPS_S, values: (_, splits, i, space, step) => splits.map(step < 1 ? clock : clockShort) },
         { ...axis, size: 48, gap: 4, space: 26, ...(quantity.round ? { splits: () => (height > 120 ? [0, 90, 180, 270, 360] : [0, 180, 360]) } : {}),
@@ -161,7 +225,7 @@ export class Plot {
           values: (_, splits) => splits.map((value) => (quantity.round ? `${String(value).padStart(3, '0')}°` : String(value).replace('-', '−'))) },
       ],
       series: [{}, ...curves.map(({ name, colour, dash }) => ({
-        label: name, stroke: colour, dash, paths, width: many || dash ? 1 : 1.75, alpha: many ? 0.7 : 1, points: { show: false }, spanGaps: false,
+        label: name, stroke: colour, dash, paths, width: many ? 2.5 : dash ? 1 : 1.75, points: { show: false }, spanGaps: false,
       }))],
       hooks: {
         setSelect: [({ select }) => {
@@ -169,7 +233,6 @@ export class Plot {
           on.span.show(chart.posToVal(select.left, 'x'), chart.posToVal(select.left + select.width, 'x'));
           chart.setSelect({ left: 0, width: 0, top: 0, height: 0 }, false);
         }],
-        setSeries: [(_, series, { focus }) => { if (focus !== undefined) this.focused = series === null ? -1 : series - 1; }],
       },
     }, [[], ...curves.map(() => [])], this.place);
     this.bindOver(chart);
@@ -180,8 +243,14 @@ export class Plot {
     const { span, seek } = this.on;
     const at = (event) => chart.posToVal(event.clientX - chart.over.getBoundingClientRect().left, 'x');
     chart.over.append(this.now);
-    chart.over.addEventListener('pointermove', (event) => span.point(at(event)));
-    chart.over.addEventListener('pointerleave', () => span.point(null));
+    chart.over.addEventListener('pointermove', (event) => {
+      this.pointed = { t_s: at(event), y: event.clientY - chart.over.getBoundingClientRect().top };
+      span.point(this.pointed.t_s);
+    });
+    chart.over.addEventListener('pointerleave', () => {
+      this.pointed = null;
+      span.point(null);
+    });
     chart.over.addEventListener('click', (event) => seek(at(event)));
     chart.over.addEventListener('dblclick', () => span.showAll());
     chart.over.addEventListener('wheel', (event) => span.wheel(event, at(event)), { passive: false });
@@ -191,6 +260,7 @@ export class Plot {
   mark(game) {
     const { chart } = this;
     if (!chart || !this.times) return;
+    this.focus();
     const { span } = this.on;
     const { pointed_s } = span;
     const x = (t_s) => ((t_s - span.from_s) / (span.to_s - span.from_s)) * chart.over.clientWidth;
@@ -212,14 +282,14 @@ export class Plot {
     const wordsOf = (i) => (Number.isFinite(lists[i]?.[at]) ? quantity.words(lists[i][at]) : '–');
     // The unit is in the title.
     const bare = (words) => words.split('\u00a0')[0];
-    const shown = curves.length <= NAMED_MAX ? curves.map((_, i) => i) : [this.focused].filter((i) => i >= 0);
+    const shown = !this.many ? curves.map((_, i) => i) : [this.focused].filter((i) => i >= 0);
     // An order is known for few boats.
     const said = shown.map((i) => ({ ...curves[i], words: wordsOf(i) })).filter(({ dash, words }) => !dash || words !== '–');
     this.values.replaceChildren(make('span', 'plot-time', clock(t_s)), ...said.map(({ name, colour, dash, words }) => {
       const swatch = make('span', dash ? 'plot-swatch dashed' : 'plot-swatch');
       swatch.style.setProperty('--team', colour);
       return make('span', 'plot-value', '', swatch, make('span', '', name), make('strong', 'value', bare(words)));
-    }), ...(curves.length > NAMED_MAX && said.length === 0 ? [make('span', 'faint', `${curves.length} curves; point at one`)] : []));
+    }), ...(this.many && said.length === 0 ? [make('span', 'faint', `${curves.length} curves; point at one`)] : []));
     const label = `${quantity.title} at ${clock(t_s)}: ${said.map(({ name, words }) => `${name} ${words}`).join(', ')}`;
     this.box.setAttribute('aria-label', label);
   }

@@ -31,6 +31,7 @@ export class Plots {
     this.open = stored === true || stored?.open === true;
     this.boats = Array.isArray(stored?.boats) ? stored.boats : [];
     this.rest_ms = 0;
+    this.spent_ms = 0;
     this.build();
     for (const each of Array.isArray(stored?.plots) && stored.plots.length > 0 ? stored.plots.slice(0, PLOTS_MAX) : DEFAULT) this.add(each);
     this.button.addEventListener('click', () => this.toggle());
@@ -196,8 +197,14 @@ export class Plots {
       const began_ms = performance.now();
       if (!this.plots[at].draw(game, this.source, boats, colourOf)) continue;
       this.turn = at + 1;
-      const took_ms = performance.now() - began_ms;
-      if (live) this.rest_ms = now_ms + Math.max(AGAIN_MS / this.plots.length, took_ms * SHARE);
+      this.spent_ms += performance.now() - began_ms;
+      // A crowd is not finished yet.
+      if (this.plots[at].crowd.job) {
+        this.turn = at;
+        return;
+      }
+      if (live) this.rest_ms = now_ms + Math.max(AGAIN_MS / this.plots.length, this.spent_ms * SHARE);
+      this.spent_ms = 0;
       return;
     }
   }

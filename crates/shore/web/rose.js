@@ -61,8 +61,22 @@ export class Rose {
     const context = this.small.getContext('2d');
     const image = context.createImageData(size, size);
     const pixels = new Uint32Array(image.data.buffer);
-    const half = size / 2;
     const { courses, speeds } = report;
+    const cells = this.cellsOf(size, courses, speeds);
+    for (let at = 0; at < cells.length; at++) {
+      if (cells[at] >= 0) pixels[at] = SHADES[Math.min(100, Math.max(0, Math.round(utilities[cells[at]] ?? 0)))];
+    }
+    context.putImageData(image, 0, 0);
+    this.context.drawImage(this.small, middle - radius, middle - radius, 2 * radius, 2 * radius);
+  }
+
+  /** The option of each pixel, -1 outside: the same for all reports. */
+  cellsOf(size, courses, speeds) {
+    const key = `${size} ${courses} ${speeds} ${this.up_deg}`;
+    if (key === this.cellsKey) return this.cells;
+    this.cellsKey = key;
+    this.cells = new Int32Array(size * size).fill(-1);
+    const half = size / 2;
     for (let row = 0; row < size; row++) {
       const up = half - row - 0.5;
       for (let column = 0; column < size; column++) {
@@ -71,13 +85,10 @@ export class Rose {
         if (out > 1) continue;
         const turn = Math.atan2(right, up) / (2 * Math.PI) + this.up_deg / 360;
         const course = ((Math.round(turn * courses) % courses) + courses) % courses;
-        const speed = Math.round(out * (speeds - 1));
-        const value = Math.min(100, Math.max(0, Math.round(utilities[course * speeds + speed] ?? 0)));
-        pixels[row * size + column] = SHADES[value];
+        this.cells[row * size + column] = course * speeds + Math.round(out * (speeds - 1));
       }
     }
-    context.putImageData(image, 0, 0);
-    this.context.drawImage(this.small, middle - radius, middle - radius, 2 * radius, 2 * radius);
+    return this.cells;
   }
 
   frame(middle, radius, speedMax) {
