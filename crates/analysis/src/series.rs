@@ -7,7 +7,7 @@ use recording::{Damaged, Recording};
 use rules::event::Logged;
 use scenario::Source;
 
-/// Limit of samples of all boats together, about 140 bytes each. Longer games are thinned out.
+/// Limit of samples of all boats together, about 160 bytes each. Longer games are thinned out.
 const SAMPLES_MAX: usize = 1_000_000;
 
 /// A game as time series.

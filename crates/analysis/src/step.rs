@@ -32,6 +32,8 @@ pub struct Sample {
     pub estimated: Option<Nav>,
     /// The order that led here: the last one sent before.
     pub order: Order,
+    /// Thrust of the port and starboard thrusters, N.
+    pub thrusts_newton: [f64; 2],
     /// Whether it was free to follow its order: not stopped, tagged, off the field, out of action
     /// or lost.
     pub is_free: bool,
@@ -186,6 +188,7 @@ fn sample(truth: &VehicleTruth, order: Order, stopped: bool) -> Sample {
         truth: truth.nav,
         estimated: None,
         order,
+        thrusts_newton: [truth.port_newton, truth.starboard_newton],
         is_free: !(stopped || tagged || disabled || outside || agent_lost || quarantined || nav_lost),
         tagged,
         carrying: truth.carrying >= 0,

@@ -1,4 +1,4 @@
-// A replay over time: it plays by itself, its address contains the moment, and score and curves match the chart.
+// A replay over time: it plays by itself, its address contains the moment, and the chart can be saved.
 
 import assert from 'node:assert/strict';
 import { readFileSync, readdirSync } from 'node:fs';
@@ -39,33 +39,6 @@ test('a replay begins to play, and its address carries time and boat', async (t)
     await other.until(`#${odd} is taken as it can be`, (want_s) => (want_s === null ? squall.player.playing : Math.abs(squall.t_s - want_s) < 0.11), want_s);
     await other.close();
   }
-});
-
-test('curves are those of the boats, in step with the chart, and a press on them goes there', async (t) => {
-  const sight = await Sight.open(t, browser, `${await replay(t)}#t=0`, SIZE);
-  await sight.press('#show-plots');
-  await sight.until('a text asks for a boat', () => /Select a boat/.test(document.getElementById('plots').textContent));
-  await sight.press('[data-vehicle=red_two]');
-  await sight.page.selectOption('#plot-other', 'blue_one');
-  const told = () => sight.get(() => [...document.querySelectorAll('.plot .value')].map((each) => each.textContent));
-  for (const part of [0.3, 0.6, 0.9]) {
-    const box = await sight.page.locator('.plot canvas').first().boundingBox();
-    await sight.page.mouse.click(box.x + box.width * part, box.y + box.height / 2);
-    await sight.until('the chart follows', (part) => Math.abs(squall.t_s - 600 * part) < 15, part);
-    await sight.until('the plots follow', () => {
-      const [red, blue] = ['red_two', 'blue_one'].map((name) => squall.frame.boats.find((boat) => boat.name === name));
-      const range = Math.hypot(red.x - blue.x, red.y - blue.y).toFixed(1);
-      const [speed, , , , apart] = [...document.querySelectorAll('.plot .value')].map((each) => parseFloat(each.textContent));
-      // A long game is thinned out, so a sample may be half a second old.
-      return Math.abs(speed - red.speed_m_s) < 1 && Math.abs(apart - range) < 3.2;
-    });
-    const [, heading, flag, error] = await told();
-    assert(/^\d{3}°$/.test(heading) && /m$/.test(flag) && /m$/.test(error), [heading, flag, error].join());
-  }
-  const label = await sight.get(() => document.querySelector('.plot canvas').getAttribute('aria-label'));
-  assert(/^Speed of red two over the game; at \d\d:\d\d\.\d: [\d.]+\sm\/s$/.test(label), label);
-  await sight.press('#deselect');
-  await sight.until('no curves without a boat', () => !document.querySelector('.plot').checkVisibility());
 });
 
 test('the chart is kept as PNG, and a stretch of it as a video', async (t) => {

@@ -42,8 +42,8 @@ function standing(result, rules, t_s) {
 async function scrub(sight, t_s) {
   const box = await sight.page.locator('#timeline').boundingBox();
   const { from_s, to_s } = await sight.get(() => squall.player);
-  const side = 14;
-  await sight.page.mouse.click(box.x + side + ((t_s - from_s) / (to_s - from_s)) * (box.width - 2 * side), box.y + box.height - 20);
+  const [left, right] = [34, 14];
+  await sight.page.mouse.click(box.x + left + ((t_s - from_s) / (to_s - from_s)) * (box.width - left - right), box.y + box.height - 20);
   return sight.until(`the replay is at ${t_s} s`, ([want, off]) => Math.abs(squall.t_s - want) < off && squall.t_s, [t_s, PIXEL_S]);
 }
 

@@ -54,8 +54,8 @@ const toGrab = async (sight) => {
 const keys = (...each) => (sight) => sight.keys(...each);
 const plots = async (sight) => {
   await sight.press('#show-plots');
-  await sight.page.selectOption('#plot-other', 'blue_one');
-  await sight.until('its curves are drawn', () => /\d/.test(document.querySelector('.plot:last-child .value').textContent));
+  await sight.page.selectOption('#plot-boats', 'blue_one');
+  await sight.until('its curves are drawn', () => [...document.querySelectorAll('.plot .value')].every((each) => /\d/.test(each.textContent)));
 };
 const measure = async (sight) => {
   await sight.page.focus('#sheet');

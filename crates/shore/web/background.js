@@ -132,8 +132,10 @@ export class Background {
   draw(context, view) {
     if (!this.drawn) return;
     context.save();
-    context.translate(view.width / 2 - view.centreX * view.scale, view.height / 2 + view.centreY * view.scale);
+    context.translate(view.width / 2, view.height / 2);
+    context.rotate(-view.up_rad);
     context.scale(view.scale, -view.scale);
+    context.translate(-view.centreX, -view.centreY);
     if (this.matrix) this.drawImage(context);
     else this.drawShoreline(context, view);
     context.restore();
@@ -160,7 +162,7 @@ export class Background {
     context.textAlign = 'left';
     context.textBaseline = 'middle';
     for (const [east, north, name] of this.points) {
-      const [x, y] = [view.xOf(east), view.yOf(north)];
+      const [x, y] = [view.xOf(east, north), view.yOf(east, north)];
       context.beginPath();
       context.arc(x, y, 3, 0, 2 * Math.PI);
       context.fillStyle = palette.wall;

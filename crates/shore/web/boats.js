@@ -182,14 +182,14 @@ export class Boats {
 
   drawSolid(game, view, index) {
     const { context } = this;
-    const x = view.xOf(game.x[index]);
-    const y = view.yOf(game.y[index]);
+    const x = view.xOf(game.x[index], game.y[index]);
+    const y = view.yOf(game.x[index], game.y[index]);
     const length = this.lengths[index];
     if (x < -length || y < -length || x > view.width + length || y > view.height + length) return;
     const { team } = game.vehicles[index];
     const idle = (game.marks[index] & (TAGGED | DISABLED)) !== 0;
     const disabled = (game.marks[index] & DISABLED) !== 0;
-    drawHullAt(context, x, y, game.heading[index], length, this.width(game, index), { team, idle, disabled });
+    drawHullAt(context, x, y, game.heading[index] - view.up_rad, length, this.width(game, index), { team, idle, disabled });
     if (game.carrying[index] >= 0) {
       const flag = game.chart.field?.flags?.[game.carrying[index]];
       drawFlag(context, x, y, flag ? flag.team : 0, Math.max(11, length * 0.55));
@@ -204,10 +204,10 @@ export class Boats {
       for (let i = 0; i < game.count; i++) {
         if (game.vehicles[i].team !== team || game.speed[i] < 0.05 || this.isFaded(game, i)) continue;
         const reach = this.lengths[i] / 2 + game.speed[i] * AHEAD_S * view.scale;
-        const x = view.xOf(game.x[i]);
-        const y = view.yOf(game.y[i]);
+        const x = view.xOf(game.x[i], game.y[i]);
+        const y = view.yOf(game.x[i], game.y[i]);
         context.moveTo(x, y);
-        context.lineTo(x + Math.sin(game.course[i]) * reach, y - Math.cos(game.course[i]) * reach);
+        context.lineTo(x + Math.sin(game.course[i] - view.up_rad) * reach, y - Math.cos(game.course[i] - view.up_rad) * reach);
       }
       context.lineWidth = 1.25;
       context.strokeStyle = teamColour(team);
@@ -231,8 +231,8 @@ export class Boats {
         if (game.vehicles[i].team !== team || game.marks[i] & (TAGGED | DISABLED)) continue;
         if (crowded && i !== this.selected && i !== this.hovered) continue;
         if (!zones.some((zone) => zone.team === team && inside(zone.corners, game.x[i], game.y[i]))) continue;
-        const x = view.xOf(game.x[i]);
-        const y = view.yOf(game.y[i]);
+        const x = view.xOf(game.x[i], game.y[i]);
+        const y = view.yOf(game.x[i], game.y[i]);
         context.moveTo(x + radius, y);
         context.arc(x, y, radius, 0, 2 * Math.PI);
       }
@@ -246,7 +246,7 @@ export class Boats {
   drawFlagsAtHome(game, view) {
     const flags = game.chart.field?.flags ?? [];
     for (let i = 0; i < flags.length; i++) {
-      if (game.carrierOf(i) < 0) drawFlag(this.context, view.xOf(flags[i].x), view.yOf(flags[i].y), flags[i].team, 14);
+      if (game.carrierOf(i) < 0) drawFlag(this.context, view.xOf(flags[i].x, flags[i].y), view.yOf(flags[i].x, flags[i].y), flags[i].team, 14);
     }
   }
 
@@ -255,17 +255,17 @@ export class Boats {
     const { context } = this;
     const ghost = game.estimate;
     if (!ghost) return;
-    const x = view.xOf(ghost.x);
-    const y = view.yOf(ghost.y);
-    const heading = (ghost.heading_deg * Math.PI) / 180;
+    const x = view.xOf(ghost.x, ghost.y);
+    const y = view.yOf(ghost.x, ghost.y);
+    const heading = (ghost.heading_deg * Math.PI) / 180 - view.up_rad;
     drawHullAt(context, x, y, heading, this.lengths[index], this.width(game, index), { ghost: true });
   }
 
   drawRing(game, view, index) {
     const { context } = this;
     const radius = this.lengths[index] * 0.5 + 9;
-    const x = view.xOf(game.x[index]);
-    const y = view.yOf(game.y[index]);
+    const x = view.xOf(game.x[index], game.y[index]);
+    const y = view.yOf(game.x[index], game.y[index]);
     context.lineWidth = 2.25;
     context.strokeStyle = palette.accent;
     for (let quarter = 0; quarter < 4; quarter++) {
@@ -293,8 +293,8 @@ export class Boats {
       const letters = this.lettersOf(game, i);
       if (letters === 0) continue;
       context.globalAlpha = this.isFaded(game, i) ? FADED : 1;
-      let x = view.xOf(game.x[i]) + this.lengths[i] * 0.35 + 5;
-      const y = view.yOf(game.y[i]) - this.lengths[i] * 0.35 - 7;
+      let x = view.xOf(game.x[i], game.y[i]) + this.lengths[i] * 0.35 + 5;
+      const y = view.yOf(game.x[i], game.y[i]) - this.lengths[i] * 0.35 - 7;
       for (let mark = 0; mark < MARKS.length; mark++) {
         if ((letters & MARKS[mark][0]) === 0) continue;
         if (game.count > CROWD && !this.labels.claim(x - 6.5, y - 6.5, x + 6.5, y + 6.5)) break;
@@ -306,7 +306,7 @@ export class Boats {
         this.letters.push([i, MARKS[mark][1]]);
         x += 14;
       }
-      if (game.marks[i] & NAV_LOST) this.drawLostRing(view.xOf(game.x[i]), view.yOf(game.y[i]), this.lengths[i]);
+      if (game.marks[i] & NAV_LOST) this.drawLostRing(view.xOf(game.x[i], game.y[i]), view.yOf(game.x[i], game.y[i]), this.lengths[i]);
     }
     context.globalAlpha = 1;
   }
@@ -315,7 +315,7 @@ export class Boats {
   drawBadges(game, view) {
     this.badges = [];
     for (const reading of this.readings) {
-      const [x, y] = [view.xOf(game.x[reading.index]), view.yOf(game.y[reading.index])];
+      const [x, y] = [view.xOf(game.x[reading.index], game.y[reading.index]), view.yOf(game.x[reading.index], game.y[reading.index])];
       if (game.frames === 0 || x < 0 || y < 0 || x > view.width || y > view.height) continue;
       const room = this.lengths[reading.index] * 0.5 + (reading.index === this.selected ? 14 : 7);
       const area = drawBadge(this.context, view, this.labels, reading, x, y, room);
@@ -342,9 +342,10 @@ export class Boats {
   }
 
   /** Half the extent of a hull on the chart, horizontally and vertically, px. */
-  extent(game, index) {
-    const across = Math.abs(Math.sin(game.heading[index]));
-    const along = Math.abs(Math.cos(game.heading[index]));
+  extent(game, view, index) {
+    const heading = game.heading[index] - view.up_rad;
+    const across = Math.abs(Math.sin(heading));
+    const along = Math.abs(Math.cos(heading));
     const [length, width] = [this.lengths[index] / 2, this.width(game, index) / 2];
     return [across * length + along * width, along * length + across * width];
   }
@@ -352,8 +353,8 @@ export class Boats {
   /** The areas of all hulls, for tests. */
   hulls(game, view) {
     return game.vehicles.map(({ name }, i) => {
-      const [right, down] = this.extent(game, i);
-      const [x, y] = [view.xOf(game.x[i]), view.yOf(game.y[i])];
+      const [right, down] = this.extent(game, view, i);
+      const [x, y] = [view.xOf(game.x[i], game.y[i]), view.yOf(game.x[i], game.y[i])];
       return { name, left: x - right, top: y - down, right: x + right, bottom: y + down };
     });
   }
@@ -363,8 +364,8 @@ export class Boats {
     const strength = shown.names ? this.nameStrength(game, view) : 0;
     if (strength <= 0.02 && selected < 0 && this.hovered < 0) return;
     const single = (index, alpha, wanted) => {
-      const x = view.xOf(game.x[index]);
-      const y = view.yOf(game.y[index]);
+      const x = view.xOf(game.x[index], game.y[index]);
+      const y = view.yOf(game.x[index], game.y[index]);
       if (x < -60 || y < -20 || x > view.width + 60 || y > view.height + 20) return;
       context.globalAlpha = alpha;
       labels.draw(context, index, x, y, this.lengths[index] * 0.5 + 4 + (index === selected ? 8 : 0), wanted);
@@ -381,14 +382,14 @@ export class Boats {
   blockHulls(game, view) {
     const { labels } = this;
     for (let i = 0; i < game.count; i++) {
-      const x = view.xOf(game.x[i]);
-      const y = view.yOf(game.y[i]);
-      const [right, down] = this.extent(game, i);
+      const x = view.xOf(game.x[i], game.y[i]);
+      const y = view.yOf(game.x[i], game.y[i]);
+      const [right, down] = this.extent(game, view, i);
       labels.block(x - right, y - down, x + right, y + down);
       if (game.carrying[i] >= 0) labels.block(x, y - FLAG_ROOM_PX, x + FLAG_ROOM_PX * 0.7, y);
     }
     (game.chart.field?.flags ?? []).forEach((flag, i) => {
-      if (game.carrierOf(i) < 0) labels.block(view.xOf(flag.x), view.yOf(flag.y) - FLAG_ROOM_PX, view.xOf(flag.x) + 19, view.yOf(flag.y));
+      if (game.carrierOf(i) < 0) labels.block(view.xOf(flag.x, flag.y), view.yOf(flag.x, flag.y) - FLAG_ROOM_PX, view.xOf(flag.x, flag.y) + 19, view.yOf(flag.x, flag.y));
     });
   }
 
@@ -397,7 +398,7 @@ export class Boats {
     let best = -1;
     let least = reach;
     for (let i = 0; i < game.count; i++) {
-      const far = Math.hypot(view.xOf(game.x[i]) - px, view.yOf(game.y[i]) - py) - this.lengths[i] / 2;
+      const far = Math.hypot(view.xOf(game.x[i], game.y[i]) - px, view.yOf(game.x[i], game.y[i]) - py) - this.lengths[i] / 2;
       if (far < least) {
         least = far;
         best = i;

@@ -30,6 +30,8 @@ export class Drive {
     this.note = document.getElementById('steering-note');
     this.context = this.canvas.getContext('2d');
     this.vehicle = null;
+    /** The bearing that is up on the chart, and so on the dial. */
+    this.up_deg = 0;
     this.timer = 0;
     this.wait_ms = SEND_MAX_MS;
     this.canvas.addEventListener('pointerdown', (event) => {
@@ -122,13 +124,13 @@ export class Drive {
     const out = Math.min(1, Math.hypot(right, up) / (box.width / 2 - RIM));
     // Near the centre, a trembling finger would turn the boat around.
     if (out < 0.08) this.set(this.course_deg, 0);
-    else this.set(Math.round((Math.atan2(right, up) * 180) / Math.PI), out * this.speedMax);
+    else this.set(Math.round((Math.atan2(right, up) * 180) / Math.PI) + this.up_deg, out * this.speedMax);
   }
 
   readStick() {
     const wish = this.stick.read();
     if (!wish) return;
-    this.set(wish.course_deg ?? this.course_deg, wish.out * this.speedMax);
+    this.set(wish.course_deg === undefined ? this.course_deg : wish.course_deg + this.up_deg, wish.out * this.speedMax);
     if (wish.gone) notice(`The gamepad is disconnected. Stopping ${plain(this.vehicle)}.`);
   }
 
@@ -146,7 +148,7 @@ export class Drive {
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
     context.clearRect(0, 0, side, side);
     this.drawRim(context, middle, radius);
-    const angle = (this.course_deg * Math.PI) / 180;
+    const angle = ((this.course_deg - this.up_deg) * Math.PI) / 180;
     const far = (this.speed_m_s / this.speedMax) * radius;
     const x = middle + Math.sin(angle) * far;
     const y = middle - Math.cos(angle) * far;
@@ -186,7 +188,9 @@ export class Drive {
     context.fillStyle = palette.ink;
     context.textAlign = 'center';
     context.textBaseline = 'middle';
-    [['N', 0, -1], ['E', 1, 0], ['S', 0, 1], ['W', -1, 0]].forEach(([letter, x, y]) =>
-      context.fillText(letter, middle + x * (radius - 12), middle + y * (radius - 12)));
+    ['N', 'E', 'S', 'W'].forEach((letter, quarter) => {
+      const angle = ((quarter * 90 - this.up_deg) * Math.PI) / 180;
+      context.fillText(letter, middle + Math.sin(angle) * (radius - 12), middle - Math.cos(angle) * (radius - 12));
+    });
   }
 }

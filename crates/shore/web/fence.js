@@ -11,8 +11,8 @@ const REST_PX = 4;
 export function traceCorners(context, view, corners) {
   context.beginPath();
   corners.forEach(([x, y], index) => {
-    if (index === 0) context.moveTo(view.xOf(x), view.yOf(y));
-    else context.lineTo(view.xOf(x), view.yOf(y));
+    if (index === 0) context.moveTo(view.xOf(x, y), view.yOf(x, y));
+    else context.lineTo(view.xOf(x, y), view.yOf(x, y));
   });
   context.closePath();
 }
@@ -50,8 +50,11 @@ export function drawFences(context, view, fences) {
   for (const { outline, keepOuts } of fences) {
     traceCorners(context, view, outline);
     rim(context, [12, 5]);
-    const [x, y] = outline.reduce((most, corner) => (corner[1] > most[1] || (corner[1] === most[1] && corner[0] < most[0]) ? corner : most));
-    haloText(context, 'geofence', Math.max(4, view.xOf(x)), Math.max(14, view.yOf(y) - 3));
+    const [x, y] = outline.reduce((most, corner) => {
+      const [higher, righter] = [view.yOf(...most) - view.yOf(...corner), view.xOf(...corner) - view.xOf(...most)];
+      return higher > 0 || (higher === 0 && righter < 0) ? corner : most;
+    });
+    haloText(context, 'geofence', Math.max(4, view.xOf(x, y)), Math.max(14, view.yOf(x, y) - 3));
     for (const corners of keepOuts) drawKeepOut(context, view, corners);
   }
 }
@@ -65,7 +68,7 @@ function drawKeepOut(context, view, corners) {
   rim(context, [4, 4]);
   const [x, y] = [0, 1].map((axis) => corners.reduce((sum, corner) => sum + corner[axis], 0) / corners.length);
   context.textAlign = 'center';
-  haloText(context, 'keep out', view.xOf(x), view.yOf(y) + 5);
+  haloText(context, 'keep out', view.xOf(x, y), view.yOf(x, y) + 5);
   context.textAlign = 'left';
 }
 
@@ -75,14 +78,14 @@ export function drawStops(context, view, readings, game) {
     if (kind === 'silent' || !(fence?.stopping_m > 0) || game.frames === 0) continue;
     const tight = fence.clearance_m < fence.stopping_m;
     context.beginPath();
-    context.arc(view.xOf(game.x[index]), view.yOf(game.y[index]), fence.stopping_m * view.scale, 0, 2 * Math.PI);
+    context.arc(view.xOf(game.x[index], game.y[index]), view.yOf(game.x[index], game.y[index]), fence.stopping_m * view.scale, 0, 2 * Math.PI);
     context.lineWidth = tight ? 2.5 : 1.5;
     context.strokeStyle = tight ? palette.danger : palette.ink;
     context.setLineDash([2, 3]);
     context.stroke();
     context.setLineDash([]);
     if (!fence.stops_at) continue;
-    const [x, y] = [view.xOf(fence.stops_at.east), view.yOf(fence.stops_at.north)];
+    const [x, y] = [view.xOf(fence.stops_at.east, fence.stops_at.north), view.yOf(fence.stops_at.east, fence.stops_at.north)];
     context.beginPath();
     for (const way of [-1, 1]) {
       context.moveTo(x - REST_PX, y - way * REST_PX);

@@ -182,7 +182,7 @@ export class FenceEditor {
       context.strokeStyle = bad || at > 0 ? palette.danger : palette.accent;
       context.stroke();
       context.fillStyle = context.strokeStyle;
-      for (const [x, y] of corners) context.fillRect(view.xOf(x) - CORNER_PX, view.yOf(y) - CORNER_PX, 2 * CORNER_PX, 2 * CORNER_PX);
+      for (const [x, y] of corners) context.fillRect(view.xOf(x, y) - CORNER_PX, view.yOf(x, y) - CORNER_PX, 2 * CORNER_PX, 2 * CORNER_PX);
     });
     if (document.activeElement === this.sheet && this.sheet.matches(':focus-visible')) this.cross(context, view.width / 2, view.height / 2);
   }

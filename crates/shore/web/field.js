@@ -12,6 +12,8 @@ const CIRCLES = [
 
 /** With more boats than this, circles have no labels. */
 const WORDS_MAX = 12;
+/** Width of the buttons on the chart, px. */
+const BUTTONS_PX = 250;
 
 /** The smallest step of 1, 2 or 5 times a power of ten that is at least `least`. */
 function niceStep(least) {
@@ -22,8 +24,8 @@ function niceStep(least) {
 function trace(context, view, points, closed) {
   context.beginPath();
   points.forEach(([x, y], index) => {
-    if (index === 0) context.moveTo(view.xOf(x), view.yOf(y));
-    else context.lineTo(view.xOf(x), view.yOf(y));
+    if (index === 0) context.moveTo(view.xOf(x, y), view.yOf(x, y));
+    else context.lineTo(view.xOf(x, y), view.yOf(x, y));
   });
   if (closed) context.closePath();
 }
@@ -67,43 +69,50 @@ function drawZones(context, view, field) {
   }
 }
 
+/** The grid's lines: positions on the screen, px, and coordinates, m. On a turned chart, columns are lines of equal north. */
+function gridOf(view, step) {
+  const corners = [view.placeOf(0, 0), view.placeOf(view.width, view.height)];
+  const [xs, ys] = [0, 1].map((axis) => {
+    const [low, high] = corners.map((corner) => corner[axis]).sort((a, b) => a - b);
+    return Array.from({ length: Math.max(0, Math.floor(high / step) - Math.ceil(low / step) + 1) }, (_, i) => (Math.ceil(low / step) + i) * step);
+  });
+  const [columns, rows] = view.turned ? [ys, xs] : [xs, ys];
+  return {
+    columns: columns.map((value) => [view.turned ? view.xOf(0, value) : view.xOf(value, 0), value]),
+    rows: rows.map((value) => [view.turned ? view.yOf(value, 0) : view.yOf(0, value), value]),
+  };
+}
+
 function drawGrid(context, view) {
   const step = niceStep(80 / view.scale);
+  const grid = gridOf(view, step);
   context.strokeStyle = palette.grid;
   context.lineWidth = 1;
   context.beginPath();
-  const left = Math.ceil(view.eastOf(0) / step) * step;
-  const bottom = Math.ceil(view.northOf(view.height) / step) * step;
-  for (let x = left; x <= view.eastOf(view.width); x += step) {
-    const at = Math.round(view.xOf(x)) + 0.5;
-    context.moveTo(at, 0);
-    context.lineTo(at, view.height);
+  for (const [at] of grid.columns) {
+    context.moveTo(Math.round(at) + 0.5, 0);
+    context.lineTo(Math.round(at) + 0.5, view.height);
   }
-  for (let y = bottom; y <= view.northOf(0); y += step) {
-    const at = Math.round(view.yOf(y)) + 0.5;
-    context.moveTo(0, at);
-    context.lineTo(view.width, at);
+  for (const [at] of grid.rows) {
+    context.moveTo(0, Math.round(at) + 0.5);
+    context.lineTo(view.width, Math.round(at) + 0.5);
   }
   context.stroke();
-  drawGridNumbers(context, view, step, left, bottom);
+  drawGridNumbers(context, view, grid, step < 1 ? 1 : 0);
 }
 
-function drawGridNumbers(context, view, step, left, bottom) {
+function drawGridNumbers(context, view, { columns, rows }, places) {
   context.font = '11px system-ui, sans-serif';
-  context.fillStyle = palette.faint;
-  const places = step < 1 ? 1 : 0;
   context.textAlign = 'center';
   context.textBaseline = 'bottom';
-  for (let x = left; x <= view.eastOf(view.width); x += step) {
-    const at = view.xOf(x);
+  for (const [at, value] of columns) {
     // The corners are reserved for the scale and the buttons.
-    if (at > 150 && at < view.width - 170) haloText(context, number(x, places), at, view.height - 3, palette.faint);
+    if (at > 150 && at < view.width - BUTTONS_PX) haloText(context, number(value, places), at, view.height - 3, palette.faint);
   }
   context.textAlign = 'left';
   context.textBaseline = 'middle';
-  for (let y = bottom; y <= view.northOf(0); y += step) {
-    const at = view.yOf(y);
-    if (at > 110 && at < view.height - 60) haloText(context, number(y, places), 4, at, palette.faint);
+  for (const [at, value] of rows) {
+    if (at > 110 && at < view.height - 60) haloText(context, number(value, places), 4, at, palette.faint);
   }
   context.font = FONT;
 }
@@ -149,7 +158,7 @@ function drawCircles(context, view, chart) {
       const px = metres * view.scale;
       if (px < 5) continue;
       context.beginPath();
-      context.arc(view.xOf(flag.x), view.yOf(flag.y), px, 0, 2 * Math.PI);
+      context.arc(view.xOf(flag.x, flag.y), view.yOf(flag.x, flag.y), px, 0, 2 * Math.PI);
       context.strokeStyle = teamColour(flag.team);
       context.globalAlpha = 0.75;
       context.lineWidth = 1.25;
@@ -160,7 +169,7 @@ function drawCircles(context, view, chart) {
       // With many boats they would clutter the chart.
       if (px < 55 || chart.vehicles.length > WORDS_MAX) continue;
       context.font = '11px system-ui, sans-serif';
-      haloText(context, `${word} ${number(metres, metres % 1 ? 1 : 0)} m`, view.xOf(flag.x), view.yOf(flag.y) - px - 2, palette.faint);
+      haloText(context, `${word} ${number(metres, metres % 1 ? 1 : 0)} m`, view.xOf(flag.x, flag.y), view.yOf(flag.x, flag.y) - px - 2, palette.faint);
       context.font = FONT;
     }
   }
@@ -170,7 +179,7 @@ function drawObstacle(context, view, obstacle) {
   if (obstacle.circle) {
     const [x, y, radius] = obstacle.circle;
     context.beginPath();
-    context.arc(view.xOf(x), view.yOf(y), Math.max(2, radius * view.scale), 0, 2 * Math.PI);
+    context.arc(view.xOf(x, y), view.yOf(x, y), Math.max(2, radius * view.scale), 0, 2 * Math.PI);
   } else if (obstacle.polygon) {
     trace(context, view, obstacle.polygon, true);
   } else {
@@ -185,8 +194,8 @@ function drawObstacle(context, view, obstacle) {
 
 /** A flag's home: the foot stays when the flag is taken. */
 function drawHome(context, view, flag) {
-  const x = view.xOf(flag.x);
-  const y = view.yOf(flag.y);
+  const x = view.xOf(flag.x, flag.y);
+  const y = view.yOf(flag.x, flag.y);
   context.beginPath();
   context.arc(x, y, 4, 0, 2 * Math.PI);
   context.fillStyle = palette.halo;
@@ -205,17 +214,17 @@ function drawZoneNames(context, view, chart) {
     const name = chart.teams[zone.team]?.name;
     if (!name || named.has(zone.team)) continue;
     named.add(zone.team);
-    const xs = zone.corners.map((corner) => corner[0]);
-    const ys = zone.corners.map((corner) => corner[1]);
+    const corners = zone.corners.map(([x, y]) => [view.xOf(x, y), view.yOf(x, y)]);
+    const [xs, ys] = [0, 1].map((axis) => corners.map((corner) => corner[axis]));
     const middle = ys.reduce((sum, each) => sum + each, 0) / ys.length;
-    const east = (Math.min(...xs) + Math.max(...xs)) / 2;
+    const across = Math.max(...xs) - Math.min(...xs);
+    const centre = Math.min(...xs) + across / 2;
     // Near the upper edge, clear of the boats.
-    const high = Math.max(...ys) - 26 / view.scale;
-    const y = view.yOf(inside(zone.corners, east, high) ? high : middle);
-    const across = (Math.max(...xs) - Math.min(...xs)) * view.scale;
+    const high = Math.min(...ys) + 26;
+    const y = inside(corners, centre, high) ? high : middle;
     if (across < 70) continue;
     context.globalAlpha = 0.7;
-    haloText(context, plain(name), view.xOf(east), y - 18, teamColour(zone.team));
+    haloText(context, plain(name), centre, y - 18, teamColour(zone.team));
     context.globalAlpha = 1;
   }
   context.font = FONT;
@@ -245,26 +254,26 @@ function drawScale(context, view) {
 }
 
 function drawNorth(context, view) {
-  const x = view.width - 33;
-  const y = 34;
-  context.beginPath();
-  context.moveTo(x, y - 18);
-  context.lineTo(x + 7, y + 12);
-  context.lineTo(x, y + 7);
-  context.closePath();
-  context.fillStyle = palette.ink;
-  context.fill();
-  context.beginPath();
-  context.moveTo(x, y - 18);
-  context.lineTo(x - 7, y + 12);
-  context.lineTo(x, y + 7);
-  context.closePath();
-  context.strokeStyle = palette.ink;
-  context.lineWidth = 1.25;
-  context.stroke();
+  context.save();
+  context.translate(view.width - 33, 34);
+  context.rotate(-view.up_rad);
+  for (const way of [1, -1]) {
+    context.beginPath();
+    context.moveTo(0, -18);
+    context.lineTo(7 * way, 12);
+    context.lineTo(0, 7);
+    context.closePath();
+    context.fillStyle = palette.ink;
+    if (way > 0) context.fill();
+    context.strokeStyle = palette.ink;
+    context.lineWidth = 1.25;
+    if (way < 0) context.stroke();
+  }
+  context.restore();
   context.textAlign = 'center';
-  context.textBaseline = 'top';
+  context.textBaseline = 'middle';
   context.font = '600 12px system-ui, sans-serif';
-  haloText(context, 'N', x, y + 14);
+  // Behind the arrow's tail.
+  haloText(context, 'N', view.width - 33 + 21 * Math.sin(view.up_rad), 34 + 21 * Math.cos(view.up_rad));
   context.font = FONT;
 }

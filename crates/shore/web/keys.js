@@ -12,14 +12,14 @@ const PAD = `left stick, after you press one of its buttons${isSecureContext ? '
 
 const HELP = [
   ['The chart', [['+  −', 'zoom'], ['arrows', 'move the chart'], ['f  0', 'fit the field'], ['[  ]', 'select the previous or next boat'],
-    ['o', 'follow the boat'], ['m', 'measure; Enter chooses the selected boat or the centre of the chart'], ['l', 'legend'], ['Geofence', 'draw one: Enter adds a corner, Backspace removes it'], ['Escape', 'close, stop driving, or deselect the boat'], ['/', 'find a boat in a large fleet'], ['1 to 4', 'boats, details, events, game']]],
+    ['o', 'follow the boat'], ['m', 'measure; Enter chooses the selected boat or the centre of the chart'], ['l', 'legend'], ['j', 'plots'], ['k', 'hide or show the panel'], ['Geofence', 'draw one: Enter adds a corner, Backspace removes it'], ['Escape', 'close, stop driving, or deselect the boat'], ['/', 'find a boat in a large fleet'], ['1 to 4', 'boats, details, events, game']]],
   ['The game', [['space', 'pause or resume'], ['s', 'pause and step one decision'], [',  .', 'slower, faster'], ['h', 'halt all boats, or end the halt'],
     ['Shift+E', 'E-stop without confirmation, or release it; with real boats also e alone']]],
   ['Driving', [['d', 'drive the selected boat, if possible'], ['arrows, w a s d', 'course and speed'], ['Escape', 'stop driving'],
     ['gamepad', PAD]]],
   ['A replay', [['n  p', 'next or previous event'], [KINDS.map(([, key]) => key).join('  '),
     `next among ${KINDS.map(([name]) => name.toLowerCase()).join(', ')}; with Shift: previous`],
-    ['Shift+s', 'step one decision back'], ['left, right', 'one second back or forward (with Shift: ten)']]],
+    ['Shift+s', 'step one decision back'], ['left, right', 'one second back or forward (with Shift: ten)'], ['wheel', 'zoom the time line or the plots; on the time line also + and −, 0 for the whole game']]],
 ];
 
 /** Whether the element takes keys: fields and lists. */
@@ -39,7 +39,7 @@ export class Keys {
     this.plain = {
       '+': () => page.zoom(ZOOM), '=': () => page.zoom(ZOOM), '-': () => page.zoom(1 / ZOOM), '_': () => page.zoom(1 / ZOOM),
       f: () => page.fit(), 0: () => page.fit(), '[': () => page.selectNext(-1), ']': () => page.selectNext(1),
-      o: () => page.toggleFollow(), m: () => page.measure.toggle(), l: () => page.controls.toggleShown('legend'), d: () => page.toggleDrive(), '?': () => this.toggleHelp(),
+      o: () => page.toggleFollow(), m: () => page.measure.toggle(), l: () => page.controls.toggleShown('legend'), j: () => page.plots.toggle(), k: () => page.panels.toggleSide(), d: () => page.toggleDrive(), '?': () => this.toggleHelp(),
       s: () => page.controls.step(1), S: () => page.controls.step(-1), ',': () => page.controls.shiftSpeed(-1),
       '.': () => page.controls.shiftSpeed(1), h: () => page.controls.halt(),
       // A slip of the finger must not stop a simulation; with real boats every second counts.

@@ -78,12 +78,16 @@ function entriesOf(chart) {
 export class Legend {
   constructor() {
     this.place = document.getElementById('chart-legend');
+    this.wide = matchMedia('(min-width: 900px)');
     this.drawn = '';
   }
 
   /** Shows or hides it; redrawn if colours or the game have changed. */
   tell(game, visible) {
     show(this.place, visible && Boolean(game.hello));
+    // Beside the chart, or where a phone has space for it.
+    const beside = document.getElementById(this.wide.matches ? 'main' : 'pane-game');
+    if (this.place.parentElement !== beside) beside.prepend(this.place);
     const key = `${palette.version} ${game.greeted}`;
     if (!visible || !game.hello || key === this.drawn) return;
     this.drawn = key;

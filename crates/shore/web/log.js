@@ -114,7 +114,8 @@ export class Log {
 
   /** Scrolls to the newest event of a replay, unless someone is reading the list. */
   keepInSight(at) {
-    const row = this.place.children[Math.max(0, at)];
+    // Before the first event, the next one.
+    const row = this.place.children[Math.min(this.lines.length - 1, Math.max(0, at))];
     if (!row || this.folded || this.place.matches(':hover, :focus-within')) return;
     const pane = this.place.closest('.pane');
     const box = row.getBoundingClientRect();

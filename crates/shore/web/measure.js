@@ -59,7 +59,7 @@ export class Measure {
     const from = this.placeOf(game, this.ends[0]);
     let to = null;
     if (this.ends.length === 2) to = this.placeOf(game, this.ends[1]);
-    else if (this.pointed) to = [view.eastOf(this.pointed.x), view.northOf(this.pointed.y)];
+    else if (this.pointed) to = view.placeOf(this.pointed.x, this.pointed.y);
     if (!to) return { from, to: from, range_m: 0, bearing_deg: NaN };
     const [east, north] = [to[0] - from[0], to[1] - from[1]];
     return { from, to, range_m: Math.hypot(east, north), bearing_deg: (Math.atan2(east, north) * 180) / Math.PI };
@@ -71,8 +71,8 @@ export class Measure {
     if (!this.pointed && this.ends.length < 2) this.cross(context, view.width / 2, view.height / 2);
     const reading = this.reading(game, view);
     if (!reading) return;
-    const [fromX, fromY] = [view.xOf(reading.from[0]), view.yOf(reading.from[1])];
-    const [toX, toY] = [view.xOf(reading.to[0]), view.yOf(reading.to[1])];
+    const [fromX, fromY] = [view.xOf(...reading.from), view.yOf(...reading.from)];
+    const [toX, toY] = [view.xOf(...reading.to), view.yOf(...reading.to)];
     for (const [width, colour] of [[4, palette.halo], [2, palette.accent]]) {
       context.beginPath();
       context.moveTo(fromX, fromY);
@@ -123,7 +123,7 @@ export class Measure {
     const at = this.pointed ?? (byKeys ? { x: view.width / 2, y: view.height / 2 } : null);
     show(this.place, at !== null);
     if (!at) return;
-    const [x, y] = [view.eastOf(at.x), view.northOf(at.y)];
+    const [x, y] = view.placeOf(at.x, at.y);
     const { datum } = game.chart.field ?? {};
     write(this.place, `x ${number(x, 1)} y ${number(y, 1)} m${datum ? ` · ${latLonWords(datum, x, y)}` : ''}`);
   }

@@ -18,11 +18,13 @@
 //   fences, stops                 [{ outline, keepOuts }] of real boats; [{ name, stopping_m, clearance_m }]
 //   background                    whether an image or a shoreline is shown below the field
 //   drawn, fps, draw_ms           frames drawn; pictures per second; mean time to draw a picture
-//   view                          { x, y, scale }: centre, and pixels per metre
+//   view                          { x, y, scale, up_deg }: centre, pixels per metre, and the bearing that is up
+//   span                          { from_s, to_s, pointed_s }: the section that the time line shows, and the moment pointed at, or null
 //   measured                      { range_m, bearing_deg }; null before two ends are chosen
 //
 // Elements with stable ids: score-<team>, clock, rate, phase, rights, connection, notices, events, boat-list, rose,
-// rose-function, events-fold, show-plots, plots, plot-other, share, png, film, gif, boat-search, boat-order, boat-states, behaviours, variables, gateway, helm-reason, follow,
+// rose-function, events-fold, show-plots, plots, plot-boats, plot-add, time-in, time-out, time-whole, timeline-tip, north-up, side-hide, side-show,
+// side-edge, plots-edge, pane-events-edge, share, png, film, gif, boat-search, boat-order, boat-states, behaviours, variables, gateway, helm-reason, follow,
 // drive, boat-facts, boat-badge, checks, operated, operate, operate-<command>, mission-file, operator-token, alarms, mute, acknowledge-all, show-chart, draw-
 // fence, fence-toml, fence-part, fence-<action>,
 // deselect, steering, pause, step, step-back, speed, halt, halt-confirm, halt-cancel, estop, estop-confirm, estop-cancel, stop,
@@ -49,10 +51,13 @@ import { Legend } from './legend.js';
 import { BoatList } from './list.js';
 import { Log } from './log.js';
 import { Measure } from './measure.js';
+import { North } from './north.js';
 import { palette } from './palette.js';
+import { Panels } from './panels.js';
 import { Plots } from './plots.js';
 import { Pointer } from './pointer.js';
 import { Sea, Weather } from './sea.js';
+import { Span } from './span.js';
 import { notice, Status } from './status.js';
 import { Tabs } from './tabs.js';
 import { Theme } from './theme.js';
@@ -64,6 +69,8 @@ import { plain, show, write } from './words.js';
 
 /** Interval at which texts are written, ms. */
 const TELL_MS = 200;
+/** The same for the details of the selected boat. */
+const DETAILS_MS = 40;
 /** The same for the list of boats. */
 const LIST_EVERY = 3;
 /** A page without a game says so after this time, ms. */
@@ -98,8 +105,11 @@ class Page {
     this.status = new Status(() => this.timeline.watch());
     this.controls = new Controls(send);
     this.drive = new Drive(send);
-    this.timeline = new Timeline(send);
-    this.plots = new Plots({ send: (message) => this.link.send(message), seek: (t_s) => this.timeline.seek(t_s), moved: () => this.tell() });
+    this.span = new Span();
+    this.panels = new Panels();
+    this.timeline = new Timeline(send, this.span);
+    this.north = new North(this.view, [this.drive]);
+    this.plots = new Plots({ send: (message) => this.link.send(message), seek: (t_s) => this.timeline.seek(t_s), span: this.span });
     this.capture = new Capture(this.layers, this.game);
     this.list = new BoatList({ choose: (name) => this.look(name), hover: (at) => { this.boats.hovered = at; } });
     this.log = new Log((event) => this.goTo(event));
@@ -107,6 +117,7 @@ class Page {
       follow: () => this.toggleFollow(), drive: () => this.toggleDrive(), close: () => this.select(null), send,
       acknowledge: (name) => this.alarms.acknowledge((alarm) => alarm.boat === name),
     });
+    this.north.dials.push(this.details.rose);
     this.alarms = new Alarms({ choose: (name) => this.look(name) });
     this.background = new Background({ changed: () => { this.drawnField = ''; } });
     this.background.load();
@@ -119,6 +130,7 @@ class Page {
     this.drawnField = '';
     this.drawnBoats = '';
     this.ticks = 0;
+    this.told_ms = 0;
     this.bind();
     this.keys = new Keys(this);
   }
@@ -181,11 +193,15 @@ class Page {
         game.takeEvents(message);
         this.controls.tellEvents(message.events ?? [], message.reset);
         break;
-      case 'helm': if (message.vehicle === game.selected) game.helm = message; break;
+      case 'helm':
+        if (message.vehicle !== game.selected) break;
+        game.helm = message;
+        this.due = true;
+        break;
       case 'modes': game.modes = message.modes; break;
       case 'curves':
-        if (message.vehicle === null) this.timeline.takeScore(message);
-        else this.plots.take(message);
+        this.plots.curves.take(message);
+        this.timeline.takeScore(message);
         break;
       case 'estimate': if (message.vehicle === game.selected) game.estimate = message; break;
       case 'status': game.takeStatus(message, performance.now()); break;
@@ -337,8 +353,9 @@ class Page {
   tap(x, y, touch) {
     this.sheet.focus({ preventScroll: true });
     const at = this.boats.at(this.game, this.view, x, y, touch ? REACH_TOUCH_PX : REACH_MOUSE_PX);
-    if (this.fenceEditor.active) this.fenceEditor.take(this.view.eastOf(x), this.view.northOf(y));
-    else if (this.measure.active) this.measure.take(at >= 0 ? { boat: at } : { x: this.view.eastOf(x), y: this.view.northOf(y) });
+    const place = this.view.placeOf(x, y);
+    if (this.fenceEditor.active) this.fenceEditor.take(...place);
+    else if (this.measure.active) this.measure.take(at >= 0 ? { boat: at } : { x: place[0], y: place[1] });
     else if (at >= 0) this.select(this.game.vehicles[at].name, true);
   }
 
@@ -364,7 +381,7 @@ class Page {
   zoom(factor) {
     const { game, view } = this;
     const index = game.frames > 0 ? game.indexOf.get(game.selected) : undefined;
-    const [x, y] = index === undefined ? [-1, -1] : [view.xOf(game.x[index]), view.yOf(game.y[index])];
+    const [x, y] = index === undefined ? [-1, -1] : [view.xOf(game.x[index], game.y[index]), view.yOf(game.x[index], game.y[index])];
     const within = x >= 0 && y >= 0 && x <= view.width && y <= view.height;
     view.zoomAt(within ? x : view.width / 2, within ? y : view.height / 2, factor);
   }
@@ -451,6 +468,14 @@ class Page {
     if (document.hidden) this.status.tellFrame(game);
   }
 
+  /** Writes the details for each new frame and report: at ten times real time the other texts would lag the chart by seconds. */
+  tellDetails(now_ms) {
+    const { game } = this;
+    if (game.selected === null || (game.frames === this.toldFrames && !this.due) || now_ms - this.told_ms < DETAILS_MS) return;
+    Object.assign(this, { toldFrames: game.frames, told_ms: now_ms, due: false });
+    this.details.tell(game, this.following, this.driver, this.readings);
+  }
+
   /** The gateways' reports on real boats: badges and alarms. */
   tellReal(now_ms) {
     const { game } = this;
@@ -483,6 +508,7 @@ class Page {
     const moving = game.pose(now_ms);
     const index = game.indexOf.get(game.selected) ?? -1;
     if (this.following && index >= 0) view.centreOn(game.x[index], game.y[index]);
+    this.north.tell();
     const shown = this.controls.shown;
     this.sea.draw(view, game.t_s, shown, now_ms);
     const look = `${view.version} ${palette.version} ${this.controls.shownVersion}`;
@@ -497,6 +523,9 @@ class Page {
     }
     this.drawnBoats = moving ? '' : boats;
     this.timeline.draw();
+    if (game.mode === 'live' && game.frames > 0) this.plots.history.take(game);
+    this.plots.draw(game, now_ms);
+    this.tellDetails(now_ms);
     this.capture.drawn();
     if (game.frames > 0 || game.hello) this.status.tellFrame(game);
     if (this.link.owed > 0) {

@@ -1,125 +1,211 @@
-// Plots of the selected boat over a recorded game, below the time line and synchronised with the chart.
+// Plots of boats over the game, below the chart: any quantities of any boats, with the section and the moment of the time line.
 
-import { drawDiagram, partAt, sampleAt } from './diagram.js';
+import { Curves } from './curves.js';
+import { History } from './history.js';
 import { palette, teamColour } from './palette.js';
-import { keep, recall } from './storage.js';
-import { bearing, clock, make, number, options, plain, show, write } from './words.js';
+import { Plot } from './plot.js';
+import { keep, recallObject } from './storage.js';
+import { make, options, plain, show, write } from './words.js';
 
 const KEY = 'squall.plots';
-const MARGIN = { left: 4, right: 4, top: 4, bottom: 4 };
-const NONE = '';
-/** Minimum range of a plot, m or m/s, so that noise does not fill it. */
-const LEAST = 1;
-
-const metres = (value) => number(value, 1, 'm');
-const speed = (value) => number(value, 2, 'm/s');
-
-/** Each plot: title, the boat's curves (the ordered one first), the format of values, and whether they wrap around. */
-const PLOTS = [
-  ['Speed', ['ordered_speed_m_s', 'speed_m_s'], speed, false],
-  ['Heading', ['ordered_heading_deg', 'heading_deg'], bearing, true],
-  ['To the flag', ['flag_m'], metres, false],
-  ['Navigation error', ['error_m'], metres, false],
-  ['Range', ['range_m'], metres, false],
-];
+const ADD = '';
+const EVERYBODY = '*';
+const DEFAULT = [{ quantity: 'speed_m_s' }, { quantity: 'heading_deg' }];
+const PLOTS_MAX = 6;
+/** Boats with their own colour. */
+const COLOURS = 8;
+/** In a live game, drawing takes at most one part in this many of the time. */
+const SHARE = 25;
+/** Minimum interval between drawings of new samples, ms. */
+const AGAIN_MS = 250;
 
 export class Plots {
-  /** `on` has `send(message)`, `seek(t_s)`, and `moved()`, called when the chart's size changes. */
+  /** `on` has `send(message)`, which returns whether it was sent, `seek(t_s)`, and `span`. */
   constructor(on) {
     this.on = on;
     this.button = document.getElementById('show-plots');
     this.place = document.getElementById('plots');
-    this.other = make('select');
-    this.other.id = 'plot-other';
-    this.other.setAttribute('aria-label', 'Range to');
-    this.open = recall(KEY) === 'true';
-    this.asked = '';
-    this.curves = null;
+    this.curves = new Curves(on.send);
+    this.history = new History();
+    const stored = recallObject(KEY);
+    this.open = stored === true || stored?.open === true;
+    this.boats = Array.isArray(stored?.boats) ? stored.boats : [];
+    this.rest_ms = 0;
+    this.spent_ms = 0;
+    this.build();
+    for (const each of Array.isArray(stored?.plots) && stored.plots.length > 0 ? stored.plots.slice(0, PLOTS_MAX) : DEFAULT) this.add(each);
     this.button.addEventListener('click', () => this.toggle());
-    this.other.addEventListener('change', () => { this.asked = ''; });
-    this.plots = PLOTS.map(([title, keys, words, round]) => this.build(title, keys, words, round));
-    this.none = make('p', 'faint', 'Select a boat to see its curves.');
-    this.place.replaceChildren(this.none, ...this.plots.map(({ box }) => box));
   }
 
-  build(title, keys, words, round) {
-    const canvas = make('canvas');
-    canvas.setAttribute('role', 'img');
-    const value = make('span', 'value');
-    const head = make('figcaption', '', '', make('span', '', title), ...(title === 'Range' ? [this.other] : []), value);
-    canvas.addEventListener('pointerdown', (event) => this.press(event, canvas));
-    canvas.addEventListener('pointermove', (event) => event.buttons > 0 && this.press(event, canvas));
-    return { box: make('figure', 'plot', '', head, canvas), canvas, value, title, keys, words, round, drawn: '' };
+  build() {
+    this.chips = make('span', 'plot-boats');
+    this.chooser = make('select');
+    this.chooser.id = 'plot-boats';
+    this.chooser.setAttribute('aria-label', 'Boats');
+    this.chooser.addEventListener('change', () => this.choose(this.chooser.value));
+    this.more = make('button', '', '+ Plot');
+    Object.assign(this.more, { id: 'plot-add', type: 'button', title: 'Add a plot' });
+    this.more.addEventListener('click', () => {
+      this.add({ quantity: 'flag_m' });
+      this.changed();
+    });
+    this.whole = make('button', '', 'Whole game');
+    Object.assign(this.whole, { type: 'button', title: 'Show the whole game (double click)' });
+    this.whole.addEventListener('click', () => this.on.span.showAll());
+    this.box = make('div', 'plot-grid');
+    this.place.append(make('div', 'plots-head', '', this.chips, this.chooser, this.more, this.whole), this.box);
+    this.plots = [];
   }
 
-  press(event, canvas) {
-    const { t_s } = this.curves ?? {};
-    if (t_s?.length > 0) this.on.seek(t_s[0] + partAt(event, canvas, MARGIN) * (t_s.at(-1) - t_s[0]));
+  add(settings) {
+    const plot = new Plot({
+      span: this.on.span, seek: (t_s) => this.game.mode === 'replay' && this.on.seek(t_s),
+      changed: () => this.changed(), remove: (each) => this.remove(each),
+    }, settings);
+    this.plots.push(plot);
+    this.box.append(plot.box);
+    if (this.game) plot.greet(this.game);
+  }
+
+  remove(plot) {
+    plot.remove();
+    this.plots = this.plots.filter((each) => each !== plot);
+    this.changed();
+  }
+
+  /** Stores the settings. */
+  changed() {
+    keep(KEY, JSON.stringify({ open: this.open, boats: this.boats, plots: this.plots.map(({ settings }) => settings) }));
+    show(this.more, this.plots.length < PLOTS_MAX);
+    this.rest_ms = 0;
   }
 
   toggle() {
     this.open = !this.open;
-    keep(KEY, String(this.open));
-    this.on.moved();
+    this.changed();
+    this.showOpen();
+  }
+
+  showOpen() {
+    show(this.place, this.open && Boolean(this.game));
+    document.body.classList.toggle('plotting', this.open);
+    this.button.setAttribute('aria-pressed', String(this.open));
+  }
+
+  /** Adds a boat, a team or everybody. */
+  choose(value) {
+    const { vehicles, chart } = this.game;
+    const team = chart.teams.findIndex((_, index) => value === `team ${index}`);
+    const more = vehicles.filter((vehicle) => value === EVERYBODY || vehicle.name === value || vehicle.team === team).map(({ name }) => name);
+    this.boats = [...new Set([...this.boats, ...more])];
+    this.chooser.value = ADD;
+    this.changed();
   }
 
   greet(game) {
-    this.curves = null;
-    this.asked = '';
-    options(this.other, [[NONE, 'to …'], ...game.vehicles.map(({ name }) => [name, `to ${plain(name)}`])]);
+    this.game = game;
+    this.curves.greet(game);
+    this.history.greet(game);
+    options(this.chooser, [[ADD, '+ Boats'], [EVERYBODY, 'all boats'], ...game.chart.teams.map(({ name }, index) => [`team ${index}`, `all of ${plain(name)}`]),
+      ...game.vehicles.map(({ name }) => [name, plain(name)])]);
+    for (const plot of this.plots) plot.greet(game);
+    this.on.span.forget();
+    this.showOpen();
   }
 
-  /** Takes curves from the server. The score alone is for the time line. */
-  take(message) {
-    if (message.vehicle === null) return;
-    this.curves = message;
+  get source() {
+    return this.game.mode === 'replay' ? this.curves : this.history;
   }
 
-  /** Requests the curves of the selected boat once they are visible, and draws them. */
+  /** The boats shown, by index: the added ones and the selected one. */
+  shown(game) {
+    const names = game.selected === null || this.boats.includes(game.selected) ? this.boats : [...this.boats, game.selected];
+    return names.map((name) => game.indexOf.get(name)).filter((index) => index !== undefined);
+  }
+
+  /** The first boat of a team has its colour, the others have more colours; in a crowd all have their team's. */
+  colours(game, boats) {
+    const taken = new Set();
+    let extra = game.chart.teams.length;
+    return new Map(boats.map((boat) => {
+      const team = game.teams[boat];
+      const own = boats.length > COLOURS || !taken.has(team);
+      taken.add(team);
+      return [boat, own ? teamColour(team) : palette.series[extra++ % COLOURS]];
+    }));
+  }
+
+  /** Samples a frame, and requests missing curves. */
   tell(game) {
-    const replay = game.mode === 'replay';
-    show(this.button, replay);
-    this.button.setAttribute('aria-pressed', String(this.open));
-    show(this.place, replay && this.open);
-    if (!replay || !this.open) return;
-    const boat = game.selected;
-    const other = this.other.value === boat ? NONE : this.other.value;
-    const wanted = `${boat} ${other}`;
-    if (boat !== null && wanted !== this.asked && this.on.send({ do: 'curves', vehicle: boat, other: other || null })) this.asked = wanted;
-    show(this.none, boat === null);
-    for (const plot of this.plots) {
-      show(plot.box, boat !== null);
-      if (boat !== null) this.draw(plot, game);
+    if (game.mode === 'live') {
+      const { times } = this.history;
+      if (times.length > 0) this.on.span.setWhole(times[0], times.at(-1));
     }
+    if (!this.open || !game.hello) return;
+    const boats = this.shown(game);
+    const others = this.plots.map((plot) => plot.otherOf(game)).filter((index) => index >= 0);
+    if (game.mode === 'replay') this.curves.want([...boats, ...others]);
+    this.tellChips(game, boats);
+    show(this.whole, this.on.span.zoomed);
   }
 
-  /** The known curves of a plot. */
-  lists(plot, boat) {
-    if (this.curves?.vehicle !== boat) return [];
-    return plot.keys.map((key) => (key === 'range_m' ? this.curves.range_m : this.curves.boat?.[key]) ?? []);
+  tellChips(game, boats) {
+    const key = `${boats.join()} ${game.selected} ${this.boats.join()} ${palette.version} ${game.greeted}`;
+    if (key === this.chipped) return;
+    this.chipped = key;
+    const colours = this.colours(game, boats);
+    const chips = boats.length > COLOURS ? [this.chip(`${boats.length} boats`, 'transparent', () => { this.boats = []; })]
+      : boats.map((boat) => {
+        const { name } = game.vehicles[boat];
+        const added = this.boats.includes(name);
+        return this.chip(plain(name), colours.get(boat), added ? () => { this.boats = this.boats.filter((each) => each !== name); } : null);
+      });
+    this.chips.replaceChildren(...(chips.length > 0 ? chips : [make('span', 'faint', 'Select a boat, or add boats.')]));
   }
 
-  draw(plot, game) {
-    const lists = this.lists(plot, game.selected);
-    const times = this.curves?.t_s ?? [];
-    const at = sampleAt(times, game.t_s);
-    const now = lists.at(-1)?.[at];
-    const words = Number.isFinite(now) ? plot.words(now) : '–';
-    write(plot.value, words);
-    const label = `${plot.title} of ${plain(game.selected)} over the game; at ${clock(game.t_s)}: ${words}`;
-    if (plot.canvas.getAttribute('aria-label') !== label) plot.canvas.setAttribute('aria-label', label);
-    const { clientWidth: width, clientHeight: height } = plot.canvas;
-    const ratio = Math.min(2, devicePixelRatio);
-    const key = `${width} ${height} ${ratio} ${palette.version} ${at} ${this.curves?.vehicle} ${this.curves?.other} ${game.selected}`;
-    if (key === plot.drawn || width === 0) return;
-    plot.drawn = key;
-    const most = plot.round ? 360 : Math.max(LEAST, ...lists.map((list) => list.reduce((most, each) => Math.max(most, each ?? 0), 0)));
-    const { team } = game.vehicles[game.indexOf.get(game.selected)];
-    const line = (values, which) => (lists.length === 2 && which === 0
-      ? { xs: times, values, colour: palette.faint, width: 1 } : { xs: times, values, colour: teamColour(team), width: 1.5 });
-    drawDiagram(plot.canvas, {
-      lines: lists.map(line), from: times[0] ?? 0, to: times.at(-1) ?? 1, low: 0, high: most, margin: MARGIN, at: game.t_s,
-      corner: plot.round ? '360°' : plot.words(most), round: plot.round,
+  /** A boat with its colour; `remove` removes it. */
+  chip(name, colour, remove) {
+    const swatch = make('span', 'plot-swatch');
+    swatch.style.setProperty('--team', colour);
+    const chip = make(remove ? 'button' : 'span', 'plot-chip', '', swatch, make('span', '', name));
+    if (!remove) return chip;
+    Object.assign(chip, { type: 'button', title: `Remove ${name}` });
+    chip.append(make('span', 'cross', '×'));
+    chip.addEventListener('click', () => {
+      remove();
+      this.changed();
+      this.tell(this.game);
     });
+    return chip;
+  }
+
+  /** Draws at most one plot for each picture, and in a live game not more often than there is time for. */
+  draw(game, now_ms) {
+    if (!this.open || !game.hello) return;
+    const live = game.mode === 'live';
+    if (!live || now_ms >= this.rest_ms) this.drawNext(game, now_ms, live);
+    for (const plot of this.plots) plot.mark(game);
+  }
+
+  drawNext(game, now_ms, live) {
+    const boats = this.shown(game);
+    const colours = this.colours(game, boats);
+    const colourOf = (boat) => colours.get(boat);
+    const first = this.turn ?? 0;
+    for (let i = 0; i < this.plots.length; i++) {
+      const at = (first + i) % this.plots.length;
+      const began_ms = performance.now();
+      if (!this.plots[at].draw(game, this.source, boats, colourOf)) continue;
+      this.turn = at + 1;
+      this.spent_ms += performance.now() - began_ms;
+      // A crowd is not finished yet.
+      if (this.plots[at].crowd.job) {
+        this.turn = at;
+        return;
+      }
+      if (live) this.rest_ms = now_ms + Math.max(AGAIN_MS / this.plots.length, this.spent_ms * SHARE);
+      this.spent_ms = 0;
+      return;
+    }
   }
 }

@@ -1,5 +1,6 @@
 // The rose: an objective function of a helm as a polar heat map. The angle is the course, the radius the speed.
 
+import { haloText } from './field.js';
 import { palette } from './palette.js';
 import { number, wrapDeg } from './words.js';
 
@@ -21,6 +22,8 @@ export class Rose {
     this.context = canvas.getContext('2d');
     this.small = document.createElement('canvas');
     this.drawn = null;
+    /** The bearing that is up, as on the chart. */
+    this.up_deg = 0;
   }
 
   /** Draws `utilities` of a report; null draws an empty rose. `now` is the boat's true course and speed. */
@@ -28,7 +31,7 @@ export class Rose {
     const side = this.canvas.clientWidth;
     if (side === 0) return;
     const ratio = Math.min(2, devicePixelRatio);
-    const key = [report?.at_s, utilities, palette.version, side, ratio, Math.round(now.course_deg), now.speed_m_s.toFixed(1)];
+    const key = [report?.at_s, utilities, palette.version, side, ratio, Math.round(now.course_deg), now.speed_m_s.toFixed(1), this.up_deg];
     if (this.drawn?.every((each, i) => each === key[i])) return;
     this.drawn = key;
     if (this.canvas.width !== side * ratio || this.canvas.height !== side * ratio) {
@@ -58,23 +61,34 @@ export class Rose {
     const context = this.small.getContext('2d');
     const image = context.createImageData(size, size);
     const pixels = new Uint32Array(image.data.buffer);
-    const half = size / 2;
     const { courses, speeds } = report;
+    const cells = this.cellsOf(size, courses, speeds);
+    for (let at = 0; at < cells.length; at++) {
+      if (cells[at] >= 0) pixels[at] = SHADES[Math.min(100, Math.max(0, Math.round(utilities[cells[at]] ?? 0)))];
+    }
+    context.putImageData(image, 0, 0);
+    this.context.drawImage(this.small, middle - radius, middle - radius, 2 * radius, 2 * radius);
+  }
+
+  /** The option of each pixel, -1 outside: the same for all reports. */
+  cellsOf(size, courses, speeds) {
+    const key = `${size} ${courses} ${speeds} ${this.up_deg}`;
+    if (key === this.cellsKey) return this.cells;
+    this.cellsKey = key;
+    this.cells = new Int32Array(size * size).fill(-1);
+    const half = size / 2;
     for (let row = 0; row < size; row++) {
       const up = half - row - 0.5;
       for (let column = 0; column < size; column++) {
         const right = column + 0.5 - half;
         const out = Math.hypot(right, up) / half;
         if (out > 1) continue;
-        const turn = Math.atan2(right, up) / (2 * Math.PI);
+        const turn = Math.atan2(right, up) / (2 * Math.PI) + this.up_deg / 360;
         const course = ((Math.round(turn * courses) % courses) + courses) % courses;
-        const speed = Math.round(out * (speeds - 1));
-        const value = Math.min(100, Math.max(0, Math.round(utilities[course * speeds + speed] ?? 0)));
-        pixels[row * size + column] = SHADES[value];
+        this.cells[row * size + column] = course * speeds + Math.round(out * (speeds - 1));
       }
     }
-    context.putImageData(image, 0, 0);
-    this.context.drawImage(this.small, middle - radius, middle - radius, 2 * radius, 2 * radius);
+    return this.cells;
   }
 
   frame(middle, radius, speedMax) {
@@ -92,21 +106,23 @@ export class Rose {
     context.textAlign = 'center';
     context.textBaseline = 'middle';
     context.fillStyle = palette.ink;
-    [['N', 0, -1], ['E', 1, 0], ['S', 0, 1], ['W', -1, 0]].forEach(([letter, x, y]) => {
-      context.fillText(letter, middle + x * (radius + 11), middle + y * (radius + 11));
+    ['N', 'E', 'S', 'W'].forEach((letter, quarter) => {
+      const angle = ((quarter * 90 - this.up_deg) * Math.PI) / 180;
+      context.fillText(letter, middle + Math.sin(angle) * (radius + 11), middle - Math.cos(angle) * (radius + 11));
     });
     context.font = '11px system-ui, sans-serif';
     context.fillStyle = palette.faint;
     context.textAlign = 'left';
-    const at = radius * Math.SQRT1_2;
-    // A small rose has no space for the unit.
-    if (speedMax > 0) context.fillText(number(speedMax, 1, radius > 80 ? 'm/s' : ''), middle + at + 3, middle + at + 7);
+    if (!(speedMax > 0)) return;
+    // A small rose has no space for the unit, nor for the inner ring's speed.
+    context.fillText(number(speedMax, 1, radius > 80 ? 'm/s' : ''), middle + radius * Math.SQRT1_2 + 3, middle + radius * Math.SQRT1_2 + 7);
+    if (radius > 80) haloText(context, number(speedMax / 2, 1), middle + radius * Math.SQRT1_2 * 0.5 + 2, middle + radius * Math.SQRT1_2 * 0.5 + 6);
   }
 
   /** The chosen course and speed as a ring with a point, those of the boat as a small diamond. */
   dot(middle, radius, course_deg, out, chosen) {
     const { context } = this;
-    const angle = (wrapDeg(course_deg) * Math.PI) / 180;
+    const angle = (wrapDeg(course_deg - this.up_deg) * Math.PI) / 180;
     const far = radius * Math.min(1, Math.max(0, out || 0));
     const x = middle + Math.sin(angle) * far;
     const y = middle - Math.cos(angle) * far;

@@ -66,17 +66,18 @@ export class Sea {
   sum(view, t_s, cell, across, down) {
     const heights = this.heights.fill(0);
     const cell_m = cell / view.scale;
-    const left = view.eastOf(0);
-    const top = view.northOf(0);
+    const [left, top] = view.placeOf(0, 0);
+    // One cell to the right, and one down, m.
+    const [rightX, rightY, downX, downY] = view.turned ? [0, -cell_m, -cell_m, 0] : [cell_m, 0, 0, -cell_m];
     for (const { amplitude_m, k_x, k_y, omega_rad_s, phase_rad } of this.components) {
       // Waves too short for the cells would only flicker.
       const finest = Math.hypot(k_x, k_y) * cell_m;
       const amplitude = amplitude_m * Math.min(1, Math.max(0, 2 - finest));
       if (amplitude === 0) continue;
-      const turnCos = Math.cos(k_x * cell_m);
-      const turnSin = Math.sin(k_x * cell_m);
+      const turnCos = Math.cos(k_x * rightX + k_y * rightY);
+      const turnSin = Math.sin(k_x * rightX + k_y * rightY);
       for (let row = 0; row < down; row++) {
-        const phase = k_x * left + k_y * (top - row * cell_m) - omega_rad_s * t_s + phase_rad;
+        const phase = k_x * (left + row * downX) + k_y * (top + row * downY) - omega_rad_s * t_s + phase_rad;
         let c = amplitude * Math.cos(phase);
         let s = amplitude * Math.sin(phase);
         const end = (row + 1) * across;

@@ -1,7 +1,8 @@
 // The time line of a replay: the current moment, the events, and ways to reach them.
 
+import { sampleAt, ticksOf } from './diagram.js';
 import { palette } from './palette.js';
-import { clock, clockShort, make, options, show } from './words.js';
+import { clock, clockShort, make, number, options, plain, show } from './words.js';
 
 /** Kinds of marks: name, key, events, shape. */
 export const KINDS = [
@@ -15,9 +16,23 @@ export const KINDS = [
 const ANY = 'any';
 /** Minimum time between two seeks while scrubbing, ms. */
 const SEEK_MS = 50;
-const SIDE = 14;
-const LANE_TOP = 11;
+/** Space beside the time line: on the left for the scale of the score, px. */
+const LEFT = 34;
+const RIGHT = 14;
+/** Rows of marks, one for each kind, above the score, px. */
+const LANE_TOP = 8;
+/** The height of a row on a time line of usual height, and on a low one. */
 const LANE = 9;
+const LANE_LOW = 7;
+const LOW_PX = 100;
+/** Events this close to the pointer are told, px. */
+const NEAR_PX = 6;
+const TOLD_MAX = 4;
+const STEPS_S = [0.1, 0.2, 0.5, 1, 2, 5, 10, 30, 60, 120, 300, 600, 1200, 3600];
+/** A step of the zoom buttons and keys. */
+const ZOOM = 2;
+/** A change of the moment by more than this is a jump, s. */
+const JUMP_S = 2;
 /** Jumping back skips an event that was just reached, s. */
 const STICK_S = 0.05;
 
@@ -49,28 +64,48 @@ function drawShape(context, shape, x, y, r) {
 }
 
 export class Timeline {
-  constructor(send) {
+  /** `span` is the section that is shown, shared with the plots. */
+  constructor(send, span) {
     this.send = send;
+    this.span = span;
     this.box = document.getElementById('replay');
     this.canvas = document.getElementById('timeline');
     this.context = this.canvas.getContext('2d');
+    /** Everything but the handle and the pointer. */
+    this.still = document.createElement('canvas');
+    this.tip = document.getElementById('timeline-tip');
     this.kind = document.getElementById('event-kind');
     this.legend = document.getElementById('legend');
+    this.whole = document.getElementById('time-whole');
     this.marks = [];
     this.score = null;
     this.wanted_s = null;
+    this.followed_s = null;
     this.sent_ms = -1e9;
     this.timer = 0;
     this.drawn = '';
+    this.kept = '';
+    /** The pointers pressed on it: positions from the left, px. */
+    this.pointers = new Map();
     options(this.kind, [[ANY, 'any event'], ...KINDS.map(([name], index) => [String(index), name.toLowerCase()])]);
-    this.canvas.addEventListener('pointerdown', (event) => this.press(event));
-    this.canvas.addEventListener('pointermove', (event) => event.buttons > 0 && this.scrubbing && this.scrub(event));
-    const end = () => this.release();
-    this.canvas.addEventListener('pointerup', end);
-    this.canvas.addEventListener('pointercancel', end);
-    this.canvas.addEventListener('keydown', (event) => this.key(event));
-    document.getElementById('event-back').addEventListener('click', () => this.jump(this.kind.value, -1));
-    document.getElementById('event-next').addEventListener('click', () => this.jump(this.kind.value, 1));
+    this.bind();
+  }
+
+  bind() {
+    const { canvas, span } = this;
+    canvas.addEventListener('pointerdown', (event) => this.press(event));
+    canvas.addEventListener('pointermove', (event) => this.move(event));
+    canvas.addEventListener('pointerup', (event) => this.release(event));
+    canvas.addEventListener('pointercancel', (event) => this.release(event));
+    canvas.addEventListener('pointerleave', () => this.point(null));
+    canvas.addEventListener('wheel', (event) => this.wheel(event), { passive: false });
+    canvas.addEventListener('keydown', (event) => this.key(event));
+    const press = (id, act) => document.getElementById(id).addEventListener('click', act);
+    press('event-back', () => this.jump(this.kind.value, -1));
+    press('event-next', () => this.jump(this.kind.value, 1));
+    press('time-in', () => span.zoomAt(this.at_s, ZOOM));
+    press('time-out', () => span.zoomAt(this.at_s, 1 / ZOOM));
+    press('time-whole', () => span.showAll());
   }
 
   greet(game) {
@@ -82,7 +117,8 @@ export class Timeline {
     this.wanted_s = null;
     this.marksVersion = -1;
     this.score = null;
-    if (game.mode === 'replay') this.send({ do: 'curves', vehicle: null, other: null });
+    this.pointers.clear();
+    this.point(null);
     show(this.box, game.mode === 'replay');
   }
 
@@ -99,22 +135,85 @@ export class Timeline {
     return this.wanted_s ?? this.game.player?.t_s ?? this.game.t_s ?? 0;
   }
 
+  /** The time at a pixel from the left of the page. */
+  timeAt(clientX) {
+    const box = this.canvas.getBoundingClientRect();
+    const part = Math.min(1, Math.max(0, (clientX - box.left - LEFT) / Math.max(1, box.width - LEFT - RIGHT)));
+    return this.span.from_s + part * (this.span.to_s - this.span.from_s);
+  }
+
+  /** Pixels from the left of the canvas. */
+  xOf(t_s) {
+    const { from_s, to_s } = this.span;
+    return LEFT + ((t_s - from_s) / (to_s - from_s)) * (this.canvas.clientWidth - LEFT - RIGHT);
+  }
+
   press(event) {
     if (event.button !== 0) return;
     this.canvas.setPointerCapture(event.pointerId);
-    this.scrubbing = true;
-    this.scrub(event);
+    this.pointers.set(event.pointerId, event.clientX);
+    this.scrubbing = this.pointers.size === 1;
+    if (this.scrubbing) this.seek(this.timeAt(event.clientX));
   }
 
-  scrub(event) {
-    const box = this.canvas.getBoundingClientRect();
-    const part = (event.clientX - box.left - SIDE) / Math.max(1, box.width - 2 * SIDE);
-    this.seek(this.from_s + Math.min(1, Math.max(0, part)) * (this.to_s - this.from_s));
+  move(event) {
+    if (this.pointers.size === 2 && this.pointers.has(event.pointerId)) this.pinch(event);
+    else if (this.scrubbing) this.seek(this.timeAt(event.clientX));
+    this.point(this.timeAt(event.clientX));
   }
 
-  release() {
+  /** Two fingers zoom, and move the section. */
+  pinch({ pointerId, clientX }) {
+    const [, other] = [...this.pointers].find(([id]) => id !== pointerId);
+    const before = this.pointers.get(pointerId);
+    const [was, is] = [Math.abs(before - other), Math.abs(clientX - other)];
+    const from_s = this.timeAt((before + other) / 2);
+    if (was > 4 && is > 4) this.span.zoomAt(from_s, is / was);
+    this.span.moveBy(from_s - this.timeAt((clientX + other) / 2));
+    this.pointers.set(pointerId, clientX);
+  }
+
+  release(event) {
+    this.pointers.delete(event.pointerId);
+    if (event.pointerType !== 'mouse') this.point(null);
+    if (!this.scrubbing) return;
     this.scrubbing = false;
     this.settle();
+  }
+
+  wheel(event) {
+    if (Math.abs(event.deltaX) > Math.abs(event.deltaY) || event.shiftKey) {
+      event.preventDefault();
+      this.span.moveBy(((event.deltaX || event.deltaY) / this.canvas.clientWidth) * (this.span.to_s - this.span.from_s));
+    } else this.span.wheel(event, this.timeAt(event.clientX));
+    this.point(this.timeAt(event.clientX));
+  }
+
+  /** Points at a moment, or nowhere, and tells what is there. */
+  point(t_s) {
+    this.span.point(t_s);
+    show(this.tip, t_s !== null);
+    if (t_s === null) return;
+    const px_s = (this.span.to_s - this.span.from_s) / Math.max(1, this.canvas.clientWidth - LEFT - RIGHT);
+    const near = this.marks.filter(({ at_s }) => Math.abs(at_s - t_s) <= NEAR_PX * px_s).sort((a, b) => Math.abs(a.at_s - t_s) - Math.abs(b.at_s - t_s));
+    const told = near.slice(0, TOLD_MAX).sort((a, b) => a.at_s - b.at_s);
+    const lines = told.map(({ at_s, text, team }) => make('li', `team-${team}`, '', make('span', 'swatch'), make('time', '', clock(at_s)), make('span', '', text)));
+    if (near.length > told.length) lines.push(make('li', 'faint', `and ${near.length - told.length} more`));
+    this.tip.replaceChildren(make('strong', '', clock(t_s)), this.scoreAt(t_s), make('ul', '', '', ...lines));
+    const half = this.tip.offsetWidth / 2;
+    const width = this.box.clientWidth;
+    const { offsetLeft } = this.canvas;
+    this.tip.style.left = `${Math.min(width - half - 4, Math.max(half + 4, offsetLeft + this.xOf(t_s)))}px`;
+    this.tip.style.bottom = `${this.box.clientHeight - this.canvas.offsetTop + 4}px`;
+  }
+
+  /** The score at a moment. */
+  scoreAt(t_s) {
+    const line = make('span', 'tip-score');
+    if (!this.score) return line;
+    const at = sampleAt(this.score.t_s, t_s);
+    this.score.score.forEach((points, team) => line.append(make('span', `team-${team}`, '', make('span', 'swatch'), plain(this.game.chart.teams[team]?.name ?? ''), make('strong', '', number(points[at] ?? 0, 0)))));
+    return line;
   }
 
   /** Goes to a time, now or a little later if seeks come too often; the last one is always sent. */
@@ -148,11 +247,12 @@ export class Timeline {
   }
 
   key(event) {
-    const span = this.to_s - this.from_s;
     const step = { ArrowLeft: -1, ArrowRight: 1, PageDown: -10, PageUp: 10, ArrowDown: -1, ArrowUp: 1 }[event.key];
     if (step) this.seek(this.at_s + step * (event.shiftKey ? 10 : 1));
     else if (event.key === 'Home') this.seek(this.from_s);
-    else if (event.key === 'End') this.seek(this.from_s + span);
+    else if (event.key === 'End') this.seek(this.to_s);
+    else if ('+=-_'.includes(event.key)) this.span.zoomAt(this.at_s, '+='.includes(event.key) ? ZOOM : 1 / ZOOM);
+    else if (event.key === '0') this.span.showAll();
     else return;
     event.preventDefault();
     event.stopPropagation();
@@ -180,10 +280,21 @@ export class Timeline {
     if (game.mode !== 'replay') return;
     if (this.marksVersion !== game.eventVersion) this.mark(game);
     const at = this.at_s;
+    this.span.setWhole(this.from_s, this.to_s);
+    this.follow(at);
+    show(this.whole, this.span.zoomed);
     this.canvas.setAttribute('aria-valuemin', this.from_s.toFixed(1));
     this.canvas.setAttribute('aria-valuemax', this.to_s.toFixed(1));
     this.canvas.setAttribute('aria-valuenow', at.toFixed(1));
     this.canvas.setAttribute('aria-valuetext', `${clock(at)} of ${clock(this.to_s)}`);
+  }
+
+  /** Keeps the moment in the section, unless someone has moved the section away from it. */
+  follow(at_s) {
+    const before_s = this.followed_s ?? at_s;
+    const was = before_s >= this.span.from_s && before_s <= this.span.to_s;
+    if (at_s !== before_s && (was || Math.abs(at_s - before_s) > JUMP_S)) this.span.follow(at_s);
+    this.followed_s = at_s;
   }
 
   mark(game) {
@@ -195,11 +306,11 @@ export class Timeline {
       if (kind < 0) continue;
       counts[kind] += 1;
       const team = game.vehicles[game.indexOf.get(event.vehicle)]?.team;
-      this.marks.push({ at_s: event.at_s, kind, team });
+      this.marks.push({ at_s: event.at_s, kind, team, text: plain(event.text ?? event.event) });
     }
     this.marks.sort((a, b) => a.at_s - b.at_s);
     this.legend.replaceChildren(...KINDS.map(([name, , , shape], kind) => this.legendEntry(name, shape, counts[kind])));
-    this.drawn = '';
+    this.kept = '';
   }
 
   legendEntry(name, shape, count) {
@@ -216,77 +327,132 @@ export class Timeline {
 
   draw() {
     if (this.game?.mode !== 'replay') return;
-    const width = this.canvas.clientWidth;
-    const height = this.canvas.clientHeight;
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    if (width === 0) return;
     const ratio = Math.min(2, devicePixelRatio);
-    const x = (t_s) => SIDE + ((t_s - this.from_s) / (this.to_s - this.from_s)) * (width - 2 * SIDE);
-    const key = `${width} ${ratio} ${palette.version} ${x(this.at_s).toFixed(1)} ${this.to_s} ${this.marks.length} ${clock(this.at_s)}`;
-    if (key === this.drawn || width === 0) return;
-    const legendDue = this.drawn !== '' && !this.drawn.includes(` ${palette.version} `);
+    const still = `${width} ${height} ${ratio} ${palette.version} ${this.span.version} ${this.marksVersion}`;
+    const at = this.xOf(this.at_s);
+    const pointed = this.span.pointed_s === null ? null : Math.round(this.xOf(this.span.pointed_s));
+    const key = `${still} ${at.toFixed(1)} ${pointed}`;
+    if (key === this.drawn && this.kept !== '') return;
     this.drawn = key;
-    if (legendDue) this.marksVersion = -1;
-    this.canvas.width = width * ratio;
-    this.canvas.height = height * ratio;
+    if (still !== this.kept) this.drawStill(still, width, height, ratio);
     const { context } = this;
+    if (this.canvas.width !== this.still.width || this.canvas.height !== this.still.height) Object.assign(this.canvas, { width: this.still.width, height: this.still.height });
+    context.setTransform(1, 0, 0, 1, 0, 0);
+    context.clearRect(0, 0, this.canvas.width, this.canvas.height);
+    context.drawImage(this.still, 0, 0);
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
-    const base = height - 17;
-    this.drawScale(context, x, width, base);
-    this.drawScore(context, x, base);
-    const colours = palette.teams;
-    for (const mark of this.marks) {
-      context.fillStyle = colours[mark.team] ?? palette.ink;
-      context.strokeStyle = context.fillStyle;
-      drawShape(context, KINDS[mark.kind][3], x(mark.at_s), LANE_TOP - 3 + mark.kind * LANE, 4.5);
+    const base = height - 20;
+    if (pointed !== null && pointed >= LEFT - 1 && pointed <= width - RIGHT + 1) {
+      context.fillStyle = palette.faint;
+      context.fillRect(pointed - 0.5, 2, 1, base);
     }
-    this.drawHandle(context, x(this.at_s), base);
+    this.drawHandle(context, at, base, width);
   }
 
-  drawScale(context, x, width, base) {
+  /** Draws everything that stays while the replay plays. */
+  drawStill(key, width, height, ratio) {
+    // The legend has the same colours.
+    if (this.kept !== '' && this.kept.split(' ')[3] !== String(palette.version)) this.marksVersion = -1;
+    this.kept = key;
+    Object.assign(this.still, { width: width * ratio, height: height * ratio });
+    const context = this.still.getContext('2d');
+    context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    const base = height - 20;
+    this.lane = height < LOW_PX ? LANE_LOW : LANE;
+    this.drawScale(context, width, base);
+    context.save();
+    context.beginPath();
+    context.rect(LEFT - 6, 0, width - LEFT - RIGHT + 12, height);
+    context.clip();
+    this.drawScore(context, base);
+    for (const mark of this.marks) {
+      context.fillStyle = palette.teams[mark.team] ?? palette.ink;
+      context.strokeStyle = context.fillStyle;
+      drawShape(context, KINDS[mark.kind][3], this.xOf(mark.at_s), LANE_TOP + mark.kind * this.lane, 4.5);
+    }
+    context.restore();
+    this.drawOverview(context, width, height);
+  }
+
+  drawScale(context, width, base) {
+    const { from_s, to_s } = this.span;
     context.fillStyle = palette.grid;
-    context.fillRect(SIDE, base - 3, width - 2 * SIDE, 6);
-    context.fillStyle = palette.accent;
-    context.fillRect(SIDE, base - 3, Math.max(0, x(this.at_s) - SIDE), 6);
-    const steps = [1, 5, 10, 30, 60, 120, 300, 600, 1200, 3600];
-    const room = (this.to_s - this.from_s) / ((width - 2 * SIDE) / 70);
-    const step = steps.find((each) => each >= room) ?? 7200;
+    context.fillRect(LEFT, base - 3, width - LEFT - RIGHT, 6);
+    const room = (to_s - from_s) / ((width - LEFT - RIGHT) / 70);
+    const step = STEPS_S.find((each) => each >= room) ?? 7200;
     context.font = '11px system-ui, sans-serif';
     context.textAlign = 'center';
     context.textBaseline = 'bottom';
     context.fillStyle = palette.faint;
-    for (let t_s = Math.ceil(this.from_s / step) * step; t_s <= this.to_s; t_s += step) {
-      const at = Math.min(width - 18, Math.max(18, x(t_s)));
-      context.fillText(clockShort(t_s), at, base + 17);
+    for (let t_s = Math.ceil(from_s / step - 1e-9) * step; t_s <= to_s + 1e-6; t_s += step) {
+      context.fillText((step < 1 ? clock : clockShort)(t_s), Math.min(width - 18, Math.max(18, this.xOf(t_s))), base + 17);
     }
+    if (!this.score) return;
+    context.textAlign = 'right';
+    context.textBaseline = 'middle';
+    const points = base - this.scoreTop > 30 ? ticksOf(0, this.score.most, 2).filter(Number.isInteger) : [0, this.score.most];
+    for (const each of points) {
+      const y = this.scoreY(each, base);
+      context.fillStyle = palette.grid;
+      context.fillRect(LEFT - 3, y - 0.5, width - LEFT - RIGHT + 3, 1);
+      context.fillStyle = palette.faint;
+      context.fillText(String(each), LEFT - 7, y);
+    }
+  }
+
+  /** Where the section is in the game. */
+  drawOverview(context, width, height) {
+    if (!this.span.zoomed) return;
+    const [first_s, last_s] = this.span.whole;
+    const x = (t_s) => LEFT + ((t_s - first_s) / (last_s - first_s)) * (width - LEFT - RIGHT);
+    context.fillStyle = palette.grid;
+    context.fillRect(LEFT, height - 3, width - LEFT - RIGHT, 3);
+    context.fillStyle = palette.accent;
+    context.fillRect(x(this.span.from_s), height - 3, Math.max(4, x(this.span.to_s) - x(this.span.from_s)), 3);
   }
 
   /** Takes the score over the game. */
   takeScore({ t_s, score }) {
+    if (this.score) return;
     this.score = { t_s, score, most: Math.max(1, ...score.map((points) => points.at(-1) ?? 0)) };
-    this.drawn = `${this.drawn} `;
+    this.kept = '';
   }
 
-  /** Draws the score as steps, behind the marks. */
-  drawScore(context, x, base) {
+  get scoreTop() {
+    return LANE_TOP + KINDS.length * this.lane + 2;
+  }
+
+  scoreY(points, base) {
+    const low = base - 9;
+    return low - (points / this.score.most) * (low - this.scoreTop);
+  }
+
+  /** Draws the score as steps, below the marks. */
+  drawScore(context, base) {
     if (!this.score) return;
-    const { t_s, score, most } = this.score;
-    const low = base - 6;
+    const { t_s, score } = this.score;
     score.forEach((points, team) => {
-      const y = (value) => low - (value / most) * (low - 5) - team * 2;
+      // Equal scores stay visible beside each other.
+      const y = (value) => this.scoreY(value, base) - team * 2;
       context.beginPath();
       for (let i = 0; i < t_s.length; i++) {
         const steps = i > 0 && points[i] !== points[i - 1];
-        if (steps) context.lineTo(x(t_s[i]), y(points[i - 1]));
-        if (steps || i === 0 || i === t_s.length - 1) context.lineTo(x(t_s[i]), y(points[i]));
+        if (steps) context.lineTo(this.xOf(t_s[i]), y(points[i - 1]));
+        if (steps || i === 0 || i === t_s.length - 1) context.lineTo(this.xOf(t_s[i]), y(points[i]));
       }
       context.strokeStyle = palette.teams[team] ?? palette.ink;
       context.lineWidth = 2;
-      context.globalAlpha = 0.55;
       context.stroke();
-      context.globalAlpha = 1;
     });
   }
 
-  drawHandle(context, at, base) {
+  /** The part played, and the handle at the moment if that is in the section. */
+  drawHandle(context, at, base, width) {
+    context.fillStyle = palette.accent;
+    context.fillRect(LEFT, base - 3, Math.min(width - RIGHT, Math.max(LEFT, at)) - LEFT, 6);
+    if (at < LEFT - 1 || at > width - RIGHT + 1) return;
     context.fillStyle = palette.ink;
     context.fillRect(at - 1, 2, 2, base);
     context.beginPath();

@@ -105,8 +105,7 @@ export class Trails {
   /** Marks and counts the boats on the chart or near it. */
   nearby(view) {
     const row = this.head * this.count;
-    const reachX = view.width / view.scale;
-    const reachY = view.height / view.scale;
+    const [reachX, reachY] = [view.width, view.height].map((side) => (view.turned ? Math.max(view.width, view.height) : side) / view.scale);
     let count = 0;
     for (let boat = 0; boat < this.count; boat++) {
       const near = Math.abs(this.xs[row + boat] - view.centreX) < reachX && Math.abs(this.ys[row + boat] - view.centreY) < reachY;
@@ -129,8 +128,8 @@ export class Trails {
       const y = this.ys[row * this.count + boat];
       if (age >= young - 0.01) {
         const leap = drawn && Math.abs(x - lastX) + Math.abs(y - lastY) > LEAP_M + LEAP_M_S * Math.abs(this.times[row] - last_s);
-        if (drawn && !leap) context.lineTo(view.xOf(x), view.yOf(y));
-        else context.moveTo(view.xOf(x), view.yOf(y));
+        if (drawn && !leap) context.lineTo(view.xOf(x, y), view.yOf(x, y));
+        else context.moveTo(view.xOf(x, y), view.yOf(x, y));
         drawn = true;
       }
       lastX = x;
@@ -159,12 +158,12 @@ export class TrailLayer {
   /** `key` covers everything else that affects it; `index` is the selected boat. */
   draw(game, view, shown, key, index, now_ms) {
     const { drawn } = this;
-    const look = `${view.scale} ${view.width} ${view.height} ${palette.version} ${key} ${game.trails.epoch}`;
+    const look = `${view.scale} ${view.turned} ${view.width} ${view.height} ${palette.version} ${key} ${game.trails.epoch}`;
     const soft = `${view.version} ${game.trails.version}`;
     if (look === drawn.look && soft === drawn.soft) return;
     if (look === drawn.look && now_ms - drawn.at_ms < AGAIN_MS) {
-      const right = (drawn.x - view.centreX) * view.scale;
-      const down = (view.centreY - drawn.y) * view.scale;
+      const right = view.xOf(drawn.x, drawn.y) - view.width / 2;
+      const down = view.yOf(drawn.x, drawn.y) - view.height / 2;
       this.canvas.style.transform = `translate(${right}px, ${down}px)`;
       return;
     }

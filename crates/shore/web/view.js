@@ -1,9 +1,11 @@
-// The visible part of the chart: north is up. Converts between metres and pixels.
+// The visible part of the chart. Converts between metres and pixels. North is up, or to the left if the field then fits better.
 
 const SCALE_MIN = 0.02;
 const SCALE_MAX = 120;
 /** The inner part of the chart, as a share of its width and height. */
 const INNER = 0.6;
+/** The chart turns if the field becomes this many times larger. */
+const TURN_GAIN = 1.25;
 
 export class View {
   constructor() {
@@ -18,24 +20,43 @@ export class View {
     this.version = 0;
     /** Whether it is as fitted, not moved by the user. */
     this.fitted = true;
+    /** Whether east is up, because the field then fits better. */
+    this.turned = false;
+    this.northUp = false;
   }
 
-  xOf(x) {
-    return (x - this.centreX) * this.scale + this.width / 2;
+  /** The bearing that is up, rad. */
+  get up_rad() {
+    return this.turned ? Math.PI / 2 : 0;
   }
 
-  yOf(y) {
-    return this.height / 2 - (y - this.centreY) * this.scale;
+  get up_deg() {
+    return this.turned ? 90 : 0;
   }
 
-  /** East coordinate of a pixel. */
-  eastOf(px) {
-    return (px - this.width / 2) / this.scale + this.centreX;
+  /** Pixels from the left of a position, m. */
+  xOf(x, y) {
+    return (this.turned ? this.centreY - y : x - this.centreX) * this.scale + this.width / 2;
   }
 
-  /** North coordinate of a pixel. */
-  northOf(py) {
-    return (this.height / 2 - py) / this.scale + this.centreY;
+  /** Pixels from the top. */
+  yOf(x, y) {
+    return this.height / 2 - (this.turned ? x - this.centreX : y - this.centreY) * this.scale;
+  }
+
+  /** Position of a pixel, east and north, m. */
+  placeOf(px, py) {
+    const right = (px - this.width / 2) / this.scale;
+    const up = (this.height / 2 - py) / this.scale;
+    return this.turned ? [this.centreX + up, this.centreY - right] : [this.centreX + right, this.centreY + up];
+  }
+
+  /** Keeps north up, or lets the chart turn. */
+  keepNorthUp(northUp) {
+    this.northUp = northUp;
+    if (northUp) this.turned = false;
+    this.version += 1;
+    if (this.fitted || !northUp) this.fit();
   }
 
   resize(width, height) {
@@ -48,6 +69,7 @@ export class View {
 
   setBounds(points) {
     this.bounds = { left: Infinity, right: -Infinity, bottom: Infinity, top: -Infinity };
+    this.turned = false;
     this.widen(points);
     this.fit();
   }
@@ -68,9 +90,14 @@ export class View {
     const below = Math.min(72, this.height * 0.24);
     const across = Math.max(60, this.width - 2 * side);
     const down = Math.max(60, this.height - above - below);
-    this.scale = this.limit(Math.min(across / Math.max(1, right - left), down / Math.max(1, top - bottom)));
-    this.centreX = (left + right) / 2;
-    this.centreY = (bottom + top) / 2 - (below - above) / 2 / this.scale;
+    const [wide, high] = [Math.max(1, right - left), Math.max(1, top - bottom)];
+    const scales = { false: Math.min(across / wide, down / high), true: Math.min(across / high, down / wide) };
+    // With a margin, so that it does not turn back and forth while a panel is resized.
+    if (!this.northUp && scales[!this.turned] > TURN_GAIN * scales[this.turned]) this.turned = !this.turned;
+    this.scale = this.limit(scales[this.turned]);
+    const lower = (below - above) / 2 / this.scale;
+    this.centreX = (left + right) / 2 - (this.turned ? lower : 0);
+    this.centreY = (bottom + top) / 2 - (this.turned ? 0 : lower);
     this.fitted = true;
     this.version += 1;
   }
@@ -89,24 +116,24 @@ export class View {
 
   /** Centres a position unless it is in the inner part of the chart. */
   bringIn(x, y) {
-    const across = Math.abs(this.xOf(x) - this.width / 2) / this.width;
-    const down = Math.abs(this.yOf(y) - this.height / 2) / this.height;
+    const across = Math.abs(this.xOf(x, y) - this.width / 2) / this.width;
+    const down = Math.abs(this.yOf(x, y) - this.height / 2) / this.height;
     // While the whole field is shown, positions near the edge are visible enough.
     const most = this.fitted ? 0.5 : INNER / 2;
     if (across > most || down > most) this.centreOn(x, y);
   }
 
   panBy(dx, dy) {
-    this.centreOn(this.centreX - dx / this.scale, this.centreY + dy / this.scale);
+    this.centreOn(...this.placeOf(this.width / 2 - dx, this.height / 2 - dy));
   }
 
   /** Zooms; the point under the pixel stays in place. */
   zoomAt(px, py, factor) {
-    const east = this.eastOf(px);
-    const north = this.northOf(py);
+    const [east, north] = this.placeOf(px, py);
     this.scale = this.limit(this.scale * factor);
-    this.centreX = east - (px - this.width / 2) / this.scale;
-    this.centreY = north + (py - this.height / 2) / this.scale;
+    const [nowEast, nowNorth] = this.placeOf(px, py);
+    this.centreX += east - nowEast;
+    this.centreY += north - nowNorth;
     this.fitted = false;
     this.version += 1;
   }

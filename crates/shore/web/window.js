@@ -49,7 +49,8 @@ export function expose(page) {
       const { range_m, bearing_deg } = (page.measure.ends.length === 2 && page.measure.reading(game, view)) || {};
       return range_m === undefined ? null : { range_m, bearing_deg };
     },
-    view: () => ({ x: view.centreX, y: view.centreY, scale: view.scale }),
+    view: () => ({ x: view.centreX, y: view.centreY, scale: view.scale, up_deg: view.up_deg }),
+    span: () => ({ from_s: page.span.from_s, to_s: page.span.to_s, pointed_s: page.span.pointed_s }),
   };
   const squall = {};
   for (const [name, get] of Object.entries(readers)) Object.defineProperty(squall, name, { get, enumerable: true });

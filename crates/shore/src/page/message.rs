@@ -15,23 +15,29 @@ use std::collections::BTreeMap;
 #[derive(Clone, Debug, Default, Serialize)]
 pub(super) struct Curves<'a> {
     pub(super) vehicle: Option<&'a str>,
-    pub(super) other: Option<&'a str>,
     /// Times of the samples.
     pub(super) t_s: Vec<f64>,
     /// Points by team and sample.
     pub(super) score: Vec<Vec<u32>>,
     pub(super) boat: Option<BoatCurves>,
-    /// The range between the two boats.
-    pub(super) range_m: Option<Vec<f64>>,
 }
 
 /// A boat's curves, by sample.
 #[derive(Clone, Debug, Default, Serialize)]
 pub(super) struct BoatCurves {
+    /// East and north of the datum.
+    pub(super) x_m: Vec<f64>,
+    pub(super) y_m: Vec<f64>,
     pub(super) speed_m_s: Vec<f64>,
     pub(super) ordered_speed_m_s: Vec<f64>,
     pub(super) heading_deg: Vec<f64>,
     pub(super) ordered_heading_deg: Vec<f64>,
+    /// Over the ground.
+    pub(super) course_deg: Vec<f64>,
+    pub(super) sway_m_s: Vec<f64>,
+    pub(super) yaw_rate_deg_s: Vec<f64>,
+    pub(super) port_newton: Vec<f64>,
+    pub(super) starboard_newton: Vec<f64>,
     /// Distance to the nearest flag of another team, wherever that flag is.
     pub(super) flag_m: Vec<f64>,
     /// Error of its own position estimate.

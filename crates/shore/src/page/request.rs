@@ -29,8 +29,6 @@ pub enum PageRequest {
     Curves {
         /// The vehicle's name. None: only the score.
         vehicle: Option<String>,
-        /// The other vehicle for the range.
-        other: Option<String>,
     },
     /// Controls the whole game.
     Control {

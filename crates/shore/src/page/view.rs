@@ -9,7 +9,7 @@ use tokio::sync::watch;
 /// Interval of messages with continuously changing values.
 pub(super) const SEND_INTERVAL: Duration = Duration::from_millis(200);
 /// Interval of helm reports to a page.
-pub(super) const HELM_INTERVAL: Duration = Duration::from_millis(500);
+pub(super) const HELM_INTERVAL: Duration = Duration::from_millis(100);
 /// Interval of all boats' modes to a page.
 pub(super) const MODES_INTERVAL: Duration = Duration::from_secs(1);
 /// Interval of a boat's estimated position to a page.

@@ -4,14 +4,14 @@ use crate::page::message::{BoatCurves, Curves, PageMessage};
 use analysis::{GameSeries, Sample};
 use messages::Order;
 use primitives::angle::compass_deg_from_rad;
-use primitives::{Ned, VehicleId};
+use primitives::{Ned, VehicleId, math};
 use recording::Recording;
 use rules::Field;
 use std::sync::Arc;
 
 /// Maximum number of samples per boat sent to a page: more than a screen has pixels.
 const SAMPLES: usize = 1500;
-/// Maximum number of samples kept for all boats together, about 140 bytes each.
+/// Maximum number of samples kept for all boats together, about 160 bytes each.
 const SAMPLES_MAX: usize = 400_000;
 
 /// Reads the curves from a recording on first use.
@@ -27,30 +27,23 @@ impl Plotter {
         Plotter { recording: Some(recording), series: None }
     }
 
-    /// The score, a boat's curves and its range to another, as a message to the page.
-    pub(super) fn curves(&mut self, vehicle: Option<VehicleId>, other: Option<VehicleId>) -> String {
+    /// The score and a boat's curves, as a message to the page.
+    pub(super) fn curves(&mut self, vehicle: Option<VehicleId>) -> String {
         let Some(recording) = &self.recording else { return PageMessage::Curves(&Curves::default()).json() };
         let series = self.series.get_or_insert_with(|| {
             let boats = recording.scenario().vehicles.len();
             GameSeries::of_at_most(recording, SAMPLES.saturating_mul(boats).min(SAMPLES_MAX))
         });
-        let boat = |vehicle: VehicleId| series.boats.get(vehicle.index());
-        let one = vehicle.and_then(boat);
-        let another = other.and_then(boat);
-        let range = |(one, another): (&analysis::BoatSeries, &analysis::BoatSeries)| {
-            one.track().zip(another.track()).map(|(one, another)| rounded(one.distance(another))).collect()
-        };
+        let boat = vehicle.and_then(|vehicle| series.boats.get(vehicle.index()));
         let curves = Curves {
-            vehicle: one.map(|boat| boat.name.as_str()),
-            other: another.map(|boat| boat.name.as_str()),
+            vehicle: boat.map(|boat| boat.name.as_str()),
             t_s: series.times_s.iter().copied().map(rounded).collect(),
             score: (0..series.teams.len())
                 .map(|team| series.score.iter().map(|score| score.get(team).copied().unwrap_or(0)).collect())
                 .collect(),
             boat: vehicle
-                .filter(|_| one.is_some())
+                .filter(|_| boat.is_some())
                 .map(|vehicle| boat_curves(series, &recording.scenario().field, vehicle)),
-            range_m: one.zip(another).map(range),
         };
         PageMessage::Curves(&curves).json()
     }
@@ -70,11 +63,22 @@ fn boat_curves(series: &GameSeries, field: &Field, vehicle: VehicleId) -> BoatCu
         Order::Steer { heading_rad, .. } => Some(compass_deg_from_rad(heading_rad)),
         Order::Hold | Order::Turn { .. } | Order::Thrust { .. } => None,
     };
+    let course = |sample: &Sample| {
+        let velocity = sample.truth.velocity_m_s();
+        Some(compass_deg_from_rad(math::atan2(velocity.east, velocity.north)))
+    };
     BoatCurves {
+        x_m: each(&|sample| Some(sample.truth.east_m)),
+        y_m: each(&|sample| Some(sample.truth.north_m)),
         speed_m_s: each(&|sample| Some(sample.truth.speed_m_s())),
         ordered_speed_m_s: each(&ordered_speed),
         heading_deg: each(&|sample| Some(compass_deg_from_rad(sample.truth.psi_rad))),
         ordered_heading_deg: each(&ordered_heading),
+        course_deg: each(&course),
+        sway_m_s: each(&|sample| Some(sample.truth.sway_m_s)),
+        yaw_rate_deg_s: each(&|sample| Some(sample.truth.yaw_rate_rad_s.to_degrees())),
+        port_newton: each(&|sample| Some(sample.thrusts_newton[0])),
+        starboard_newton: each(&|sample| Some(sample.thrusts_newton[1])),
         flag_m: flag_distances(series, field, vehicle),
         error_m: each(&Sample::nav_error_m),
     }

@@ -28,8 +28,8 @@ pub(super) enum Query {
     Helm(HelmRequest),
     /// The modes of all boats at a decision, with its time.
     Modes(u64, SimTime),
-    /// Curves of a boat, and its range to another.
-    Curves(Option<VehicleId>, Option<VehicleId>),
+    /// The score, and curves of a boat.
+    Curves(Option<VehicleId>),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -152,7 +152,7 @@ impl Sources {
                 let modes = self.helms.as_mut().map(|helms| helms.modes(decision)).unwrap_or_default();
                 PageMessage::Modes { at_s: seconds(at), modes: &modes }.json()
             }
-            Query::Curves(vehicle, other) => self.plotter.curves(vehicle, other),
+            Query::Curves(vehicle) => self.plotter.curves(vehicle),
         }
     }
 }

@@ -178,10 +178,9 @@ impl PageViewer {
         self.shared.queries.take_other(self.viewer).map(Outgoing::Text)
     }
 
-    fn request_curves(&self, vehicle: Option<&str>, other: Option<&str>) -> Result<(), String> {
+    fn request_curves(&self, vehicle: Option<&str>) -> Result<(), String> {
         let named = |name: &str| self.shared.source.recording.scenario().vehicle_named(name).map_err(|e| e.to_string());
-        let query = Query::Curves(vehicle.map(named).transpose()?, other.map(named).transpose()?);
-        self.shared.queries.request(self.viewer, query);
+        self.shared.queries.request(self.viewer, Query::Curves(vehicle.map(named).transpose()?));
         Ok(())
     }
 
@@ -267,7 +266,7 @@ impl Viewer for PageViewer {
                 self.wants_modes = *wanted;
                 self.requested_modes = None;
             }
-            PageRequest::Curves { vehicle, other } => self.request_curves(vehicle.as_deref(), other.as_deref())?,
+            PageRequest::Curves { vehicle } => self.request_curves(vehicle.as_deref())?,
             PageRequest::Control { what: Control::Pause } => self.playback.pause(now),
             PageRequest::Control { what: Control::Resume } => self.play(now),
             PageRequest::Control { what: Control::Step } => self.step(1, now),
