@@ -21,8 +21,8 @@ mod quality;
 #[derive(clap::Args)]
 #[command(after_help = AFTER_HELP)]
 pub(crate) struct Args {
-    /// Recording to analyse
-    #[arg(required_unless_present_any = ["compare", "quality"])]
+    /// Recording to analyse: a file, or a part of a name that `squall runs` lists [default: the newest in runs]
+    #[arg(value_name = "RECORDING", value_parser = recording_file::named)]
     file: Option<PathBuf>,
     /// Prints only the events
     #[arg(long)]
@@ -49,10 +49,10 @@ pub(crate) struct Args {
     #[command(flatten)]
     film: gif::FilmArgs,
     /// Compares two recordings, for example a game on the water and its simulation
-    #[arg(long, num_args = 2, value_names = ["A", "B"], conflicts_with_all = ["file", "events"])]
+    #[arg(long, num_args = 2, value_names = ["A", "B"], value_parser = recording_file::named, conflicts_with_all = ["file", "events"])]
     compare: Option<Vec<PathBuf>>,
     /// Reports the quality of play in these recordings: chatter, standing still, edges, contacts, orbits
-    #[arg(long, num_args = 1.., value_name = "GAME")]
+    #[arg(long, num_args = 1.., value_name = "RECORDING", value_parser = recording_file::named)]
     #[arg(conflicts_with_all = ["file", "events", "csv", "plot", "alog", "gif", "compare"])]
     quality: Option<Vec<PathBuf>>,
     /// With --compare: maximum time between matching events, s
@@ -68,8 +68,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     match (&args.compare, &args.quality, &args.file) {
         (Some(files), ..) => compare(args, files)?,
         (None, Some(files), _) => quality::print(files, args.json.as_deref())?,
-        (None, None, Some(file)) => look_at(args, file)?,
-        (None, None, None) => anyhow::bail!("expected a recording, --compare or --quality"),
+        (None, None, file) => look_at(args, &recording_file::or_newest(file.as_deref())?)?,
     }
     Ok(ExitCode::SUCCESS)
 }
