@@ -33,7 +33,7 @@ fn a_name_does_for_every_scenario_file() {
         said,
         [valid("boats/mine", "boat"), valid("strategies/mine", "strategy"), valid("seas/gale", "sea")].concat()
     );
-    assert!(refusal(&dir, &["check", "min"]).contains("there is no scenario file min; did you mean mine?"));
+    assert!(refusal(&dir, &["check", "min"]).contains("there is no scenario file min (did you mean mine?)"));
     assert!(printed(&dir, &["policy", "options"]).contains("options: a value of a strategy's variable"));
     assert!(refusal(&dir, &["policy", "option"]).contains("one of chooser, options"));
     std::fs::write(dir.path().join("scenarios/strategies/based.toml"), "base = \"policy\"\n").unwrap();
@@ -57,8 +57,8 @@ fn a_recording_has_a_name_and_the_newest_needs_none() {
     assert!(rows.len() == 3 && rows[1][0].contains("_pav01_vs_pav01_") && rows[2][0] == older, "{listed}");
     assert_eq!(rows[1][3..], ["7", "s", "0", ":", "0", "pav01", ":", "pav01"]);
     for (args, want) in [
-        (&["log"][..], "to 7.0 s"),
-        (&["log", "attack"], "to 5.0 s"),
+        (&["log"][..], "in process, 7.0 s"),
+        (&["log", "attack"], "in process, 5.0 s"),
         (&["replay", "--check"], "to 7.0 s"),
         (&["replay", "--check", &older], "to 5.0 s"),
     ] {

@@ -128,7 +128,7 @@ fn located(name: &str, (folder, extension): (&str, &str), beside: Option<&Path>)
 
 fn unknown(word: &str, kind: Kind, beside: Option<&Path>) -> anyhow::Error {
     let mut others = kinds().iter().copied().filter(|other| *other != kind);
-    if let Some(other) = others.find(|other| names(*other).contains(word)) {
+    if let Some(other) = others.find(|other| all_names(*other).contains(word)) {
         return anyhow!("there is no {kind} {word}, but there is a {other} of that name{}", where_it_goes(other));
     }
     let mut known = names(kind);
