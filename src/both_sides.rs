@@ -13,21 +13,27 @@ pub(crate) struct BothSides {
     teams: [(String, String); 2],
 }
 
+/// Whether the teams follow the same strategies, so that exchanging them has no effect.
+pub(crate) fn are_equal(scenario: &Scenario) -> bool {
+    let of_team = |team: u8| {
+        let boats = scenario.vehicles.iter().filter(move |vehicle| vehicle.team == TeamId(team));
+        boats.map(|vehicle| &scenario.strategies[vehicle.strategy])
+    };
+    of_team(0).eq(of_team(1))
+}
+
 impl BothSides {
-    /// The teams of a game and of its copy with swapped strategies.
-    pub(crate) fn new(scenario: &Scenario, exchanged: &Scenario) -> Result<BothSides> {
+    /// The teams of a game.
+    pub(crate) fn new(scenario: &Scenario) -> Result<BothSides> {
         scenario.has_no_real_boats()?;
-        let strategies = |scenario: &Scenario| -> Vec<_> {
-            scenario.vehicles.iter().map(|vehicle| scenario.strategies[vehicle.strategy].clone()).collect()
-        };
         let name = |team: usize| {
             let first = scenario.vehicles.iter().find(|vehicle| vehicle.team == TeamId(team as u8));
             first.map_or(String::new(), |vehicle| scenario.strategies[vehicle.strategy].name.clone())
         };
         let teams = [0, 1].map(|team| (scenario.teams[team].name.clone(), name(team)));
-        if strategies(scenario) == strategies(exchanged) {
+        if are_equal(scenario) {
             bail!(UsageError(format!(
-                "both teams use the strategy {}, so exchanging strategies has no effect",
+                "both teams use the strategy {}, so exchanging strategies has no effect; omit --both-sides",
                 teams[0].1
             )));
         }

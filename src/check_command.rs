@@ -1,29 +1,29 @@
 //! `squall check` and `squall schema`: validate scenario files and print their schemas.
 
-use crate::kinds::KINDS;
+use crate::kinds::{self, KINDS};
 use crate::{explain, scenario_files, screen, style};
 use anyhow::{Result, bail};
-use scenario::{Kind, check_file, did_you_mean, load, schema};
+use scenario::{Kind, check_file, load, schema};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Scenario files of any kind
-    #[arg(required = true)]
-    files: Vec<PathBuf>,
+    /// Scenario files of any kind, or their names
+    #[arg(required = true, value_name = "SCENARIO", value_parser = scenario_files::find_any)]
+    files: Vec<Vec<PathBuf>>,
 }
 
 #[derive(clap::Args)]
 pub(crate) struct SchemaArgs {
     /// Kind of file: game, field, rules, boat, sea, strategy, tournament, gateway, rewards, training or sweep
-    #[arg(value_parser = kind)]
+    #[arg(value_parser = kinds::parse)]
     kind: Kind,
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let mut errors = 0;
-    for file in &args.files {
+    for file in args.files.iter().flatten() {
         if !scenario_files::is_toml(file) {
             errors += 1;
             screen::print(&format!("{}: not a scenario file, expected NAME.toml\n", file.display()));
@@ -60,10 +60,4 @@ fn warnings(file: &Path, kind: Kind) -> Vec<String> {
 pub(crate) fn print_schema(args: &SchemaArgs) -> Result<ExitCode> {
     screen::print(&(serde_json::to_string_pretty(&schema(args.kind))? + "\n"));
     Ok(ExitCode::SUCCESS)
-}
-
-fn kind(word: &str) -> Result<Kind, String> {
-    let names: Vec<&str> = KINDS.iter().map(|kind| kind.name()).collect();
-    let found = KINDS.iter().copied().find(|kind| kind.name() == word);
-    found.ok_or_else(|| format!("expected one of {}{}", names.join(", "), did_you_mean(word, &names)))
 }

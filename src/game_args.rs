@@ -37,8 +37,8 @@ pub(crate) struct GameArgs {
     /// Exchanges the teams' strategies
     #[arg(long)]
     pub(crate) exchange_strategies: bool,
-    /// Overrides a value in the scenario files, for example sea.waves.hs_m=0.3, boat.gps.noise_m=2 or link.delay_s=1;
-    /// repeatable
+    /// Overrides a value in the scenario files, for example sea.wind.speed_m_s=12, boat.gps.noise_m=2 or
+    /// link.delay_s=1; repeatable
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = Setting::parse)]
     settings: Vec<Setting>,
     /// Simulates all external boats, as a rehearsal

@@ -7,7 +7,6 @@ use crate::{output_file, recording_file, screen};
 use analysis::{Comparison, GameSeries, Summary};
 use anyhow::{Context, Result};
 use command_line::explain::UsageError;
-use command_line::scenario_files::existing;
 use recording::{Bag, Damaged, Kind, Recording};
 use scenario::Scenario;
 use std::collections::BTreeSet;
@@ -23,8 +22,9 @@ mod quality;
 #[derive(clap::Args)]
 #[command(after_help = AFTER_HELP)]
 pub(crate) struct Args {
-    /// Recording to analyse; two with --compare, any number with --quality
-    #[arg(required = true, value_name = "FILE", value_parser = existing)]
+    /// Recording to analyse: a file, or a part of a name that `squall runs` lists [default: the newest in runs]. Two with
+    /// --compare, any number with --quality
+    #[arg(value_name = "RECORDING", value_parser = recording_file::named)]
     files: Vec<PathBuf>,
     /// Prints only the events
     #[arg(long)]
@@ -66,7 +66,11 @@ The summary lists the topics. A table has one row per message, with these except
 per input (inputs), per word (say) and per sentence (link).";
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
-    match args.files.as_slice() {
+    let mut files = args.files.clone();
+    if files.is_empty() && !args.compare {
+        files.push(recording_file::or_newest(None)?);
+    }
+    match files.as_slice() {
         files if args.quality => quality::print(files, args.json.as_deref())?,
         [a, b] if args.compare => compare(args, [a, b])?,
         [file] if !args.compare => look_at(args, file)?,

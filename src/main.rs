@@ -22,6 +22,7 @@ mod record_args;
 mod replay_command;
 mod result_table;
 mod run_command;
+mod runs_command;
 mod screen;
 mod sea_command;
 mod strategy_command;
@@ -59,36 +60,39 @@ enum Command {
     #[cfg(not(feature = "network"))]
     /// Plays a whole game, shows its events, and prints the result.
     #[command(
-        after_help = "Examples:\n  squall run strategy_4_vs_3\n  squall run surveyor_2v2 --sea gale --blue learned --red strategy_3\n  squall run surveyor_2v2 --set link.delay_s=1 --seed 7 --both-sides"
+        after_help = "Examples:\n  squall run strategy_4_vs_3\n  squall run surveyor_2v2 --sea gale --blue learned --red strategy_3\n  squall run strategy_4_vs_3 --set link.delay_s=1 --seed 7 --both-sides"
     )]
     Run(Box<run_command::Args>),
     #[cfg(not(feature = "network"))]
     /// Verifies that a rerun reproduces a recorded game.
-    #[command(after_help = "Examples:\n  squall replay runs/game.mcap --check")]
+    #[command(after_help = "Examples:\n  squall replay --check")]
     Replay(replay_command::Args),
     /// Plays every strategy against every other over many seeds, and ranks them with confidence intervals.
     #[command(
-        after_help = "Examples:\n  squall tournament paper_2023 --games 20\n  squall tournament simple --json report.json --quality\n  squall tournament simple --league league"
+        after_help = "Examples:\n  squall tournament paper_2023 --games 20\n  squall tournament strategy_4 strategy_3 --games 40\n  squall tournament simple --json report.json --quality\n  squall tournament simple --league league"
     )]
     Tournament(tournament_command::Args),
     /// Measures how much disturbance strategies tolerate: wind, noise and failures.
     #[command(
-        after_help = "Examples:\n  squall sweep wind\n  squall sweep wind --until strategy_4.win_share<0.5\n  squall sweep storm --find out_of_bounds"
+        after_help = "Examples:\n  squall sweep wind\n  squall sweep wind --until \"strategy_4.win_share < 0.5\"\n  squall sweep storm --find out_of_bounds"
     )]
     Sweep(sweep_command::Args),
     /// Trains a policy against itself, earlier versions of itself and scripted strategies.
     #[command(after_help = "Examples:\n  squall train first\n  squall train first --resume")]
     Train(train_command::Args),
+    /// Lists recorded games, the newest first.
+    #[command(after_help = "Examples:\n  squall runs")]
+    Runs(runs_command::Args),
     /// Analyses a recorded game: summary, tables, plots, MOOS logs, comparison with another game.
     #[command(
-        after_help = "Examples:\n  squall log runs/game.mcap\n  squall log --compare one.mcap other.mcap\n  squall log runs/game.mcap --gif game.gif --from 120 --to 190"
+        after_help = "Examples:\n  squall log\n  squall log strategy_4_vs_3 --gif game.gif --from 120 --to 190\n  squall log --compare strategy_4_vs_3 surveyor_2v2"
     )]
     Log(log_command::Args),
     /// Describes and plots a sea and its effects on a boat.
     #[command(after_help = "Examples:\n  squall sea gale\n  squall sea gale --boat heron --plot gale.svg")]
     Sea(sea_command::Args),
     /// Drives one boat through recorded commands or a standard manoeuvre.
-    #[command(after_help = "Examples:\n  squall trial surveyor_m1_8 --help")]
+    #[command(after_help = "Examples:\n  squall trial surveyor_m1_8 --manoeuvre turning_circle")]
     Trial(trial_command::Args),
     /// Fits a boat file to recorded data, and reports the quality of the fit.
     #[command(after_help = "Examples:\n  squall identify --help")]
@@ -97,25 +101,27 @@ enum Command {
     #[command(after_help = "Examples:\n  squall strategy strategy_4\n  squall strategy pav01 --dot")]
     Strategy(strategy_command::Args),
     /// Describes a trained policy, and explains a decision that it made in a recorded game.
-    #[command(after_help = "Examples:\n  squall policy scenarios/policies/options.onnx")]
+    #[command(after_help = "Examples:\n  squall policy options")]
     Policy(policy_command::Args),
     /// Checks scenario files and explains every error.
-    #[command(after_help = "Examples:\n  squall check scenarios/games/mine.toml")]
+    #[command(after_help = "Examples:\n  squall check mine")]
     Check(check_command::Args),
     /// Prints the JSON Schema of a kind of scenario file, for editors.
     #[command(after_help = "Examples:\n  squall schema game")]
     Schema(check_command::SchemaArgs),
-    /// Lists the available scenario files.
-    #[command(after_help = "Examples:\n  squall files")]
-    Files,
+    /// Lists your own and the built-in scenario files.
+    #[command(after_help = "Examples:\n  squall files\n  squall files strategy")]
+    Files(new_command::FilesArgs),
     /// Copies a built-in file so that you can edit it.
-    #[command(after_help = "Examples:\n  squall copy strategy_4 mine\n  squall copy seas/gale")]
+    #[command(after_help = "Examples:\n  squall copy strategy_4 my_team\n  squall copy seas/gale")]
     Copy(new_command::CopyArgs),
     /// Creates a scenario file from a commented template.
     #[command(after_help = "Examples:\n  squall new strategy mine\n  squall new sweep how_much_wind")]
     New(new_command::NewArgs),
     /// Prints a shell completion script.
-    #[command(after_help = "Examples:\n  squall completions bash > ~/.local/share/bash-completion/completions/squall")]
+    #[command(
+        after_help = "Examples:\n  source <(squall completions bash)\n  source <(squall completions zsh)\n  squall completions fish | source"
+    )]
     Completions(cli::CompletionArgs),
     /// Writes man pages to a folder.
     #[command(after_help = "Examples:\n  squall man man1")]
@@ -141,7 +147,7 @@ fn run(command: Command) -> Result<ExitCode> {
         #[cfg(not(feature = "network"))]
         Command::Run(args) => run_command::run(&args, &mut run_command::InProcess),
         #[cfg(not(feature = "network"))]
-        Command::Replay(args) if args.check => replay_command::check(&args.file),
+        Command::Replay(args) if args.check => replay_command::check(args.file.as_deref()),
         #[cfg(not(feature = "network"))]
         Command::Replay(_) => Err(anyhow::anyhow!(
             "{}; to verify the recording, use --check",
@@ -150,6 +156,7 @@ fn run(command: Command) -> Result<ExitCode> {
         Command::Tournament(args) => tournament_command::run(&args),
         Command::Sweep(args) => sweep_command::run(&args),
         Command::Train(args) => train_command::run(&args),
+        Command::Runs(args) => Ok(runs_command::run(&args)),
         Command::Log(args) => log_command::run(&args),
         Command::Sea(args) => sea_command::run(&args),
         Command::Trial(args) => trial_command::run(&args),
@@ -158,7 +165,7 @@ fn run(command: Command) -> Result<ExitCode> {
         Command::Policy(args) => policy_command::run(&args),
         Command::Check(args) => check_command::run(&args),
         Command::Schema(args) => check_command::print_schema(&args),
-        Command::Files => Ok(new_command::files()),
+        Command::Files(args) => Ok(new_command::files(&args)),
         Command::Copy(args) => new_command::copy(&args),
         Command::New(args) => new_command::new(&args),
         Command::Completions(args) => Ok(cli::completions(&args)),

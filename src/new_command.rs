@@ -1,6 +1,6 @@
 //! `squall new` and `squall copy`: create a scenario file for editing.
 
-use crate::kinds::KINDS;
+use crate::kinds::{self, KINDS};
 use crate::{output_file, scenario_files, screen};
 use anyhow::{Result, bail};
 use command_line::explain::UsageError;
@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// The kinds of files that have a template.
-const TEMPLATES: [(Kind, &str); 7] = [
+pub(crate) const TEMPLATES: [(Kind, &str); 7] = [
     (Kind::STRATEGY, include_str!("templates/strategy.toml")),
     (Kind::BOAT, include_str!("templates/boat.toml")),
     (Kind::SEA, include_str!("templates/sea.toml")),
@@ -24,7 +24,7 @@ const TEMPLATES: [(Kind, &str); 7] = [
 #[derive(clap::Args)]
 pub(crate) struct NewArgs {
     /// Kind of file: strategy, boat, sea, game, sweep, training or tournament
-    #[arg(value_parser = template)]
+    #[arg(value_name = "TEMPLATE", value_parser = template)]
     kind: (Kind, &'static str),
     /// Name of the new file: a-z, 0-9 and _
     #[arg(value_parser = name)]
@@ -34,10 +34,19 @@ pub(crate) struct NewArgs {
 #[derive(clap::Args)]
 pub(crate) struct CopyArgs {
     /// Name of the file, with its folder if several kinds share the name, as in seas/calm
+    #[arg(value_name = "SCENARIO")]
     name: String,
     /// Name of the copy [default: the same name]
     #[arg(value_parser = name)]
     as_name: Option<String>,
+}
+
+#[derive(clap::Args)]
+pub(crate) struct FilesArgs {
+    /// Lists one kind of file, and describes each: game, field, rules, boat, sea, strategy, tournament, gateway, rewards,
+    /// training or sweep
+    #[arg(value_parser = kinds::parse)]
+    kind: Option<Kind>,
 }
 
 fn template(word: &str) -> Result<(Kind, &'static str), String> {
@@ -92,16 +101,62 @@ fn write(kind: Kind, name: &str, content: &[u8]) -> Result<PathBuf> {
         output_file::make_folder(folder)?;
     }
     output_file::write(&path, "the file", content)?;
+    if scenario_files::contents(kind, name).is_some_and(|built_in| built_in != content) {
+        scenario_files::announce(&path);
+    }
     Ok(path)
 }
 
-/// Lists the built-in files by kind.
-pub(crate) fn files() -> ExitCode {
-    for &kind in KINDS {
-        let names: Vec<String> = scenario_files::names(kind).into_iter().collect();
-        screen::print(&format!("{}: {}\n", kind.folder(), names.join(" ")));
+/// Lists the user's own files with descriptions, then the names of the built-in ones by kind. For
+/// one kind, describes these, too.
+pub(crate) fn files(args: &FilesArgs) -> ExitCode {
+    let kinds = args.kind.as_ref().map_or(KINDS, std::slice::from_ref);
+    let mut own: Vec<[String; 2]> = vec![];
+    for &kind in kinds {
+        for (name, path) in scenario_files::own(kind) {
+            let overrides = scenario_files::contents(kind, &name).map_or("", |_| "overrides the built-in file; ");
+            let about = std::fs::read(&path).map(|bytes| description(&bytes)).unwrap_or_default();
+            own.push([path.display().to_string(), format!("{overrides}{about}")]);
+        }
+    }
+    if !own.is_empty() {
+        screen::print(&format!("your own files:\n{}\nbuilt in:\n", rows(&own)));
+    }
+    match args.kind {
+        Some(kind) => {
+            let row = |name: String| {
+                let about = scenario_files::contents(kind, &name).map(description).unwrap_or_default();
+                [name, about]
+            };
+            let described: Vec<[String; 2]> = scenario_files::names(kind).into_iter().map(row).collect();
+            screen::print(&rows(&described));
+        }
+        None => {
+            let kinds = KINDS.iter().map(|kind| (kind.folder(), scenario_files::names(*kind)));
+            for (folder, names) in kinds.chain([("policies", scenario_files::policies())]) {
+                let names: Vec<String> = names.into_iter().collect();
+                screen::print(&screen::wrapped(&format!("{folder}: {}", names.join(" "))));
+            }
+        }
     }
     ExitCode::SUCCESS
+}
+
+/// Names and descriptions in columns, each on a line that fits the terminal.
+fn rows(rows: &[[String; 2]]) -> String {
+    let width = rows.iter().map(|[name, _]| name.chars().count()).max().unwrap_or(0);
+    rows.iter().map(|[name, about]| screen::cut(&format!("  {name:width$}  {about}")) + "\n").collect()
+}
+
+/// The description of a scenario file: its key `about`, otherwise the first sentence of its first comment.
+fn description(bytes: &[u8]) -> String {
+    let text = String::from_utf8_lossy(bytes);
+    if let Some(about) = text.lines().find_map(|line| line.strip_prefix("about = \"")?.strip_suffix('"')) {
+        return about.to_owned();
+    }
+    let comment = text.lines().skip_while(|line| !line.starts_with("# ")).map_while(|line| line.strip_prefix("# "));
+    let comment = comment.collect::<Vec<_>>().join(" ");
+    comment.split_once(". ").map_or(comment.as_str(), |(first, _)| first).trim_end_matches('.').to_owned()
 }
 
 #[cfg(test)]

@@ -1,13 +1,13 @@
 //! `squall policy`: describes a trained model and explains its choices in a recorded game.
 
 use crate::minds::Minds;
-use crate::{helm_text, recording_file, screen};
+use crate::{helm_text, recording_file, scenario_files, screen};
 use anyhow::{Context, Result, bail};
-use command_line::number::{seconds, whole};
-use command_line::scenario_files::existing;
+use command_line::number::{seconds, significant, whole};
 use onnx::Network;
 use primitives::input_file;
 use scenario::action::{self, ActionSpace};
+use scenario::built_in;
 use scenario::observation::ObservationSpace;
 use scenario::policy::{self, PartialSpec, PolicyModel, PolicySpec};
 use std::fmt::Write;
@@ -18,11 +18,11 @@ use std::time::Instant;
 
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Policy: an ONNX model
-    #[arg(value_parser = existing)]
+    /// Policy: an ONNX model, or the name of one in scenarios/policies
+    #[arg(value_name = "POLICY", value_parser = scenario_files::find_policy)]
     file: PathBuf,
     /// Explains a decision in this recording
-    #[arg(long, value_name = "RECORDING", requires_all = ["vehicle", "at"], value_parser = existing)]
+    #[arg(long, value_name = "RECORDING", value_parser = recording_file::named, requires_all = ["vehicle", "at"])]
     game: Option<PathBuf>,
     /// With --game: name of the boat, which must use a policy
     #[arg(long, value_name = "NAME", requires = "game")]
@@ -43,8 +43,11 @@ const EVALUATIONS: u32 = 1000;
 const OWN: &str = "squall.";
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
-    let bytes = input_file::read(&args.file, policy::BYTES_MAX)
-        .with_context(|| format!("cannot read {}", args.file.display()))?;
+    let bytes = match built_in(&args.file).filter(|_| !args.file.exists()) {
+        Some(bytes) => bytes.to_vec(),
+        None => input_file::read(&args.file, policy::BYTES_MAX)
+            .with_context(|| format!("cannot read {}", args.file.display()))?,
+    };
     let name = args.file.display().to_string();
     let network = Network::read(&bytes).with_context(|| format!("{name} is not a usable model"))?;
     let model = PolicyModel::read(&name, &bytes, PartialSpec::default());
@@ -69,7 +72,7 @@ fn about(name: &str, bytes: usize, network: &Network, spec: Result<PolicySpec, S
         let _ = writeln!(text, "  {what:<12} {value}");
     };
     line("network", format!("{} -> {}", ports(network.inputs()), ports(network.outputs())));
-    line("evaluation", format!("{:.1} us", evaluation_us(network.clone())));
+    line("evaluation", format!("{} us", significant(evaluation_us(network.clone()))));
     let mut said = vec![];
     match spec {
         Ok(spec) => {

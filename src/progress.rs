@@ -1,6 +1,7 @@
 //! Progress of a long task on standard error: a bar on a terminal, otherwise an occasional line.
 
 use crate::{clock, screen};
+use command_line::number::significant;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::time::{Duration, Instant};
 
@@ -44,7 +45,7 @@ impl Progress {
 
     /// Progress of an unknown number of items.
     pub(crate) fn without_end(noun: &'static str) -> Progress {
-        let style = format!("{{spinner}} {{pos}} {noun} in {{elapsed}}  {{msg}}");
+        let style = format!("{{spinner}} {{pos}} {noun} in {{elapsed}}  {{wide_msg}}");
         let style = ProgressStyle::with_template(&style).expect("the template is sound");
         let bar = ProgressBar::new_spinner().with_style(style);
         bar.enable_steady_tick(TURN_EVERY);
@@ -87,7 +88,7 @@ impl Progress {
             let done = self.bar.position();
             let noun = self.noun;
             let of = self.bar.length().map_or(String::new(), |count| format!(" of {count}"));
-            let line = format!("{done}{of} {noun}, {:.1} {noun}/s  {}", self.rate(), words());
+            let line = format!("{done}{of} {noun}, {} {noun}/s  {}", significant(self.rate()), words());
             screen::remark(line.trim_end());
         }
     }
@@ -109,7 +110,8 @@ impl Progress {
         let wall_s = self.bar.elapsed().as_secs_f64();
         self.end();
         let threads = if jobs == 1 { "1 thread".to_owned() } else { format!("{jobs} threads") };
-        screen::remark(&format!("{played} games in {wall_s:.1} s on {threads}: {rate:.1} games/s"));
+        let wall_s = significant(wall_s);
+        screen::remark(&format!("{played} games in {wall_s} s on {threads}: {} games/s", significant(rate)));
         rate
     }
 }

@@ -1,6 +1,6 @@
 //! Command line arguments that define whether and where a game is recorded.
 
-use crate::output_file;
+use crate::{output_file, recording_file};
 use anyhow::{Context, Result};
 use recording::NewFile;
 use scenario::Scenario;
@@ -9,7 +9,7 @@ use std::path::PathBuf;
 #[derive(Clone, clap::Args)]
 pub(crate) struct RecordArgs {
     /// Folder for the recording
-    #[arg(long, value_name = "DIR", default_value = "runs")]
+    #[arg(long, value_name = "DIR", default_value = recording_file::FOLDER)]
     record: PathBuf,
     /// Does not record the game
     #[arg(long, conflicts_with = "record")]

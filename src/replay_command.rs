@@ -3,7 +3,6 @@
 use crate::progress::Progress;
 use crate::{recording_file, screen};
 use anyhow::{Context, Result};
-use command_line::scenario_files::existing;
 use recording::{FRAME, Recording};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -12,16 +11,17 @@ mod check;
 
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Recording to replay
-    #[arg(value_parser = existing)]
-    pub(crate) file: PathBuf,
+    /// Recording to replay: a file, or a part of a name that `squall runs` lists [default: the newest in runs]
+    #[arg(value_name = "RECORDING", value_parser = recording_file::named)]
+    pub(crate) file: Option<PathBuf>,
     /// Reruns the game from its recorded inputs, without minds, and reports whether the result is identical
     #[arg(long)]
     pub(crate) check: bool,
 }
 
 /// Reruns a recorded game from its inputs, and prints whether the rerun reproduces it.
-pub(crate) fn check(file: &Path) -> Result<ExitCode> {
+pub(crate) fn check(file: Option<&Path>) -> Result<ExitCode> {
+    let file = &recording_file::or_newest(file)?;
     let recording = open(file)?;
     let frames = recording.bag().messages().filter(|message| message.topic == FRAME).count();
     let mut progress = Progress::of(frames as u64, "frames");

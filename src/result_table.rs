@@ -1,5 +1,6 @@
 //! The result of a game as a table.
 
+use command_line::number::significant;
 use rules::count::Counts;
 use sim::Report;
 
@@ -22,19 +23,19 @@ pub(crate) fn text(report: &Report) -> String {
     };
     let run = &report.run;
     text += &format!(
-        "\n{end} after {:.0} s ({} ticks, {} {:.1} s, {:.0}x real time)\n",
+        "\n{end} after {:.0} s ({} ticks, {} {} s, {}x real time)\n",
         outcome.duration_s,
         outcome.ticks,
         run.pace,
-        run.wall_s,
-        outcome.duration_s / run.wall_s.max(1e-9)
+        significant(run.wall_s),
+        significant(outcome.duration_s / run.wall_s.max(1e-9))
     );
     text += &format!("{}  seed {}  digest {}\n", outcome.scenario, outcome.seed, outcome.digest);
     if !outcome.random {
         text += "nothing in this game is random: it is the same for every seed\n";
     }
     if outcome.ends_differ {
-        text += "wind, waves or current favour one end of the field; play from both ends with --both-sides\n";
+        text += "wind, waves or current favour one end of the field\n";
     }
     if run.overruns > 0 {
         text += &format!("{} decision ticks began late: the pace was not kept\n", run.overruns);

@@ -1,6 +1,6 @@
 //! `squall run`: runs a whole game with one command, using any [`Player`].
 
-use crate::both_sides::BothSides;
+use crate::both_sides::{self, BothSides};
 use crate::game_args::GameArgs;
 use crate::record_args::RecordArgs;
 use crate::screen::{self, Screen};
@@ -116,6 +116,10 @@ fn play(
     let file = args.record.file(scenario, args.play.seed(scenario))?;
     let path = file.as_ref().map(|file| file.path().to_owned());
     let report = player.play(&args.play, scenario, file, (stop, &mut *screen))?;
+    let has_advantage = report.as_ref().is_some_and(|report| report.outcome.ends_differ);
+    if has_advantage && !args.both_sides && !both_sides::are_equal(scenario) {
+        screen.line("to give both strategies both ends, add --both-sides");
+    }
     let file = path.filter(|path| path.exists());
     if let Some(file) = &file {
         let is_whole = report.as_ref().is_some_and(|report| report.run.recording_problem.is_none());
@@ -130,7 +134,7 @@ fn both_sides(args: &Args, player: &mut dyn Player, scenario: &Scenario, (stop, 
     let mut exchanged_args = args.clone();
     exchanged_args.play.exchange_strategies = true;
     let exchanged = exchanged_args.play.load()?;
-    let sides = BothSides::new(scenario, &exchanged)?;
+    let sides = BothSides::new(scenario)?;
     let mut reports = vec![];
     for (args, scenario) in [(args, scenario), (&exchanged_args, &exchanged)] {
         let (_, report) = play(args, player, scenario, (stop, &mut *screen))?;

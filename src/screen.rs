@@ -2,6 +2,7 @@
 
 use crate::result_table;
 use crate::style::Names;
+use command_line::number::significant;
 pub(crate) use command_line::terminal::*;
 use sim::{Progress, ProgressMessage};
 use std::io::IsTerminal;
@@ -42,6 +43,7 @@ impl Screen {
             ProgressMessage::Progress(progress) => self.progress(progress),
             ProgressMessage::Done(report) => {
                 self.clear();
+                self.status.clear();
                 show(&self.names.paint(&result_table::text(report)));
             }
         }
@@ -53,13 +55,13 @@ impl Screen {
         let full = (share * 24.0).round() as usize;
         let refused = if progress.refused > 0 { format!("  {} refused", progress.refused) } else { String::new() };
         let text = format!(
-            "{:>7.1} s  [{}{}] {:.0} s  {}  {:.0}x{refused}",
+            "{:>7.1} s  [{}{}] {:.0} s  {}  {}x{refused}",
             progress.now_s,
             "=".repeat(full),
             " ".repeat(24 - full),
             progress.end_s,
             score.join("  "),
-            progress.rate,
+            significant(progress.rate),
         );
         if self.live || progress.now_s - self.last_s >= PRINT_EVERY_S {
             self.last_s = progress.now_s;
@@ -81,8 +83,9 @@ impl Screen {
             return;
         }
         self.clear();
-        self.status = text.to_owned();
-        show(&self.names.paint(text));
+        // A wrapped line could not be overwritten.
+        self.status = cut(text);
+        show(&self.names.paint(&self.status));
     }
 
     fn clear(&mut self) {
@@ -90,6 +93,38 @@ impl Screen {
             overwrite("");
         }
     }
+}
+
+impl Drop for Screen {
+    /// Removes the status line, so that an error does not continue it.
+    fn drop(&mut self) {
+        self.clear();
+    }
+}
+
+/// A line, cut to the width of the terminal; whole if there is no terminal.
+pub(crate) fn cut(line: &str) -> String {
+    let width = if std::io::stdout().is_terminal() { columns().saturating_sub(1) } else { usize::MAX };
+    match line.char_indices().nth(width) {
+        Some(_) => line.chars().take(width.saturating_sub(1)).chain(['…']).collect(),
+        None => line.to_owned(),
+    }
+}
+
+/// Words in lines that fit the terminal, all but the first indented; one line if there is no terminal.
+pub(crate) fn wrapped(words: &str) -> String {
+    let width = if std::io::stdout().is_terminal() { columns() } else { usize::MAX };
+    let mut lines = vec![String::new()];
+    for word in words.split(' ') {
+        let last = lines.last_mut().expect("there is a line");
+        if !last.is_empty() && last.len() + 1 + word.len() >= width {
+            lines.push(format!("    {word}"));
+        } else {
+            *last += if last.is_empty() { "" } else { " " };
+            *last += word;
+        }
+    }
+    lines.join("\n") + "\n"
 }
 
 /// The agents and gateways that a game waits for, if any.

@@ -10,7 +10,7 @@ use std::process::ExitCode;
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Strategy to explain: a file or a name
-    #[arg(required_unless_present = "reference", value_parser = crate::scenario_files::file_of(scenario::Kind::STRATEGY))]
+    #[arg(value_name = "STRATEGY", required_unless_present = "reference", value_parser = crate::scenario_files::file_of(scenario::Kind::STRATEGY))]
     file: Option<PathBuf>,
     /// Prints the modes and their possible behaviours as a Graphviz graph
     #[arg(long)]

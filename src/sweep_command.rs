@@ -4,7 +4,7 @@ use crate::jobs_args::JobsArgs;
 use crate::progress::{Progress, tell_rounded};
 use crate::{output_file, screen, stop};
 use anyhow::{Context, Result};
-use command_line::number::whole;
+use command_line::number::{significant, whole};
 use experiment::sweep::{self, Condition, Journal, Plan, SearchError, Study, Sweep};
 use scenario::{Kind, load_file};
 use std::path::{Path, PathBuf};
@@ -91,12 +91,12 @@ fn until(args: &Args, plan: &Plan, text: &str, folder: &Path) -> Result<ExitCode
     let mut journal = journal(args, folder, plan)?;
     let jobs = args.jobs.threads(plan.games_per_point());
     let result = sweep::breaking_point(plan, &condition, args.along.as_deref(), &mut journal, (jobs, &stop), |tried| {
-        let half = tried.mean.half_width().map_or("?".to_owned(), |half| format!("{half:.3}"));
+        let half = tried.mean.half_width().map_or("?".to_owned(), significant);
         let verdict = tried.holds.map_or("is undecided", |holds| if holds { "holds" } else { "does not hold" });
         let value = tried.value;
         let games = tried.games;
-        let mean = tried.mean.mean;
-        screen::remark(&format!("at {value:.4}: {mean:.3} ± {half} in {games} games, {condition} {verdict}"));
+        let mean = significant(tried.mean.mean);
+        screen::remark(&format!("at {value:.4}: {mean} ± {half} in {games} games, {condition} {verdict}"));
     });
     let point = match result {
         Err(SearchError::Stopped) => return Ok(stopped(&journal)),

@@ -3,27 +3,31 @@
 use crate::jobs_args::JobsArgs;
 use crate::league_file::LeagueFile;
 use crate::progress::{Progress, tell_rounded};
-use crate::{output_file, screen, stop};
+use crate::{output_file, recording_file, scenario_files, screen, stop};
 use agent::MindRunner;
 use analysis::Step;
 use analysis::quality::{GameQuality, MindState, Quality};
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use command_line::number::whole;
-use experiment::tournament::{self, Observer, Plan, Record, Report, Tournament, play, play_observed};
+use experiment::tournament::{self, Entrant, Observer, Plan, Record, Report, Tournament, play, play_observed};
 use rules::event::EventCursor;
 use scenario::{Kind, Scenario, load_file};
 use serde::Serialize;
 use sim::Contest;
+use std::collections::BTreeSet;
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Tournament to play: a file or a name
-    #[arg(value_parser = crate::scenario_files::file_of(Kind::of::<Tournament>()))]
-    tournament: PathBuf,
+    /// Tournament to play, or two or more strategies: files or names
+    #[arg(required = true, value_name = "TOURNAMENT")]
+    entries: Vec<String>,
+    /// Game that strategies play: a file or a name [default: surveyor_2v2]
+    #[arg(long, value_name = "GAME", value_parser = scenario_files::file_of(Kind::GAME))]
+    game: Option<PathBuf>,
     /// Games per pairing, half of them on each side [default: the number in the file]
     #[arg(long, value_name = "N", value_parser = whole::<u32>(2, 1_000_000))]
     games: Option<u32>,
@@ -148,10 +152,31 @@ fn play_judged(
 }
 
 fn planned(args: &Args) -> Result<Plan> {
-    let path = &args.tournament;
-    let context = || format!("cannot play the tournament {}", path.display());
-    let file = load_file::<Tournament>(path).with_context(context)?;
+    let file = match &args.entries[..] {
+        [name] => {
+            ensure!(args.game.is_none(), "--game requires strategies; a tournament file names its game");
+            let path = scenario_files::find(name, Kind::of::<Tournament>())?;
+            load_file::<Tournament>(&path).with_context(|| format!("cannot play the tournament {}", path.display()))?
+        }
+        strategies => between(strategies, args.game.as_deref())?,
+    };
     let games = args.games.unwrap_or(file.games);
     tell_rounded(games, "pairing");
-    Plan::new(&Tournament { games, seed: args.seed.unwrap_or(file.seed), ..file }).with_context(context)
+    let name = file.name.clone();
+    let plan = Plan::new(&Tournament { games, seed: args.seed.unwrap_or(file.seed), ..file });
+    plan.with_context(|| format!("cannot play the tournament {name}"))
+}
+
+/// A tournament between these strategies, with the defaults of a tournament file.
+fn between(strategies: &[String], game: Option<&Path>) -> Result<Tournament> {
+    let entrant = |word: &String| {
+        let strategy = scenario_files::find(word, Kind::STRATEGY)?;
+        Ok(Entrant { name: recording_file::stem(&strategy), strategy })
+    };
+    let entries = strategies.iter().map(entrant).collect::<Result<Vec<_>>>()?;
+    let names: BTreeSet<&str> = entries.iter().map(|entry| entry.name.as_str()).collect();
+    ensure!(names.len() == entries.len(), "a strategy is given twice, expected different names of strategies");
+    let name = Vec::from_iter(names).join("_");
+    let game = game.map_or_else(|| scenario_files::find("surveyor_2v2", Kind::GAME), |path| Ok(path.to_owned()))?;
+    Ok(Tournament { name, game, sea: None, games: 200, seed: 1, self_play: false, challenger: None, entries })
 }

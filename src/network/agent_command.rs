@@ -24,8 +24,8 @@ pub(crate) struct Args {
     /// How long to wait for a picture before treating the sim as dead, s (5 s if the sim leaves the network)
     #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
     silence_s: f64,
-    /// Strategy file to follow instead of the one in the sim's scenario
-    #[arg(long, value_name = "FILE")]
+    /// Strategy to follow instead of the one in the sim's scenario: a file or a name
+    #[arg(long, value_name = "STRATEGY", value_parser = crate::scenario_files::file_of(scenario::Kind::STRATEGY))]
     strategy: Option<PathBuf>,
     /// In lockstep, if the strategy uses an external policy: how long to wait for its proposal at every decision, s;
     /// at most half of the game's patience_s

@@ -23,7 +23,7 @@ pub(crate) struct LoopArgs {
     #[arg(long, conflicts_with_all = ["in_process", "rehearse"])]
     emulate: bool,
     /// Gateway file or name for the emulated boats [default: a Surveyor with careful limits]
-    #[arg(long, value_name = "FILE", requires = "emulate", value_parser = scenario_files::file_of(Kind::of::<Gateway>()))]
+    #[arg(long, value_name = "GATEWAY", requires = "emulate", value_parser = scenario_files::file_of(Kind::of::<Gateway>()))]
     gateway: Option<PathBuf>,
     /// Records the link traffic of each gateway to NAME.mcap in this folder
     #[arg(long, value_name = "DIR", requires = "emulate")]

@@ -34,7 +34,7 @@ pub(crate) enum Command {
     Demo(page_args::PageArgs),
     /// Plays a whole game: starts the simulation and the agents, shows events, and prints the result.
     #[command(
-        after_help = "Examples:\n  squall run strategy_4_vs_3\n  squall run surveyor_2v2 --sea gale --blue learned --red strategy_3 --view\n  squall run surveyor_2v2 --set link.delay_s=1 --seed 7 --both-sides"
+        after_help = "Examples:\n  squall run strategy_4_vs_3\n  squall run surveyor_2v2 --sea gale --blue learned --red strategy_3 --view\n  squall run strategy_4_vs_3 --set link.delay_s=1 --seed 7 --both-sides"
     )]
     Run(run_command::Args),
     /// Simulates and serves one game, which agents and gateways join.
@@ -52,7 +52,7 @@ pub(crate) enum Command {
     )]
     View(view_command::Args),
     /// Replays a recorded game, or verifies that a rerun reproduces it.
-    #[command(after_help = "Examples:\n  squall replay runs/game.mcap\n  squall replay runs/game.mcap --check")]
+    #[command(after_help = "Examples:\n  squall replay\n  squall replay strategy_4_vs_3 --check")]
     Replay(replay_command::Args),
     /// Prints one decision of a boat's helm as a table or as CSV.
     #[command(after_help = "Examples:\n  squall helm --vehicle blue_1 --csv helm.csv")]

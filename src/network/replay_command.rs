@@ -4,7 +4,7 @@
 use super::page_args::PageArgs;
 use super::replay_helms::ReplayHelms;
 use crate::replay_command;
-use crate::{screen, stop};
+use crate::{recording_file, screen, stop};
 use anyhow::{Result, bail};
 use command_line::explain::UsageError;
 use shore::page::replay::{Recorded, ReplayView};
@@ -21,14 +21,14 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
-    let file = &args.replay.file;
+    let file = args.replay.file.as_deref();
     if args.replay.check {
         if args.page.is_given() {
             bail!(UsageError("--check shows no page; omit --listen, --token, --page-token-file and --host".to_owned()));
         }
         return replay_command::check(file);
     }
-    show(file, &args.page)
+    show(&recording_file::or_newest(file)?, &args.page)
 }
 
 /// Shows a recording on a page until Ctrl-C.

@@ -3,11 +3,10 @@
 use super::page_args::{self, PageArgs};
 use super::replay_command;
 use crate::screen::{self, Screen};
-use crate::stop;
 use crate::style::Names;
+use crate::{recording_file, stop};
 use anyhow::{Context, Result, bail};
 use command_line::leaf_args::LeafArgs;
-use command_line::scenario_files::existing;
 use shore::page::View;
 use shore::page::live::LiveView;
 use std::path::{Path, PathBuf};
@@ -20,9 +19,9 @@ mod training;
 
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// What to show: the JSON report of a tournament, the folder of a league, sweep or training, or a recording
-    /// [default: a running game]
-    #[arg(conflicts_with_all = ["game", "connect"], value_parser = existing)]
+    /// What to show: the JSON report of a tournament, the folder of a league, sweep or training, or a recording, also by
+    /// a part of its name [default: a running game; if there is none, the newest recording in runs]
+    #[arg(value_name = "REPORT", conflicts_with_all = ["game", "connect"], value_parser = recording_file::named)]
     report: Option<PathBuf>,
     #[command(flatten)]
     leaf: LeafArgs,
@@ -36,6 +35,11 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     if let Some(path) = &args.report {
         return show_report(args, path);
+    }
+    let has_run = !recording_file::runs(Path::new(recording_file::FOLDER)).is_empty();
+    if has_run && !args.for_parent && args.leaf.finds_no_game() {
+        screen::remark("no game is running on this machine; to wait for one, name it with --game");
+        return replay_command::show(&recording_file::or_newest(None)?, &args.page);
     }
     let stop = stop::on_ctrl_c()?;
     let recordings = args.for_parent.then(|| stop::with_parent(&stop));

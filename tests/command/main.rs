@@ -13,4 +13,3 @@ mod strategy;
 mod tournament;
 mod train;
 mod trial;
-mod tutorial;

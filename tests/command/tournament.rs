@@ -324,4 +324,10 @@ fn a_game_from_both_sides_is_the_two_games_of_the_tournament_and_their_sum() {
     assert!(points(&first, "blue") > 0, "somebody scores");
     assert!(text.contains("nothing in this game is random") && first["random"] == false, "{text}");
     assert!(!text.contains("--both-sides") && first["ends_differ"] == false, "{text}");
+    // Equal strategies gain nothing from both ends.
+    for (red, is_advised) in [("strategy_3", true), ("strategy_4", false)] {
+        let args =
+            ["run", "strategy_4_vs_3", "--red", red, "--set", "game.duration_s=5", "--no-record", "--in-process"];
+        assert_eq!(printed(&dir, &args).contains("add --both-sides"), is_advised, "{red}");
+    }
 }

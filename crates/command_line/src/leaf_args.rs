@@ -101,6 +101,12 @@ impl LeafArgs {
         !self.connect.is_empty() && net.connect == self.connect
     }
 
+    /// Whether they leave the choice of a game to this machine, and none is running here.
+    pub fn finds_no_game(&self) -> bool {
+        let names_place = self.game.is_some() || self.lan || !self.connect.is_empty() || self.zenoh_config.is_some();
+        !names_place && bus::local_registry().is_empty()
+    }
+
     /// The same arguments for an emulated boat. Without a name, they select the only water on
     /// this machine.
     #[must_use]

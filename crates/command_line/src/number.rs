@@ -64,6 +64,15 @@ pub fn host(text: &str) -> Result<String, String> {
     is_host.then(|| text.to_owned()).ok_or_else(|| "expected a name or an IP address, such as boat.local".to_owned())
 }
 
+/// A measured or statistical number as text with two significant digits, as in 1.5, 0.031 or 190.
+#[must_use]
+pub fn significant(number: f64) -> String {
+    let text = format!("{number:.1e}");
+    let exponent: i32 = text.split_once('e').and_then(|(_, exponent)| exponent.parse().ok()).unwrap_or(0);
+    let decimals = usize::try_from(1 - exponent).unwrap_or(0);
+    format!("{:.decimals$}", text.parse().unwrap_or(number))
+}
+
 /// Lets all options take negative numbers, so that their parsers report the allowed range; clap would
 /// report an unknown option.
 #[must_use]
@@ -79,6 +88,21 @@ pub fn with_negative_numbers(command: Command) -> Command {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_measured_number_has_two_significant_digits() {
+        for (number, want) in [
+            (0.0, "0.0"),
+            (0.0312, "0.031"),
+            (1.04, "1.0"),
+            (9.96, "10"),
+            (62.7, "63"),
+            (627.0, "630"),
+            (-2765.0, "-2800"),
+        ] {
+            assert_eq!(significant(number), want);
+        }
+    }
 
     #[test]
     fn numbers_out_of_range_are_refused_with_the_range() {

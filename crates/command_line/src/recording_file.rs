@@ -1,9 +1,52 @@
-//! Opens a recording given by the user, and reports damage in it.
+//! Finds and opens a recording given by the user, and reports damage in it.
 
+use crate::scenario_files::existing;
 use crate::terminal;
-use anyhow::{Context, Error, Result};
+use anyhow::{Context, Error, Result, anyhow};
 use recording::{Bag, Recording, RecordingError};
-use std::path::Path;
+use std::cmp::Reverse;
+use std::path::{Path, PathBuf};
+
+/// The folder in which games are recorded by default.
+pub const FOLDER: &str = "runs";
+
+/// The recordings of games in a folder, newest first.
+pub fn runs(folder: &Path) -> Vec<PathBuf> {
+    let files = std::fs::read_dir(folder).into_iter().flatten().filter_map(Result::ok).map(|file| file.path());
+    let is_game =
+        |path: &PathBuf| path.extension().is_some_and(|end| end == "mcap") && !stem(path).starts_with("gateway-");
+    let mut runs: Vec<PathBuf> = files.filter(is_game).collect();
+    runs.sort_by_cached_key(|path| Reverse((path.metadata().and_then(|file| file.modified()).ok(), path.clone())));
+    runs
+}
+
+/// The name of a recording: that of its file, without the extension.
+pub fn stem(path: &Path) -> String {
+    path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+/// Parses an argument that names a recording: a path, or a part of a name in `runs`, where the newest counts.
+pub fn named(word: &str) -> Result<PathBuf> {
+    let path = Path::new(word);
+    if word.contains(['/', '\\']) || path.extension().is_some() || path.exists() {
+        return existing(word).map_err(Error::msg);
+    }
+    let found = runs(Path::new(FOLDER)).into_iter().find(|path| stem(path).contains(word));
+    found.ok_or_else(|| anyhow!("there is no recording {word} in {FOLDER}; list the recordings with: squall runs"))
+}
+
+/// The given recording, or the newest in `runs`, which it names.
+pub fn or_newest(given: Option<&Path>) -> Result<PathBuf> {
+    if let Some(path) = given {
+        return Ok(path.to_owned());
+    }
+    let newest = runs(Path::new(FOLDER)).into_iter().next();
+    let newest = newest.with_context(|| {
+        format!("there is no recording in {FOLDER}; record a game, for example with: squall run strategy_4_vs_3")
+    })?;
+    terminal::remark(&format!("the newest recording: {}", newest.display()));
+    Ok(newest)
+}
 
 /// Opens the recording of a game; errors name the purpose `to`, for example "replay".
 pub fn open(file: &Path, to: &str) -> Result<Recording> {

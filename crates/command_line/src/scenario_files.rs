@@ -1,17 +1,21 @@
 //! The built-in scenario files, and the resolution of file arguments: a path, or the name of a
 //! file.
 
-use crate::program;
+use crate::{program, terminal};
 use anyhow::{Result, anyhow, bail};
 use include_dir::{Dir, include_dir};
 use scenario::{Kind, built_in, did_you_mean, other_kind, set_built_in};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
+use std::sync::{Mutex, OnceLock, PoisonError};
 
 static FILES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../scenarios");
 /// The folder searched for named files, in the current folder and its parents.
 const FOLDER: &str = "scenarios";
+/// The extension of scenario files.
+const TOML: &str = "toml";
+/// The folder of policies within it, and their file extension.
+const POLICIES: (&str, &str) = ("policies", "onnx");
 
 /// The kinds of files that the program knows.
 static KINDS: OnceLock<&[Kind]> = OnceLock::new();
@@ -21,7 +25,19 @@ static KINDS: OnceLock<&[Kind]> = OnceLock::new();
 pub fn install(kinds: &'static [Kind]) {
     // An earlier caller installed the same kinds: a process runs one program.
     let _ = KINDS.set(kinds);
-    set_built_in(|name| FILES.get_file(name).map(include_dir::File::contents));
+    set_built_in(|name| FILES.get_file(name).map(include_dir::File::contents), announce);
+}
+
+/// Announces, once per path, that a file on the disk overrides a built-in one. Child processes leave
+/// that to their parent.
+pub fn announce(path: &Path) {
+    static ANNOUNCED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+    let is_child = std::env::args_os().any(|word| word == "--for-parent");
+    if !is_child && ANNOUNCED.lock().unwrap_or_else(PoisonError::into_inner).insert(path.to_owned()) {
+        let mut parts = path.components().rev().map(|part| part.as_os_str().to_string_lossy());
+        let [name, folder] = [parts.next(), parts.next()].map(Option::unwrap_or_default);
+        terminal::remark(&format!("{} overrides the built-in {folder}/{name}", path.display()));
+    }
 }
 
 fn kinds() -> &'static [Kind] {
@@ -45,41 +61,85 @@ pub fn find_beside(word: &str, kind: Kind, beside: Option<&Path>) -> Result<Path
     if given.extension().is_some_and(|end| end == "mcap") {
         bail!("{word} is a recording, expected a {kind}; show it with squall replay, or analyse it with squall log");
     }
-    if word.contains(['/', '\\']) || is_toml(&given) || given.is_file() {
-        return match other_kind(kinds(), &given, kind) {
-            Some(other) => bail!("{word} is a {other}, expected a {kind}{}", where_it_goes(other)),
-            None if given.exists() || built_in(&given).is_some() => Ok(given),
-            None => {
-                let name = name_of(&given).unwrap_or_default();
-                let there =
-                    names_in(given.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new(".")));
-                let there: Vec<&str> = there.iter().map(String::as_str).collect();
-                if !word.contains('/') && contents(kind, &name).is_some() {
-                    bail!("there is no file {word}, but there is a built-in {kind} of the name {name}");
-                }
-                bail!("there is no file {word}{}", did_you_mean(&name, &there))
+    if !is_path(word, TOML) {
+        return located(word, (kind.folder(), TOML), beside).ok_or_else(|| unknown(word, kind, beside));
+    }
+    match other_kind(kinds(), &given, kind) {
+        Some(other) => bail!("{word} is a {other}, expected a {kind}{}", where_it_goes(other)),
+        None if given.exists() || built_in(&given).is_some() => Ok(given),
+        None => {
+            let name = name_of(&given, TOML).unwrap_or_default();
+            let folder = given.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+            let there = names_in(folder, TOML);
+            let there: Vec<&str> = there.iter().map(String::as_str).collect();
+            if !word.contains('/') && contents(kind, &name).is_some() {
+                bail!("there is no file {word}, but there is a built-in {kind} of the name {name}");
             }
-        };
+            bail!("there is no file {word}{}", did_you_mean(&name, &there))
+        }
     }
-    let here = std::env::current_dir().unwrap_or_default();
-    let above = here.ancestors().map(|folder| folder.join(FOLDER).join(kind.folder()));
-    let folders: Vec<PathBuf> = beside.map(Path::to_owned).into_iter().chain(above).collect();
-    let file = format!("{word}.toml");
-    if let Some(path) = folders.iter().map(|folder| folder.join(&file)).find(|path| path.is_file()) {
-        // As a user would type it, so that the printed path can be read again.
-        return Ok(path.strip_prefix(&here).map(Path::to_owned).unwrap_or(path));
-    }
-    let inside = Path::new(FOLDER).join(kind.folder()).join(file);
-    if built_in(&inside).is_some() { Ok(inside) } else { Err(unknown(word, kind, &folders)) }
 }
 
-fn unknown(word: &str, kind: Kind, folders: &[PathBuf]) -> anyhow::Error {
+/// Finds the files that an argument names: a path, or the files of all kinds with this name.
+pub fn find_any(word: &str) -> Result<Vec<PathBuf>> {
+    if is_path(word, TOML) {
+        return Ok(vec![word.into()]);
+    }
+    let found = kinds().iter().filter_map(|kind| located(word, (kind.folder(), TOML), None));
+    let found: Vec<PathBuf> = found.collect();
+    if found.is_empty() {
+        let known: BTreeSet<String> = kinds().iter().flat_map(|kind| all_names(*kind)).collect();
+        let known: Vec<&str> = known.iter().map(String::as_str).collect();
+        bail!("there is no scenario file {word}{}; list them with: squall files", did_you_mean(word, &known));
+    }
+    Ok(found)
+}
+
+/// Finds the policy that an argument names: a path, or a name in `scenarios/policies`.
+pub fn find_policy(word: &str) -> Result<PathBuf> {
+    if is_path(word, POLICIES.1) {
+        return existing(word).map_err(anyhow::Error::msg);
+    }
+    located(word, POLICIES, None).ok_or_else(|| {
+        let known = policies();
+        let known: Vec<&str> = known.iter().map(String::as_str).collect();
+        anyhow!("there is no policy {word}, expected the path of a file or one of {}", known.join(", "))
+    })
+}
+
+/// Whether an argument is a path, not a name.
+fn is_path(word: &str, extension: &str) -> bool {
+    let path = Path::new(word);
+    let ends_so = path.extension().is_some_and(|end| end.eq_ignore_ascii_case(extension));
+    word.contains(['/', '\\']) || ends_so || path.is_file()
+}
+
+/// The folders on the disk in which a name is looked up, nearest first.
+fn folders(folder: &str, beside: Option<&Path>) -> Vec<PathBuf> {
+    let here = std::env::current_dir().unwrap_or_default();
+    let above = here.ancestors().map(|above| above.join(FOLDER).join(folder));
+    beside.map(Path::to_owned).into_iter().chain(above).collect()
+}
+
+/// The file of this name in a folder of `scenarios`, on the disk or built in.
+fn located(name: &str, (folder, extension): (&str, &str), beside: Option<&Path>) -> Option<PathBuf> {
+    let file = format!("{name}.{extension}");
+    let mut paths = folders(folder, beside).into_iter().map(|folder| folder.join(&file));
+    if let Some(path) = paths.find(|path| path.is_file()) {
+        // As a user would type it, so that the printed path can be read again.
+        let here = std::env::current_dir().unwrap_or_default();
+        return Some(path.strip_prefix(&here).map(Path::to_owned).unwrap_or(path));
+    }
+    Some(Path::new(FOLDER).join(folder).join(file)).filter(|inside| built_in(inside).is_some())
+}
+
+fn unknown(word: &str, kind: Kind, beside: Option<&Path>) -> anyhow::Error {
     let mut others = kinds().iter().copied().filter(|other| *other != kind);
-    if let Some(other) = others.find(|other| names(*other).contains(word)) {
+    if let Some(other) = others.find(|other| all_names(*other).contains(word)) {
         return anyhow!("there is no {kind} {word}, but there is a {other} of that name{}", where_it_goes(other));
     }
     let mut known = names(kind);
-    known.extend(folders.iter().flat_map(|folder| names_in(folder)));
+    known.extend(folders(kind.folder(), beside).iter().flat_map(|folder| names_in(folder, TOML)));
     let known: Vec<&str> = known.iter().map(String::as_str).collect();
     let guess = did_you_mean(word, &known);
     let list =
@@ -105,17 +165,40 @@ fn where_it_goes(kind: Kind) -> String {
 
 /// The names of the built-in files of a kind.
 pub fn names(kind: Kind) -> BTreeSet<String> {
-    let files = FILES.get_dir(kind.folder()).into_iter().flat_map(Dir::files);
-    files.filter_map(|file| name_of(file.path())).collect()
+    built_in_names(kind.folder(), TOML)
 }
 
-fn names_in(folder: &Path) -> BTreeSet<String> {
+/// The names of the built-in policies.
+pub fn policies() -> BTreeSet<String> {
+    built_in_names(POLICIES.0, POLICIES.1)
+}
+
+fn built_in_names(folder: &str, extension: &str) -> BTreeSet<String> {
+    let files = FILES.get_dir(folder).into_iter().flat_map(Dir::files);
+    files.filter_map(|file| name_of(file.path(), extension)).collect()
+}
+
+/// The user's own files of a kind by name: those on the disk that are no copies of built-in ones.
+pub fn own(kind: Kind) -> BTreeMap<String, PathBuf> {
+    let names = folders(kind.folder(), None).into_iter().flat_map(|folder| names_in(&folder, TOML));
+    let found = names.filter_map(|name| Some((located(&name, (kind.folder(), TOML), None)?, name)));
+    let is_own = |(path, name): &(PathBuf, String)| std::fs::read(path).ok().as_deref() != contents(kind, name);
+    found.filter(is_own).map(|(path, name)| (name, path)).collect()
+}
+
+/// The names of all files of a kind, on the disk and built in.
+pub fn all_names(kind: Kind) -> BTreeSet<String> {
+    own(kind).into_keys().chain(names(kind)).collect()
+}
+
+fn names_in(folder: &Path, extension: &str) -> BTreeSet<String> {
     let files = std::fs::read_dir(folder).into_iter().flatten().filter_map(std::result::Result::ok);
-    files.filter_map(|file| name_of(&file.path())).collect()
+    files.filter_map(|file| name_of(&file.path(), extension)).collect()
 }
 
-fn name_of(path: &Path) -> Option<String> {
-    is_toml(path).then(|| path.file_stem()?.to_str().map(str::to_owned))?
+fn name_of(path: &Path, extension: &str) -> Option<String> {
+    let is_wanted = path.extension().is_some_and(|end| end.eq_ignore_ascii_case(extension));
+    is_wanted.then(|| path.file_stem()?.to_str().map(str::to_owned))?
 }
 
 /// Whether the name of a file ends as those of scenario files, on Windows also with capitals.

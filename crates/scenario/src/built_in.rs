@@ -6,12 +6,22 @@ use std::sync::OnceLock;
 /// Returns the content of a built-in file by folder and name, as in `seas/gale.toml`.
 pub type BuiltIn = fn(&str) -> Option<&'static [u8]>;
 
-static BUILT_IN: OnceLock<BuiltIn> = OnceLock::new();
+/// Called with the path of each file read from disk whose built-in namesake differs.
+pub type OnOverride = fn(&Path);
+
+static BUILT_IN: OnceLock<(BuiltIn, OnOverride)> = OnceLock::new();
 
 /// Sets the built-in files of this process. Later calls have no effect.
-pub fn set_built_in(files: BuiltIn) {
+pub fn set_built_in(files: BuiltIn, on_override: OnOverride) {
     // Later callers have the same files: a process has one program.
-    let _ = BUILT_IN.set(files);
+    let _ = BUILT_IN.set((files, on_override));
+}
+
+/// Reports a file read from disk that overrides a different built-in one.
+pub(super) fn note_override(path: &Path, bytes: &[u8], built_in: &[u8]) {
+    if let Some((_, on_override)) = BUILT_IN.get().filter(|_| bytes != built_in) {
+        on_override(path);
+    }
 }
 
 /// The built-in replacement for a missing file in a folder of `scenarios`, such as
@@ -31,7 +41,7 @@ pub fn built_in(path: &Path) -> Option<&'static [u8]> {
     }
     match parts[..] {
         [.., root, folder, name] if root == "scenarios" => {
-            BUILT_IN.get()?(&format!("{}/{}", folder.to_str()?, name.to_str()?))
+            (BUILT_IN.get()?.0)(&format!("{}/{}", folder.to_str()?, name.to_str()?))
         }
         _ => None,
     }

@@ -1,6 +1,6 @@
 //! The files that scenarios are read from: on disk, each read once, or stored copies.
 
-use super::built_in::built_in;
+use super::built_in::{built_in, note_override};
 use primitives::input_file;
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
@@ -57,7 +57,10 @@ impl Files {
             return Err("it is not among the stored files".to_owned());
         }
         let bytes: Arc<[u8]> = match (input_file::read(path, bytes_max), built_in(path)) {
-            (Ok(bytes), _) => bytes.into(),
+            (Ok(bytes), built_in) => {
+                built_in.into_iter().for_each(|built_in| note_override(path, &bytes, built_in));
+                bytes.into()
+            }
             // A file on disk always wins, and names work in any folder. Unpacking the built-in
             // files into a user's folder would have left outdated copies behind.
             (Err(error), Some(bytes)) if error.kind() == ErrorKind::NotFound => bytes.into(),

@@ -185,7 +185,7 @@ pub(super) fn tree(
         let (start, text) = text_of(diagnostics, &path, asked_at)?;
         let mut layer = parsed(diagnostics, start, &text);
         let base = match layer.find("base") {
-            (Node { value: Value::Text(base), at, .. }, true) => Some((base.clone(), *at)),
+            (Node { value: Value::Text(base), at, .. }, true) => Some((named(base), *at)),
             _ => None,
         };
         paths.push(path);
@@ -200,6 +200,12 @@ pub(super) fn tree(
         path = diagnostics.resolve(at, &base);
         asked_at = Some(at);
     }
+}
+
+/// The path of a base: a name without extension is that of a file in the same folder.
+fn named(base: &str) -> String {
+    let is_name = !base.is_empty() && base.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+    if is_name { format!("{base}.toml") } else { base.to_owned() }
 }
 
 /// Reads one file into the virtual text.

@@ -1,5 +1,4 @@
-//! Settings: overrides of single values in scenario files, as in `--set sea.waves.hs_m=0.3` or a
-//! sweep.
+//! Settings: overrides of single values in scenario files, as in `--set link.delay_s=1` or a sweep.
 
 use super::guess::did_you_mean;
 use super::kind::Kind;
@@ -64,7 +63,7 @@ impl Setting {
     pub fn parse(text: &str) -> Result<Setting, String> {
         let parts = text.split_once('=').map(|(key, value)| (key.trim(), value.trim()));
         let Some((key, value)) = parts.filter(|(_, value)| !value.is_empty()) else {
-            return Err(format!("{text:?} is not a setting, expected KEY=VALUE, for example sea.waves.hs_m=0.3"));
+            return Err(format!("{text:?} is not a setting, expected KEY=VALUE, for example sea.wind.speed_m_s=12"));
         };
         let is_toml = format!("key = {value}").parse::<toml::Table>().is_ok_and(|table| table.len() == 1);
         let value = if is_toml { value.to_owned() } else { serde_json::Value::from(value).to_string() };
@@ -86,7 +85,7 @@ impl Setting {
             };
             format!(
                 "the key {key:?} does not begin with a kind of file, expected one of {}, then a key, for example \
-                 sea.waves.hs_m{guess}",
+                 sea.wind.speed_m_s{guess}",
                 kinds.join(", ")
             )
         })

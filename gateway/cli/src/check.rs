@@ -44,7 +44,7 @@ pub struct Args {
     #[arg(long, value_name = "NAME")]
     vehicle: Option<String>,
     /// Gateway file or name with which the boat will be driven [default: a Surveyor with careful limits]
-    #[arg(long, value_name = "FILE", value_parser = command_line::scenario_files::file_of(scenario::Kind::of::<Gateway>()))]
+    #[arg(long, value_name = "GATEWAY", value_parser = command_line::scenario_files::file_of(scenario::Kind::of::<Gateway>()))]
     config: Option<PathBuf>,
     /// Guides you through a compass swing and a propeller test by remote control; asks before each
     #[arg(long, requires = "vehicle")]

@@ -43,7 +43,7 @@ pub struct Args {
     control_listen: SocketAddr,
     /// Gateway file or name, which defines how the boat is driven and stopped [default: a Surveyor with careful
     /// limits]
-    #[arg(long, value_name = "FILE", value_parser = command_line::scenario_files::file_of(scenario::Kind::of::<Gateway>()))]
+    #[arg(long, value_name = "GATEWAY", value_parser = command_line::scenario_files::file_of(scenario::Kind::of::<Gateway>()))]
     config: Option<PathBuf>,
     /// Arms once, as soon as the boat is ready; after a failsafe, an operator must arm it
     #[arg(long)]
