@@ -34,7 +34,7 @@ expect "Play:" squall help
 expect "Examples:" squall run --help
 expect "seas: " squall files
 expect "blue" squall run strategy_4_vs_3 --no-record
-expect "after 600 s" squall run surveyor_2v2 --sea gale --blue learned --red strategy_3 --in-process --no-record
+expect "after 600 s" squall run surveyor_2v2 --sea fresh_breeze --blue learned --red strategy_3 --in-process --no-record
 expect "after 600 s" squall run surveyor_2v2 --field jervis_bay_2023 --in-process --no-record
 expect "significant" squall sea gale --plot gale.svg
 expect "mode" squall strategy strategy_4

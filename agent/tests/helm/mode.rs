@@ -1,6 +1,6 @@
 //! Modes, rules, variables, and the life cycle of behaviours.
 
-use crate::scene::{Boat, alone, decided, helm, picture, steered, without_safety};
+use crate::scene::{Boat, alone, decided, helm, picture, scenario, steered, without_safety};
 use agent::{HelmMind, Mind};
 use messages::helm::{HelmReport, RunState};
 use messages::{EventRecord, Word};
@@ -29,6 +29,19 @@ fn the_first_mode_whose_condition_holds_is_the_one() {
     let mut tagged = alone(0.2, Boat::at(30.0, 0.0));
     tagged.own[0].tagged = true;
     assert_eq!(decided(&mut helm, &tagged).mode, "tagged");
+}
+
+#[test]
+fn every_shipped_strategy_takes_a_flag_home() {
+    // The medium defender, which may come across a flag in pursuit, once held its station with it.
+    for strategy in
+        ["easy_attacker", "medium_attacker", "medium_defender", "observer", "options", "strategy_4", "strategy_5"]
+    {
+        let mut helm = helm(&scenario(&format!("base = \"SCENARIOS/strategies/{strategy}.toml\"\n")));
+        let mut carrying = alone(0.0, Boat::at(30.0, 0.0));
+        carrying.own[0].carrying = 1;
+        assert_eq!(decided(&mut helm, &carrying).mode, "returning", "{strategy}");
+    }
 }
 
 #[test]

@@ -6,6 +6,7 @@ use messages::helm::HelmReport;
 use primitives::VehicleId;
 use rules::count::Counts;
 use scenario::{Outcome, Scenario};
+use std::collections::BTreeMap;
 
 /// The game with this seed and this many boats per side.
 fn game(boats: u32, blue: &str, red: &str, seed: u64) -> Scenario {
@@ -102,4 +103,29 @@ fn twenty_boats_a_side_grab_and_capture() {
     let counts = played(&scenario).counts;
     let all = |count: fn(&Counts) -> u32| counts.teams.values().map(count).sum::<u32>();
     assert!(counts.teams.values().all(|team| team.grabs > 0) && all(|team| team.captures) > 0, "{counts:?}");
+}
+
+#[test]
+fn a_tagged_boat_does_not_lie_at_an_edge() {
+    // A boat once took 258 s to get home in this game. For most of them it lay 10 m from an edge with nobody near,
+    // because the helm's steadiness outweighed the way home.
+    const HOME_S: f64 = 150.0;
+    let game = scenario::load(&shipped("games/strategy_4_vs_3.toml")).and_then(|game| game.of_seed(1));
+    let outcome = played(&game.unwrap_or_else(|e| panic!("{e}")));
+    let mut tagged_at_s = BTreeMap::new();
+    let mut came_home = 0;
+    for event in &outcome.events {
+        match event.event.as_str() {
+            "tagged" => {
+                tagged_at_s.insert(&event.vehicle, event.at_s);
+            }
+            "untagged" => {
+                let since_s = tagged_at_s.remove(&event.vehicle).expect("it was tagged");
+                assert!(event.at_s - since_s < HOME_S, "{event:?}: tagged at {since_s} s");
+                came_home += 1;
+            }
+            _ => {}
+        }
+    }
+    assert!(came_home > 3, "only {came_home} boats came home");
 }
