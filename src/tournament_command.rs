@@ -124,7 +124,6 @@ fn play_all(args: &Args, plan: &Plan, stop: &AtomicBool, mut league: Option<&mut
         play(plan, &games, jobs, stop, take);
         None
     };
-    records.sort_by_key(|record| plan.place_of(record.of));
     Played { records, quality, rate: progress.end_of_games(jobs.get()) }
 }
 

@@ -1,25 +1,34 @@
 //! The files that a training run writes to its folder.
 
-use crate::output_file;
+use crate::{clock, output_file};
 use anyhow::{Context, Result};
 use learn::environment::{Finished, recording_name};
 use learn::train::{Progress, Trainer};
 use primitives::input_file::{self, TABLE_BYTES_MAX};
 use primitives::printable;
-use scenario::{built_in, tidied_path};
+use scenario::{built_in, tidied_path, word};
+use serde_json::json;
 use std::fmt::Write as _;
+use std::fs::File;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 use xxhash_rust::xxh3::Xxh3;
 
 /// The header of the table of updates.
-const UPDATES: &str = "samples,stage,reward,policy_loss,value_loss,entropy,divergence,clipped,epochs\n";
+const UPDATES: &str =
+    "samples,stage,reward,policy_loss,value_loss,entropy,divergence,clipped,epochs,explained_variance\n";
 /// The header of the table of evaluations.
-const EVALUATIONS: &str = "samples,stage,opponent,won,drawn,lost,points,points_against,left_field\n";
+const EVALUATIONS: &str = "samples,stage,opponent,won,drawn,lost,points,points_against,left_field,best\n";
 /// The header of the table of episodes.
 const EPISODES: &str = "samples,stage,seed,team,opponent,points,points_against,steps,cut_off,recording\n";
 
 /// The length and checksum of each table at every saved state: `samples,table,bytes,checksum`.
 const SUMS: &str = "sums.csv";
+/// The wall-clock time spent by each update, over all parts of a resumed run.
+const TIMES: &str = "times.csv";
+/// What the page shows of a training run besides its tables.
+const RUN: &str = "run.json";
 /// The subfolder of recordings.
 const GAMES: &str = "games";
 
@@ -27,6 +36,11 @@ const GAMES: &str = "games";
 pub(super) struct Files {
     folder: PathBuf,
     tables: [Table; 3],
+    /// The table of times, locked while the training runs.
+    times: File,
+    begun: Instant,
+    /// Time spent before this process, s.
+    before_s: f64,
     /// The strategy whose helm uses the policy, if there is one.
     base: Option<PathBuf>,
 }
@@ -71,17 +85,23 @@ impl Files {
             // The last line may have been cut off while it was written.
             let is_kept = |line: &&str| line.ends_with('\n') && first_number(line).is_some_and(|at| at <= samples);
             sums.extend(text.split_inclusive('\n').filter(is_kept));
-            for (name, table) in &mut texts {
+            for ((name, table), (_, head)) in texts.iter_mut().zip(tables) {
                 *table = read(&folder.join(*name))?;
                 let begins = format!("{samples},{name},");
                 let noted = sums.lines().find_map(|line| line.strip_prefix(&begins)?.split_once(','));
                 let (bytes, sum) = noted
                     .with_context(|| format!("{} has no entry for {name} at {samples} samples", path.display()))?;
                 let kept = bytes.parse().ok().and_then(|bytes: usize| table.get(..bytes)).map(str::to_owned);
-                *table = kept.filter(|kept| Table::of(name, kept).checksum() == sum).with_context(|| {
-                    let path = folder.join(*name);
-                    format!("{} was changed or truncated after it was written; start afresh with --out", path.display())
-                })?;
+                // An earlier version wrote other columns.
+                *table = kept
+                    .filter(|kept| kept.starts_with(head) && Table::of(name, kept).checksum() == sum)
+                    .with_context(|| {
+                        let path = folder.join(*name);
+                        format!(
+                            "{} was changed or truncated after it was written; start afresh with --out",
+                            path.display()
+                        )
+                    })?;
             }
         }
         output_file::write(&folder.join(SUMS), "the training", sums)?;
@@ -89,7 +109,14 @@ impl Files {
             output_file::write(&folder.join(name), "the training", text)?;
         }
         let tables = texts.map(|(name, text)| Table::of(name, &text));
-        Ok(Files { folder: folder.to_owned(), tables, base: base_for(base) })
+        let (times, before_s) = open_times(&folder.join(TIMES), samples)?;
+        let stage = trainer.training().stage.last();
+        let sea = stage.and_then(|stage| stage.sea.as_deref()).map(word);
+        let game = stage.map(|stage| word(&stage.game));
+        let seed = trainer.training().seed.to_string();
+        let run = json!({"samples": trainer.samples().1, "seed": seed, "game": game, "sea": sea});
+        output_file::write_json(&folder.join(RUN), "the training", &run)?;
+        Ok(Files { folder: folder.to_owned(), tables, times, begun: clock::now(), before_s, base: base_for(base) })
     }
 
     /// The file from which a training run resumes.
@@ -129,8 +156,8 @@ impl Files {
             let [own, theirs] = played.points;
             let _ = writeln!(
                 lines[1],
-                "{samples},{stage},{name},{won},{drawn},{lost},{own},{theirs},{}",
-                played.left_field
+                "{samples},{stage},{name},{won},{drawn},{lost},{own},{theirs},{},{}",
+                played.left_field, progress.is_best
             );
         }
         for (one, opponent) in &progress.finished {
@@ -150,7 +177,9 @@ impl Files {
             append(&self.folder.join(table.name), &lines)?;
             table.note(&lines);
         }
-        Ok(())
+        let elapsed_s = self.before_s + clock::now().duration_since(self.begun).as_secs_f64();
+        let written = writeln!(self.times, "{samples},{elapsed_s:.3}");
+        written.with_context(|| format!("cannot write to {}", self.folder.join(TIMES).display()))
     }
 
     /// Writes the state after this many samples atomically.
@@ -183,9 +212,23 @@ impl Files {
     }
 }
 
+/// Opens the table of times without what was written after the saved state; also returns the last
+/// time.
+fn open_times(path: &Path, samples: u64) -> Result<(File, f64)> {
+    let text = if samples > 0 && path.exists() { read(path)? } else { String::new() };
+    let is_kept = |line: &&str| line.ends_with('\n') && first_number(line).is_some_and(|at| at <= samples);
+    let kept: String = text.split_inclusive('\n').filter(is_kept).collect();
+    let last = kept.lines().last().and_then(|line| line.split_once(',')?.1.parse().ok());
+    output_file::write(path, "the training", format!("samples,elapsed_s\n{kept}"))?;
+    let file = File::options().append(true).open(path);
+    let file = file.with_context(|| format!("cannot write to {}", path.display()))?;
+    // A page shows a run with a locked table as running. Some file systems have no locks.
+    drop(file.lock_shared());
+    Ok((file, last.unwrap_or(0.0)))
+}
+
 fn append(path: &Path, bytes: impl AsRef<[u8]>) -> Result<()> {
-    use std::io::Write;
-    let open = || std::fs::OpenOptions::new().append(true).open(path);
+    let open = || File::options().append(true).open(path);
     let written = open().and_then(|mut file| file.write_all(bytes.as_ref()));
     written.with_context(|| format!("cannot write to {}", path.display()))
 }

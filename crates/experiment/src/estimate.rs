@@ -3,14 +3,18 @@
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
+/// The minimum number of observations for an interval: fewer are often all equal, and would seem
+/// certain.
+pub(crate) const OBSERVATIONS_MIN: usize = 5;
+
 /// The mean of independent observations with its 95 % confidence interval, by Student's t.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
     /// The mean.
     pub mean: f64,
-    /// The lower bound of the interval; `None` with a single observation.
+    /// The lower bound of the interval; `None` with fewer than five observations.
     pub low: Option<f64>,
-    /// The upper bound; `None` with a single observation.
+    /// The upper bound; `None` with fewer than five observations.
     pub high: Option<f64>,
 }
 
@@ -28,7 +32,8 @@ impl Estimate {
         // Over seeds: all games of a seed have the same sea, which favours an entry from both sides
         // and against all opponents alike. The interval covers other seeds, not other opponents,
         // which are chosen and not drawn.
-        let half = quantile(degrees).map(|quantile| quantile * (squares / degrees / count as f64).sqrt());
+        let quantile = quantile(degrees).filter(|_| count >= OBSERVATIONS_MIN);
+        let half = quantile.map(|quantile| quantile * (squares / degrees / count as f64).sqrt());
         Estimate { mean, low: half.map(|half| mean - half), high: half.map(|half| mean + half) }
     }
 
@@ -48,10 +53,10 @@ impl Estimate {
         Some(Estimate { mean: ratio, low: low.map(|low| ratio + low), high: high.map(|high| ratio + high) })
     }
 
-    /// The mean and half the width of the interval, multiplied, with this number of decimal places.
+    /// The mean and half the width of any interval, multiplied, with this number of decimal places.
     pub(crate) fn shown(&self, times: f64, digits: usize) -> String {
-        let half = self.half_width().map_or("?".to_owned(), |half| format!("{:.digits$}", half * times));
-        format!("{:.digits$} ± {half}", self.mean * times)
+        let half = self.half_width().map_or(String::new(), |half| format!(" ± {:.digits$}", half * times));
+        format!("{:.digits$}{half}", self.mean * times)
     }
 
     /// Half the width of the interval.
@@ -83,8 +88,7 @@ mod tests {
     #[test]
     fn the_interval_is_that_of_the_tables_of_student() {
         // Equally many observations of 0 and 1: the deviation is known, and the quantile follows.
-        for (count, quantile) in [(2, 12.7062), (4, 3.1824), (10, 2.2622), (30, 2.0452), (100, 1.9842), (1000, 1.9623)]
-        {
+        for (count, quantile) in [(6, 2.5706), (10, 2.2622), (30, 2.0452), (100, 1.9842), (1000, 1.9623)] {
             let observations: Vec<f64> = (0..count).map(|i| f64::from(i % 2)).collect();
             let estimate = Estimate::of(&observations);
             let error = (0.25 / f64::from(count - 1)).sqrt();
@@ -103,15 +107,15 @@ mod tests {
         let half = estimate.half_width().unwrap_or(f64::NAN);
         assert!((estimate.mean - 0.7).abs() < 1e-12 && (half - want).abs() < 0.0001, "{estimate:?}, not {want}");
         // A share that is equal in every observation is known exactly, whatever the wholes.
-        let equal = Estimate::of_ratio(&[(1.0, 2.0), (4.0, 8.0), (2.0, 4.0)]).expect("wholes");
+        let equal = Estimate::of_ratio(&[(1.0, 2.0), (4.0, 8.0), (2.0, 4.0), (1.0, 2.0), (3.0, 6.0)]).expect("wholes");
         assert!(equal.mean == 0.5 && equal.half_width().is_some_and(|half| half.abs() < 1e-12), "{equal:?}");
         assert_eq!(Estimate::of_ratio(&[(0.0, 0.0); 3]), None);
     }
 
     #[test]
-    fn equal_observations_are_known_exactly_and_one_says_nothing_about_the_width() {
+    fn equal_observations_are_known_exactly_and_few_say_nothing_about_the_width() {
         let equal = Estimate::of(&[3.0; 5]);
         assert_eq!((equal.mean, equal.low, equal.high), (3.0, Some(3.0), Some(3.0)));
-        assert_eq!(Estimate::of(&[4.0]), Estimate { mean: 4.0, low: None, high: None });
+        assert_eq!(Estimate::of(&[4.0; 4]), Estimate { mean: 4.0, low: None, high: None });
     }
 }

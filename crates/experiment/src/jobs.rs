@@ -36,6 +36,11 @@ pub(crate) fn too_many_games(games: usize, file: &Path) -> Option<Problem> {
     (games > GAMES_MAX).then(|| Problem::of_file(file.to_owned(), message()))
 }
 
+/// The option of a command that gives a team its strategy, with a space before it.
+pub(crate) fn strategy_option(team: &str, file: &str) -> String {
+    if ["blue", "red"].contains(&team) { format!(" --{team} {file}") } else { format!(" --strategy {team}={file}") }
+}
+
 /// The number of threads for this many games: as requested or one per core, but at most four per
 /// core and one per game.
 #[must_use]

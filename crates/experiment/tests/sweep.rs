@@ -141,6 +141,7 @@ fn a_game_of_the_report_is_the_one_that_its_command_plays() {
     for part in [setting("sea.wind.speed_m_s", "9"), setting("game.duration_s", "30"), "--seed 6".to_owned()] {
         assert!(command.contains(&part), "{command}");
     }
+    assert!(command.starts_with("squall run surveyor_2v2 --blue easy_attackers --red pav01 --set"), "{command}");
     let settings = ["game.duration_s=30", "sea.wind.speed_m_s=9"];
     let overrides = Overrides {
         settings: settings.map(|text| scenario::Setting::parse(text).unwrap()).to_vec(),

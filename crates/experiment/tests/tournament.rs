@@ -11,8 +11,8 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// The quantile of Student's t for three observations, from a table.
-const T_975_OF_2: f64 = 4.302_652_7;
+/// The quantile of Student's t for five observations, from a table.
+const T_975_OF_4: f64 = 2.776_445_105;
 
 fn shipped(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(path)
@@ -120,9 +120,9 @@ fn record(seed: u64, sides: [usize; 2], score: [u32; 2]) -> Record {
 #[test]
 fn the_two_games_of_a_seed_are_one_observation() {
     const ROUNDING: f64 = 1e-6;
-    let plan = Plan::new(&tournament("attack_1v1", 6, &["pav01", "idle"])).unwrap();
-    // The first entry has 2 and 4, then 5 and 5, then 6 and 8: 3, 5 and 7 per seed. Mean 5,
-    // standard deviation 2.
+    let plan = Plan::new(&tournament("attack_1v1", 10, &["pav01", "idle"])).unwrap();
+    // The first entry has 2 and 4, then 5 and 5, then 6 and 8: 3, 5, 7, 5 and 5 per seed. Mean 5,
+    // variance 2.
     let records = [
         record(7, [0, 1], [2, 3]),
         record(7, [1, 0], [1, 4]),
@@ -130,30 +130,34 @@ fn the_two_games_of_a_seed_are_one_observation() {
         record(8, [1, 0], [1, 5]),
         record(9, [0, 1], [6, 0]),
         record(9, [1, 0], [2, 8]),
+        record(10, [0, 1], [5, 5]),
+        record(10, [1, 0], [1, 5]),
+        record(11, [0, 1], [5, 5]),
+        record(11, [1, 0], [1, 5]),
     ];
     let report = Report::new(&plan, &records);
     let [first, second] = &report.entries[..] else { panic!("{report:?}") };
-    assert_eq!((first.name.as_str(), first.games, first.score.mean), ("pav01_0", 6, 5.0));
-    let half = T_975_OF_2 * 2.0 / 3_f64.sqrt();
+    assert_eq!((first.name.as_str(), first.games, first.score.mean), ("pav01_0", 10, 5.0));
+    let half = T_975_OF_4 * (2.0 / 5_f64).sqrt();
     let low = first.score.low.unwrap();
     let high = first.score.high.unwrap();
     assert!((low - (5.0 - half)).abs() < ROUNDING && (high - (5.0 + half)).abs() < ROUNDING, "{low} to {high}");
-    assert_eq!([first.wins, first.draws, first.losses], [4, 1, 1]);
-    assert_eq!([second.wins, second.draws, second.losses], [1, 1, 4]);
+    assert_eq!([first.wins, first.draws, first.losses], [6, 3, 1]);
+    assert_eq!([second.wins, second.draws, second.losses], [1, 3, 6]);
     // The first team always grabbed once: half a grab per game, with no uncertainty.
     assert_eq!((first.grabs.mean, first.grabs.low, first.grabs.high), (0.5, Some(0.5), Some(0.5)));
     let [there, back] = &report.matrix[..] else { panic!("{report:?}") };
-    assert_eq!((there.row.as_str(), there.column.as_str(), there.wins), ("pav01_0", "idle_1", 4));
-    assert!((there.score_difference - 3.0).abs() < ROUNDING && back.score_difference == -there.score_difference);
-    assert_eq!((there.seeds.first, there.seeds.last), (7, 9));
+    assert_eq!((there.row.as_str(), there.column.as_str(), there.wins), ("pav01_0", "idle_1", 6));
+    assert!((there.score_difference - 2.6).abs() < ROUNDING && back.score_difference == -there.score_difference);
+    assert_eq!((there.seeds.first, there.seeds.last), (7, 11));
 }
 
 #[test]
 fn all_opponents_of_a_seed_are_one_observation() {
     const ROUNDING: f64 = 1e-6;
-    let plan = Plan::new(&tournament("attack_1v1", 6, &["pav01", "idle", "easy_attackers"])).unwrap();
+    let plan = Plan::new(&tournament("attack_1v1", 10, &["pav01", "idle", "easy_attackers"])).unwrap();
     // The first entry always has 10 points more against one opponent than against the other. That
-    // adds no uncertainty to its mean, which is 6, 7 and 8 in the three seeds.
+    // adds no uncertainty to its mean, which is 6 to 10 in the five seeds.
     let seed = |seed: u64, score: u32| {
         let game = |sides: [usize; 2], score: [u32; 2]| record(seed, sides, score);
         [
@@ -165,20 +169,24 @@ fn all_opponents_of_a_seed_are_one_observation() {
             game([2, 1], [0, 0]),
         ]
     };
-    let records = [seed(7, 1), seed(8, 2), seed(9, 3)].concat();
+    let records: Vec<Record> = (1..=5).flat_map(|score| seed(6 + score, score as u32)).collect();
     let report = Report::new(&plan, &records);
     let first = &report.entries[0];
     let half = first.score.half_width().unwrap();
-    assert_eq!((first.name.as_str(), first.games, first.score.mean), ("pav01_0", 12, 7.0));
-    assert!((half - T_975_OF_2 / 3_f64.sqrt()).abs() < ROUNDING, "{half}");
+    assert_eq!((first.name.as_str(), first.games, first.score.mean), ("pav01_0", 20, 8.0));
+    // The history ends at the ratings of the report, and begins without the third entry.
+    let ends = report.history.last().map(|last| (last.games, last.elo.clone()));
+    assert_eq!(ends, Some((30, report.entries.iter().map(|row| Some(row.rating.elo)).collect())));
+    assert_eq!((report.history[0].games, report.history[0].elo.iter().flatten().count()), (1, 2));
+    assert!((half - T_975_OF_4 * 0.5_f64.sqrt()).abs() < ROUNDING, "{half}");
 }
 
 #[test]
 fn a_challenger_plays_everybody_and_nobody_else_plays() {
-    let all = tournament("attack_1v1", 6, &["idle", "easy_attackers", "pav01"]);
+    let all = tournament("attack_1v1", 10, &["idle", "easy_attackers", "pav01"]);
     let plan = Plan::new(&Tournament { challenger: Some("easy_attackers_1".to_owned()), ..all }).unwrap();
-    assert_eq!((plan.games_per_seed(), plan.games()), (4, 12));
-    // Two wins and four draws against the idle team; two wins and four losses against pav01.
+    assert_eq!((plan.games_per_seed(), plan.games()), (4, 20));
+    // Two wins and eight draws against the idle team; two wins and eight losses against pav01.
     let score = |seed: u64, sides: [usize; 2]| match (seed, sides) {
         (7, [1, _]) => [2, 1],
         (7, [_, 1]) => [0, 3],
@@ -191,12 +199,12 @@ fn a_challenger_plays_everybody_and_nobody_else_plays() {
     let report = Report::new(&plan, &records);
     assert_eq!(report.challenger.as_deref(), Some("easy_attackers_1"));
     let idle = cell(&report, "easy_attackers_1", "idle_0");
-    assert_eq!((idle.games, idle.wins, idle.draws, idle.losses), (6, 2, 4, 0));
+    assert_eq!((idle.games, idle.wins, idle.draws, idle.losses), (10, 2, 8, 0));
     assert_eq!(idle.won_of_decided.map(|share| share.mean), Some(1.0));
     let pav01 = cell(&report, "easy_attackers_1", "pav01_2");
-    assert_eq!((pav01.wins, pav01.draws, pav01.losses), (2, 0, 4));
+    assert_eq!((pav01.wins, pav01.draws, pav01.losses), (2, 0, 8));
     let share = pav01.won_of_decided.expect("decided games");
-    assert!((share.mean - 1.0 / 3.0).abs() < 1e-12 && share.low.is_some_and(|low| low < 0.0), "{share:?}");
+    assert!((share.mean - 0.2).abs() < 1e-12 && share.low.is_some_and(|low| low < 0.0), "{share:?}");
     assert!((pav01.score_difference - (pav01.score[0] - pav01.score[1])).abs() < 1e-12);
     assert!(report.matrix.iter().all(|cell| [&cell.row, &cell.column].contains(&&"easy_attackers_1".to_owned())));
 }

@@ -15,6 +15,9 @@ pub struct Learnt {
     pub divergence: Option<f32>,
     /// Share of clipped samples.
     pub clipped: Option<f32>,
+    /// Share of the returns' variance that the critic explained before the update: 1 for a perfect
+    /// critic, at most 0 for a useless one.
+    pub explained_variance: Option<f32>,
     /// Epochs; with a replay buffer, samples drawn per sample stored.
     pub epochs: Option<f32>,
 }
@@ -22,7 +25,7 @@ pub struct Learnt {
 impl Learnt {
     /// All values with their names in tables and charts.
     #[must_use]
-    pub fn named(&self) -> [(&'static str, Option<f32>); 6] {
+    pub fn named(&self) -> [(&'static str, Option<f32>); 7] {
         [
             ("policy_loss", self.policy_loss),
             ("value_loss", self.value_loss),
@@ -30,6 +33,7 @@ impl Learnt {
             ("divergence", self.divergence),
             ("clipped", self.clipped),
             ("epochs", self.epochs),
+            ("explained_variance", self.explained_variance),
         ]
     }
 }

@@ -1,6 +1,7 @@
 //! Built-in scenario files, used in place of files missing on disk.
 
-use std::path::{Component, Path};
+use crate::source::tidied;
+use std::path::{Component, Path, PathBuf};
 use std::sync::OnceLock;
 
 /// Returns the content of a built-in file by folder and name, as in `seas/gale.toml`.
@@ -45,4 +46,22 @@ pub fn built_in(path: &Path) -> Option<&'static [u8]> {
         }
         _ => None,
     }
+}
+
+/// How a command line names a scenario file: by its name if commands find it by that, in
+/// `scenarios` here, in a parent folder, or built in; otherwise by its path, quoted for a shell.
+#[must_use]
+pub fn word(path: &Path) -> String {
+    let whole = std::path::absolute(tidied(path)).unwrap_or_else(|_| path.to_owned());
+    let parts: Vec<_> = whole.iter().collect();
+    let (_, tail) = parts.split_at(parts.len().saturating_sub(3));
+    let tail: PathBuf = tail.iter().collect();
+    let here = std::env::current_dir().unwrap_or_default();
+    let found = here.ancestors().map(|folder| folder.join(&tail)).find(|path| path.is_file());
+    let is_named = tail.starts_with("scenarios")
+        && found.map_or(built_in(&whole).is_some() && !whole.exists(), |found| found == whole);
+    let name = whole.file_stem().filter(|_| is_named).unwrap_or(path.as_os_str());
+    let text = name.to_string_lossy();
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "/._-".contains(c);
+    if text.chars().all(is_plain) { text.into_owned() } else { format!("'{}'", text.replace('\'', "'\\''")) }
 }

@@ -60,7 +60,7 @@ pub use overrides::Overrides;
 pub use problem::{Problem, Problems};
 pub use read::Document;
 pub use real_boats::RealBoats;
-pub use reference::{file_reference, reference};
+pub use reference::{file_reference, meaning, reference};
 pub use schema::schema;
 pub use setting::Setting;
 pub use source::tidied as tidied_path;

@@ -3,6 +3,7 @@
 
 use super::kind::Kind;
 use super::schema::{TABLE, declared, may_be_empty};
+use super::setting::target_of;
 use crate::strategy::{Boat, Fact, Mark, Measure, Named, What, Who};
 use serde_json::Value;
 use std::fmt::Write;
@@ -175,6 +176,24 @@ fn table(page: &mut String, about: &Value, wanted: impl Fn(&str, &Value) -> bool
         let default = if default.is_empty() { default } else { format!(" ({default})") };
         let _ = writeln!(page, "| `{key}` | {value}{default} | {} |", meaning.trim_end());
     }
+}
+
+/// The meaning of a setting's key, such as `sea.wind.speed_m_s`, as in the reference; `None` for an
+/// unknown key.
+#[must_use]
+pub fn meaning(key: &str) -> Option<String> {
+    let (kind, key) = target_of(key)?;
+    let about = key.split('.').try_fold(declared(kind), key_in)?;
+    let text = description(about);
+    let meaning = text.split_once(" Default: ").map_or(text.as_str(), |(meaning, _)| meaning);
+    (!meaning.is_empty()).then(|| meaning.to_owned())
+}
+
+/// The schema of a key of a table: one of its own, any name, or one of a kind of table.
+fn key_in<'a>(about: &'a Value, key: &str) -> Option<&'a Value> {
+    let named = || Some(&about["additionalProperties"]).filter(|named| named.is_object());
+    let kinds = || ["oneOf", "anyOf"].iter().filter_map(|kinds| about[kinds].as_array()).flatten();
+    about["properties"].get(key).or_else(named).or_else(|| kinds().find_map(|kind| key_in(kind, key)))
 }
 
 fn description(about: &Value) -> String {

@@ -93,18 +93,7 @@ impl Setting {
 
     /// The kind of file, and the key in it.
     pub(super) fn target(&self) -> Option<(Kind, &str)> {
-        let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '_';
-        if !self.key.split('.').all(|part| !part.is_empty() && part.chars().all(is_plain)) {
-            return None;
-        }
-        let (first, rest) = self.key.split_once('.')?;
-        let (_, kind) = PREFIXES.iter().find(|(prefix, _)| *prefix == first)?;
-        let key = match first {
-            "link" | "fault" => self.key.as_str(),
-            "strategy" => rest.split_once('.')?.1,
-            _ => rest,
-        };
-        Some((*kind, key))
+        target_of(&self.key)
     }
 
     /// The name of the team whose strategy it changes, if any.
@@ -125,6 +114,22 @@ impl Setting {
     pub fn argument(&self) -> String {
         format!("--set '{}={}'", self.key, self.value.replace('\'', "'\\''"))
     }
+}
+
+/// The kind of file that a setting's key names, and the key in it.
+pub(super) fn target_of(whole: &str) -> Option<(Kind, &str)> {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    if !whole.split('.').all(|part| !part.is_empty() && part.chars().all(is_plain)) {
+        return None;
+    }
+    let (first, rest) = whole.split_once('.')?;
+    let (_, kind) = PREFIXES.iter().find(|(prefix, _)| *prefix == first)?;
+    let key = match first {
+        "link" | "fault" => whole,
+        "strategy" => rest.split_once('.')?.1,
+        _ => rest,
+    };
+    Some((*kind, key))
 }
 
 #[cfg(test)]

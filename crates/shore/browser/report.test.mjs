@@ -1,10 +1,10 @@
 // Reports on the page: a tournament, a league, a sweep and a training run, and the games behind their tables.
 
 import assert from 'node:assert/strict';
-import { copyFileSync, mkdirSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
+import { copyFileSync, existsSync, mkdirSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { Program, Sight, folder, gameFile, openBrowser, readJson, scenario, squall } from './harness.mjs';
+import { Program, Sight, folder, gameFile, openBrowser, readJson, scenario, squall, until } from './harness.mjs';
 
 let browser;
 before(async () => { browser = await openBrowser(); });
@@ -59,8 +59,10 @@ test('from a cell of the win matrix to its games, to a replay of one, and back',
   });
   assert.equal(cells.length, report.matrix.length);
   const rows = await sight.get(() => [...document.querySelectorAll('.ratings tbody tr')].map((row) => [...row.children].map((each) => each.textContent)));
-  const rated = [...report.entries].sort((a, b) => b.rating.elo - a.rating.elo);
-  assert.deepEqual(rows.map((row) => [row[1], row[2], row[5]]), rated.map(({ name, rating, wins }) => [name.replaceAll('_', ' '), rating.elo.toFixed(0), String(wins)]));
+  // The order of the terminal; two seeds are too few for intervals.
+  assert.deepEqual(rows.map((row) => [row[1], row[2], row[3], row[5]]),
+    report.entries.map(({ name, rating, wins }) => [name.replaceAll('_', ' '), rating.elo.toFixed(0), 'too few seeds', String(wins)]));
+  assert(!/±/.test(await sight.text('.ratings')), 'no intervals');
 
   assert.deepEqual(await sight.get(faint), []);
   await sight.press('#dark');
@@ -93,6 +95,52 @@ test('from a cell of the win matrix to its games, to a replay of one, and back',
   await sight.page.selectOption('#games-filter', 'won');
   const won = want.filter((game) => result(game, game.blue === row ? 0 : 1) === 'won').length;
   assert.equal(await sight.get(() => [...document.querySelectorAll('#games tbody tr')].length), won);
+});
+
+test('the ratings are sorted by any column, and each entry has its opponents, its games and its rating over time', async (t) => {
+  const { path, report } = await tournament(t, '--games', '10');
+  const sight = await Sight.load(t, browser, await view(t, path));
+  const column = (place, i) => sight.get(([place, i]) => [...document.querySelectorAll(`${place} tbody tr`)].map((row) => row.children[i].textContent), [place, i]);
+  const sort = (title) => sight.press(`th button:text-matches("^${title}")`);
+  await sight.page.waitForSelector('.ratings tbody tr');
+  const names = report.entries.map(({ name }) => name.replaceAll('_', ' '));
+  assert.deepEqual(await column('.ratings', 1), names);
+  assert.match((await column('.ratings', 3)).join(), /^\d+ to \d+/, 'five seeds have intervals');
+  await sort('Tags');
+  const byTags = [...report.entries].sort((a, b) => b.tags.mean - a.tags.mean).map(({ tags }) => tags.mean.toFixed(2));
+  const tags = async () => (await column('.ratings', 11)).map((text) => text.split(' ')[0]);
+  assert.deepEqual(await tags(), byTags);
+  await sort('Tags');
+  assert.deepEqual(await tags(), byTags.toReversed());
+  assert.equal(await sight.get(() => document.querySelector('.ratings [aria-sort]').ariaSort), 'ascending');
+  await sort('Entry');
+  assert.deepEqual(await column('.ratings', 1), names.toSorted());
+
+  // The rating over time ends at the rating.
+  const chart = () => sight.get(() => document.querySelector('.curve').ariaLabel);
+  assert.match(await chart(), new RegExp(`^Rating, at the end: ${report.entries.map(({ name, rating }) => `${name.replaceAll('_', ' ')} ${rating.elo.toFixed(0)}`).join(', ')}\\.`));
+  await sight.press('.ratings tbody th a:text-is("strategy 4")');
+  await sight.page.waitForSelector('#entry tbody tr');
+  assert(!(await sight.page.isVisible('.ratings')), 'a view of its own');
+  const cells = report.matrix.filter(({ row }) => row === 'strategy_4');
+  const share = ({ wins, draws, games }) => (wins + draws / 2) / games;
+  const hardest = cells.toSorted((a, b) => share(a) - share(b));
+  assert.deepEqual(await column('#entry', 0), hardest.map((cell) => cell.column.replaceAll('_', ' ')));
+  assert.deepEqual(await column('#entry', 3), hardest.map(({ wins }) => String(wins)));
+  const { rating } = report.entries.find(({ name }) => name === 'strategy_4');
+  assert.match(await chart(), new RegExp(`^Rating, at the end: strategy 4 ${rating.elo.toFixed(0)}\\. `));
+  assert.deepEqual(await sight.get(faint), []);
+  await sight.press('button[aria-label="List the games against idle"]');
+  await sight.page.waitForSelector('#games tbody tr');
+  assert.equal(await sight.get(() => document.querySelectorAll('#games tbody tr').length), 10);
+  // The address leads here, and the browser's own way back to all entries.
+  await sight.page.reload();
+  await sight.page.waitForSelector('#games tbody tr');
+  assert.equal(await sight.text('#entry h2'), 'strategy 4');
+  await sight.press('#entry .watch');
+  await sight.until('all entries are shown', () => document.querySelector('.ratings').checkVisibility());
+  await sight.page.goBack();
+  await sight.until('the entry is shown again', () => document.querySelector('#entry').checkVisibility());
 });
 
 test('faults in a report or game are explained in text', async (t) => {
@@ -189,7 +237,7 @@ test('from a point of a sweep to all its games, to a replay of one, and back', a
   await sight.press('button[aria-label="List the games of point 1"]');
   await sight.page.waitForSelector('#games-table tbody tr');
   assert.deepEqual(await listed(), rows(own));
-  assert.match(await sight.text('#games-head'), /sea.wind.speed_m_s 12/);
+  assert.equal(await sight.text('#games-head'), 'Games at wind speed 12\u202fm/s');
   assert.deepEqual(await sight.get(faint), []);
   await sight.page.selectOption('#games-filter', 'won');
   assert.deepEqual(await listed(), rows(own.filter((game) => result(game) === 'won')));
@@ -224,40 +272,114 @@ test('from a point of a sweep to all its games, to a replay of one, and back', a
   assert.equal(await without.get(() => document.querySelectorAll('.watch, button[aria-label^="List"]').length), 0);
 });
 
-test('a training run shows curves that follow its tables, and its recorded episodes', async (t) => {
-  const place = join(folder(t), 'first_steps');
-  const games = join(place, 'games');
-  mkdirSync(games, { recursive: true });
-  await squall(t, 'run', gameFile(t, 'short', 'pav01_vs_pav01.toml', 'duration_s = 60'), '--in-process', '--record', place);
-  copyFileSync(join(place, readdirSync(place).find((name) => name.endsWith('.mcap'))), join(games, '7_1.mcap'));
-  const updates = [...Array(50).keys()].map((i) => `${(i + 1) * 20000},${i < 20 ? 'alone' : 'against'},${i / 10},0.1,${i < 3 ? '' : 2 - i / 50},1.5,0.01,0.1,4`);
-  writeFileSync(join(place, 'updates.csv'), `samples,stage,reward,policy_loss,value_loss,entropy,divergence,clipped,epochs\n${updates.join('\n')}\n99`);
-  writeFileSync(join(place, 'evaluations.csv'), 'samples,stage,opponent,won,drawn,lost,points,points_against,left_field\n'
-    + '500000,alone,pav01,5,5,10,3.5,6.25,0.5\n500000,alone,<b>x</b>,20,0,0,9,1,0\n1000000,against,pav01,12,2,6,8,5,0.1\n1000000,against,<b>x</b>,10,0,10,4,4,0\n');
+/** Writes a training run of invented numbers: better from stage to stage. `more` of the reward tells runs apart. */
+function trainingRun(place, more = 0) {
+  mkdirSync(join(place, 'games'), { recursive: true });
+  const updates = [...Array(50).keys()].map((i) => `${(i + 1) * 20000},${i < 20 ? 'alone' : 'against'},${i / 10 + more},0.1,${i < 3 ? '' : 2 - i / 50},1.5,0.01,0.1,4,${i / 100}`);
+  writeFileSync(join(place, 'updates.csv'), `samples,stage,reward,policy_loss,value_loss,entropy,divergence,clipped,epochs,explained_variance\n${updates.join('\n')}\n99`);
+  // Half the time passes at the first tenth of the samples.
+  writeFileSync(join(place, 'times.csv'), `samples,elapsed_s\n${[...Array(50).keys()].map((i) => `${(i + 1) * 20000},${i < 5 ? 720 * (i + 1) : 3600 + 80 * (i - 4)}`).join('\n')}\n`);
+  writeFileSync(join(place, 'evaluations.csv'), 'samples,stage,opponent,won,drawn,lost,points,points_against,left_field,best\n'
+    + '500000,alone,pav01,5,5,10,3.5,6.25,0.5,true\n500000,alone,<b>x</b>,20,0,0,9,1,0,true\n1000000,against,pav01,12,2,6,8,5,0.1,false\n1000000,against,<b>x</b>,10,0,10,4,4,0,false\n');
   writeFileSync(join(place, 'episodes.csv'), 'samples,stage,seed,team,opponent,points,points_against,steps,cut_off,recording\n'
     + `20000,alone,6,0,pav01,1,2,300,false,\n40000,alone,9007199254740993,0,pav01,3,2,300,false,games/7_1.mcap\n`);
+  writeFileSync(join(place, 'run.json'), '{"samples": 4000000, "seed": "9007199254740993", "game": "pav01_afloat", "sea": "gale"}');
+  writeFileSync(join(place, 'best.toml'), '');
+}
+
+/** The text read out for a curve. */
+const curve = (sight, title) => sight.until(`the curve ${title} is drawn`, (title) => [...document.querySelectorAll('.card:not([hidden]) .curve')]
+  .map(({ ariaLabel }) => ariaLabel).find((text) => text?.startsWith(title)), title);
+
+test('a training run shows curves that follow its tables, and its recorded episodes', async (t) => {
+  const place = join(folder(t), 'first_steps');
+  trainingRun(place);
+  await squall(t, 'run', gameFile(t, 'short', 'pav01_vs_pav01.toml', 'duration_s = 60'), '--in-process', '--record', place);
+  copyFileSync(join(place, readdirSync(place).find((name) => name.endsWith('.mcap'))), join(place, 'games/7_1.mcap'));
   const url = await view(t, place);
   const sight = await Sight.load(t, browser, url);
-  const label = (title) => sight.until(`the curve ${title} is drawn`, (title) => [...document.querySelectorAll('.card:not([hidden]) canvas')]
-    .map((canvas) => canvas.getAttribute('aria-label')).find((text) => text?.startsWith(title)), title);
-  assert.match(await label('Games won'), /at the end: pav01 65, <b>x<\/b> 50\./);
+  assert.match(await curve(sight, 'Win rate'), /at the end: pav01 65, <b>x<\/b> 50\./);
+  for (const title of ['Mean reward', 'Policy loss', 'Value loss', 'Entropy', 'KL divergence', 'Explained variance', 'Clip fraction', 'Samples per second']) await curve(sight, title);
   assert.deepEqual(await sight.get(faint), []);
-  assert.match(await label('Reward'), /at the end: 4\.90\./);
-  await sight.page.focus('.card canvas');
+  await sight.page.focus('.card .curve');
   await sight.keys('ArrowLeft', 'ArrowLeft');
-  assert.match(await label('Games won'), /at 0\.50 million samples: pav01 38, <b>x<\/b> 100\./);
+  // All charts follow the cursor.
+  assert.match(await curve(sight, 'Win rate'), /at 0\.50 million samples: pav01 38, <b>x<\/b> 100\./);
+  assert.match(await curve(sight, 'Explained variance'), /at 0\.50 million samples/);
   const painted = await sight.get(() => {
     const canvas = document.querySelector('.card canvas');
     return new Set(new Uint32Array(canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data.buffer)).size;
   });
   assert(painted > 6, `the curves have only ${painted} colours`);
   assert.equal(await sight.get(() => document.querySelector('b:not(.legend b)')), null, 'names are inserted as text');
-  assert.deepEqual(await sight.get(() => [...document.querySelectorAll('section:last-child tbody td')].map((each) => each.textContent)),
+  assert.deepEqual(await sight.get(() => [...document.querySelectorAll('#episodes tbody td')].map((each) => each.textContent)),
     ['Watch', '0.04 M', 'alone', 'pav01', '9007199254740993', '3 : 2', '300']);
-  await sight.press('section:last-child .watch');
+  await sight.press('#episodes .watch');
   await sight.until('the episode is shown', () => window.squall?.mode === 'replay' && squall.frame !== null);
   for (const escape of ['../7_1.mcap', '..%2fupdates.csv', 'none.mcap', '/etc/passwd', 'games/7_1.mcap']) {
     const none = await Sight.load(t, browser, `${url}?game=${encodeURIComponent(escape)}`);
     await none.until('the game is refused', () => /there is no recording/.test(document.getElementById('about').textContent));
   }
+});
+
+test('two training runs are compared over samples or hours, smoothed, with the best policy and the command that plays it', async (t) => {
+  const runs = folder(t);
+  const place = join(runs, 'first');
+  trainingRun(place);
+  trainingRun(join(runs, 'second'), 100);
+  const url = await view(t, place);
+  const sight = await Sight.load(t, browser, url, { permissions: ['clipboard-read', 'clipboard-write'] });
+  const row = (i) => sight.get((i) => [...document.querySelectorAll('#best tbody tr')[i].children].map((each) => each.textContent), i);
+  await sight.page.waitForSelector('#best tbody tr');
+  assert.deepEqual(await row(0), ['first', 'stopped', '1.00 M', '2 h 00 min', '139 samples/s', '★ 69 %', '0.50 M', '9007199254740993']);
+  assert.deepEqual([await sight.text('#state'), await sight.text('#facts')], ['stopped', '1.00 of 4.00 million samples (25 %) · stage against · 139 samples/s · 2 h 00 min']);
+  assert.deepEqual(await sight.get(() => [...document.querySelectorAll('tr.best')].map((each) => each.children[2].textContent)), ['<b>x</b>', 'pav01']);
+  const command = await sight.text('.command code');
+  assert.match(command, /^squall run pav01_afloat --sea gale --blue \/.*\/first\/best\.toml$/);
+  await sight.press('.command button');
+  await sight.until('it is copied', () => document.querySelector('.command button').textContent === 'Copied');
+  assert.equal(await sight.get(() => navigator.clipboard.readText()), command);
+
+  // The smoothing of TensorBoard: an exponential average, corrected for its start.
+  const reward = async () => Number((await curve(sight, 'Mean reward')).match(/at the end: (?:\w+ )?(\d+\.\d+)/)[1]);
+  const average = (weight) => [...Array(50).keys()].reduce((sum, i) => weight * sum + (1 - weight) * (i / 10), 0) / (1 - weight ** 50);
+  for (const weight of [0.6, 0, 0.9]) {
+    await sight.page.fill('#smoothing', String(weight));
+    assert.equal(await reward(), Number(average(weight).toFixed(2)), `smoothing ${weight}`);
+  }
+
+  await sight.page.selectOption('#other-run', { label: 'second' });
+  await sight.until('both runs are shown', () => document.querySelectorAll('#best tbody tr').length === 2);
+  assert.deepEqual((await row(1)).slice(0, 2), ['second', 'stopped']);
+  assert.match(await curve(sight, 'Mean reward'), /at the end: first 4, second 104\./);
+  assert.match(await curve(sight, 'Win rate'), /pav01 · first 65, <b>x<\/b> · first 50, pav01 · second 65, /);
+  assert.deepEqual(await sight.get(faint), []);
+  await sight.page.selectOption('#axis', 'hours');
+  await sight.page.focus('.card .curve');
+  await sight.keys('ArrowLeft', 'ArrowLeft');
+  assert.match(await curve(sight, 'Mean reward'), /at 1\.44 hours/, 'half of the samples');
+  // The address names the other run, and the browser keeps the rest.
+  await sight.page.reload();
+  await sight.until('both runs are shown again', () => document.querySelectorAll('#best tbody tr').length === 2);
+  assert.deepEqual(await sight.get(() => [document.getElementById('axis').value, document.getElementById('smoothing').value]), ['hours', '0.9']);
+  for (const none of ['', '2e2e', '..', '6e6f6e65']) assert.equal((await fetch(new URL(`/training_run/${none}.json`, url))).status, 404, none);
+  for (const size of [{ width: 390, height: 844 }, { width: 844, height: 390 }]) {
+    await sight.page.setViewportSize(size);
+    assert(await sight.get(() => document.documentElement.scrollWidth <= innerWidth), `wider than ${size.width}`);
+  }
+  // A run of an earlier version has neither times nor a plan.
+  for (const name of ['times.csv', 'run.json']) rmSync(join(runs, 'second', name));
+  await sight.page.reload();
+  await sight.until('hours are not offered', () => document.getElementById('axis').options[1]?.disabled === true);
+});
+
+test('a training is shown as running as long as it runs', async (t) => {
+  const place = join(folder(t), 'run');
+  const training = new Program(t, 'train', scenario('training/first.toml'), '--out', place, '--jobs', '1');
+  await until('it has learnt', () => existsSync(join(place, 'times.csv')) && readFileSync(join(place, 'times.csv'), 'utf8').split('\n').length > 3);
+  const sight = await Sight.load(t, browser, await view(t, place));
+  await sight.until('it runs', () => document.getElementById('state').textContent === 'running');
+  assert.match(await sight.text('#facts'), /of 2\.30 million samples \(\d %\) · stage nobody in the way · [\d,]+ samples\/s · .*about .* left/);
+  await training.end();
+  await sight.until('it is stopped', () => document.getElementById('state').textContent === 'stopped');
 });

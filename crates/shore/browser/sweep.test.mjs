@@ -89,6 +89,37 @@ test('the page of a sweep shows the report as curves, a heat map and a tornado c
   }
 });
 
+test('axes and metrics have titles and units, and the page can be switched to dark', async (t) => {
+  const { out, report } = await sweep(t);
+  // From the reference of scenario files.
+  assert.deepEqual(report.axis_meanings, ['Mean speed at 10 m height, m/s.', 'Standard deviation of white noise, per axis, m.']);
+  const faults = { ...report, axes: ['sea.wind.speed_m_s', 'fault.link.every_s'], axis_meanings: [report.axis_meanings[0], 'Instead of `at_s`: mean time to the next fault, s.'] };
+  const page = await open(t, writePage(faults, join(out, 'faults.html')));
+  const cards = page.locator('#curve-charts .card');
+  assert.deepEqual(await cards.locator('h3').allTextContents(), ['Wind speed (m/s) ', 'Fault link every (s) logarithmic scale']);
+  assert.deepEqual(await cards.locator('.about-axis').allTextContents(), ['Mean speed at 10 m height sea.wind.speed_m_s', 'Mean time to the next fault fault.link.every_s']);
+  const metrics = await page.locator('#metric option').allTextContents();
+  assert.deepEqual([metrics[0], metrics[8], metrics[13]], ['Games won (%)', 'Time tagged (s)', 'Opponent: points']);
+  assert.deepEqual(metrics.filter((text) => text.includes('_')), []);
+  // No share is beyond 0 and 100 %.
+  const shares = await page.locator('#points-table td.estimate small').allTextContents();
+  const numbers = shares.flatMap((text) => text.replaceAll('−', '-').match(/-?[\d.]+/g).map(Number));
+  assert(numbers.length > 0 && numbers.every((each) => each >= 0 && each <= 100), numbers.join());
+
+  const paper = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
+  const light = await paper();
+  await page.click('#dark');
+  const dark = await paper();
+  assert.notEqual(dark, light);
+  await page.reload();
+  assert.equal(await paper(), dark, 'the browser keeps it');
+  await page.click('#dark');
+  assert.equal(await paper(), light);
+  await page.emulateMedia({ colorScheme: 'dark' });
+  // Without a choice of its own it follows the system.
+  await page.waitForFunction((dark) => getComputedStyle(document.body).backgroundColor === dark, dark);
+});
+
 test('the metric that is chosen changes every chart, and an entry that is hidden leaves them', async (t) => {
   const { page: address, report } = await sweep(t);
   const page = await open(t, address);

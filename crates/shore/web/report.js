@@ -3,7 +3,7 @@
 import { Theme } from './theme.js';
 import { Tournament } from './tournament.js';
 import { Training } from './training.js';
-import { make, plain, write } from './words.js';
+import { make, plain, show, write } from './words.js';
 
 /** Refresh interval for a training run in progress, ms. */
 const AGAIN_MS = 10_000;
@@ -52,10 +52,13 @@ class ReportPage {
   }
 
   tell(report) {
-    const { name, facts, remarks } = this.shown.tell(report);
+    const { name, facts, chip: [state, tone] = ['', ''], remarks } = this.shown.tell(report);
     write(byId('name'), plain(name));
     document.title = `${plain(name)} – Squall`;
     write(byId('facts'), facts);
+    write(byId('state'), state);
+    byId('state').dataset.tone = tone;
+    show(byId('state'), state !== '');
     remark(...remarks);
   }
 }

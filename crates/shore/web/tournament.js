@@ -1,22 +1,35 @@
-// A tournament or a league: ratings, head-to-head results, and the games of two entries, which can be watched.
+// A tournament or a league: ratings, also over time, head-to-head results, each entry's results, and the games of two entries, which can be
+// watched.
 
 import { addressOfGame, keepAddress } from './address.js';
-import { cell, head, tableOf, watch } from './table.js';
+import { CurveChart } from './curve_chart.js';
+import { cell, head, sortedTable, tableOf, watch } from './table.js';
 import { clockShort, make, number, options, plain, show } from './words.js';
 
 /** Number of games listed at first, and added each time. */
 const LISTED = 100;
+/** Minimum number of seeds for an interval: as in crates/experiment/src/estimate.rs. */
+const SEEDS_MIN = 5;
 const RESULTS = [['', 'all'], ['won', 'won'], ['drawn', 'drawn'], ['lost', 'lost']];
 /** Counts per entry: title, key. */
 const COUNTS = [['Points', 'score'], ['Grabs', 'grabs'], ['Captures', 'captures'], ['Tags', 'tags'], ['Tagged', 'tagged'],
   ['Out of bounds', 'out_of_bounds'], ['Collisions', 'collisions']];
 
+/** A file by its name. */
+const stem = (path) => path.split('/').at(-1).replace(/\.toml$/, '');
 const percent = (count, of) => Math.round((100 * count) / Math.max(1, of));
 const signed = (value) => `${value > 0 ? '+' : ''}${number(value, 2)}`;
 export class Tournament {
   constructor(place) {
     this.place = place;
     this.ratings = make('section');
+    this.ratings.id = 'ratings';
+    this.overTime = new CurveChart('Rating', 'Elo');
+    this.history = make('section', '', '', make('h2', '', 'Rating over time'), make('p', 'faint', 'Computed from the games so far, in the order in which they were played.'),
+      make('div', 'charts', '', this.overTime.box));
+    this.entry = make('section');
+    this.entry.id = 'entry';
+    this.orders = { ratings: { column: 0, down: false }, entry: { column: 6, down: false } };
     this.matrix = make('section');
     this.games = make('section');
     this.games.id = 'games';
@@ -26,7 +39,7 @@ export class Tournament {
     options(this.filter, RESULTS);
     this.filter.addEventListener('change', () => this.drawGames());
     addEventListener('hashchange', () => this.fromAddress());
-    place.replaceChildren(this.ratings, this.matrix, this.games);
+    place.replaceChildren(this.ratings, this.entry, this.history, this.matrix, this.games);
   }
 
   /** The report is complete. */
@@ -43,7 +56,7 @@ export class Tournament {
     this.drawMatrix();
     this.fromAddress();
     const played = report.games_unplayed > 0 ? `, ${report.games_unplayed} games not played` : '';
-    const facts = `${report.game}${report.sea ? `, sea ${report.sea}` : ''}. ${report.entries.length} entries, ${report.games_per_pairing} games per pairing, `
+    const facts = `${stem(report.game)}${report.sea ? `, sea ${stem(report.sea)}` : ''}. ${report.entries.length} entries, ${report.games_per_pairing} games per pairing, `
       + `${report.seeds_counted} seeds from ${report.seed}${played}. Squall ${report.version} (${report.commit || 'unknown'}).`;
     return { name: report.tournament, facts, remarks: this.remarks() };
   }
@@ -52,6 +65,7 @@ export class Tournament {
     const { games_left_out, failures, entries } = this.report;
     return [
       entries.length === 0 ? 'No result: no seed has all its games.' : '',
+      entries.length > 0 && this.hasFew ? `Only ${this.report.seeds_counted} ${this.report.seeds_counted === 1 ? 'seed' : 'seeds'}: confidence intervals need at least ${SEEDS_MIN}.` : '',
       this.unplayable ? `Games cannot be watched: ${this.unplayable}` : '',
       games_left_out > 0 ? `${games_left_out} games are left out because others with the same seed are missing.` : '',
       ...failures.slice(0, 5).map((each) => `Could not start: ${each.blue} against ${each.red}, seed ${each.seed}: ${each.why}`),
@@ -59,38 +73,116 @@ export class Tournament {
     ];
   }
 
-  draw() {}
+  /** Whether there are too few seeds for intervals. */
+  get hasFew() {
+    return this.report.seeds_counted < SEEDS_MIN;
+  }
+
+  draw() {
+    this.overTime.draw();
+  }
+
+  /** The address of an entry's results; of all entries for null. */
+  addressOf(entry) {
+    const words = new URLSearchParams(location.hash.slice(1));
+    for (const key of ['entry', 'row', 'column']) words.delete(key);
+    if (entry !== null) words.set('entry', entry);
+    return `#${words}`;
+  }
+
+  linkTo(entry, classes = '') {
+    const link = make('a', classes, plain(entry));
+    link.href = this.addressOf(entry);
+    return link;
+  }
 
   drawRatings() {
     const { entries } = this;
-    show(this.ratings, entries.length > 0);
-    const ends = entries.flatMap(({ rating }) => [rating.low ?? rating.elo, rating.high ?? rating.elo]);
+    const ends = entries.flatMap(({ rating }) => (this.hasFew ? [rating.elo] : [rating.low ?? rating.elo, rating.high ?? rating.elo]));
     const [low, high] = [Math.min(...ends) - 20, Math.max(...ends) + 20];
     const at = (elo) => `${((elo - low) / (high - low)) * 100}%`;
     const bar = ({ elo, low, high }) => {
       const [span, dot] = [make('i', 'span'), make('i', 'dot')];
-      span.style.left = at(low ?? elo);
-      span.style.right = `calc(100% - ${at(high ?? elo)})`;
+      span.style.left = at((this.hasFew ? null : low) ?? elo);
+      span.style.right = `calc(100% - ${at((this.hasFew ? null : high) ?? elo)})`;
       dot.style.left = at(elo);
       const box = make('div', 'interval', '', span, dot);
       box.setAttribute('aria-hidden', 'true');
       return make('td', 'wide', '', box);
     };
-    const mean = ({ mean, high }) => make('td', 'number', number(mean, 2), make('small', '', high === null ? '' : ` ± ${number(high - mean, 2)}`));
-    const row = (entry, place) => make('tr', '', '', cell(String(place + 1), 'number'), head('row', plain(entry.name)),
-      cell(number(entry.rating.elo, 0), 'number strong'),
-      cell(entry.rating.low === null ? '–' : `${number(entry.rating.low, 0)} to ${number(entry.rating.high, 0)}`, 'number'), bar(entry.rating),
-      cell(String(entry.wins), 'number'), cell(String(entry.draws), 'number'), cell(String(entry.losses), 'number'),
-      ...COUNTS.map(([, key]) => mean(entry[key])));
-    const heads = [['Place', 'number'], ['Entry'], ['Rating', 'number'], ['95 %', 'number'], [''], ['Won', 'number'], ['Drawn', 'number'], ['Lost', 'number'],
-      ...COUNTS.map(([title]) => [title, 'number'])];
-    this.ratings.replaceChildren(make('h2', '', 'Ratings'), make('p', 'faint', 'Elo: a lead of 100 points means winning 64 %, 200 points 76 %. All other numbers '
-      + 'are means per game. Confidence intervals are 95 %, over seeds.'), tableOf('Ratings', heads, entries.map(row), 'list ratings'));
+    const place = new Map(entries.map((entry, i) => [entry, i + 1]));
+    const count = (text, key) => ({ text, classes: 'number', key: (entry) => entry[key], cell: (entry) => cell(String(entry[key]), 'number') });
+    const columns = [
+      { text: 'Place', classes: 'number', rises: true, key: (entry) => place.get(entry), cell: (entry) => cell(String(place.get(entry)), 'number') },
+      { text: 'Entry', key: ({ name }) => name, cell: ({ name }) => { const th = head('row', ''); th.append(this.linkTo(name)); return th; } },
+      { text: 'Rating', classes: 'number', key: ({ rating }) => rating.elo, cell: ({ rating }) => cell(number(rating.elo, 0), 'number strong') },
+      { text: '95 %', classes: 'number', cell: ({ rating }) => cell(this.interval(rating), 'number') },
+      { text: '', cell: ({ rating }) => bar(rating) },
+      count('Won', 'wins'), count('Drawn', 'draws'), count('Lost', 'losses'),
+      ...COUNTS.map(([text, key]) => ({ text, classes: 'number', key: (entry) => entry[key].mean, cell: (entry) => this.mean(entry[key]) })),
+    ];
+    this.ratings.replaceChildren(make('h2', '', 'Ratings'), make('p', 'faint', 'Elo: a lead of 100 points means winning 64 %, 200 points 76 %. Columns from Points on '
+      + `are means per game${this.hasFew ? '' : ' with 95 % confidence intervals over seeds'}. An entry’s name leads to its opponents and results.`),
+    sortedTable('Ratings', columns, entries, this.orders.ratings, () => this.drawRatings(), 'list ratings'));
+  }
+
+  interval({ low, high }) {
+    return this.hasFew || low === null ? 'too few seeds' : `${number(low, 0)} to ${number(high, 0)}`;
+  }
+
+  /** A mean per game, with the half width of its interval. */
+  mean({ mean, high }) {
+    return make('td', 'number', number(mean, 2), make('small', '', this.hasFew || high === null ? '' : ` ± ${number(high - mean, 2)}`));
+  }
+
+  /** The ratings after a growing number of games: of all entries, or of one. */
+  drawHistory() {
+    const { history = [] } = this.report;
+    show(this.history, history.length > 1);
+    const curves = this.report.entries.map(({ name }, i) => ({ name, colour: i % 4, style: Math.floor(i / 4), xs: history.map(({ games }) => games), values: history.map(({ elo }) => elo[i]) }));
+    const shown = this.chosenEntry ? curves.filter(({ name }) => name === this.chosenEntry.name) : curves;
+    this.overTime.take(shown, { title: 'games played', words: (games) => `${Math.round(games)} games` });
+  }
+
+  /** The opponents of an entry, and its results against each. */
+  drawEntry() {
+    const chosen = this.chosenEntry;
+    show(this.entry, chosen !== null);
+    if (!chosen) return;
+    const { name, rating, wins, draws, losses } = chosen;
+    const place = this.entries.indexOf(chosen) + 1;
+    const back = make('a', 'watch', '← All entries');
+    back.href = this.addressOf(null);
+    const against = [...this.cells.values()].filter(({ row }) => row === name);
+    const elo = ({ column }) => this.entries.find((entry) => entry.name === column)?.rating.elo ?? 0;
+    const count = (text, key) => ({ text, classes: 'number', key: (one) => one[key], cell: (one) => cell(String(one[key]), 'number') });
+    const columns = [
+      { text: 'Opponent', key: ({ column }) => column, cell: ({ column }) => { const th = head('row', ''); th.append(this.linkTo(column)); return th; } },
+      { text: 'Its rating', classes: 'number', key: elo, cell: (one) => cell(number(elo(one), 0), 'number') },
+      count('Games', 'games'), count('Won', 'wins'), count('Drawn', 'draws'), count('Lost', 'losses'),
+      { text: 'Win rate', classes: 'number', key: (one) => (one.wins + one.draws / 2) / one.games,
+        cell: (one) => cell(`${percent(one.wins + one.draws / 2, one.games)} %`, 'number strong') },
+      { text: 'Points', classes: 'number', key: ({ score }) => score[0], cell: ({ score }) => cell(`${number(score[0], 2)} : ${number(score[1], 2)}`, 'number') },
+      { text: 'Difference', classes: 'number', key: (one) => one.score_difference, cell: (one) => cell(signed(one.score_difference), 'number') },
+      { text: '', cell: (one) => this.gamesButton(one) },
+    ];
+    const facts = `Place ${place} of ${this.entries.length}, rating ${number(rating.elo, 0)} (95 %: ${this.interval(rating)}). ${wins} won, ${draws} drawn, ${losses} lost.${stem(chosen.strategy) === name ? '' : ` Strategy ${stem(chosen.strategy)}.`}`;
+    this.entry.replaceChildren(make('div', 'choose', '', make('h2', '', plain(name)), back), make('p', 'faint', facts),
+      sortedTable('Opponents', columns, against, this.orders.entry, () => this.drawEntry()),
+      make('p', 'faint', 'The hardest opponent first. Win rate: draws count half. Points are means per game.'));
+  }
+
+  gamesButton({ row, column }) {
+    const button = make('button', '', 'Games');
+    Object.assign(button, { type: 'button' });
+    button.setAttribute('aria-label', `List the games against ${plain(column)}`);
+    button.setAttribute('aria-pressed', String(this.chosen?.[0] === row && this.chosen[1] === column));
+    button.addEventListener('click', () => this.choose(row, column));
+    return make('td', '', '', button);
   }
 
   drawMatrix() {
     const { entries } = this;
-    show(this.matrix, entries.length > 0);
     this.buttons = new Map();
     const of = (row, column) => {
       const found = this.cells.get(`${row.name} ${column.name}`);
@@ -120,17 +212,24 @@ export class Tournament {
     words.set('row', row);
     words.set('column', column);
     history.replaceState(null, '', `#${words}`);
-    keepAddress();
     this.fromAddress();
+    this.games.scrollIntoView({ block: 'nearest' });
   }
 
   fromAddress() {
     const words = new URLSearchParams(location.hash.slice(1));
+    const before = this.chosenEntry ?? null;
+    keepAddress();
     const chosen = this.cells.has(`${words.get('row')} ${words.get('column')}`) ? [words.get('row'), words.get('column')] : null;
     this.buttons.forEach((button, key) => button.setAttribute('aria-pressed', String(key === chosen?.join(' '))));
     this.chosen = chosen;
+    this.chosenEntry = this.entries.find(({ name }) => name === words.get('entry')) ?? null;
     this.listed = LISTED;
+    for (const section of [this.ratings, this.matrix]) show(section, this.entries.length > 0 && !this.chosenEntry);
+    this.drawEntry();
+    this.drawHistory();
     this.drawGames();
+    if (this.chosenEntry !== before) scrollTo(0, 0);
   }
 
   /** The games of the chosen two, seen from the row's entry. */
@@ -147,7 +246,7 @@ export class Tournament {
     show(this.games, this.report.matches.length > 0);
     const title = make('h2', '', this.chosen ? `${plain(this.chosen[0])} against ${plain(this.chosen[1])}` : 'Games');
     if (!this.chosen) {
-      this.games.replaceChildren(title, make('p', 'faint', 'Click a cell above to list its games here and watch them.'));
+      this.games.replaceChildren(title, make('p', 'faint', this.chosenEntry ? 'Press Games above to list the games against an opponent here and watch them.' : 'Click a cell above to list its games here and watch them.'));
       return;
     }
     const found = this.chosenGames();

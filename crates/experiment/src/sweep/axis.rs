@@ -124,6 +124,16 @@ impl Axis {
         Setting::new(&self.setting_key(team), value.toml(), path.to_owned(), self.place)
     }
 
+    /// What it varies, from the reference of scenario files; `None` if its key is not there.
+    #[must_use]
+    pub fn meaning(&self) -> Option<String> {
+        match self.target() {
+            Target::Opponent => Some("Strategy of the opponents.".to_owned()),
+            // The key of a strategy begins with a team, whatever its name.
+            _ => scenario::meaning(&self.setting_key("team")),
+        }
+    }
+
     /// Whether its values are the paths of files.
     #[must_use]
     pub fn is_of_files(&self) -> bool {

@@ -6,7 +6,7 @@
 use super::metric::{HEADLINES, METRICS, Metric, Metrics};
 use super::plan::{Plan, Point};
 use super::{AxisValue, Design};
-use crate::estimate::{Estimate, mean_and_squares};
+use crate::estimate::{Estimate, OBSERVATIONS_MIN, mean_and_squares};
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
@@ -77,8 +77,6 @@ struct Group {
 const GROUP_POINTS_MIN: usize = 4;
 /// The maximum number of such groups.
 const GROUPS_MAX: usize = 8;
-/// The minimum number of seeds for an interval: fewer are often all equal, and would seem certain.
-const SEEDS_MIN: usize = 5;
 
 impl Observations {
     /// By seed, the mean of an entry's metric over points; `None` for seeds that are incomplete at
@@ -106,10 +104,7 @@ impl Observations {
 }
 
 fn estimate(numbers: Vec<f64>) -> Option<Estimate> {
-    (!numbers.is_empty()).then(|| match Estimate::of(&numbers) {
-        Estimate { mean, .. } if numbers.len() < SEEDS_MIN => Estimate { mean, low: None, high: None },
-        estimate => estimate,
-    })
+    (!numbers.is_empty()).then(|| Estimate::of(&numbers))
 }
 
 fn difference(one: &[Option<f64>], other: &[Option<f64>]) -> Option<Estimate> {
@@ -260,10 +255,10 @@ fn interaction(
 }
 
 /// The p-value of the mean of these numbers against 0, by Student's t; `None` for fewer than
-/// [`SEEDS_MIN`] numbers.
+/// [`OBSERVATIONS_MIN`] numbers.
 fn probability(numbers: &[f64]) -> Option<f64> {
     let count = numbers.len() as f64;
-    if numbers.len() < SEEDS_MIN {
+    if numbers.len() < OBSERVATIONS_MIN {
         return None;
     }
     let (mean, squares) = mean_and_squares(numbers);

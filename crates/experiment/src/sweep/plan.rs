@@ -1,13 +1,13 @@
 //! The games of a sweep.
 
 use super::{Axis, AxisValue, Design, Sweep};
-use crate::jobs::{load_game, teams_of, too_many_games};
+use crate::jobs::{load_game, strategy_option, teams_of, too_many_games};
 use crate::tournament::Entrant;
 use crate::{Packed, UnpackError};
 use primitives::stream::Stream;
-use scenario::{Files, Overrides, Problem, Problems, Scenario, Setting, digest_of};
+use scenario::{Files, Overrides, Problem, Problems, Scenario, Setting, digest_of, word};
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// The maximum number of points of a grid.
@@ -152,15 +152,18 @@ impl Plan {
     #[must_use]
     pub fn command(&self, job: &Job) -> String {
         let Overrides { strategies, settings, .. } = self.overrides(job.point, job.entry, job.side);
-        let mut words = vec![format!("squall run {}", shell(&self.sweep.game))];
+        let mut command = format!("squall run {}", word(&self.sweep.game));
         for (team, file) in &strategies {
-            words.push(format!("--strategy {team}={}", shell(file)));
+            command += &strategy_option(team, &word(file));
         }
         for setting in settings {
-            words.push(beside_here(&setting).argument());
+            let option = setting.key.strip_prefix("game.").filter(|key| ["sea", "field"].contains(key));
+            command += &match option.zip(file_of(&setting)) {
+                Some((option, file)) => format!(" --{option} {}", word(&file)),
+                None => format!(" {}", beside_here(&setting).argument()),
+            };
         }
-        words.push(format!("--seed {}", job.seed));
-        words.join(" ")
+        format!("{command} --seed {}", job.seed)
     }
 
     /// The required files, in the order in which they are requested.
@@ -205,23 +208,17 @@ impl Plan {
     }
 }
 
-/// A setting whose file path is relative to the working folder.
-fn beside_here(setting: &Setting) -> Setting {
-    let mut setting = setting.clone();
+/// The file that a setting names, if it names one.
+fn file_of(setting: &Setting) -> Option<PathBuf> {
     let named: Option<String> = serde_json::from_str(&setting.value).ok();
-    if let Some(named) = named.filter(|named| named.ends_with(".toml")) {
-        let path = setting.path.parent().unwrap_or(Path::new("")).join(named);
-        let path = std::path::absolute(&path).unwrap_or(path);
-        setting.value = serde_json::Value::from(path.display().to_string()).to_string();
-    }
-    setting
+    Some(setting.path.parent()?.join(named.filter(|named| named.ends_with(".toml"))?))
 }
 
-/// A path quoted for a shell.
-fn shell(path: &Path) -> String {
-    let text = path.display().to_string();
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || "/._-".contains(c);
-    if text.chars().all(is_plain) { text } else { format!("'{}'", text.replace('\'', "'\\''")) }
+/// A setting with the whole path of the file that it names.
+fn beside_here(setting: &Setting) -> Setting {
+    let whole = file_of(setting).and_then(|path| std::path::absolute(path).ok());
+    let value = whole.map(|path| serde_json::Value::from(path.display().to_string()).to_string());
+    Setting { value: value.unwrap_or_else(|| setting.value.clone()), ..setting.clone() }
 }
 
 fn points(sweep: &Sweep) -> Result<Vec<Point>, Problems> {

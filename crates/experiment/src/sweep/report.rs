@@ -1,10 +1,10 @@
 //! The report of a sweep.
 
-use super::Design;
 use super::effects::{Effect, Interaction, Observations, effects, interactions};
 use super::metric::{METRICS, Metric, Metrics};
 use super::plan::Plan;
 use super::table::Row;
+use super::{Axis, Design};
 use crate::estimate::Estimate;
 use serde::Serialize;
 
@@ -37,6 +37,8 @@ pub struct Report {
     pub games_done: usize,
     /// The keys of the axes.
     pub axes: Vec<String>,
+    /// What the axes vary, with units, from the reference of scenario files.
+    pub axis_meanings: Vec<Option<String>>,
     /// The names of the entries.
     pub entries: Vec<String>,
     /// The metrics; lists by metric are in this order.
@@ -143,6 +145,7 @@ impl Report {
             games: plan.games(),
             games_done: rows.len(),
             axes: sweep.axes.iter().map(|axis| axis.key.clone()).collect(),
+            axis_meanings: sweep.axes.iter().map(Axis::meaning).collect(),
             metrics: METRICS.to_vec(),
             points: (0..plan.points().len()).map(|point| point_report(plan, &observed, &names, point)).collect(),
             effects: effects(plan, &observed),

@@ -4,7 +4,7 @@ use super::effects::{Effect, Interaction};
 use super::find::Found;
 use super::metric::Metric;
 use super::report::{PointReport, Report};
-use crate::estimate::Estimate;
+use crate::estimate::{Estimate, OBSERVATIONS_MIN};
 use std::fmt::Write as _;
 
 /// The columns shown for each level: the metric, its heading, its factor, and decimal places.
@@ -30,7 +30,9 @@ pub fn text(report: &Report) -> String {
     line(format!("{} against {}", report.game, report.opponent));
     let done = report.games_done;
     let points = report.points.len();
-    line(format!("{done} of {} games at {points} points; means per game ± 95 % over seeds", report.games));
+    let few = report.games_per_point < 2 * OBSERVATIONS_MIN as u64;
+    let interval = if few { "; too few seeds for ± 95 %" } else { " ± 95 % over seeds" };
+    line(format!("{done} of {} games at {points} points; means per game{interval}", report.games));
     for effect in &report.effects {
         line(String::new());
         table(effect, &mut line);

@@ -18,8 +18,8 @@ const SUM: &str = ",\"sum\":\"";
 /// The known games of a league.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct League {
-    /// Results by pairing, as in [`Plan::pairings`], and by seed.
-    known: BTreeMap<(String, u64), Result<Game, String>>,
+    /// Results by pairing, as in [`Plan::pairings`], and by seed, with the number of their line.
+    known: BTreeMap<(String, u64), (usize, Result<Game, String>)>,
 }
 
 /// The JSON form of a game.
@@ -72,7 +72,7 @@ impl League {
                 Outcome::Game(game) => Ok(game),
                 Outcome::Failed(why) => Err(why),
             };
-            Ok(((pairing, seed), result))
+            Ok(((pairing, seed), (line, result)))
         };
         Ok(League { known: whole.lines().enumerate().map(game).collect::<Result<_, _>>()? })
     }
@@ -95,7 +95,8 @@ impl League {
         format!("{}{SUM}{sum}\"}}\n", &body[..body.len() - 1])
     }
 
-    /// The known games of a plan, and the indices of the others.
+    /// The known games of a plan, in the order in which they were played, and the indices of the
+    /// others.
     #[must_use]
     pub fn split(&self, plan: &Plan, pairings: &[String]) -> (Vec<Record>, Vec<usize>) {
         let mut known = vec![];
@@ -103,10 +104,11 @@ impl League {
         for place in 0..plan.games() {
             let of = plan.match_at(place).0;
             match self.known.get(&(pairings[place % pairings.len()].clone(), of.seed)) {
-                Some(result) => known.push(Record { of, result: result.clone() }),
+                Some((line, result)) => known.push((line, Record { of, result: result.clone() })),
                 None => new.push(place),
             }
         }
-        (known, new)
+        known.sort_by_key(|(line, _)| *line);
+        (known.into_iter().map(|(_, record)| record).collect(), new)
     }
 }

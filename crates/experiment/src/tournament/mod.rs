@@ -17,5 +17,5 @@ pub use league::{League, LeagueError};
 pub use plan::{Match, Plan};
 pub use play::{Observer, Record, play, play_observed};
 pub use rating::{Meeting, Rating, ratings};
-pub use report::{Cell, Failure, MatchRow, Report, Row, Seeds};
+pub use report::{Cell, Failure, MatchRow, Report, Row, Seeds, Standings};
 pub use table::{WIDTH, csv, text};

@@ -5,7 +5,7 @@
 //! draw is half a win for each. The maximum-likelihood strengths are computed from all games at
 //! once, so that the order of games does not matter.
 
-use crate::estimate::quantile;
+use crate::estimate::{OBSERVATIONS_MIN, quantile};
 use nalgebra::{DMatrix, DVector};
 use primitives::math;
 use serde::{Deserialize, Serialize};
@@ -15,9 +15,9 @@ use serde::{Deserialize, Serialize};
 pub struct Rating {
     /// The rating.
     pub elo: f64,
-    /// The lower bound of the interval; `None` with a single seed.
+    /// The lower bound of the interval; `None` with fewer than five seeds.
     pub low: Option<f64>,
-    /// The upper bound; `None` with a single seed.
+    /// The upper bound; `None` with fewer than five seeds.
     pub high: Option<f64>,
 }
 
@@ -117,11 +117,11 @@ fn curvature_of(games: &[Meeting], strengths: &DVector<f64>) -> DMatrix<f64> {
     curvature
 }
 
-/// The half width of each interval, in units of strength; `None` with a single seed.
+/// The half width of each interval, in units of strength; `None` with fewer than five seeds.
 fn errors(rounds: &[Vec<Meeting>], strengths: &DVector<f64>, curvature: &DMatrix<f64>) -> Option<Vec<f64>> {
     let seeds = rounds.len() as f64;
     let entries = strengths.len();
-    let quantile = quantile(seeds - 1.0)?;
+    let quantile = quantile(seeds - 1.0).filter(|_| rounds.len() >= OBSERVATIONS_MIN)?;
     let covariance = curvature.clone().cholesky()?.inverse();
     let mut spread = DMatrix::zeros(entries, entries);
     for round in rounds {
@@ -172,6 +172,9 @@ mod tests {
             rated[0].high.expect("an interval") - rated[0].elo > 100.0,
             "equal seeds do not mean no error: {rated:?}"
         );
+        // Four seeds, which would give an interval of thousands.
+        let rated = ratings(2, &meetings([0, 1], 4, 4));
+        assert!(rated.iter().all(|one| one.low.is_none() && one.high.is_none()), "{rated:?}");
         // An entry against itself, and a single seed.
         let rated = ratings(2, &[vec![Meeting { sides: [0, 0], share: 1.0 }, Meeting { sides: [0, 1], share: 0.5 }]]);
         assert!(rated.iter().all(|one| (one.elo - 1500.0).abs() < 1e-9 && one.low.is_none()), "{rated:?}");

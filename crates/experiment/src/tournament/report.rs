@@ -10,6 +10,9 @@ use rules::count::Counts;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
+/// The maximum number of times at which the history has ratings.
+const STANDINGS_MAX: usize = 50;
+
 /// The report of a tournament, as `--json` writes it.
 ///
 /// Only seeds with all games played count in [`Report::entries`] and [`Report::matrix`]; with a
@@ -42,10 +45,13 @@ pub struct Report {
     pub games_left_out: u64,
     /// Games per second of wall-clock time; the command fills it in.
     pub rate: Option<f64>,
-    /// The entries, by descending mean score.
+    /// The entries, by descending rating.
     pub entries: Vec<Row>,
     /// Each entry against each other, rows and columns in the same order.
     pub matrix: Vec<Cell>,
+    /// The ratings over time: after the first games, in the order in which they were played.
+    #[serde(default)]
+    pub history: Vec<Standings>,
     /// Games that could not start.
     pub failures: Vec<Failure>,
     /// Every game played.
@@ -117,6 +123,15 @@ pub struct Cell {
     pub seeds: Seeds,
 }
 
+/// The ratings after the first games.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Standings {
+    /// The number of games played by then.
+    pub games: usize,
+    /// The Elo ratings in the order of [`Report::entries`]; `None` before an entry's first game.
+    pub elo: Vec<Option<f64>>,
+}
+
 /// A range of seeds, inclusive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Seeds {
@@ -168,10 +183,12 @@ struct Appearance<'a> {
 }
 
 impl Report {
-    /// The report on the records of a plan's games, in order.
+    /// The report on the records of a plan's games, in the order in which they were played.
     #[must_use]
-    pub fn new(plan: &Plan, records: &[Record]) -> Report {
+    pub fn new(plan: &Plan, played: &[Record]) -> Report {
         let tournament = plan.tournament();
+        let mut records = played.to_vec();
+        records.sort_by_key(|record| plan.place_of(record.of));
         let name = |entry: usize| tournament.entries[entry].name.clone();
         let rounds: Vec<&[Record]> = records.chunk_by(|a, b| a.of.seed == b.of.seed).collect();
         let is_whole = |round: &&[Record]| {
@@ -188,7 +205,7 @@ impl Report {
                 rated.into_iter().enumerate().map(|(entry, rating)| (entry, row(plan, &whole, entry, rating))).collect()
             }
         };
-        order.sort_by(|(_, a), (_, b)| b.score.mean.total_cmp(&a.score.mean));
+        order.sort_by(|(_, a), (_, b)| b.rating.elo.total_cmp(&a.rating.elo));
         let ranks: Vec<usize> = order.iter().map(|(entry, _)| *entry).collect();
         let failures = records.iter().filter_map(|record| {
             let why = record.result.as_ref().err()?.clone();
@@ -215,6 +232,7 @@ impl Report {
             games_left_out: records.iter().filter(is_left_out).count() as u64,
             rate: None,
             matrix: matrix(plan, &whole, &ranks),
+            history: history(played.iter().filter(|record| counted.contains(&record.of.seed)), &ranks),
             entries: order.into_iter().map(|(_, row)| row).collect(),
             failures: failures.collect(),
             matches: matches.collect(),
@@ -223,13 +241,32 @@ impl Report {
     }
 }
 
+/// The entries of a game, and its result.
+fn meeting(record: &Record) -> Option<Meeting> {
+    let winner = record.result.as_ref().ok()?.winner;
+    Some(Meeting { sides: record.of.sides, share: winner.map_or(0.5, |side| if side == 0 { 1.0 } else { 0.0 }) })
+}
+
 /// The pairings and their results, grouped by seed.
 fn meetings(rounds: &[&[Record]]) -> Vec<Vec<Meeting>> {
-    let of_record = |record: &Record| {
-        let winner = record.result.as_ref().ok()?.winner;
-        Some(Meeting { sides: record.of.sides, share: winner.map_or(0.5, |side| if side == 0 { 1.0 } else { 0.0 }) })
+    rounds.iter().map(|round| round.iter().filter_map(meeting).collect()).collect()
+}
+
+/// The ratings after a growing number of games, of the entries in `ranks` that had played by then.
+fn history<'a>(played: impl Iterator<Item = &'a Record>, ranks: &[usize]) -> Vec<Standings> {
+    let all: Vec<Meeting> = played.filter_map(meeting).collect();
+    let step = all.len().div_ceil(STANDINGS_MAX).max(1);
+    let after = |games: usize| {
+        let entries: BTreeSet<usize> = all[..games].iter().flat_map(|meeting| meeting.sides).collect();
+        let place = |entry: usize| entries.iter().position(|one| *one == entry);
+        let renamed =
+            |one: &Meeting| Meeting { sides: one.sides.map(|entry| place(entry).unwrap_or_default()), ..*one };
+        // As one seed: intervals are not needed.
+        let rated = ratings(entries.len(), &[all[..games].iter().map(renamed).collect()]);
+        Standings { games, elo: ranks.iter().map(|entry| Some(rated[place(*entry)?].elo)).collect() }
     };
-    rounds.iter().map(|round| round.iter().filter_map(of_record).collect()).collect()
+    let points = (step..all.len()).step_by(step).chain((!all.is_empty()).then_some(all.len()));
+    points.map(after).collect()
 }
 
 /// The games of a seed with an entry; both sides of a game against itself.

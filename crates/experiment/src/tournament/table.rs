@@ -3,7 +3,9 @@
 use super::rating::Rating;
 use super::report::{Cell, Report, Row};
 use crate::estimate::Estimate;
+use crate::jobs::strategy_option;
 use primitives::printable::add_line;
+use scenario::word;
 
 /// A column: its name in the CSV file, its heading in the text, and its value.
 type Column = (&'static str, &'static str, fn(&Row) -> Estimate);
@@ -35,7 +37,12 @@ pub fn text(report: &Report, columns: usize) -> String {
             let first = seeds.first;
             let last = seeds.last;
             add_line(&mut text, format_args!("{games} games per pairing, half of them on each side"));
-            add_line(&mut text, format_args!("means per game ± 95 %, over {count} seeds from {first} to {last}\n"));
+            let few = report.entries.iter().all(|row| row.rating.low.is_none());
+            let [interval, end] = if few { ["", ": too few for confidence intervals"] } else { [" ± 95 %", ""] };
+            add_line(
+                &mut text,
+                format_args!("means per game{interval}, over {count} seeds from {first} to {last}{end}\n"),
+            );
             entries(&mut text, report, columns);
             ratings(&mut text, report);
             match &report.challenger {
@@ -147,10 +154,9 @@ fn beaten(cell: &Cell) -> String {
 fn ratings(text: &mut String, report: &Report) {
     let width = width(&names(report));
     add_line(text, format_args!("\nElo ratings with 95 % intervals: a lead of 100 means an expected result of 64 %"));
-    let mut rows: Vec<&Row> = report.entries.iter().collect();
-    rows.sort_by(|a, b| b.rating.elo.total_cmp(&a.rating.elo));
-    for Row { name, rating: Rating { elo, low, high }, .. } in rows {
-        let interval = low.zip(*high).map_or("?".to_owned(), |(low, high)| format!("{low:.0} to {high:.0}"));
+    for Row { name, rating: Rating { elo, low, high }, .. } in &report.entries {
+        let interval =
+            low.zip(*high).map_or("too few seeds".to_owned(), |(low, high)| format!("{low:.0} to {high:.0}"));
         add_line(text, format_args!("{name:width$}{elo:>7.0}{interval:>16}"));
     }
 }
@@ -180,18 +186,14 @@ fn missing(text: &mut String, report: &Report) {
 
 /// The command that replays one of the games.
 fn again(text: &mut String, report: &Report) {
-    let sea = report.sea.as_ref().map_or(String::new(), |sea| format!(" --sea {sea}"));
-    let sides: String = report.teams.iter().zip(["A", "B"]).map(|(team, file)| option(team, file)).collect();
+    let sea = report.sea.as_ref().map_or(String::new(), |sea| format!(" --sea {}", word(sea.as_ref())));
+    let sides: String = report.teams.iter().zip(["A", "B"]).map(|(team, file)| strategy_option(team, file)).collect();
     add_line(text, format_args!("\nto replay one of these games, insert strategy files for A and B:"));
-    add_line(text, format_args!("  squall run {}{sea}{sides} --seed {} --in-process", report.game, report.seed));
+    let game = word(report.game.as_ref());
+    add_line(text, format_args!("  squall run {game}{sea}{sides} --seed {} --in-process", report.seed));
     for row in &report.entries {
-        add_line(text, format_args!("  {:<16} {}", row.name, row.strategy));
+        add_line(text, format_args!("  {:<16} {}", row.name, word(row.strategy.as_ref())));
     }
-}
-
-/// The option that gives a team its strategy file.
-fn option(team: &str, file: &str) -> String {
-    if ["blue", "red"].contains(&team) { format!(" --{team} {file}") } else { format!(" --strategy {team}={file}") }
 }
 
 /// A comma-separated line for each entry. Names contain no commas, and paths are quoted.

@@ -141,6 +141,7 @@ impl ActorCritic {
             entropy: mean(sums.entropy),
             divergence: mean(sums.divergence),
             clipped: mean(sums.clipped),
+            explained_variance: explained_variance(&batch.advantages, &batch.returns),
             epochs: Some(values / (count.max(1) as f32)),
         }
     }
@@ -269,6 +270,13 @@ impl Normal {
     }
 }
 
+/// The share of the returns' variance that the critic explained; `None` if the returns are equal.
+fn explained_variance(advantages: &[f32], returns: &[f32]) -> Option<f32> {
+    // An advantage is a return minus the critic's value.
+    let [rest, all] = [advantages, returns].map(|list| Normal::of(list.iter().copied()).deviation);
+    (all > 0.0).then(|| 1.0 - (rest / all) * (rest / all))
+}
+
 /// The gradient of a sample's loss with respect to its logits: clipped objective and entropy bonus.
 fn policy_gradient(
     logs: &[f32],
@@ -338,6 +346,18 @@ mod tests {
             let want = (at(STEP) - at(-STEP)) / (2.0 * STEP);
             assert!((f64::from(by[i]) - want).abs() < TOLERANCE, "{i}: got {}, want {want}", by[i]);
         }
+    }
+
+    #[test]
+    fn a_critic_explains_all_nothing_or_less_than_nothing() {
+        let returns = [1.0, 2.0, 4.0, 5.0];
+        // Values equal to the returns, constant, and opposite to them.
+        for (values, want) in [(returns, 1.0), ([3.0; 4], 0.0), (returns.map(|value| -value), -3.0)] {
+            let advantages: Vec<f32> = returns.iter().zip(values).map(|(all, value)| all - value).collect();
+            let got = explained_variance(&advantages, &returns).expect("unequal returns");
+            assert!((got - want).abs() < 1e-5, "{values:?}: {got}, want {want}");
+        }
+        assert_eq!(explained_variance(&[0.5, 1.0], &[2.0, 2.0]), None);
     }
 
     #[test]

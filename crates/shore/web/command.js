@@ -1,0 +1,39 @@
+// A command line with a button that copies it.
+
+import { make, write } from './words.js';
+
+/** How long the button says so, ms. */
+const SAID_MS = 2000;
+
+/** Copies a text. Pages from other machines have no clipboard. Returns whether it worked. */
+async function copy(text) {
+  try {
+    await navigator.clipboard.writeText(text);
+    return true;
+  } catch {
+    const field = make('textarea', 'hidden-text');
+    field.value = text;
+    document.body.append(field);
+    field.select();
+    const done = document.execCommand('copy');
+    field.remove();
+    return done;
+  }
+}
+
+/** A command, and a button that copies it; `what` it does. */
+export function commandOf(text, what) {
+  // A browser would break `--seed` after its first dash.
+  const code = make('code', '', '', ...text.split(/(\s+)/).map((word) => (/\S/.test(word) ? make('span', '', word) : word)));
+  const button = make('button', '', 'Copy');
+  button.type = 'button';
+  button.setAttribute('aria-label', `Copy the command that ${what}`);
+  button.addEventListener('click', async () => {
+    const done = await copy(text);
+    button.focus();
+    if (!done) getSelection().selectAllChildren(code);
+    write(button, done ? 'Copied' : 'Marked');
+    setTimeout(() => write(button, 'Copy'), SAID_MS);
+  });
+  return make('div', 'command', '', code, button);
+}
