@@ -1,9 +1,9 @@
 //! `squall check` and `squall schema`: validate scenario files and print their schemas.
 
-use crate::kinds::{self, KINDS};
+use crate::kinds::KINDS;
 use crate::{explain, scenario_files, screen, style};
 use anyhow::{Result, bail};
-use scenario::{Kind, check_file, load, schema};
+use scenario::{Kind, check_file, did_you_mean, load, schema};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -17,7 +17,7 @@ pub(crate) struct Args {
 #[derive(clap::Args)]
 pub(crate) struct SchemaArgs {
     /// Kind of file: game, field, rules, boat, sea, strategy, tournament, gateway, rewards, training or sweep
-    #[arg(value_parser = kinds::parse)]
+    #[arg(value_parser = kind)]
     kind: Kind,
 }
 
@@ -60,4 +60,11 @@ fn warnings(file: &Path, kind: Kind) -> Vec<String> {
 pub(crate) fn print_schema(args: &SchemaArgs) -> Result<ExitCode> {
     screen::print(&(serde_json::to_string_pretty(&schema(args.kind))? + "\n"));
     Ok(ExitCode::SUCCESS)
+}
+
+/// Parses the name of a kind, or of its folder.
+pub(crate) fn kind(word: &str) -> Result<Kind, String> {
+    let names: Vec<&str> = KINDS.iter().map(|kind| kind.name()).collect();
+    let found = KINDS.iter().copied().find(|kind| [kind.name(), kind.folder()].contains(&word));
+    found.ok_or_else(|| format!("expected one of {}{}", names.join(", "), did_you_mean(word, &names)))
 }

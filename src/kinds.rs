@@ -2,7 +2,7 @@
 
 use experiment::sweep::Sweep;
 use experiment::tournament::Tournament;
-use scenario::{Kind, did_you_mean};
+use scenario::Kind;
 
 pub(crate) const KINDS: &[Kind] = &[
     Kind::GAME,
@@ -18,10 +18,3 @@ pub(crate) const KINDS: &[Kind] = &[
     Kind::of::<learn::training::Training>(),
     Kind::of::<Sweep>(),
 ];
-
-/// Parses the name of a kind, or of its folder.
-pub(crate) fn parse(word: &str) -> Result<Kind, String> {
-    let names: Vec<&str> = KINDS.iter().map(|kind| kind.name()).collect();
-    let found = KINDS.iter().copied().find(|kind| [kind.name(), kind.folder()].contains(&word));
-    found.ok_or_else(|| format!("expected one of {}{}", names.join(", "), did_you_mean(word, &names)))
-}

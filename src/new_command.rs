@@ -1,6 +1,7 @@
 //! `squall new` and `squall copy`: create a scenario file for editing.
 
-use crate::kinds::{self, KINDS};
+use crate::check_command;
+use crate::kinds::KINDS;
 use crate::{output_file, scenario_files, screen};
 use anyhow::{Result, bail};
 use command_line::explain::UsageError;
@@ -45,7 +46,7 @@ pub(crate) struct CopyArgs {
 pub(crate) struct FilesArgs {
     /// Lists one kind of file, and describes each: game, field, rules, boat, sea, strategy, tournament, gateway, rewards,
     /// training or sweep
-    #[arg(value_parser = kinds::parse)]
+    #[arg(value_parser = check_command::kind)]
     kind: Option<Kind>,
 }
 

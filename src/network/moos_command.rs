@@ -60,7 +60,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         bail!("nothing to connect: use --vehicle NAME or --team TEAM for boats, --shore :9000 for pMarineViewer");
     }
     let stop = stop::on_ctrl_c()?;
-    stop::exit_when_late(&stop, None);
+    stop::exit_when_late(&stop);
     let settings = bridge::Settings {
         game: args.leaf.game.clone(),
         place: args.leaf.place()?,

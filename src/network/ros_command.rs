@@ -83,7 +83,7 @@ impl BridgeArgs {
 
 fn bridge(args: &BridgeArgs) -> Result<ExitCode> {
     let stop = stop::on_ctrl_c()?;
-    stop::exit_when_late(&stop, None);
+    stop::exit_when_late(&stop);
     let settings = Settings {
         game: args.leaf.game.clone(),
         place: args.leaf.place()?,
