@@ -1,19 +1,20 @@
 //! The loop of an agent process: receives pictures, lets its minds decide, and sends orders and
 //! messages to mates.
 
+use super::MakeMind;
 use super::error::NodeError;
 use super::helm_queries::HelmQueries;
 use super::policy_inbox::PolicyInbox;
 use super::settings::Settings;
 use super::talk::Talk;
-use crate::{Mind, MindRunner};
+use crate::MindRunner;
 use bus::game_search::Joined;
 use bus::{Bus, Declaration, Delivery, Latest, Patience, Priority, Publisher, SimState, SimWatch};
 use messages::refusal::{Refusal, Refusals};
 use messages::topic::{self, GameName};
 use messages::{GameInfo, Picture};
+use primitives::TeamId;
 use primitives::codec::{self, DecodeError};
-use primitives::{TeamId, VehicleId};
 use scenario::Scenario;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -57,7 +58,7 @@ impl AgentLoop {
         bus: &Bus,
         game: &GameName,
         info: &GameInfo,
-        (settings, make): (&Settings, &dyn Fn(&Scenario, VehicleId) -> Box<dyn Mind>),
+        (settings, make): (&Settings, MakeMind<'_>),
     ) -> Result<AgentLoop, NodeError> {
         let scenario = &info.scenario;
         // The sim rejects unknown names.
@@ -220,7 +221,7 @@ fn keep(pictures: &Arc<Latest<Vec<Vec<u8>>>>, cell: usize) -> impl Fn(&[u8]) + u
 mod tests {
     use super::*;
     use messages::{EventRecord, Stamp};
-    use primitives::SimTime;
+    use primitives::{SimTime, VehicleId};
     use rules::event::{Event, Logged};
 
     /// A picture in which boat `seq` left the field.

@@ -22,6 +22,9 @@ use messages::refusal::Refusals;
 use primitives::VehicleId;
 use scenario::Scenario;
 
+/// Makes the mind of a vehicle.
+pub type MakeMind<'a> = &'a dyn Fn(&Scenario, VehicleId) -> Box<dyn Mind>;
+
 /// What an agent reports to the program that runs it.
 pub enum News<'a> {
     /// No sim found yet.
@@ -57,11 +60,7 @@ pub fn serve(settings: &Settings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), 
 ///
 /// # Errors
 /// As for [`serve`].
-pub fn serve_minds(
-    settings: &Settings,
-    make: &dyn Fn(&Scenario, VehicleId) -> Box<dyn Mind>,
-    tell: &mut dyn FnMut(News<'_>),
-) -> Result<(), NodeError> {
+pub fn serve_minds(settings: &Settings, make: MakeMind<'_>, tell: &mut dyn FnMut(News<'_>)) -> Result<(), NodeError> {
     let mut search = GameSearch::new(settings.wait, &settings.stop);
     let mut report = |reason: &str| tell(News::Looking { reason });
     let (bus, game, info) = search.game(&mut report, &settings.place, settings.game.as_ref())?;
