@@ -239,6 +239,18 @@ class Checker:
         return next((line for line in normal(text) if line and line != "…" and line not in real), None)
 
 
+def check_prose(checker, place, markdown):
+    """Commands within sentences name existing subcommands and options; most have placeholders, so they are not run."""
+    prose = re.sub(r"^```.*?^```", "", markdown, flags=re.M | re.S)
+    for command in set(re.findall(r"`(squall (?!help)[a-z][^`]*)`", prose)):
+        words = command.split()[1:]
+        path = words[: 2 if words[0] in ("gateway", "keys") and words[1:2] and words[1].islower() else 1]
+        done = subprocess.run([f"{checker.bin}/squall", *path, "--help"], capture_output=True, text=True)
+        unknown = [word for word in words if word.startswith("--") and word.split("=")[0] not in done.stdout]
+        if done.returncode or unknown:
+            checker.errors.append(f"{place}: {command}: there is no {' '.join(unknown or path)}")
+
+
 def blocks_of(markdown):
     return re.findall(r"^```(\w+)\n(.*?)^```", markdown, re.M | re.S)
 
@@ -278,6 +290,7 @@ def main():
     checker.page("templates", templates(checker))
     for path in sorted([ROOT / "README.md", *ROOT.glob("docs/*.md"), *ROOT.glob("scenarios/**/*.md")]):
         checker.page(str(path.relative_to(ROOT)), blocks_of(path.read_text()))
+        check_prose(checker, path.relative_to(ROOT), path.read_text())
     if not checker.only:
         for table in (SKIPPED, REFUSED, LONG, SERVES, BESIDE, UNCOMPARED):
             checker.errors += [f"the table entry {key} excuses nothing" for key in table if key not in checker.used]
