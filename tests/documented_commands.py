@@ -3,8 +3,9 @@
 
 Commands come from the help, the templates, the hints in the program's own output, README.md, docs/ and scenarios/.
 Each page has an empty folder and one shell, so that its commands follow each other as a reader types them. Output that
-a page shows must be the real output. The tables below list every exception with its reason. A command that fails, an
-entry that excuses nothing, and a hint that no page contains are errors. Ends with 1 if there are any.
+a page shows must be the real output. The first hint of each kind follows the command that printed it. The tables below
+list every exception with its reason. A command that fails, and an entry that excuses nothing, are errors. Ends with 1
+if there are any.
 """
 
 import os
@@ -21,6 +22,8 @@ ROOT = Path(__file__).resolve().parent.parent
 
 # Commands that cannot run here, as regular expressions over whole commands, with the reason.
 SKIPPED = {
+    r"squall (watch|view) --game \S+": "a hint about a game that is over by now",
+    r".* --blue A --red B .*": "a hint in which A and B stand for files",
     r".*(10\.0\.0\.\d+|192\.168\.\d+\.\d+).*": "needs another host or a boat at this address",
     r"squall gateway (check|stop|surveyor|tell|replay|console)\b.*": "needs a boat; tests/process drives emulated ones",
     r"squall log runs/gateway-.*": "needs the recording of a boat's gateway",
@@ -100,7 +103,7 @@ class Page:
     def __init__(self, checker, place):
         self.checker, self.place = checker, place
         self.folder = tempfile.TemporaryDirectory()
-        self.variables = {}
+        self.variables, self.hints = {}, []
         if prepared := PREPARED.get(place):
             self.shell(prepared, 120)
 
@@ -153,7 +156,8 @@ class Page:
             if beside:
                 os.killpg(beside.pid, signal.SIGINT)
                 beside.wait()
-        self.checker.hints(output, self.place)
+        if "--help" not in command and command not in ("squall", "squall help"):
+            self.hints = self.checker.new_hints(output)
         is_ended = "LONG" in named or serves is not None
         if key := matching(REFUSED, command):
             self.checker.used.add(key)
@@ -177,22 +181,29 @@ class Checker:
         os.mkdir(self.bin)
         os.mkdir(self.runtime, 0o700)
         os.symlink(Path(program).resolve(), f"{self.bin}/squall")
-        self.hinted, self.ran = {}, set()
+        self.hinted = set()
 
-    def hints(self, output, place):
-        """Collects the commands in an output."""
-        for hint in re.findall(r"(?:with|using|is|game|files|page): (squall [a-z][^\n,;]*)", output):
-            self.hinted.setdefault(hint.strip(), place)
+    def new_hints(self, output):
+        """The commands in an output whose kind has not been seen before."""
+        hints = []
+        for hint in re.findall(r"(?:: |^ +)(squall [a-z][^\n,;]*)", output, re.M):
+            kind = re.sub(r"[^ ]*[0-9/=][^ ]*", "X", hint)
+            if kind not in self.hinted:
+                self.hinted.add(kind)
+                hints.append(hint.strip())
+        return hints
 
     def command(self, page, command):
         self.count += 1
         began = time.monotonic()
-        output = None
+        output, page.hints = None, []
         try:
             output = page.run(command)
         except Failure as failure:
             self.errors.append(f"{page.place}: {command}\n    {failure}")
         print(f"{time.monotonic() - began:6.1f} s  {page.place}: {command}", flush=True)
+        for hint in page.hints:
+            self.command(page, hint)
         return output
 
     def page(self, place, blocks):
@@ -207,7 +218,8 @@ class Checker:
                     command = command.replace("cargo run --release -- run", "squall run")
                     if re.match(r"(\w+=\S+ )*(source <\()?squall |[A-Z]+=", command):
                         outputs.append(self.command(page, command))
-            elif language == "toml" and (name := re.match(r"# (\S+\.toml)\n", text)):
+                continue
+            if language == "toml" and (name := re.match(r"# (\S+\.toml)\n", text)):
                 path = name[1] if "/" in name[1] else f"strategies/{name[1]}"
                 path = Path(page.folder.name, "scenarios", path)
                 path.parent.mkdir(parents=True, exist_ok=True)
@@ -216,6 +228,8 @@ class Checker:
                 missing = [self.missing(text, output) for output in outputs]
                 if None not in missing:
                     self.errors.append(f"{place}: shows a line that the commands above do not print:\n    {missing[0]}")
+            # Only what follows the commands directly is their output.
+            outputs = []
         page.close()
 
     @staticmethod
@@ -223,6 +237,18 @@ class Checker:
         """The first line of a page's text that an output does not contain in this order; `…` stands for any lines."""
         real = iter(normal(output))
         return next((line for line in normal(text) if line and line != "…" and line not in real), None)
+
+
+def check_prose(checker, place, markdown):
+    """Commands within sentences name existing subcommands and options; most have placeholders, so they are not run."""
+    prose = re.sub(r"^```.*?^```", "", markdown, flags=re.M | re.S)
+    for command in set(re.findall(r"`(squall (?!help)[a-z][^`]*)`", prose)):
+        words = command.split()[1:]
+        path = words[: 2 if words[0] in ("gateway", "keys") and words[1:2] and words[1].islower() else 1]
+        done = subprocess.run([f"{checker.bin}/squall", *path, "--help"], capture_output=True, text=True)
+        unknown = [word for word in words if word.startswith("--") and word.split("=")[0] not in done.stdout]
+        if done.returncode or unknown:
+            checker.errors.append(f"{place}: {command}: there is no {' '.join(unknown or path)}")
 
 
 def blocks_of(markdown):
@@ -264,10 +290,10 @@ def main():
     checker.page("templates", templates(checker))
     for path in sorted([ROOT / "README.md", *ROOT.glob("docs/*.md"), *ROOT.glob("scenarios/**/*.md")]):
         checker.page(str(path.relative_to(ROOT)), blocks_of(path.read_text()))
+        check_prose(checker, path.relative_to(ROOT), path.read_text())
     if not checker.only:
         for table in (SKIPPED, REFUSED, LONG, SERVES, BESIDE, UNCOMPARED):
             checker.errors += [f"the table entry {key} excuses nothing" for key in table if key not in checker.used]
-    print("hints:", *[f"  {hint}   ({place})" for hint, place in sorted(checker.hinted.items())], sep="\n")
     print(f"{checker.count} commands, {len(checker.errors)} errors")
     print("\n".join(checker.errors))
     sys.exit(bool(checker.errors))
