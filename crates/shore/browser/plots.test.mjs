@@ -51,7 +51,10 @@ test('values at the cursor are those of the boats, in all plots at once, and a p
   await sight.press('#plot-add');
   await sight.page.locator('.plot').nth(2).locator('select').first().selectOption({ label: 'Range to, m' });
   await sight.page.locator('.plot-other').nth(2).selectOption('blue_two');
-  await sight.until('all curves are known', () => document.querySelectorAll('.plot-value .value').length >= 10 && ![...document.querySelectorAll('.plot:last-child .value')].some((each) => each.textContent === '–'));
+  await sight.until('all curves are known', () => {
+    const known = [...document.querySelectorAll('.plot')].map((plot) => [...plot.querySelectorAll('.value')].filter((each) => each.textContent !== '–').length);
+    return known.length === 3 && known.every((count) => count >= 2);
+  });
   for (const part of [0.3, 0.6, 0.9]) {
     await pointAt(sight, 0, part, true);
     await sight.until('the chart follows', (part) => Math.abs(squall.t_s - 600 * part) < 2, part);

@@ -270,8 +270,8 @@ export class Plot {
     this.told = key;
     this.now.style.transform = `translateX(${now_px}px)`;
     const outside = pointed_s === null || pointed_s < span.from_s || pointed_s > span.to_s;
-    // Elsewhere the pointer moves it.
-    if (!chart.over.matches(':hover')) chart.setCursor({ left: outside ? -10 : x(pointed_s), top: outside ? -10 : 1 });
+    // In the plot under the pointer, the pointer moves it.
+    if (this.pointed === null) chart.setCursor({ left: outside ? -10 : x(pointed_s), top: outside ? -10 : 1 });
     this.tell(pointed_s ?? game.t_s);
   }
 
