@@ -11,7 +11,7 @@ use files::Files;
 use learn::environment::{RecordingLog, RecordingNames, Recordings, check_recording_folder};
 use learn::train::{Evaluated, Played, Trainer};
 use learn::training::Training;
-use scenario::{Kind, word};
+use scenario::{Kind, argument_for};
 use std::num::NonZeroU64;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -159,8 +159,8 @@ fn line(evaluated: &Evaluated, is_best: bool) -> String {
 fn play_command(trainer: &Trainer, folder: &Path) -> Option<String> {
     let strategy = folder.join("best.toml");
     let stage = trainer.training().stage.last()?;
-    let sea = stage.sea.as_ref().map_or(String::new(), |sea| format!(" --sea {}", word(sea)));
-    let command = || format!("squall run {}{sea} --blue {}", word(&stage.game), word(&strategy));
+    let sea = stage.sea.as_ref().map_or(String::new(), |sea| format!(" --sea {}", argument_for(sea)));
+    let command = || format!("squall run {}{sea} --blue {}", argument_for(&stage.game), argument_for(&strategy));
     strategy.exists().then(command)
 }
 

@@ -51,7 +51,7 @@ pub fn built_in(path: &Path) -> Option<&'static [u8]> {
 /// How a command line names a scenario file: by its name if commands find it by that, in
 /// `scenarios` here, in a parent folder, or built in; otherwise by its path, quoted for a shell.
 #[must_use]
-pub fn word(path: &Path) -> String {
+pub fn argument_for(path: &Path) -> String {
     let whole = std::path::absolute(tidied(path)).unwrap_or_else(|_| path.to_owned());
     let parts: Vec<_> = whole.iter().collect();
     let (_, tail) = parts.split_at(parts.len().saturating_sub(3));

@@ -44,7 +44,7 @@ mod tree;
 mod validate;
 
 pub use boat::Boat;
-pub use built_in::{BuiltIn, OnOverride, built_in, set_built_in};
+pub use built_in::{BuiltIn, OnOverride, argument_for, built_in, set_built_in};
 pub use check::{StrategyFiles, check_corners, check_thrust_map};
 pub use diagnostics::Diagnostics;
 pub use digest::digest_of;

@@ -74,7 +74,7 @@ impl Outputs {
     fn parse(datagram: &[u8]) -> Option<Outputs> {
         let words: Vec<u16> = datagram.chunks_exact(2).map(|two| u16::from_le_bytes([two[0], two[1]])).collect();
         let [magic, rate_hz, low, high, pulses_us @ ..] = words.as_slice() else { return None };
-        let is_known = FORMATS.contains(&(*magic, pulses_us.len())) && datagram.len() % 2 == 0;
+        let is_known = FORMATS.contains(&(*magic, pulses_us.len())) && datagram.len().is_multiple_of(2);
         let step = u32::from(*low) | u32::from(*high) << 16;
         is_known.then(|| Outputs { rate_hz: *rate_hz, step, pulses_us: pulses_us.to_vec() })
     }

@@ -3,7 +3,7 @@
 use super::games::{Game, Games, Source};
 use super::report::{PAGE, read};
 use anyhow::{Context, Result, bail};
-use scenario::word;
+use scenario::argument_for;
 use serde_json::{Value, json};
 use shore::page::{Report, Shown};
 use std::fs::{File, TryLockError};
@@ -83,7 +83,7 @@ impl Run {
     /// The run in a folder, which `shown` names in commands.
     fn of(folder: PathBuf, shown: &Path) -> Run {
         let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        Run { folder, name, strategy: word(&shown.join("best.toml")) }
+        Run { folder, name, strategy: argument_for(&shown.join("best.toml")) }
     }
 
     fn id(&self) -> String {

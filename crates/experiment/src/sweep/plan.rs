@@ -5,7 +5,7 @@ use crate::jobs::{load_game, strategy_option, teams_of, too_many_games};
 use crate::tournament::Entrant;
 use crate::{Packed, UnpackError};
 use primitives::stream::Stream;
-use scenario::{Files, Overrides, Problem, Problems, Scenario, Setting, digest_of, word};
+use scenario::{Files, Overrides, Problem, Problems, Scenario, Setting, argument_for, digest_of};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -152,14 +152,14 @@ impl Plan {
     #[must_use]
     pub fn command(&self, job: &Job) -> String {
         let Overrides { strategies, settings, .. } = self.overrides(job.point, job.entry, job.side);
-        let mut command = format!("squall run {}", word(&self.sweep.game));
+        let mut command = format!("squall run {}", argument_for(&self.sweep.game));
         for (team, file) in &strategies {
-            command += &strategy_option(team, &word(file));
+            command += &strategy_option(team, &argument_for(file));
         }
         for setting in settings {
             let option = setting.key.strip_prefix("game.").filter(|key| ["sea", "field"].contains(key));
             command += &match option.zip(file_of(&setting)) {
-                Some((option, file)) => format!(" --{option} {}", word(&file)),
+                Some((option, file)) => format!(" --{option} {}", argument_for(&file)),
                 None => format!(" {}", beside_here(&setting).argument()),
             };
         }

@@ -5,7 +5,7 @@ use super::report::{Cell, Report, Row};
 use crate::estimate::Estimate;
 use crate::jobs::strategy_option;
 use primitives::printable::add_line;
-use scenario::word;
+use scenario::argument_for;
 
 /// A column: its name in the CSV file, its heading in the text, and its value.
 type Column = (&'static str, &'static str, fn(&Row) -> Estimate);
@@ -186,13 +186,13 @@ fn missing(text: &mut String, report: &Report) {
 
 /// The command that replays one of the games.
 fn again(text: &mut String, report: &Report) {
-    let sea = report.sea.as_ref().map_or(String::new(), |sea| format!(" --sea {}", word(sea.as_ref())));
+    let sea = report.sea.as_ref().map_or(String::new(), |sea| format!(" --sea {}", argument_for(sea.as_ref())));
     let sides: String = report.teams.iter().zip(["A", "B"]).map(|(team, file)| strategy_option(team, file)).collect();
     add_line(text, format_args!("\nto replay one of these games, insert strategy files for A and B:"));
-    let game = word(report.game.as_ref());
+    let game = argument_for(report.game.as_ref());
     add_line(text, format_args!("  squall run {game}{sea}{sides} --seed {} --in-process", report.seed));
     for row in &report.entries {
-        add_line(text, format_args!("  {:<16} {}", row.name, word(row.strategy.as_ref())));
+        add_line(text, format_args!("  {:<16} {}", row.name, argument_for(row.strategy.as_ref())));
     }
 }
 

@@ -13,6 +13,7 @@ use messages::{Frame, Picture, Stamp};
 use primitives::{SimTime, VehicleId};
 use scenario::Scenario;
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -94,8 +95,8 @@ impl Publisher {
             measured.insert(*boat, MotionTopics::open(graph, node, &node.name)?);
             let team = scenario.team_of(*boat);
             let topic = format!("/squall/{}/picture", scenario.teams[team.index()].name);
-            if !pictures.contains_key(&team.0) {
-                pictures.insert(team.0, graph.publisher(squall, &topic)?);
+            if let Entry::Vacant(entry) = pictures.entry(team.0) {
+                entry.insert(graph.publisher(squall, &topic)?);
             }
         }
         Ok(Publisher {
