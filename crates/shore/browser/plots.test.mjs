@@ -73,11 +73,10 @@ test('values at the cursor are those of the boats, in all plots at once, and a p
       assert(Math.abs(range.values[called] - range_m) < OFF_M, `${range.values[called]} for ${range_m}`);
     }
     // A cursor in each plot, at the same part of its width.
-    const cursors = await sight.get(() => [...document.querySelectorAll('.plot .u-over')].map((over) => {
+    await sight.until(`each plot has a cursor at ${part} of its width`, (part) => [...document.querySelectorAll('.plot .u-over')].every((over) => {
       const { left, width } = over.getBoundingClientRect();
-      return (over.querySelector('.u-cursor-x').getBoundingClientRect().left - left) / width;
-    }));
-    assert(cursors.length === 3 && cursors.every((each) => Math.abs(each - part) < 0.02), `${cursors} at ${part}`);
+      return Math.abs((over.querySelector('.u-cursor-x').getBoundingClientRect().left - left) / width - part) < 0.02;
+    }), part);
   }
   const label = await sight.get(() => document.querySelector('.plot').getAttribute('aria-label'));
   assert(/^Speed at \d\d:\d\d\.\d: blue one [\d.]+\sm\/s, /.test(label), label);

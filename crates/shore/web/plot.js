@@ -265,7 +265,7 @@ export class Plot {
     const { pointed_s } = span;
     const x = (t_s) => ((t_s - span.from_s) / (span.to_s - span.from_s)) * chart.over.clientWidth;
     const now_px = game.mode === 'replay' && game.t_s >= span.from_s && game.t_s <= span.to_s ? Math.round(x(game.t_s)) : -10;
-    const key = `${pointed_s} ${now_px} ${this.drawn} ${this.focused} ${pointed_s === null ? game.t_s : ''}`;
+    const key = `${pointed_s} ${this.pointed === null} ${now_px} ${this.drawn} ${this.focused} ${pointed_s === null ? game.t_s : ''}`;
     if (key === this.told) return;
     this.told = key;
     this.now.style.transform = `translateX(${now_px}px)`;
