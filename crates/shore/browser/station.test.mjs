@@ -152,7 +152,8 @@ test('a failsafe is seen and heard until it is acknowledged, and no flood keeps 
   await sight.press('[data-vehicle=red_one]');
   await sight.until('the condition is listed', () => /Missing before arming:.*a fresh order/s.test(document.querySelector('.arming').textContent));
   assert.equal(await sight.page.getAttribute('#operate', 'aria-disabled'), 'true');
-  await sight.press('#operate');
+  // Playwright waits until a button is enabled, unless forced.
+  await sight.page.click('#operate', { force: true });
   assert(!(await sight.page.isVisible('#operate-confirm')), 'no question that would lead nowhere');
   assert.match(await sight.text('#operated'), /red one cannot be armed yet\. Missing: .*a fresh order/);
   await sight.press('#tab-boats');

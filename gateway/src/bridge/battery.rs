@@ -50,8 +50,8 @@ impl BatteryLog {
     /// The charge left, per cent: as reported by the boat, or else estimated from the voltage.
     pub(super) fn left_pct(&self) -> Option<f64> {
         let cells = f64::from(self.watch.cells);
-        let estimate = self.volts.filter(|_| cells > 0.0).map(|(_, volts)| 100.0 * lithium::charge_left(volts / cells));
-        self.left_pct.or(estimate)
+        let estimate = || Some(100.0 * lithium::charge_left(self.volts?.1 / cells)?);
+        self.left_pct.or_else(estimate)
     }
 
     pub(super) fn is_low(&self, now: SimTime) -> bool {

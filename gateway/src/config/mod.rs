@@ -273,7 +273,7 @@ pub struct BatteryWatch {
     #[schemars(range(min = 0, max = 600), extend("default" = 5))]
     pub debounce_s: f64,
     /// Lithium cells in series, to estimate the charge of a boat that reports only its voltage; 0: unknown.
-    #[schemars(range(min = 0, max = 200), extend("default" = 0))]
+    #[schemars(range(min = 0, max = 200), extend("default" = 7))]
     pub cells: u8,
 }
 
