@@ -272,7 +272,7 @@ pub struct BatteryWatch {
     /// How long the voltage must stay below `volts_min`, s.
     #[schemars(range(min = 0, max = 600), extend("default" = 5))]
     pub debounce_s: f64,
-    /// Lithium cells in series, to estimate the charge of a boat that reports only its voltage; 0: unknown.
+    /// Lithium cells in series, to estimate the charge from the voltage; 0: unknown.
     #[schemars(range(min = 0, max = 200), extend("default" = 7))]
     pub cells: u8,
 }
