@@ -209,7 +209,7 @@ mod tests {
     #[test]
     fn every_option_names_the_values_that_it_allows() {
         const RAW: [&str; 7] =
-            ["invalid digit", "number too", "zero for non", "float", "empty string", "socket", "tip:"];
+            ["invalid digit", "number too", "zero for non", "float literal", "empty string", "socket", "tip:"];
         let all = number::with_negative_numbers(command());
         let options = options(&all, &[]);
         assert!(options.len() > 100, "{}", options.len());

@@ -8,6 +8,7 @@ use agent::MindRunner;
 use analysis::Step;
 use analysis::quality::{GameQuality, MindState, Quality};
 use anyhow::{Context, Result, ensure};
+use command_line::explain::UsageError;
 use command_line::number::whole;
 use experiment::tournament::{self, Entrant, Observer, Plan, Record, Report, Tournament, play, play_observed};
 use rules::event::EventCursor;
@@ -154,7 +155,7 @@ fn planned(args: &Args) -> Result<Plan> {
     let file = match &args.entries[..] {
         [name] => {
             ensure!(args.game.is_none(), "--game requires strategies; a tournament file names its game");
-            let path = scenario_files::find(name, Kind::of::<Tournament>())?;
+            let path = scenario_files::find(name, Kind::of::<Tournament>()).map_err(UsageError::of)?;
             load_file::<Tournament>(&path).with_context(|| format!("cannot play the tournament {}", path.display()))?
         }
         strategies => between(strategies, args.game.as_deref())?,
@@ -169,7 +170,7 @@ fn planned(args: &Args) -> Result<Plan> {
 /// A tournament between these strategies, with the defaults of a tournament file.
 fn between(strategies: &[String], game: Option<&Path>) -> Result<Tournament> {
     let entrant = |word: &String| {
-        let strategy = scenario_files::find(word, Kind::STRATEGY)?;
+        let strategy = scenario_files::find(word, Kind::STRATEGY).map_err(UsageError::of)?;
         Ok(Entrant { name: recording_file::stem(&strategy), strategy })
     };
     let entries = strategies.iter().map(entrant).collect::<Result<Vec<_>>>()?;

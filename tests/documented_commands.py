@@ -31,6 +31,9 @@ SKIPPED = {
     r"squall run .*--blue imported.*|squall strategy imported": "needs a model that the reader has trained",
     r"squall (trial|identify) .*field\.csv.*": "needs the reader's log of a boat; tests/command/trial.rs has one",
     r"squall keys new keys --help": "prints help; the keys page creates keys",
+    r"source <\(squall completions zsh\)|squall completions fish \| source": "needs its shell; tests/terminal.py has them",
+    r"squall moos .*blue_two=tcp.*": "needs a MOOSDB of the reader's; tests/moos_peer.py has one",
+    r"squall ros messages .* && colcon .*": "needs a ROS 2 workspace; tests/ros_peer.py reads the package",
 }
 
 # Commands that fail, as their pages say.
@@ -38,12 +41,13 @@ REFUSED = {r"squall strategy scenarios/strategies/mine_1\.toml": "the tutorial s
 
 # Commands that take minutes: Ctrl-C ends them after this many seconds of work without an error, or once they have
 # printed this text.
-LONG_S = 8
+LONG_S = 5
 LONG = {
     r"squall train .*": "best.toml",
     r"squall tournament (paper_2023|simple|learned|mine).*": None,
     r"squall sweep .*": None,
     r"squall run .*--pace realtime.*": None,
+    r"squall run .*--emulate.*": None,
 }
 
 # Commands that serve until Ctrl-C, which ends them once they print this text.
@@ -55,6 +59,9 @@ SERVES = {
     r"squall agent .*": "joined",
     r"squall gateway emulate (?!.*--help).*": "",
     r"squall watch.*": "blue",
+    r"squall moos --team.*": "MOOSTimeWarp",
+    r"squall ros bridge.*": "ROS 2 sees",
+    r"squall gateway sitl .*": "firmware at",
 }
 
 # Commands that need another one beside them.
@@ -64,7 +71,10 @@ BESIDE = {
     r"squall agent --game day .*": "squall sim mixed_2v2 --game day --pace realtime",
     r"squall (watch|helm)\b(?!.*10\.0).*": GAME,
     r"squall gateway emulate --game water .*": "squall sim mixed_2v2 --afloat blue_one --pace realtime --game water",
-    r"squall gateway emulate --protocol mavlink .*": "squall sim mixed_2v2 --afloat blue_one --pace realtime --game water",
+    r"squall gateway (emulate --protocol mavlink|sitl) .*": "squall sim mixed_2v2 --afloat blue_one --pace realtime --game water",
+    r"squall ros bridge": GAME,
+    r"squall (moos --team|ros bridge --vehicle|agent --vehicle blue_2) .*":
+        "squall sim surveyor_2v2 --pace realtime --listen tcp/127.0.0.1:7500",
 }
 
 # Commands whose real output differs from the one shown.

@@ -39,7 +39,7 @@ expect "after 600 s" squall run surveyor_2v2 --field jervis_bay_2023 --in-proces
 expect "significant" squall sea gale --plot gale.svg
 expect "mode" squall strategy strategy_4
 refuse "did you mean pav01_vs_pav01?" squall run pav1_vs_pav01
-refuse "use it with --blue or --red" squall run strategy_4
+refuse "use it with squall run GAME --blue or --red" squall run strategy_4
 refuse "is a sea, expected a game" squall run scenarios/seas/gale.toml
 
 # The user's own file, which overrides the built-in one.

@@ -4,7 +4,7 @@ use crate::screen;
 use crate::stop;
 use anyhow::{Context, Result, anyhow, bail};
 use command_line::leaf_args::LeafArgs;
-use command_line::number::seconds;
+use command_line::number::{address, seconds, whole};
 use moos::bridge::{self, News};
 use moos::community::Address;
 use std::net::{SocketAddr, ToSocketAddrs};
@@ -21,7 +21,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "TEAM")]
     team: Option<String>,
     /// First port for boats without an address
-    #[arg(long, value_name = "PORT", default_value_t = 9001)]
+    #[arg(long, value_name = "PORT", default_value_t = 9001, value_parser = whole::<u16>(1, 65_535))]
     port: u16,
     /// Shows the whole game to pMarineViewer in the MOOSDB at this address, for example :9000
     #[arg(long, value_name = "ADDRESS")]
@@ -30,7 +30,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "HOST:PORT", requires = "shore")]
     pshare: Vec<String>,
     /// Receives commands such as DEPLOY_ALL from pShare here, for example 0.0.0.0:9301
-    #[arg(long, value_name = "IP:PORT", requires = "shore")]
+    #[arg(long, value_name = "IP:PORT", requires = "shore", value_parser = address)]
     pshare_listen: Option<SocketAddr>,
     #[command(flatten)]
     leaf: LeafArgs,

@@ -4,7 +4,7 @@ mod files;
 
 use crate::jobs_args::JobsArgs;
 use crate::progress::Progress;
-use crate::{output_file, screen, stop};
+use crate::{clock, output_file, screen, stop};
 use anyhow::{Context, Result, bail};
 use command_line::number::whole;
 use files::Files;
@@ -15,11 +15,17 @@ use scenario::{Kind, argument_for};
 use std::num::NonZeroU64;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::Arc;
 use std::sync::atomic::Ordering;
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
 
 /// Size limit of a state, bytes: networks of the largest size, and a league of them.
 const STATE_BYTES_MAX: u64 = 4 << 30;
+/// Shortest time between two saved states. SIGTERM does not wait for the end of an update, and loses
+/// what came after the last one.
+const SAVE_EVERY: Duration = Duration::from_secs(10);
+/// Part of the time, at most, that saving takes: one in this many.
+const SAVE_SHARE: u32 = 20;
 
 #[derive(clap::Args)]
 pub(crate) struct Args {
@@ -52,7 +58,14 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     // Learning uses all threads, however few games there are.
     let jobs = args.jobs.threads(usize::MAX).get();
     let stop = stop::on_ctrl_c()?;
-    stop::remark_when_late(&stop, "finishing the update to save its state; press Ctrl-C again to stop at once");
+    let writing = Arc::new(Mutex::new(()));
+    let held = Arc::clone(&writing);
+    stop::when_late(&stop, move || {
+        // Not while the files of an update are incomplete.
+        let _complete = held.lock();
+        screen::remark("stopped during an update; --resume continues from the last saved state");
+        std::process::exit(130);
+    });
     let mut trainer = begin(args, training, &folder, jobs)?;
     let mut files = Files::open(&folder, &base(&args.training, trainer.training()), &trainer)?;
     let recordings = args.record_every.map(|every| record(&mut trainer, &folder, every)).transpose()?;
@@ -70,9 +83,11 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         progress.print(&format!("resuming after {done} samples"));
     }
     let mut told_stage = None;
+    let mut next_save = clock::now() + SAVE_EVERY;
     while !trainer.is_over() {
         let is_enough = args.until.is_some_and(|until| trainer.samples().0 >= until);
         if is_enough || stop.load(Ordering::Relaxed) {
+            let _complete = writing.lock();
             progress.end();
             let samples = trainer.samples().0;
             if samples > done {
@@ -83,6 +98,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
             return Ok(if is_enough { ExitCode::SUCCESS } else { stop::interrupted() });
         }
         let update = trainer.update()?;
+        let _complete = writing.lock();
         let stage = &trainer.training().stage[update.stage].name;
         if told_stage.replace(update.stage) != Some(update.stage) {
             progress.print(&format!("stage {stage}"));
@@ -96,8 +112,10 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
             let how = play_command(&trainer, &folder).filter(|_| update.is_best);
             how.iter().for_each(|how| progress.print(&format!("           {how}")));
         }
-        if update.games_restart {
+        let began = clock::now();
+        if update.games_restart || began >= next_save {
             files.keep_state(update.samples, &trainer.state())?;
+            next_save = clock::now() + SAVE_EVERY.max(began.elapsed() * SAVE_SHARE);
         }
     }
     progress.end();

@@ -75,7 +75,7 @@ fn a_decision_of_a_recorded_game_is_explained() {
     for (vehicle, at, said) in [
         ("red_one", "20", "red_one uses no policy"),
         ("blue_one", "99999", "no decision by blue_one at 99999 s"),
-        ("blue_one", "-1", "no decision by blue_one at -1 s"),
+        ("blue_one", "-1", "expected a number from 0 to 1000000 s"),
         ("nobody", "20", "nobody"),
     ] {
         let why = refusal(here, &words(&explain(vehicle, at)));

@@ -15,6 +15,13 @@ const COLUMNS: usize = 100;
 #[derive(Debug)]
 pub struct UsageError(pub String);
 
+impl UsageError {
+    /// An error that is found only after the options are parsed.
+    pub fn of(error: Error) -> Error {
+        UsageError(line(&error)).into()
+    }
+}
+
 impl fmt::Display for UsageError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.0)

@@ -1,6 +1,6 @@
 //! The request to stop: Ctrl-C, SIGTERM, or the end of the parent process.
 
-use crate::{clock, terminal};
+use crate::clock;
 use anyhow::Context;
 use std::io::BufRead;
 use std::process::ExitCode;
@@ -33,12 +33,8 @@ pub fn exit_when_late(stop: &Arc<AtomicBool>) {
     when_late(stop, || std::process::exit(130));
 }
 
-/// Prints a remark soon after the flag is set, for commands that take long to stop.
-pub fn remark_when_late(stop: &Arc<AtomicBool>, remark: &'static str) {
-    when_late(stop, move || terminal::remark(remark));
-}
-
-fn when_late(stop: &Arc<AtomicBool>, act: impl FnOnce() + Send + 'static) {
+/// Acts if the command has not ended soon after the flag is set.
+pub fn when_late(stop: &Arc<AtomicBool>, act: impl FnOnce() + Send + 'static) {
     const LATE: Duration = Duration::from_millis(1400);
     let flag = Arc::clone(stop);
     std::thread::spawn(move || {

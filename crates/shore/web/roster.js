@@ -81,6 +81,7 @@ export class Roster {
     this.search.value = '';
     this.state = '';
     this.chips.replaceChildren();
+    this.shown = undefined;
     show(this.element, game.count > FEW);
   }
 

@@ -44,7 +44,7 @@ pub struct Servos {
 
 impl Servos {
     /// Maximum channel.
-    pub const CHANNELS: usize = 32;
+    pub const CHANNELS: u64 = 32;
 
     /// Thrust from -1 to 1 for a pulse; zero for no pulse.
     fn thrust(&self, pulse_us: u16) -> f64 {

@@ -2,6 +2,7 @@
 
 use super::emulate::{CommonArgs, emulate};
 use anyhow::Result;
+use command_line::number::{address, whole};
 use gateway::emulator::Servos;
 use gateway::node::FrontSeatSettings;
 use std::net::SocketAddr;
@@ -13,14 +14,14 @@ pub(crate) struct Args {
     #[arg(long, value_name = "NAME")]
     vehicle: String,
     /// Address where the firmware sends its servo outputs, by UDP; instance N of SITL uses port 9002 + 10 N
-    #[arg(long, value_name = "HOST:PORT", default_value = "127.0.0.1:9002")]
+    #[arg(long, value_name = "IP:PORT", default_value = "127.0.0.1:9002", value_parser = address)]
     listen: SocketAddr,
     /// Servo output of the port thruster (function 73, ThrottleLeft)
-    #[arg(long, value_name = "CHANNEL", default_value_t = 1, value_parser = channel())]
-    port_servo: u16,
+    #[arg(long, value_name = "CHANNEL", default_value_t = 1, value_parser = whole::<usize>(1, Servos::CHANNELS))]
+    port_servo: usize,
     /// Servo output of the starboard thruster (function 74, ThrottleRight)
-    #[arg(long, value_name = "CHANNEL", default_value_t = 3, value_parser = channel())]
-    starboard_servo: u16,
+    #[arg(long, value_name = "CHANNEL", default_value_t = 3, value_parser = whole::<usize>(1, Servos::CHANNELS))]
+    starboard_servo: usize,
     /// Pulse lengths of full astern, zero and full ahead, µs: SERVOn_MIN, _TRIM and _MAX. A BlueBoat has 1100,1500,1900
     #[arg(long, value_name = "US,US,US", default_value = "1000,1500,2000", value_parser = pulses)]
     pulse_us: Pulses,
@@ -30,10 +31,6 @@ pub(crate) struct Args {
 
 #[derive(Clone, Copy, Debug)]
 struct Pulses([u16; 3]);
-
-fn channel() -> clap::builder::RangedI64ValueParser<u16> {
-    clap::value_parser!(u16).range(1..=Servos::CHANNELS as i64)
-}
 
 fn pulses(text: &str) -> Result<Pulses, String> {
     let numbers: Option<Vec<u16>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
@@ -46,10 +43,6 @@ fn pulses(text: &str) -> Result<Pulses, String> {
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
-    let servos = Servos {
-        port: usize::from(args.port_servo),
-        starboard: usize::from(args.starboard_servo),
-        pulse_us: args.pulse_us.0,
-    };
+    let servos = Servos { port: args.port_servo, starboard: args.starboard_servo, pulse_us: args.pulse_us.0 };
     emulate(&args.vehicle, FrontSeatSettings::Sitl { listen: args.listen, servos }, &args.common)
 }
