@@ -297,7 +297,8 @@ export class Boats {
       const y = view.yOf(game.x[i], game.y[i]) - this.lengths[i] * 0.35 - 7;
       for (let mark = 0; mark < MARKS.length; mark++) {
         if ((letters & MARKS[mark][0]) === 0) continue;
-        if (game.count > CROWD && !this.labels.claim(x - 6.5, y - 6.5, x + 6.5, y + 6.5)) break;
+        const isChosen = i === this.selected || i === this.hovered;
+        if (game.count > CROWD && !this.labels.claim(x - 6.5, y - 6.5, x + 6.5, y + 6.5) && !isChosen) break;
         this.labels.block(x - 6.5, y - 6.5, x + 6.5, y + 6.5);
         context.fillStyle = palette.ink;
         context.fillRect(x - 6.5, y - 6.5, 13, 13);

@@ -17,8 +17,10 @@ fn model(bytes: &[u8]) -> (Vec<String>, Counts) {
     counts.garbage += noise(parts.next().expect("a split has a first part"));
     while let Some(part) = parts.next() {
         // NULs after a whole checksum are padding.
-        let is_padding = |at: usize| part[at] == 0 && is_whole(&part[..at]);
-        let part: Vec<u8> = (0..part.len()).filter(|at| !is_padding(*at)).map(|at| part[at]).collect();
+        let part = part.iter().fold(Vec::new(), |mut kept: Vec<u8>, byte| {
+            kept.extend((*byte != 0 || !is_whole(&kept)).then_some(*byte));
+            kept
+        });
         let end = part.iter().position(|byte| !(b' '..=b'~').contains(byte)).unwrap_or(part.len());
         let (content, rest) = part.split_at(end.min(ACCEPTED_MAX - 3));
         counts.garbage += noise(rest);
@@ -33,12 +35,11 @@ fn model(bytes: &[u8]) -> (Vec<String>, Counts) {
     (found, counts)
 }
 
-/// Whether text, with padding, ends with a checksum.
-fn is_whole(part: &[u8]) -> bool {
+/// Whether text ends with a checksum.
+fn is_whole(content: &[u8]) -> bool {
     let mut counts = Counts::default();
-    let content: Vec<u8> = part.iter().copied().filter(|byte| *byte != 0).collect();
     if content.iter().all(|byte| (b' '..=b'~').contains(byte)) && content.len() <= ACCEPTED_MAX - 3 {
-        judge(&content, &mut vec![], &mut counts);
+        judge(content, &mut vec![], &mut counts);
     }
     counts.sentences + counts.bad_checksum > 0
 }

@@ -391,7 +391,7 @@ fn an_e_stop_also_goes_straight_to_gateways_during_and_after_a_game() {
 fn a_game_that_ends_is_removed_and_the_next_is_a_new_one() {
     let port = port();
     let (_page, mut client) = visit(live(port, None));
-    assert_eq!(client.rest(), [], "no game has been found yet");
+    client.until("preparing", |preparing| preparing["failed"] == true);
     let first = Sim::open(port, "pond", scenario("pav01_vs_pav01.toml"));
     assert_eq!(client.until("hello", |_| true)["game"], "pond");
     first.wait_for_subscribers();
