@@ -149,6 +149,8 @@ test('the time line shows time, score and event under the pointer, has a scale, 
   const before = await sight.get(() => squall.span);
   await sight.page.mouse.wheel(0, -400);
   await sight.page.mouse.wheel(0, -400);
+  // Both turns of the wheel have to arrive before the place of a moment is known.
+  await sight.page.waitForTimeout(300);
   const after = await sight.until('the section is shorter', (length) => squall.span.to_s - squall.span.from_s < length / 3 && squall.span, before.to_s - before.from_s);
   assert(Math.abs(after.pointed_s - before.pointed_s) < PIXEL_S, `the moment under the pointer stays: ${JSON.stringify({ before, after })}`);
   assert((await tip()).includes(event.vehicle.replaceAll('_', ' ')), 'the event stays under the pointer');
