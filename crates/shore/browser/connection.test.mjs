@@ -120,7 +120,7 @@ test('a page without a game says why and what to type, and shows the result of a
   const record = join(folder(t), 'brief.mcap');
   new Program(t, 'sim', file, '--pace', 'realtime', '--game', name, '--listen', endpoint, '--join-s', '0', '--record', record);
   await sight.until('the game appears by itself', () => squall.frame !== null);
-  await sight.until('its result stays', () => squall.state.phase === 'gone' && document.getElementById('over').textContent);
+  await sight.until('its result stays, and the page waits', () => squall.state.phase === 'gone' && /Waiting for another/.test(document.getElementById('over').textContent));
   assert.match(await sight.text('#over'), /^pav01 0 : 0 pav01\. A draw\.\nTo see it again, type: squall replay .*brief\.mcap\nWaiting for another game\./);
   assert.equal(await sight.text('#phase'), 'game over');
 });

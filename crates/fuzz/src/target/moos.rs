@@ -5,7 +5,8 @@ use super::{Target, binaries, in_pieces};
 use moos::database::Database;
 use moos::wire::{self, Framer, Kind, Malformed, Msg};
 
-pub(super) const TARGET: Target = Target { name: "moos", seeds, change: binaries, check, allocated_max: (1 << 20, 2000) };
+pub(super) const TARGET: Target =
+    Target { name: "moos", seeds, change: binaries, check, allocated_max: (1 << 20, 2000) };
 
 /// Messages of each kind that a database processes, one by one and together.
 fn seeds() -> Vec<Vec<u8>> {
