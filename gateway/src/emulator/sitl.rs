@@ -404,6 +404,20 @@ mod tests {
         }
     }
 
+    /// Captured from ArduRover 4.7 (motorboat-skid), built from its public sources: the first datagram, and one while it
+    /// kept 1.5 m/s westwards in these waves.
+    #[test]
+    fn datagrams_of_the_real_firmware_are_read() {
+        let first = "1a48b004000000000000000000000000000000000000000000000000000000000000000000000000";
+        let under_way = "1a48b004f25f01009d060000b2060000000000000000000000000000000000000000000000000000";
+        for (hex, step, port_us, starboard_us) in [(first, 0, 0, 0), (under_way, 90_098, 1693, 1714)] {
+            let byte = |at: usize| u8::from_str_radix(&hex[at..at + 2], 16).expect("hexadecimal digits");
+            let datagram: Vec<u8> = (0..hex.len()).step_by(2).map(byte).collect();
+            let want = Outputs { rate_hz: 1200, step, pulses_us: pulses(port_us, starboard_us).to_vec() };
+            assert_eq!(Outputs::parse(&datagram), Some(want));
+        }
+    }
+
     #[test]
     fn servo_outputs_become_thrust_until_they_stop() {
         let mut sitl = Sitl::new(Servos { port: 1, starboard: 3, pulse_us: [1100, 1500, 1700] });
