@@ -59,7 +59,8 @@ test('values at the cursor are those of the boats, in all plots at once, and a p
     await pointAt(sight, 0, part, true);
     await sight.until('the chart follows', (part) => Math.abs(squall.t_s - 600 * part) < 2, part);
     await pointAt(sight, 1, part);
-    await sight.until('all plots show this moment', () => new Set([...document.querySelectorAll('.plot-time')].map((each) => each.textContent)).size === 1);
+    await sight.until('all plots show this moment', () => new Set([...document.querySelectorAll('.plot-time')].map((each) => each.textContent)).size === 1
+      && [...document.querySelectorAll('.plot')[2].querySelectorAll('.value')].every((each) => each.textContent !== '–'));
     const [speed, heading, range] = await shown(sight);
     assert.deepEqual([speed.quantity, heading.quantity, range.quantity], ['Speed, m/s', 'Heading, °', 'Range to, m']);
     const boats = await sight.get(() => squall.frame.boats);
