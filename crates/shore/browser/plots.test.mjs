@@ -146,6 +146,9 @@ test('the time line shows time, score and event under the pointer, has a scale, 
     assert.deepEqual(told, await sight.get(() => squall.score));
   }
   const [event] = scores;
+  // The section follows the replay, which has to be in it.
+  await sight.page.mouse.click(await x(event.at_s), line.y + 30);
+  await sight.until('the replay is at the event', (t_s) => Math.abs(squall.t_s - t_s) < 0.7, event.at_s);
   await pointTo(event.at_s);
   const before = await sight.get(() => squall.span);
   await sight.page.mouse.wheel(0, -400);
@@ -155,8 +158,8 @@ test('the time line shows time, score and event under the pointer, has a scale, 
   const after = await sight.until('the section is shorter', (length) => squall.span.to_s - squall.span.from_s < length / 3 && squall.span, before.to_s - before.from_s);
   assert(Math.abs(after.pointed_s - before.pointed_s) < PIXEL_S, `the moment under the pointer stays: ${JSON.stringify({ before, after })}`);
   assert((await tip()).includes(event.vehicle.replaceAll('_', ' ')), 'the event stays under the pointer');
-  await sight.page.mouse.click(await x(event.at_s), line.y + 30);
-  await sight.until('a press goes to the moment', (t_s) => Math.abs(squall.t_s - t_s) < 0.25, event.at_s);
+  await sight.page.mouse.click(await x(event.at_s + 5), line.y + 30);
+  await sight.until('a press goes to the moment', (t_s) => Math.abs(squall.t_s - t_s) < 0.25, event.at_s + 5);
   // A moment elsewhere brings its section along.
   await sight.page.press('#timeline', 'End');
   await sight.until('the section follows', () => squall.t_s > 50 && squall.t_s <= squall.span.to_s + 0.2 && squall.t_s >= squall.span.from_s - 0.2);
