@@ -143,7 +143,7 @@ test('the time line shows time, score and event under the pointer, has a scale, 
     const told = [...(await tip()).matchAll(/(?:blue|red) (\d+)/g)].slice(0, 2).map(([, points]) => Number(points));
     await sight.page.mouse.click(await x(event.at_s + 1.5), line.y + 30);
     await sight.until('the replay is there', (t_s) => Math.abs(squall.t_s - t_s) < 0.7, event.at_s + 1.5);
-    assert.deepEqual(told, await sight.get(() => squall.score));
+    await sight.until('the score is the one that was told', (told) => squall.score.join() === told.join(), told);
   }
   const [event] = scores;
   // The section follows the replay, which has to be in it.
