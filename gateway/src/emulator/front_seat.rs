@@ -25,12 +25,7 @@ pub trait FrontSeat: Send {
     /// Updates the sensor measurements.
     fn observe(&mut self, _now: SimTime, _own: &OwnBoat) {}
 
-    /// Whether it has sensors of its own and needs the boat's true motion.
-    fn needs_truth(&self) -> bool {
-        false
-    }
-
-    /// Receives the boat's true motion.
+    /// Receives the boat's true motion, if it has sensors of its own.
     fn observe_truth(&mut self, _now: SimTime, _truth: &VehicleTruth) {}
 
     /// The boat's order to its thrusters now.

@@ -28,8 +28,12 @@ const LOST_S: f64 = 2.0;
 /// Without servo outputs for this long the thrusters stop, s.
 const SILENT_S: f64 = 1.0;
 
+/// Channels of the largest datagram.
+const CHANNELS: usize = 32;
 /// The datagram's first number, by its count of channels.
-const FORMATS: [(u16, usize); 2] = [(18_458, 16), (29_569, 32)];
+const FORMATS: [(u16, usize); 2] = [(18_458, 16), (29_569, CHANNELS)];
+/// Bytes before the pulses: magic number, rate and step.
+const HEADER: usize = 8;
 
 /// Which servo outputs drive the thrusters, and how.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,7 +48,7 @@ pub struct Servos {
 
 impl Servos {
     /// Maximum channel.
-    pub const CHANNELS: u64 = 32;
+    pub const CHANNEL_MAX: u64 = CHANNELS as u64;
 
     /// Thrust from -1 to 1 for a pulse; zero for no pulse.
     fn thrust(&self, pulse_us: u16) -> f64 {
@@ -66,17 +70,23 @@ struct Outputs {
     /// Number of the step. It repeats when a reply was lost, and starts again with the firmware.
     step: u32,
     /// Pulse lengths by channel, µs; 0 means no pulse.
-    pulses_us: Vec<u16>,
+    pulses_us: [u16; CHANNELS],
 }
 
 impl Outputs {
     /// Parses a datagram: little-endian magic number, rate, step and pulses.
     fn parse(datagram: &[u8]) -> Option<Outputs> {
-        let words: Vec<u16> = datagram.chunks_exact(2).map(|two| u16::from_le_bytes([two[0], two[1]])).collect();
-        let [magic, rate_hz, low, high, pulses_us @ ..] = words.as_slice() else { return None };
-        let is_known = FORMATS.contains(&(*magic, pulses_us.len())) && datagram.len().is_multiple_of(2);
-        let step = u32::from(*low) | u32::from(*high) << 16;
-        is_known.then(|| Outputs { rate_hz: *rate_hz, step, pulses_us: pulses_us.to_vec() })
+        let ([m0, m1, r0, r1, s0, s1, s2, s3], pulses) = datagram.split_first_chunk::<HEADER>()?;
+        let magic = u16::from_le_bytes([*m0, *m1]);
+        if !FORMATS.iter().any(|(of_format, channels)| *of_format == magic && 2 * channels == pulses.len()) {
+            return None;
+        }
+        let mut pulses_us = [0; CHANNELS];
+        for (pulse_us, bytes) in pulses_us.iter_mut().zip(pulses.chunks_exact(2)) {
+            *pulse_us = u16::from_le_bytes([bytes[0], bytes[1]]);
+        }
+        let step = u32::from_le_bytes([*s0, *s1, *s2, *s3]);
+        Some(Outputs { rate_hz: u16::from_le_bytes([*r0, *r1]), step, pulses_us })
     }
 }
 
@@ -290,8 +300,7 @@ impl Sitl {
     #[must_use]
     pub fn order(&self) -> Order {
         let Some((outputs, _)) = self.outputs.as_ref().filter(|_| !self.is_silent) else { return Order::Hold };
-        let pulse_us = |channel: usize| outputs.pulses_us.get(channel - 1).copied().unwrap_or(0);
-        let thrust = |channel| self.servos.thrust(pulse_us(channel));
+        let thrust = |channel: usize| self.servos.thrust(outputs.pulses_us[channel - 1]);
         Order::Thrust { port: thrust(self.servos.port), starboard: thrust(self.servos.starboard) }
     }
 
@@ -413,7 +422,9 @@ mod tests {
         for (hex, step, port_us, starboard_us) in [(first, 0, 0, 0), (under_way, 90_098, 1693, 1714)] {
             let byte = |at: usize| u8::from_str_radix(&hex[at..at + 2], 16).expect("hexadecimal digits");
             let datagram: Vec<u8> = (0..hex.len()).step_by(2).map(byte).collect();
-            let want = Outputs { rate_hz: 1200, step, pulses_us: pulses(port_us, starboard_us).to_vec() };
+            let mut pulses_us = [0; CHANNELS];
+            pulses_us[..16].copy_from_slice(&pulses(port_us, starboard_us));
+            let want = Outputs { rate_hz: 1200, step, pulses_us };
             assert_eq!(Outputs::parse(&datagram), Some(want));
         }
     }

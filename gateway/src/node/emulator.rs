@@ -118,8 +118,8 @@ pub fn emulate(settings: &EmulatorSettings, notify: &mut dyn FnMut(NodeEvent<'_>
     })?;
     let (front_seat, links) = open_front_seat(&settings.front_seat, datum, &incoming, notify)?;
     let frames = Arc::clone(&incoming);
-    let _truth = front_seat
-        .needs_truth()
+    // A firmware has sensor models of its own.
+    let _truth = matches!(settings.front_seat, FrontSeatSettings::Sitl { .. })
         .then(|| bus.subscribe(topic::frame(&game), move |bytes| frames.visit(|incoming| incoming.keep_frame(bytes))));
     let _truth = _truth.transpose()?;
     let names = [settings.vehicle.clone()];

@@ -13,7 +13,7 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 /// How soon a firmware that waits for the simulation receives its reply.
-const LOOK: Duration = Duration::from_millis(2);
+const REPLY_WAIT: Duration = Duration::from_millis(2);
 /// Another firmware may use the port after its user was silent for this long.
 const IDLE_MAX: Duration = Duration::from_secs(3);
 /// More than any datagram of a firmware.
@@ -32,7 +32,7 @@ impl SitlPort {
     pub(super) fn open(listen: SocketAddr, servos: Servos) -> Result<SitlPort, NodeError> {
         let fail = |source| NodeError::SitlPort { listen, source };
         let socket = UdpSocket::bind(listen).map_err(fail)?;
-        socket.set_read_timeout(Some(LOOK)).map_err(fail)?;
+        socket.set_read_timeout(Some(REPLY_WAIT)).map_err(fail)?;
         let address = socket.local_addr().map_err(fail)?;
         let firmware = Arc::new(Mutex::new(Sitl::new(servos)));
         let stop = Arc::new(AtomicBool::new(false));
@@ -61,10 +61,6 @@ impl Drop for SitlPort {
 impl FrontSeat for SitlPort {
     fn take_remark(&mut self) -> Option<String> {
         self.firmware.lock().take_remark()
-    }
-
-    fn needs_truth(&self) -> bool {
-        true
     }
 
     fn observe_truth(&mut self, now: SimTime, truth: &VehicleTruth) {

@@ -17,10 +17,10 @@ pub(crate) struct Args {
     #[arg(long, value_name = "IP:PORT", default_value = "127.0.0.1:9002", value_parser = address)]
     listen: SocketAddr,
     /// Servo output of the port thruster (function 73, ThrottleLeft)
-    #[arg(long, value_name = "CHANNEL", default_value_t = 1, value_parser = whole::<usize>(1, Servos::CHANNELS))]
+    #[arg(long, value_name = "CHANNEL", default_value_t = 1, value_parser = whole::<usize>(1, Servos::CHANNEL_MAX))]
     port_servo: usize,
     /// Servo output of the starboard thruster (function 74, ThrottleRight)
-    #[arg(long, value_name = "CHANNEL", default_value_t = 3, value_parser = whole::<usize>(1, Servos::CHANNELS))]
+    #[arg(long, value_name = "CHANNEL", default_value_t = 3, value_parser = whole::<usize>(1, Servos::CHANNEL_MAX))]
     starboard_servo: usize,
     /// Pulse lengths of full astern, zero and full ahead, µs: SERVOn_MIN, _TRIM and _MAX. A BlueBoat has 1100,1500,1900
     #[arg(long, value_name = "US,US,US", default_value = "1000,1500,2000", value_parser = pulses)]
