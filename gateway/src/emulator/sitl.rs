@@ -476,8 +476,7 @@ mod tests {
         assert_eq!(step(&mut sitl, 101), Some(SimTime::from_s(0.0075)), "twice as fast while it is behind");
         advance(&mut sitl, 25);
         assert_eq!(step(&mut sitl, 102), Some(SimTime::from_s(0.01)), "skipped, but not by its own clock");
-        let reached = sitl.clock.map(|(now, _)| now);
-        assert_eq!(reached, Some(SimTime::from_s(5.8025)), "from the last frame but one");
+        assert_eq!(sitl.clock.map(|(now, _)| now), Some(SimTime::from_s(5.8025)), "from the last frame but one");
         assert_eq!(step(&mut sitl, 0), Some(SimTime::from_s(0.0025)), "the firmware started again");
         advance(&mut sitl, 1000);
         assert!(sitl.moments.len() <= 50, "nor is it kept for a dead firmware");
