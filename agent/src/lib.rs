@@ -33,19 +33,16 @@ use scenario::Scenario;
 use scenario::strategy::Strategy;
 
 /// The mind that the scenario's strategy assigns to this vehicle, for the scenario's seed.
-#[must_use]
 pub fn mind_of(scenario: &Scenario, vehicle: VehicleId) -> Box<dyn Mind> {
     Box::new(HelmMind::restarting(scenario, vehicle, roles::role_of(scenario, vehicle)))
 }
 
 /// The mind that `strategy` assigns to this vehicle, whatever the scenario's own strategy.
-#[must_use]
 pub fn mind_by(scenario: &Scenario, vehicle: VehicleId, strategy: &Strategy) -> Box<dyn Mind> {
     Box::new(HelmMind::restarting(scenario, vehicle, roles::role_in(scenario, vehicle, strategy)))
 }
 
 /// The minds of all vehicles, in the scenario's order.
-#[must_use]
 pub fn minds_of(scenario: &Scenario) -> Vec<Box<dyn Mind>> {
     (0..scenario.vehicles.len()).map(|i| mind_of(scenario, VehicleId::at(i))).collect()
 }

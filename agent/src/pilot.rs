@@ -57,7 +57,6 @@ pub struct Pilot {
 impl Pilot {
     /// Actions become orders directly. A tagged boat is steered home regardless, because it can do
     /// nothing else.
-    #[must_use]
     pub fn direct(scenario: &Scenario, vehicle: VehicleId, spaces: Spaces) -> Pilot {
         // With the drift estimated, which is part of the observation even if nothing compensates
         // for it.
@@ -66,14 +65,12 @@ impl Pilot {
     }
 
     /// Actions are proposals to the helm of `program`, which has a behaviour of kind `policy`.
-    #[must_use]
     pub fn helm(scenario: &Scenario, vehicle: VehicleId, program: &Program, spaces: Spaces) -> Pilot {
         Pilot::new(Control::Helm(Box::new(HelmMind::new(scenario, vehicle, program)), None), spaces)
     }
 
     /// The strategy's program for this boat plays. [`Pilot::taught`] returns the action that a
     /// policy would have had to choose. `options` maps each mode path to its option.
-    #[must_use]
     pub fn by_teacher(
         scenario: &Scenario,
         vehicle: VehicleId,
@@ -92,7 +89,6 @@ impl Pilot {
     }
 
     /// The same pilot, with decisions made by a model.
-    #[must_use]
     pub fn by_model(mut self, model: PolicyModel) -> Pilot {
         self.policy = Some(BoardPolicy::new(model));
         self
@@ -135,7 +131,6 @@ impl Pilot {
     }
 
     /// Whether actions take effect: a tagged boat drives home, and one out of action stays still.
-    #[must_use]
     pub fn obeys(&self) -> bool {
         let situation = self.control.situation();
         !situation.own.tagged && situation.fact(Fact::Disabled) == 0.0
@@ -143,7 +138,6 @@ impl Pilot {
 
     /// The teacher's decision at the last observation as an action; `None` without a teacher, or if
     /// no action corresponds to it.
-    #[must_use]
     pub fn taught(&self) -> Option<Action> {
         match &self.control {
             Control::Helm(_, Some(teacher)) => teacher.did,

@@ -10,7 +10,6 @@ use scenario::strategy::{Assignment, Program, Strategy};
 /// The roles are dealt to the team's boats of the same strategy, in the scenario's order, and start
 /// again from the first when they run out. A seeded deal shuffles them with the team's own stream.
 /// Every mind of a team computes the same result on its own.
-#[must_use]
 pub fn role_of(scenario: &Scenario, vehicle: VehicleId) -> &Program {
     let me = &scenario.vehicles[vehicle.index()];
     dealt(scenario, vehicle, scenario.strategy_of(vehicle), |i| scenario.vehicles[i].strategy == me.strategy)
@@ -18,7 +17,6 @@ pub fn role_of(scenario: &Scenario, vehicle: VehicleId) -> &Program {
 
 /// The role that `strategy` gives a vehicle that has another strategy in the scenario, as if its
 /// whole team followed `strategy`.
-#[must_use]
 pub fn role_in<'a>(scenario: &Scenario, vehicle: VehicleId, strategy: &'a Strategy) -> &'a Program {
     dealt(scenario, vehicle, strategy, |_| true)
 }

@@ -26,7 +26,6 @@ pub struct MindRunner<M: Mind + ?Sized = dyn Mind> {
 
 impl<M: Mind + ?Sized> MindRunner<M> {
     /// A runner of these minds before their first decision.
-    #[must_use]
     pub fn new(minds: impl IntoIterator<Item = (VehicleId, Box<M>)>) -> MindRunner<M> {
         let boat = |(vehicle, mind)| Boat { vehicle, order: Order::Hold, mind };
         MindRunner { boats: minds.into_iter().map(boat).collect(), decided: None, sent: Vec::new() }
@@ -43,13 +42,11 @@ impl<M: Mind + ?Sized> MindRunner<M> {
     }
 
     /// The mind of a boat, if this process runs it.
-    #[must_use]
     pub fn mind(&self, vehicle: VehicleId) -> Option<&M> {
         self.boats.iter().find(|boat| boat.vehicle == vehicle).map(|boat| &*boat.mind)
     }
 
     /// The mind of a boat, if this process runs it.
-    #[must_use]
     pub fn mind_mut(&mut self, vehicle: VehicleId) -> Option<&mut M> {
         self.boats.iter_mut().find(|boat| boat.vehicle == vehicle).map(|boat| &mut *boat.mind)
     }
@@ -88,7 +85,6 @@ impl<M: Mind + ?Sized> MindRunner<M> {
     }
 
     /// The number of the last decision.
-    #[must_use]
     pub fn decided(&self) -> Option<u64> {
         self.decided.map(|stamp| stamp.seq)
     }
@@ -99,14 +95,12 @@ impl<M: Mind + ?Sized> MindRunner<M> {
     }
 
     /// The minds' messages to their teams after the last decision.
-    #[must_use]
     pub fn sent(&self) -> &[Word] {
         &self.sent
     }
 
     /// The orders of the last decision as a message to the sim that issued this ticket, identical
     /// on every call. `None` before the first decision.
-    #[must_use]
     pub fn answer(&self, ticket: u64) -> Option<Orders> {
         // With the picture's own time and number, by which the sim identifies the answered tick.
         let stamp = Stamp { version: Orders::VERSION, ..self.decided? };

@@ -13,7 +13,6 @@ use std::collections::BTreeSet;
 /// A boat that has reached a point of a `waypoint` or a corner of a `loiter` turns at once for the
 /// next one. If that lies inside this turning circle by more than the capture radius, the boat
 /// circles it or misses it. Only points that are constant throughout the game are checked.
-#[must_use]
 pub fn warnings(scenario: &Scenario) -> Vec<String> {
     let boats = (0..scenario.vehicles.len()).map(VehicleId::at);
     // Boats of one role have the same warning: listed once, in a fixed order.

@@ -20,7 +20,6 @@ pub struct LocalFrame {
 
 impl LocalFrame {
     /// The map around `datum`.
-    #[must_use]
     pub fn new(datum: LatLon) -> LocalFrame {
         // By geographiclib and not by a tangent plane of our own, which would do for a field
         // but be one more thing to test.
@@ -28,7 +27,6 @@ impl LocalFrame {
     }
 
     /// Metres from the datum; non-finite for a position off the globe.
-    #[must_use]
     pub fn ned(&self, at: LatLon) -> Ned {
         let LatLon { lat_deg, lon_deg } = at;
         let datum = self.datum;
@@ -38,7 +36,6 @@ impl LocalFrame {
     }
 
     /// The position of a point of the field, longitude in -180 to 180.
-    #[must_use]
     pub fn lat_lon(&self, at: Ned) -> LatLon {
         let azimuth_deg = math::atan2(at.east, at.north).to_degrees();
         let (lat_deg, lon_deg) = self.earth.direct(self.datum.lat_deg, self.datum.lon_deg, azimuth_deg, at.length());

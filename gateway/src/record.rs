@@ -33,7 +33,6 @@ pub(crate) struct RecordedEvent {
 
 /// The start of a recording by a gateway with this plan: at this UTC (ns), by a program of this
 /// commit.
-#[must_use]
 pub fn opening(plan: &Plan, began_utc_ns: u64, commit: &str) -> Opening {
     let plan_json = serde_json::to_string(plan).expect("a plan is JSON");
     let facts = [("commit", commit.to_owned()), ("vehicle", plan.vehicle.clone()), ("plan", plan_json)];
@@ -51,7 +50,6 @@ pub struct StepEncoder {
 
 impl StepEncoder {
     /// For the boat with this name; its number comes from the game.
-    #[must_use]
     pub fn new(boat: &str) -> StepEncoder {
         StepEncoder { link_topic: link_topic(boat), vehicle: VehicleId(0), pieces: 0 }
     }
@@ -78,7 +76,6 @@ impl StepEncoder {
     }
 
     /// The entry for an event.
-    #[must_use]
     pub fn event(at: SimTime, event: Event) -> Entry {
         json(EVENT, at, &RecordedEvent { event })
     }

@@ -54,7 +54,6 @@ const STEP_MAX_S: f64 = 0.25;
 
 impl SetPointMapper {
     /// The loops of a boat; a true heading is its compass heading plus `compass_to_true_rad`.
-    #[must_use]
     pub fn new(gateway: &Gateway, compass_to_true_rad: f64) -> SetPointMapper {
         SetPointMapper {
             drive: gateway.drive,
@@ -111,7 +110,6 @@ impl SetPointMapper {
 
     /// The expected effect of an order's set-point. How a boat turns that steers by itself is not
     /// predicted.
-    #[must_use]
     pub fn ordered(&self, order: Order, set_point: SetPoint) -> Ordered {
         let heading_rad = if let Order::Steer { heading_rad, .. } = order { Some(heading_rad) } else { None };
         match set_point {

@@ -25,7 +25,6 @@ const INTEGRAL_SLOWNESS: f64 = 4.0;
 
 impl AutopilotModel {
     /// The loops for this hull with ticks of `dt_s`.
-    #[must_use]
     pub fn new(autopilot: &Autopilot, hull: &HullModel, dt_s: f64) -> AutopilotModel {
         let inertia = hull.m_yaw;
         let omega = autopilot.heading_bandwidth_rad_s;

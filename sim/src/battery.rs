@@ -20,7 +20,6 @@ pub struct BatteryModel {
 
 impl BatteryModel {
     /// The model of `battery` for ticks of `dt_s`.
-    #[must_use]
     pub fn new(battery: &Battery, dt_s: f64) -> BatteryModel {
         BatteryModel {
             charge: battery.charge,
@@ -32,7 +31,6 @@ impl BatteryModel {
 
     /// Thrust factor at a charge.
     #[inline]
-    #[must_use]
     pub fn thrust_factor(&self, charge: f64) -> f64 {
         1.0 - self.sag * (1.0 - charge)
     }

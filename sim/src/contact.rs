@@ -124,7 +124,6 @@ struct Entry {
 impl ContactModel {
     /// The shapes of these kinds of boat (length and beam, m) on this field. Hulls that are not
     /// solid pass through each other.
-    #[must_use]
     pub fn new(
         hulls: impl Iterator<Item = (f64, f64)>,
         field: &Field,
@@ -161,7 +160,6 @@ impl ContactModel {
     }
 
     /// The largest distance at which two boats may touch in the next tick, m.
-    #[must_use]
     pub fn reach_m(&self) -> f64 {
         2.0 * self.hulls.iter().map(|hull| hull.half_length_m).fold(0.0, f64::max) + self.close_m
     }

@@ -94,7 +94,6 @@ impl FlawState {
 /// propeller radius (Minsaas, Faltinsen and Persson 1983), which is not published for so small a
 /// propeller.
 #[inline]
-#[must_use]
 pub fn wetness(ventilation: Ventilation, water_above_m: f64) -> f64 {
     (water_above_m / (0.5 * ventilation.depth_m)).clamp(0.0, 1.0)
 }

@@ -30,7 +30,6 @@ pub struct Planar<T = f64> {
 impl Planar {
     /// `self + step * rate`.
     #[inline]
-    #[must_use]
     pub fn plus(self, step: f64, rate: Planar) -> Planar {
         Planar {
             surge: self.surge + step * rate.surge,
@@ -41,7 +40,6 @@ impl Planar {
 
     /// Surge and sway velocity in the field's frame, for a boat with this rotation.
     #[inline]
-    #[must_use]
     pub fn in_ned(self, rotation: Rotation) -> Ned {
         ned_from_body(rotation, Body { ahead: self.surge, starboard: self.sway })
     }
@@ -75,7 +73,6 @@ pub struct HullModel {
 
 impl HullModel {
     /// The model of `hull` in water of this density.
-    #[must_use]
     pub fn new(hull: &Hull, water_density_kg_m3: f64) -> HullModel {
         let m_surge = hull.mass_kg + hull.added_surge_kg;
         let m_sway = hull.mass_kg + hull.added_sway_kg;
@@ -105,7 +102,6 @@ impl HullModel {
 
     /// The velocity change from an impulse (N s, N s, N m s).
     #[inline]
-    #[must_use]
     pub fn velocity_change(&self, impulse: Planar) -> Planar {
         Planar {
             surge: self.inverse_surge * impulse.surge,
@@ -116,7 +112,6 @@ impl HullModel {
 
     /// The force (N, N, N m) for this acceleration of hull and added mass.
     #[inline]
-    #[must_use]
     pub fn force_of(&self, acceleration: Planar) -> Planar {
         Planar {
             surge: self.m_surge * acceleration.surge,
@@ -126,20 +121,17 @@ impl HullModel {
     }
 
     /// Kinetic energy of hull and added mass, J.
-    #[must_use]
     pub fn energy_joule(&self, nu_r: Planar) -> f64 {
         let Planar { surge: u, sway: v, yaw: r } = nu_r;
         0.5 * (self.m_surge * u * u + self.m_sway * v * v + self.m_yaw * r * r) + self.m_cross * v * r
     }
 
     /// The effective mass for a push along a unit vector in body axes (`ahead`, `starboard`), kg.
-    #[must_use]
     pub fn mass_along_kg(&self, ahead: f64, starboard: f64) -> f64 {
         1.0 / (ahead * ahead / self.m_surge + starboard * starboard / self.m_sway)
     }
 
     /// Thrust that maintains `speed_m_s` straight ahead, N.
-    #[must_use]
     pub fn surge_resistance_newton(&self, speed_m_s: f64) -> f64 {
         (self.hull.surge_linear_kg_s + self.hull.surge_quadratic_kg_m * speed_m_s.abs()) * speed_m_s
     }

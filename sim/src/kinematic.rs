@@ -83,14 +83,12 @@ impl Loop {
 
 impl KinematicState {
     /// A boat at rest with this heading.
-    #[must_use]
     pub fn at_rest(psi_rad: f64) -> KinematicState {
         KinematicState { heading_deg: wrap_180(psi_rad.to_degrees()), ..KinematicState::default() }
     }
 
     /// A boat in steady state with this heading, speed (m/s) and thrust (per cent), without
     /// remaining errors of its loops.
-    #[must_use]
     pub fn under_way(psi_rad: f64, speed_m_s: f64, thrust: f64) -> KinematicState {
         let settled = Loop { error: Some(0.0), integral: 0.0 };
         KinematicState {
@@ -103,7 +101,6 @@ impl KinematicState {
     }
 
     /// Heading, rad clockwise from north, −pi to pi.
-    #[must_use]
     pub fn psi_rad(&self) -> f64 {
         self.heading_deg.to_radians()
     }
@@ -126,7 +123,6 @@ impl KinematicState {
 
 impl KinematicModel {
     /// The model of `boat`.
-    #[must_use]
     pub fn new(boat: &Kinematic) -> KinematicModel {
         KinematicModel {
             speed_of_thrust: PiecewiseLinear::new(&boat.thrust_map),
@@ -138,7 +134,6 @@ impl KinematicModel {
 
     /// The thrust for this speed straight ahead, per cent: the inverse of the thrust map, clamped
     /// at its ends.
-    #[must_use]
     pub fn thrust_for_speed(&self, speed_m_s: f64) -> f64 {
         math::interpolate(self.boat.thrust_map.iter().map(|(thrust, speed_m_s)| (*speed_m_s, *thrust)), speed_m_s)
     }

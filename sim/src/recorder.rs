@@ -31,7 +31,6 @@ pub struct GameRecorder {
 impl GameRecorder {
     /// A recorder to a new file, for a networked game with this name and pace, played by a
     /// program of this commit.
-    #[must_use]
     pub fn on_network(file: NewFile, game: &str, pace: &str, commit: &str) -> GameRecorder {
         let path = file.path().to_owned();
         let [game, pace, commit] = [game, pace, commit].map(str::to_owned);
@@ -39,7 +38,6 @@ impl GameRecorder {
     }
 
     /// A recorder to a new file, for a game in this process.
-    #[must_use]
     pub fn in_process(file: NewFile, game: &str, commit: &str) -> GameRecorder {
         let recorder = GameRecorder::on_network(file, game, "in process", commit);
         GameRecorder { pictures_are_sent: false, ..recorder }
@@ -67,7 +65,6 @@ impl GameRecorder {
     }
 
     /// The state of the recording.
-    #[must_use]
     pub fn state(&self) -> RecordingState {
         let unwritten =
             |failed| RecordingState { file: self.path.display().to_string(), failed, ..RecordingState::default() };
@@ -79,7 +76,6 @@ impl GameRecorder {
     }
 
     /// Completes the recording with its result. Returns the final state.
-    #[must_use]
     pub fn end(self, report: &Report) -> RecordingState {
         let state = self.state();
         let run = serde_json::to_value(&report.run).expect("a run is JSON");

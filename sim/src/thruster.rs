@@ -59,7 +59,6 @@ pub struct Shaft {
 
 impl ThrusterModel {
     /// The model of `thruster` for ticks of `dt_s`.
-    #[must_use]
     pub fn new(thruster: &Thruster, dt_s: f64) -> ThrusterModel {
         let (curve, ahead, astern) = match &thruster.curve {
             ThrustCurve::Propeller(Propeller { k_ahead, k_astern, n_max_rad_s, n_min_rad_s }) => {
@@ -91,21 +90,18 @@ impl ThrusterModel {
     }
 
     /// Initial flaw state of a pair of these thrusters, for [`ThrusterModel::drive`].
-    #[must_use]
     pub fn start(&self) -> FlawState {
         self.flaws.as_ref().map(|flaws| flaws.start()).unwrap_or_default()
     }
 
     /// The thrusters' ventilation, if any.
     #[inline]
-    #[must_use]
     pub fn ventilation(&self) -> Option<Ventilation> {
         self.flaws.as_ref().and_then(|flaws| flaws.ventilation)
     }
 
     /// The thrust at a setting, without flaws, N.
     #[inline]
-    #[must_use]
     pub fn newton(&self, setting: f64) -> f64 {
         match &self.curve {
             Curve::Propeller { k_ahead, k_astern } => {
@@ -117,7 +113,6 @@ impl ThrusterModel {
 
     /// The setting for this thrust within the thruster's limits, without flaws.
     #[inline]
-    #[must_use]
     pub fn setting(&self, newton: f64) -> f64 {
         let wanted = newton.clamp(self.newton_min, self.newton_max);
         match &self.curve {
@@ -129,7 +124,6 @@ impl ThrusterModel {
 
     /// The setting for this share (−1 to 1) of full ahead or astern.
     #[inline]
-    #[must_use]
     pub fn setting_of_share(&self, share: f64) -> f64 {
         share * if share > 0.0 { self.ahead } else { self.astern }
     }

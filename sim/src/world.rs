@@ -93,7 +93,6 @@ struct Work {
 
 impl World {
     /// The world of this plan at its start.
-    #[must_use]
     pub fn new(plan: &WorldPlan<'_>) -> World {
         let model = Model::new(plan);
         let boats = plan.vehicles.iter().map(|vehicle| BoatState { pose: vehicle.start, ..BoatState::default() });
@@ -228,7 +227,6 @@ impl World {
     }
 
     /// The changing state.
-    #[must_use]
     pub fn state(&self) -> &State {
         &self.state
     }
@@ -255,7 +253,6 @@ impl World {
     }
 
     /// A vehicle's motion in the last tick.
-    #[must_use]
     pub fn leg(&self, vehicle: VehicleId) -> Leg {
         let to = self.state.boats[vehicle.index()].pose.at;
         let from = self.work.displacements.get(vehicle.index()).map_or(to, |displacement| displacement.from.at);
@@ -264,26 +261,22 @@ impl World {
 
     /// Pairs of near boats, in the order of [`primitives::near::Near`]: all that may touch, and all
     /// within [`WorldPlan::pairs_within_m`].
-    #[must_use]
     pub fn pairs(&self) -> &[Pair] {
         &self.work.pairs
     }
 
     /// The present sea.
-    #[must_use]
     pub fn sea(&self) -> SeaNow<'_> {
         self.model.sea.at_time(self.state.now)
     }
 
     /// A vehicle's sensor readings; `None` if all its sensors are perfect.
-    #[must_use]
     pub fn reading(&self, vehicle: VehicleId) -> Option<&Reading> {
         let place = self.model.sensed[vehicle.index()].as_ref().map(|(place, _)| *place)?;
         Some(&self.state.senses[place].1)
     }
 
     /// The true state of a vehicle, as far as sensors measure it.
-    #[must_use]
     pub fn truth(&self, vehicle: VehicleId) -> Truth {
         let i = vehicle.index();
         self.model.truth(i, &self.state.boats[i], self.work.rotations[i], &self.sea())

@@ -58,7 +58,6 @@ pub struct HelmMind {
 
 impl HelmMind {
     /// The helm of a vehicle that follows `program`.
-    #[must_use]
     pub fn new(scenario: &Scenario, vehicle: VehicleId, program: &Program) -> HelmMind {
         let situation = Situation::new(scenario, vehicle, program, program.helm.compensates_drift);
         let grid = Grid::new(program.helm.courses, program.helm.speeds, situation.model.speed_max_m_s);

@@ -38,7 +38,6 @@ impl Grid {
     /// # Panics
     /// With less than one course or two speeds, more than 65,536 of either, or a top speed that is
     /// not positive and finite.
-    #[must_use]
     pub fn new(courses: usize, speeds: usize, speed_max_m_s: f64) -> Grid {
         assert!((1..=1 << 16).contains(&courses), "{courses} courses, expected 1 to 65536");
         assert!((2..=1 << 16).contains(&speeds), "{speeds} speeds, expected 2 to 65536");
@@ -64,13 +63,11 @@ impl Grid {
     }
 
     /// The number of courses.
-    #[must_use]
     pub fn courses(&self) -> usize {
         self.courses
     }
 
     /// The number of speeds.
-    #[must_use]
     pub fn speeds(&self) -> usize {
         self.speeds
     }
@@ -82,19 +79,16 @@ impl Grid {
     }
 
     /// The top speed, m/s.
-    #[must_use]
     pub fn speed_max_m_s(&self) -> f64 {
         self.speed_max_m_s
     }
 
     /// Course `k`, rad clockwise from north, 0 to a full turn.
-    #[must_use]
     pub fn course_rad(&self, k: usize) -> f64 {
         course_rad(k, self.courses)
     }
 
     /// Speed `j`, m/s.
-    #[must_use]
     pub fn speed_m_s(&self, j: usize) -> f64 {
         self.speed_m_s[j]
     }
@@ -104,7 +98,6 @@ impl Grid {
     /// Courses that are mirror images in an axis or a diagonal, or rotated by a quarter or half
     /// turn, have exactly the same components except for order and sign, if the number of courses
     /// allows it.
-    #[must_use]
     pub fn direction(&self, k: usize) -> (f32, f32) {
         self.directions[k]
     }
@@ -120,7 +113,6 @@ impl Grid {
     }
 
     /// All speeds, m/s.
-    #[must_use]
     pub fn speeds_m_s(&self) -> &[f64] {
         &self.speed_m_s
     }

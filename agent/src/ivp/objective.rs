@@ -32,19 +32,16 @@ pub enum Objective<'a> {
 
 impl Objective<'_> {
     /// A function of the course only.
-    #[must_use]
     pub fn course(course: Peak) -> Objective<'static> {
         Objective::Coupled { course, speed: Peak::default(), course_share: 1.0 }
     }
 
     /// A function of the speed only.
-    #[must_use]
     pub fn speed(speed: Peak) -> Objective<'static> {
         Objective::Coupled { course: Peak::default(), speed, course_share: 0.0 }
     }
 
     /// Whether it distinguishes courses.
-    #[must_use]
     pub fn decides_course(&self) -> bool {
         match self {
             Objective::Coupled { course_share, .. } => *course_share > 0.0,
@@ -53,7 +50,6 @@ impl Objective<'_> {
     }
 
     /// Whether it distinguishes speeds.
-    #[must_use]
     pub fn decides_speed(&self) -> bool {
         match self {
             Objective::Coupled { course_share, .. } => *course_share < 1.0,
@@ -65,7 +61,6 @@ impl Objective<'_> {
     ///
     /// # Panics
     /// Beyond the grid, or with a table of another size.
-    #[must_use]
     pub fn utility(&self, grid: &Grid, k: usize, j: usize) -> f32 {
         assert!(k < grid.courses() && j < grid.speeds(), "course {k}, speed {j}");
         match self.parts(grid) {
@@ -88,7 +83,6 @@ impl Objective<'_> {
     /// Its contribution to the sum at course `k` and speed `j`, in steps of
     /// [`QUANTUM`](super::QUANTUM): the rounded weighted utility. For `Coupled` the two parts are
     /// rounded separately.
-    #[must_use]
     pub fn contribution(&self, grid: &Grid, weight: f64, k: usize, j: usize) -> i32 {
         let weight = Weight::new(weight);
         match self.parts(grid) {

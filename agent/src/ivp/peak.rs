@@ -34,7 +34,6 @@ pub struct Peak {
 
 impl Peak {
     /// A plain tent of full height.
-    #[must_use]
     pub fn tent(summit: f64, base_width: f64) -> Peak {
         Peak { summit, base_width, height: 100.0, ..Peak::default() }
     }

@@ -56,14 +56,12 @@ pub struct Problem {
 
 impl Problem {
     /// A problem on this grid, without functions.
-    #[must_use]
     pub fn new(grid: Grid) -> Problem {
         Problem::with_instructions(grid, Instructions::best())
     }
 
     /// A problem on this grid, without functions, for this instruction set, which affects only the
     /// speed.
-    #[must_use]
     pub fn with_instructions(grid: Grid, instructions: Instructions) -> Problem {
         let cells = Cells::new(&grid);
         Problem {
@@ -80,7 +78,6 @@ impl Problem {
     }
 
     /// The grid.
-    #[must_use]
     pub fn grid(&self) -> &Grid {
         &self.grid
     }
@@ -112,13 +109,11 @@ impl Problem {
     }
 
     /// The number of functions.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.functions
     }
 
     /// Whether there are no functions.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.functions == 0
     }

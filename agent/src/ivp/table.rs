@@ -60,7 +60,6 @@ impl Table {
     }
 
     /// The utility of course `k` at speed `j`.
-    #[must_use]
     pub fn utility(&self, k: usize, j: usize) -> f32 {
         if self.lowered[k / LANES] >> (k % LANES) & 1 == 0 { 100.0 } else { self.row(k)[j / LANES].0[j % LANES] }
     }

@@ -42,7 +42,6 @@ impl Lag {
     /// Time until the own ship is on a course, a unit vector, if it keeps its motion for half of
     /// its turn, s.
     #[inline(always)]
-    #[must_use]
     pub fn duration_s(&self, course: Ned) -> f64 {
         let chord = (course - self.heading).length();
         self.reaction_s + 0.5 * ANGLE_OF_CHORD / self.turn_rad_s * chord

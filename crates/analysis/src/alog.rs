@@ -224,7 +224,6 @@ impl Log {
 
 /// A node report of the boat in this place: comma-separated `key=value`, `TIME` in seconds. `TYPE`
 /// is the shape that viewers draw.
-#[must_use]
 pub fn node_report(scenario: &Scenario, (place, nav): (usize, &Nav), time_s: f64, mode: &str) -> String {
     let vehicle = &scenario.vehicles[place];
     let group = scenario.teams.get(vehicle.team.index()).map_or("", |team| team.name.as_str());

@@ -42,7 +42,6 @@ pub(crate) fn gateways(recording: &Recording) -> Vec<Gateway> {
 }
 
 /// The gateway of a boat, from the recording of a game or of the gateway itself.
-#[must_use]
 pub fn gateway_of(bag: &Bag, boat: &str) -> Gateway {
     // A gateway's recording starts with the gateway, which starts disarmed.
     let state = (bag.kind == Kind::Gateway).then(|| "disarmed".to_owned());

@@ -23,7 +23,6 @@ impl HullRectangle {
     }
 
     /// Whether it overlaps another: no side of either is a separating axis.
-    #[must_use]
     pub fn overlaps(&self, other: &HullRectangle) -> bool {
         let line = other.pose.at - self.pose.at;
         let axes =

@@ -14,7 +14,6 @@ pub struct Line {
 
 impl Line {
     /// The kind of sentence, such as `GPRMC`; `other` if it is not a sentence.
-    #[must_use]
     pub fn kind(&self) -> &str {
         let body = self.text.strip_prefix(['$', '!']).unwrap_or_default();
         let kind = body.split([',', '*']).next().unwrap_or_default();
@@ -52,13 +51,11 @@ impl Lines {
     }
 
     /// Whether no line is incomplete.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.begun.iter().all(Vec::is_empty)
     }
 
     /// The incomplete lines.
-    #[must_use]
     pub fn rest(mut self) -> Vec<Line> {
         [false, true].into_iter().filter_map(|outward| self.end(outward)).collect()
     }

@@ -42,7 +42,6 @@ const SAMPLES_MIN: usize = 100;
 /// An order and the response some time later.
 type OrderAndAnswer = (f64, f64);
 
-#[must_use]
 pub(crate) fn response(series: &GameSeries, boat: &BoatSeries) -> Response {
     let step_s = if series.times_s.len() > 1 { series.span_s() / (series.times_s.len() - 1) as f64 } else { 1.0 };
     let run_ends = run_ends(&boat.samples);

@@ -51,14 +51,12 @@ impl BoatSeries {
 
 impl GameSeries {
     /// Reads a recording in one pass. Damaged messages are skipped and counted.
-    #[must_use]
     pub fn of(recording: &Recording) -> GameSeries {
         GameSeries::of_at_most(recording, SAMPLES_MAX)
     }
 
     /// The same, thinned out to at most this many samples of all boats together, plus the last
     /// decision.
-    #[must_use]
     pub fn of_at_most(recording: &Recording, samples_max: usize) -> GameSeries {
         let scenario = recording.scenario();
         let all = recording.frame_count().saturating_mul(scenario.vehicles.len());
@@ -100,25 +98,21 @@ impl GameSeries {
     }
 
     /// A note for the user if decisions were omitted.
-    #[must_use]
     pub fn remark(&self) -> Option<String> {
         (self.every > 1).then(|| format!("the game is long; only one decision in {} is analysed", self.every))
     }
 
     /// The time between the first sample and the last, s.
-    #[must_use]
     pub fn span_s(&self) -> f64 {
         self.times_s.last().zip(self.times_s.first()).map_or(0.0, |(last, first)| last - first)
     }
 
     /// Index of the sample at this time: the last one not later.
-    #[must_use]
     pub fn sample_at(&self, at_s: f64) -> usize {
         self.times_s.partition_point(|time_s| *time_s <= at_s + 1e-6).saturating_sub(1)
     }
 
     /// The boat with this name.
-    #[must_use]
     pub fn boat(&self, name: &str) -> Option<&BoatSeries> {
         self.boats.iter().find(|boat| boat.name == name)
     }

@@ -86,7 +86,6 @@ struct BoatSums {
 
 impl StatisticsBuilder {
     /// Starts before the first decision of a game.
-    #[must_use]
     pub fn new(scenario: &Scenario) -> StatisticsBuilder {
         let boat = |vehicle: &scenario::Vehicle| BoatSums {
             sums: BoatStatistics {
@@ -111,7 +110,6 @@ impl StatisticsBuilder {
     }
 
     /// The statistics, by vehicle index.
-    #[must_use]
     pub fn end(self) -> Vec<BoatStatistics> {
         self.boats.into_iter().zip(self.tally.vehicles).map(|(boat, counts)| boat.end(counts, self.span_s)).collect()
     }

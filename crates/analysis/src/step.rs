@@ -52,7 +52,6 @@ pub struct Sample {
 impl Step {
     /// The decision in a frame, with the orders that led there, by vehicle. Estimated navigation is
     /// not included.
-    #[must_use]
     pub fn of_frame(scenario: &Scenario, frame: &Frame, orders: impl Iterator<Item = Order>) -> Step {
         let truth = |i: usize| frame.vehicles.get(i).copied().unwrap_or_default();
         Step {
@@ -93,7 +92,6 @@ pub fn for_each_step(recording: &Recording, take: impl FnMut(Step)) -> Damaged {
 
 impl Sample {
     /// The ordered heading, rad, and speed, m/s, if it was steered.
-    #[must_use]
     pub fn steered(&self) -> Option<(f64, f64)> {
         match self.order {
             Order::Steer { heading_rad, speed_m_s } if self.is_free => Some((heading_rad, speed_m_s)),
@@ -102,14 +100,12 @@ impl Sample {
     }
 
     /// Distance between estimated and true position, m.
-    #[must_use]
     pub fn nav_error_m(&self) -> Option<f64> {
         self.estimated.map(|nav| nav.at().distance(self.truth.at()))
     }
 }
 
 /// The ordered speed, m/s; unknown for thrusts.
-#[must_use]
 pub fn ordered_m_s(order: Order) -> Option<f64> {
     match order {
         Order::Hold => Some(0.0),

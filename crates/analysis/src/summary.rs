@@ -70,7 +70,6 @@ pub struct Topic {
 
 impl Summary {
     /// Summarises a recording. Memory grows only with the number of events.
-    #[must_use]
     pub fn of(recording: &Recording) -> Summary {
         let scenario = recording.scenario();
         let mut statistics = StatisticsBuilder::new(scenario);
@@ -113,7 +112,6 @@ impl Summary {
 }
 
 /// The topics of a recording, by name.
-#[must_use]
 pub fn topics(bag: &Bag) -> BTreeMap<String, Topic> {
     let mut topics: BTreeMap<&str, (Topic, [i64; 2])> = BTreeMap::new();
     for message in bag.messages() {

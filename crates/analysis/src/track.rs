@@ -24,7 +24,6 @@ pub struct TrackDifference {
 const SHAPE_POINTS: usize = 2000;
 
 /// Distance between the boats of two games in their common time; none without a common sample.
-#[must_use]
 pub(crate) fn apart(
     (a, in_a): (&GameSeries, &BoatSeries),
     (b, in_b): (&GameSeries, &BoatSeries),
@@ -71,7 +70,6 @@ fn thinned(track: &[Ned]) -> Vec<Ned> {
 /// The discrete Fréchet distance of two tracks, m (Eiter and Mannila, "Computing discrete Fréchet
 /// distance", Technical Report CD-TR 94/64, TU Wien 1994), computed row by row instead of
 /// recursively.
-#[must_use]
 fn frechet_m(a: &[Ned], b: &[Ned]) -> f64 {
     let mut row: Vec<f64> = vec![];
     for (i, place) in a.iter().enumerate() {

@@ -51,7 +51,6 @@ pub fn play_observed(
 }
 
 /// A runner for these minds, one per vehicle in the scenario's order.
-#[must_use]
 pub fn runner_of<M: Mind + ?Sized>(minds: Vec<Box<M>>) -> MindRunner<M> {
     MindRunner::new(minds.into_iter().enumerate().map(|(i, mind)| (VehicleId::at(i), mind)))
 }

@@ -37,7 +37,6 @@ pub enum Delivery {
 impl Delivery {
     /// For what is sent at every decision: in lockstep each message counts, in real time the next
     /// one replaces it.
-    #[must_use]
     pub fn per_decision(is_lockstep: bool) -> Delivery {
         if is_lockstep { Delivery::Reliable } else { Delivery::Newest }
     }
@@ -90,7 +89,6 @@ impl Bus {
     }
 
     /// The same session, for a node with this token.
-    #[must_use]
     pub fn with_token(self, token: Option<Token>) -> Bus {
         Bus { token, ..self }
     }
@@ -179,7 +177,6 @@ impl Bus {
 
 impl Publisher {
     /// Whether the key has a subscriber; messages without one need not be encoded.
-    #[must_use]
     pub fn is_heard(&self) -> bool {
         self.0.is_heard()
     }

@@ -5,20 +5,17 @@ use crate::runtime::runtime;
 use std::time::{Duration, Instant};
 
 /// The current time.
-#[must_use]
 pub fn now() -> Instant {
     runtime().now()
 }
 
 /// Time elapsed since `start`.
-#[must_use]
 pub fn since(start: Instant) -> Duration {
     now().saturating_duration_since(start)
 }
 
 /// How long this machine has been suspended since boot, which [`now`] does not count: on Linux, the
 /// boot-time clock minus the monotonic one.
-#[must_use]
 pub fn suspended() -> Duration {
     runtime().suspended()
 }
@@ -29,7 +26,6 @@ pub fn rest(time: Duration) {
 }
 
 /// The current time since 1970, ns: for other systems that ask for it. Squall never compares it.
-#[must_use]
 pub fn unix_ns() -> i64 {
     i64::try_from(time::OffsetDateTime::now_utc().unix_timestamp_nanos()).unwrap_or(i64::MAX)
 }

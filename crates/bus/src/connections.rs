@@ -36,7 +36,6 @@ pub struct Slot {
 
 impl Connections {
     /// Slots for at most `most` connections.
-    #[must_use]
     pub fn new(most: usize) -> Connections {
         Connections { open: Arc::default(), most }
     }

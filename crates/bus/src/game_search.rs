@@ -75,7 +75,6 @@ pub struct GameSearch<'a> {
 
 impl<'a> GameSearch<'a> {
     /// A search that ends after this time, or when `stop` is set.
-    #[must_use]
     pub fn new(wait: Duration, stop: &'a AtomicBool) -> GameSearch<'a> {
         GameSearch { wait, stop, start: clock::now(), last: String::new() }
     }

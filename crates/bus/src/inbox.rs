@@ -26,7 +26,6 @@ impl<T> Clone for InboxSender<T> {
 pub struct Inbox<T>(Arc<Queue<T>>);
 
 /// A queue for `capacity` items.
-#[must_use]
 pub fn inbox<T>(capacity: usize) -> (InboxSender<T>, Inbox<T>) {
     let queue = Arc::new(Queue { items: Watched::new(VecDeque::new()), capacity, dropped: AtomicU64::new(0) });
     (InboxSender(Arc::clone(&queue)), Inbox(queue))
@@ -68,7 +67,6 @@ impl<T> Inbox<T> {
     }
 
     /// The number of items dropped so far.
-    #[must_use]
     pub fn dropped(&self) -> u64 {
         self.0.dropped.load(Ordering::Relaxed)
     }

@@ -8,7 +8,6 @@ pub struct Latest<T>(Watched<Vec<Option<T>>>);
 
 impl<T> Latest<T> {
     /// `count` empty cells.
-    #[must_use]
     pub fn new(count: usize) -> Latest<T> {
         Latest(Watched::new((0..count).map(|_| None).collect()))
     }

@@ -59,7 +59,6 @@ impl LinkLock {
     }
 
     /// The process that holds the link, if any.
-    #[must_use]
     pub fn holder(link: &str) -> Option<u32> {
         let mut file = OpenOptions::new().read(true).open(path(link).ok()?).ok()?;
         match file.try_lock_shared() {

@@ -135,7 +135,6 @@ impl Drop for Registration {
 }
 
 /// All games whose process still runs, by name; removes entries of dead processes.
-#[must_use]
 pub fn list() -> Vec<Entry> {
     let mut entries: Vec<Entry> = list_in(&folder(), GAMES);
     entries.sort_by(|a, b| (&a.game, a.pid).cmp(&(&b.game, b.pid)));
@@ -143,7 +142,6 @@ pub fn list() -> Vec<Entry> {
 }
 
 /// All gateways whose process still runs, by boat; removes entries of dead processes.
-#[must_use]
 pub fn gateways() -> Vec<GatewayEntry> {
     let mut entries: Vec<GatewayEntry> = list_in(&folder(), GATEWAYS);
     entries.sort_by(|a, b| (&a.vehicle, a.pid).cmp(&(&b.vehicle, b.pid)));

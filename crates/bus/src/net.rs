@@ -79,7 +79,6 @@ pub struct Net {
 
 impl Net {
     /// The endpoint at which nodes on the same machine reach this hub.
-    #[must_use]
     pub fn local_endpoint(&self) -> Option<String> {
         let first = self.endpoints(&self.listen).into_iter().next()?;
         Some(first.replace("/0.0.0.0:", "/127.0.0.1:").replace("/[::]:", "/[::1]:"))
@@ -236,7 +235,6 @@ pub(crate) fn address(endpoint: &str) -> &str {
 }
 
 /// Whether an endpoint, for example `tcp/127.0.0.1:7447`, is reachable from this machine only.
-#[must_use]
 pub fn is_loopback(endpoint: &str) -> bool {
     let address = address(endpoint);
     match address.parse::<SocketAddr>() {
@@ -247,7 +245,6 @@ pub fn is_loopback(endpoint: &str) -> bool {
 
 /// Whether two endpoints have the same host and port. All names of the loopback interface are one
 /// host, whatever the protocol.
-#[must_use]
 pub fn is_same_place(one: &str, other: &str) -> bool {
     let port = |endpoint| address(endpoint).rsplit_once(':').map(|(_, port)| port);
     let is_same_host = is_loopback(one) && is_loopback(other) && port(one) == port(other);

@@ -24,7 +24,6 @@ pub struct Parcel {
 
 impl Parcel {
     /// A parcel without nonce or seal.
-    #[must_use]
     pub fn new(bytes: Vec<u8>) -> Parcel {
         Parcel { bytes, attachment: Vec::new() }
     }

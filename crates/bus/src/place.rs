@@ -23,7 +23,6 @@ pub type PlacedSession = Option<(Net, Bus)>;
 
 impl Place {
     /// A place that `find` looks up; its errors are permanent.
-    #[must_use]
     pub fn new(find: impl Fn(Option<&GameName>) -> Result<Net, String> + Send + Sync + 'static) -> Place {
         Place { find: Arc::new(find), token: CurrentToken::default() }
     }

@@ -123,13 +123,11 @@ impl Bus {
 
 impl Query {
     /// The key of the query.
-    #[must_use]
     pub fn key(&self) -> &str {
         self.asker.key()
     }
 
     /// The content of the query.
-    #[must_use]
     pub fn payload(&self) -> &[u8] {
         &self.question.bytes
     }

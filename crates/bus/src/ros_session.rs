@@ -88,7 +88,6 @@ impl Deref for RosSession {
 
 impl RosPublisher {
     /// Whether the topic has a subscriber; messages without one need not be encoded.
-    #[must_use]
     pub fn is_heard(&self) -> bool {
         self.0.is_heard()
     }

@@ -70,7 +70,6 @@ pub(crate) fn runtime() -> &'static dyn Runtime {
 }
 
 /// An unpredictable random number.
-#[must_use]
 pub fn random_number() -> u64 {
     u64::from_le_bytes(random_bytes())
 }
@@ -79,7 +78,6 @@ pub fn random_number() -> u64 {
 ///
 /// # Panics
 /// If the operating system cannot provide randomness.
-#[must_use]
 pub fn random_bytes<const N: usize>() -> [u8; N] {
     let mut bytes = [0; N];
     runtime().fill_random(&mut bytes);

@@ -106,7 +106,6 @@ pub trait PendingQuery: Send + Sync {
 }
 
 /// Whether two key expressions intersect.
-#[must_use]
 pub fn keys_meet(one: &str, other: &str) -> bool {
     use zenoh::key_expr::keyexpr;
     one == other || matches!((keyexpr::new(one), keyexpr::new(other)), (Ok(one), Ok(other)) if one.intersects(other))

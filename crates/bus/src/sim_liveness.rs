@@ -24,7 +24,6 @@ pub struct Patience {
 impl Patience {
     /// The patience of nodes that play in the game: `silence` for a silent sim, and five seconds
     /// for one that was heard until its token went.
-    #[must_use]
     pub fn of_player(silence: Duration) -> Patience {
         Patience { silence, missing: Duration::from_secs(5), unheard: silence }
     }
@@ -140,20 +139,17 @@ impl SimWatch {
     }
 
     /// The sim's current state. Callers that receive no messages rely on its token.
-    #[must_use]
     pub fn state(&self) -> SimState {
         self.liveness.visit(|liveness| liveness.state(clock::now()))
     }
 
     /// Waits up to `limit` for a sim and uses it from then on. Returns whether one is present.
-    #[must_use]
     pub fn find(&self, limit: Duration) -> bool {
         self.liveness.wait(limit, |liveness| !liveness.tokens.is_empty()) && self.liveness.visit(SimLiveness::choose)
     }
 
     /// Waits up to `limit` until our sim has lost its token or another one has appeared. Returns
     /// whether either happened.
-    #[must_use]
     pub fn is_lost(&self, limit: Duration) -> bool {
         self.liveness.wait(limit, |liveness| liveness.is_replaced || liveness.is_there() != Some(true))
     }

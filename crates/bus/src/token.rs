@@ -43,13 +43,11 @@ impl Token {
     ///
     /// # Panics
     /// If the operating system cannot provide randomness.
-    #[must_use]
     pub fn random() -> Token {
         Token(random_bytes())
     }
 
     /// Its 64 hexadecimal digits, which grant every right to their reader.
-    #[must_use]
     pub fn hex(&self) -> String {
         hex(&self.0)
     }
@@ -112,7 +110,6 @@ pub struct CurrentToken(Arc<Mutex<Option<Token>>>);
 
 impl CurrentToken {
     /// The current token, if any.
-    #[must_use]
     pub fn get(&self) -> Option<Token> {
         self.0.lock().clone()
     }
@@ -216,7 +213,6 @@ pub struct Guard {
 
 impl Guard {
     /// A guard for this token; without one it admits every request.
-    #[must_use]
     pub fn new(token: impl Into<CurrentToken>) -> Guard {
         Guard { token: token.into(), open: VecDeque::new() }
     }

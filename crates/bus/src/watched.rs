@@ -14,7 +14,6 @@ pub struct Watched<T> {
 
 impl<T> Watched<T> {
     /// Starts with this value.
-    #[must_use]
     pub fn new(state: T) -> Watched<T> {
         Watched { state: Mutex::new(state), changed: Condvar::new() }
     }

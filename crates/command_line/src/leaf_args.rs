@@ -109,7 +109,6 @@ impl LeafArgs {
 
     /// The same arguments for an emulated boat. Without a name, they select the only water on
     /// this machine.
-    #[must_use]
     pub fn in_water(mut self) -> LeafArgs {
         let water: Vec<bus::Entry> = bus::local_registry().into_iter().filter(|entry| entry.is_water).collect();
         if let ([water], true, false) = (water.as_slice(), self.connect.is_empty(), self.lan) {

@@ -65,7 +65,6 @@ pub fn host(text: &str) -> Result<String, String> {
 }
 
 /// A measured or statistical number as text with two significant digits, as in 1.5, 0.031 or 190.
-#[must_use]
 pub fn significant(number: f64) -> String {
     let text = format!("{number:.1e}");
     let exponent: i32 = text.split_once('e').and_then(|(_, exponent)| exponent.parse().ok()).unwrap_or(0);
@@ -75,7 +74,6 @@ pub fn significant(number: f64) -> String {
 
 /// Lets all options take negative numbers, so that their parsers report the allowed range; clap would
 /// report an unknown option.
-#[must_use]
 pub fn with_negative_numbers(command: Command) -> Command {
     command
         .mut_args(|arg| {

@@ -23,7 +23,6 @@ impl Estimate {
     ///
     /// # Panics
     /// If `observations` is empty.
-    #[must_use]
     pub fn of(observations: &[f64]) -> Estimate {
         let count = observations.len();
         assert!(count > 0, "a mean of nothing");
@@ -40,7 +39,6 @@ impl Estimate {
     /// The ratio of two sums over independent observations, each of a part and its whole, with its
     /// interval by linearisation (Cochran, Sampling Techniques, 1977, section 2.11); `None` if the
     /// wholes are zero.
-    #[must_use]
     pub fn of_ratio(observations: &[(f64, f64)]) -> Option<Estimate> {
         let whole: f64 = observations.iter().map(|(_, whole)| whole).sum();
         if whole <= 0.0 {
@@ -60,7 +58,6 @@ impl Estimate {
     }
 
     /// Half the width of the interval.
-    #[must_use]
     pub fn half_width(&self) -> Option<f64> {
         self.high.map(|high| high - self.mean)
     }

@@ -43,7 +43,6 @@ pub(crate) fn strategy_option(team: &str, file: &str) -> String {
 
 /// The number of threads for this many games: as requested or one per core, but at most four per
 /// core and one per game.
-#[must_use]
 pub fn threads(asked: Option<NonZeroUsize>, games: usize) -> NonZeroUsize {
     let cores = std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
     capped(asked.unwrap_or(cores), cores, games)

@@ -50,7 +50,6 @@ impl Packed {
     ///
     /// # Panics
     /// If `spec` cannot be written as JSON because its maps have keys that are not texts.
-    #[must_use]
     pub fn new(spec: &impl Serialize, files: Vec<(PathBuf, Arc<[u8]>)>, digest: String) -> Packed {
         Packed {
             spec: serde_json::to_string(spec).expect("it has names for keys"),

@@ -10,7 +10,6 @@ use std::io::Cursor;
 use std::path::PathBuf;
 
 /// The folder with the scenario files.
-#[must_use]
 pub fn scenarios() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../scenarios")
 }
@@ -19,14 +18,12 @@ pub fn scenarios() -> PathBuf {
 ///
 /// # Panics
 /// If no game has this name.
-#[must_use]
 pub fn scenario(name: &str) -> Scenario {
     let file = scenarios().join("games").join(name).with_extension("toml");
     scenario::load(&file).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// A game between two teams of two boats, one of them real.
-#[must_use]
 pub fn mixed() -> Scenario {
     scenario("mixed_2v2")
 }
@@ -49,7 +46,6 @@ pub struct Played {
 ///
 /// # Panics
 /// If the game cannot be played.
-#[must_use]
 pub fn played(scenario: Scenario, decisions: u64) -> Played {
     let mut contest = sim::Contest::new(&scenario, scenario.seed).expect("the game starts");
     let mut runner = arena::runner_of(agent::minds_of(&scenario));
@@ -75,7 +71,6 @@ pub fn played(scenario: Scenario, decisions: u64) -> Played {
 
 impl Played {
     /// The sim's description of the game.
-    #[must_use]
     pub fn info(&self) -> GameInfo {
         GameInfo {
             version: primitives::VERSION.to_owned(),
@@ -88,7 +83,6 @@ impl Played {
     ///
     /// # Panics
     /// If the recording cannot be written.
-    #[must_use]
     pub fn recording(&self, others: &[Entry]) -> Vec<u8> {
         let wave = PlaneWave { amplitude_m: 0.1, wavenumber_rad_m: 1.0, omega_rad_s: 3.1, ..PlaneWave::default() };
         let header = Header {
@@ -108,14 +102,12 @@ impl Played {
 }
 
 /// A policy proposal for a boat.
-#[must_use]
 pub fn proposal() -> PolicyProposal {
     let stamp = Stamp { version: PolicyProposal::VERSION, ..Stamp::default() };
     PolicyProposal { stamp, vehicle: VehicleId(0), course_rad: 1.0, speed_m_s: 1.5 }
 }
 
 /// One order of each kind.
-#[must_use]
 pub fn orders() -> [VehicleOrder; 3] {
     let thrust = messages::Order::Thrust { port: 0.5, starboard: -0.5 };
     let steer = messages::Order::Steer { heading_rad: 1.0, speed_m_s: 1.0 };

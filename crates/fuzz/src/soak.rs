@@ -75,7 +75,6 @@ pub fn soak(target: &Target, time: Duration, seed: u64, current: &Path) -> Resul
 }
 
 /// The input under check when the process ended.
-#[must_use]
 pub fn left_in(current: &Path) -> Option<Vec<u8>> {
     let bytes = std::fs::read(current).ok()?;
     let (length, rest) = bytes.split_first_chunk()?;

@@ -24,7 +24,6 @@ pub struct Learnt {
 
 impl Learnt {
     /// All values with their names in tables and charts.
-    #[must_use]
     pub fn named(&self) -> [(&'static str, Option<f32>); 7] {
         [
             ("policy_loss", self.policy_loss),

@@ -86,20 +86,17 @@ impl Reported {
     pub const ALL: [Reported; 2] = [Reported::Status, Reported::Link];
 
     /// Encodes a report: the ticket (64 bits, little-endian), then the message.
-    #[must_use]
     pub fn with_ticket(ticket: u64, message: &[u8]) -> Vec<u8> {
         [&ticket.to_le_bytes(), message].concat()
     }
 
     /// Splits a report into ticket and message; none if it is too short.
-    #[must_use]
     pub fn split_ticket(report: &[u8]) -> Option<(u64, &[u8])> {
         let (ticket, message) = report.split_first_chunk()?;
         Some((u64::from_le_bytes(*ticket), message))
     }
 
     /// Whether this is a message of this kind about this boat.
-    #[must_use]
     pub fn is_about(self, message: &[u8], vehicle: VehicleId, name: &str) -> bool {
         match self {
             Reported::Status => {
@@ -184,7 +181,6 @@ impl fmt::Display for OperatorCommand {
 
 impl OperatorCommand {
     /// Whether the command requires the game's token. Status and stops do not.
-    #[must_use]
     pub fn needs_token(&self) -> bool {
         !matches!(self, OperatorCommand::Status | OperatorCommand::Disarm | OperatorCommand::EStop)
     }
@@ -217,7 +213,6 @@ pub enum GatewayCommand {
 
 impl GatewayCommand {
     /// Whether the command requires the game's token.
-    #[must_use]
     pub fn needs_token(&self) -> bool {
         match self {
             GatewayCommand::Boat { command, .. } => command.needs_token(),

@@ -65,7 +65,6 @@ pub struct DriftReport {
 impl HelmReport {
     /// The weighted sum of these functions by course and speed; functions without utilities add
     /// nothing.
-    #[must_use]
     pub fn sum<'a>(&self, functions: impl Iterator<Item = &'a FunctionReport>) -> Vec<f64> {
         let mut total = vec![0.0; self.courses * self.speeds];
         for function in functions {
@@ -127,7 +126,6 @@ pub struct PolicyReport {
 impl PolicyReport {
     /// Labels the discrete actions with their probabilities, most probable first, and the inputs.
     /// Empty if the scenario lacks the model.
-    #[must_use]
     pub fn words(&self, scenario: &Scenario, vehicle: VehicleId) -> PolicyWords {
         let Some(model) = scenario.strategy_of(vehicle).models().find(|model| model.name == self.model) else {
             return PolicyWords::default();

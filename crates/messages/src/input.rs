@@ -49,7 +49,6 @@ pub enum Input {
 
 impl Input {
     /// Whether the input fits this game: it has the vehicle, and times are within bounds.
-    #[must_use]
     pub fn is_of(self, scenario: &Scenario) -> bool {
         let has = |vehicle: VehicleId| vehicle.index() < scenario.vehicles.len();
         match self {
@@ -135,7 +134,6 @@ impl From<Input> for InputRecord {
 
 impl InputRecord {
     /// Decodes the input, if kind and numbers are known.
-    #[must_use]
     pub fn input(&self) -> Option<Input> {
         let vehicle = u16::try_from(self.vehicle).ok().map(VehicleId);
         let ordered = |order| Some(Input::Ordered { vehicle: vehicle?, order, given_at: self.at_ns });

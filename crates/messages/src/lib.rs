@@ -127,7 +127,6 @@ pub struct VehicleOrder {
 
 impl VehicleOrder {
     /// The order for `vehicle` in wire form.
-    #[must_use]
     pub fn new(vehicle: VehicleId, order: Order) -> VehicleOrder {
         let hold = VehicleOrder { vehicle, kind: 0, heading_rad: 0.0, speed_m_s: 0.0, port: 0.0, starboard: 0.0 };
         match order {
@@ -139,7 +138,6 @@ impl VehicleOrder {
     }
 
     /// Decodes the order, if its kind is known.
-    #[must_use]
     pub fn order(&self) -> Option<Order> {
         match self.kind {
             0 => Some(Order::Hold),
@@ -290,7 +288,6 @@ pub type ControlReply = Result<(), String>;
 
 impl Control {
     /// Whether it stops boats or pauses the game: such commands need no token.
-    #[must_use]
     pub fn stops(self) -> bool {
         matches!(self, Control::EStop | Control::Halt)
     }

@@ -51,25 +51,21 @@ pub struct Nav {
 
 impl Nav {
     /// The position.
-    #[must_use]
     pub fn at(&self) -> Ned {
         Ned { north: self.north_m, east: self.east_m }
     }
 
     /// Position and heading.
-    #[must_use]
     pub fn pose(&self) -> Pose {
         Pose { at: self.at(), psi_rad: self.psi_rad }
     }
 
     /// Speed over the ground, m/s.
-    #[must_use]
     pub fn speed_m_s(&self) -> f64 {
         math::length(self.surge_m_s, self.sway_m_s)
     }
 
     /// Velocity over the ground, m/s.
-    #[must_use]
     pub fn velocity_m_s(&self) -> Ned {
         ned_from_body(self.pose().rotation(), Body { ahead: self.surge_m_s, starboard: self.sway_m_s })
     }
@@ -178,7 +174,6 @@ impl Picture {
     }
 
     /// The own boat `vehicle`, if it is of this team.
-    #[must_use]
     pub fn own(&self, vehicle: VehicleId) -> Option<&OwnBoat> {
         self.own.binary_search_by_key(&vehicle, |boat| boat.vehicle).ok().map(|i| &self.own[i])
     }
@@ -186,7 +181,6 @@ impl Picture {
 
 impl OwnBoat {
     /// A boat in play of which only its navigation is known.
-    #[must_use]
     pub fn new(vehicle: VehicleId, nav: Nav) -> OwnBoat {
         OwnBoat {
             vehicle,
@@ -202,14 +196,12 @@ impl OwnBoat {
     }
 
     /// The flag it carries.
-    #[must_use]
     pub fn carried_flag(&self) -> Option<FlagId> {
         u8::try_from(self.carrying).ok().map(FlagId)
     }
 }
 
 /// Encodes an optional flag as in the messages: -1 is none.
-#[must_use]
 pub fn number_of_flag(flag: Option<FlagId>) -> i16 {
     flag.map_or(-1, |flag| i16::from(flag.0))
 }

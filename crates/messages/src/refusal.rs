@@ -76,13 +76,11 @@ impl Refusals {
     }
 
     /// The count for this reason.
-    #[must_use]
     pub fn of(&self, refusal: Refusal) -> u64 {
         self.0[refusal as usize]
     }
 
     /// The total count.
-    #[must_use]
     pub fn total(&self) -> u64 {
         self.0.iter().sum()
     }

@@ -35,7 +35,6 @@ fn definition(name: &str) -> Option<&'static str> {
 
 /// A definition with all nested definitions, in the form of ROS 2 recordings; none for a name that
 /// is not ours. `schema` is that of a [`Message`](crate::Message), as in `squall_msgs/msg/Frame`.
-#[must_use]
 pub fn full_definition(schema: &str) -> Option<String> {
     let mut names = vec![schema.rsplit('/').next()?];
     let mut text = definition(names[0])?.to_owned();

@@ -59,7 +59,6 @@ pub struct RecordingState {
 
 impl RecordingState {
     /// The recording's problem in plain words, if any.
-    #[must_use]
     pub fn problem(&self) -> Option<String> {
         let file = &self.file;
         match &self.failed {

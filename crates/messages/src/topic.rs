@@ -26,32 +26,27 @@ impl GameName {
     }
 
     /// The name.
-    #[must_use]
     pub fn as_str(&self) -> &str {
         &self.0
     }
 }
 
 /// All topics of a game that match `pattern`: `*` matches one word, `**` any number of words.
-#[must_use]
 pub fn matching(game: &GameName, pattern: &str) -> String {
     format!("squall/{}/{pattern}", game.0)
 }
 
 /// The true state for observers (publish).
-#[must_use]
 pub fn frame(game: &GameName) -> String {
     format!("squall/{}/frame", game.0)
 }
 
 /// A team's picture (publish).
-#[must_use]
 pub fn picture(game: &GameName, scenario: &Scenario, team: TeamId) -> String {
     format!("squall/{}/picture/{}", game.0, scenario.teams[team.index()].name)
 }
 
 /// The orders of an agent that plays for these teams (publish).
-#[must_use]
 pub fn orders(game: &GameName, scenario: &Scenario, teams: &[TeamId], agent: &str) -> String {
     match teams {
         [team] => format!("squall/{}/order/{}/{agent}", game.0, scenario.teams[team.index()].name),
@@ -60,98 +55,82 @@ pub fn orders(game: &GameName, scenario: &Scenario, teams: &[TeamId], agent: &st
 }
 
 /// All agents' orders (subscribe).
-#[must_use]
 pub fn all_orders(game: &GameName) -> String {
     format!("squall/{}/order/**", game.0)
 }
 
 /// Messages between the minds of a team (publish, subscribe).
-#[must_use]
 pub fn say(game: &GameName, scenario: &Scenario, team: TeamId) -> String {
     format!("squall/{}/say/{}", game.0, scenario.teams[team.index()].name)
 }
 
 /// Proposals of an external policy for a boat (publish).
-#[must_use]
 pub fn policy(game: &GameName, scenario: &Scenario, vehicle: VehicleId) -> String {
     format!("squall/{}/policy/{}", game.0, scenario.vehicles[vehicle.index()].name)
 }
 
 /// The helm report of a boat (query).
-#[must_use]
 pub fn helm(game: &GameName, scenario: &Scenario, vehicle: VehicleId) -> String {
     format!("squall/{}/helm/{}", game.0, scenario.vehicles[vehicle.index()].name)
 }
 
 /// Navigation of a real boat, from its gateway (publish).
-#[must_use]
 pub fn nav(game: &GameName, scenario: &Scenario, vehicle: VehicleId) -> String {
     format!("squall/{}/nav/{}", game.0, scenario.vehicles[vehicle.index()].name)
 }
 
 /// Navigation of all real boats (subscribe).
-#[must_use]
 pub fn all_nav(game: &GameName) -> String {
     format!("squall/{}/nav/*", game.0)
 }
 
 /// Commands for a real boat, from the sim (publish).
-#[must_use]
 pub fn external_order(game: &GameName, scenario: &Scenario, vehicle: VehicleId) -> String {
     format!("squall/{}/external/{}", game.0, scenario.vehicles[vehicle.index()].name)
 }
 
 /// Gateway reports for other nodes, to the sim alone (publish): see [`Reported`].
-#[must_use]
 pub fn report(game: &GameName, what: Reported, vehicle: &str) -> String {
     format!("squall/{}/report/{what}/{vehicle}", game.0)
 }
 
 /// The bytes between a gateway and its boat, from the sim (publish).
-#[must_use]
 pub fn link(game: &GameName, vehicle: &str) -> String {
     format!("squall/{}/link/{vehicle}", game.0)
 }
 
 /// Status of a gateway and its boat, from the sim (publish).
-#[must_use]
 pub fn status(game: &GameName, vehicle: &str) -> String {
     format!("squall/{}/status/{vehicle}", game.0)
 }
 
 /// Operator commands to a boat's gateway (query).
-#[must_use]
 pub fn operate(game: &GameName, vehicle: &str) -> String {
     format!("squall/{}/operate/{vehicle}", game.0)
 }
 
 /// Stops of a real boat, which need no token (publish).
-#[must_use]
 pub fn stop(game: &GameName, vehicle: &str) -> String {
     format!("squall/{}/stop/{vehicle}", game.0)
 }
 
 /// The state of the game's run (publish).
-#[must_use]
 pub fn run(game: &GameName) -> String {
     format!("squall/{}/run", game.0)
 }
 
 /// All events so far (query).
-#[must_use]
 pub fn events(game: &GameName) -> String {
     format!("squall/{}/events", game.0)
 }
 
 /// The waves (query).
-#[must_use]
 pub fn water(game: &GameName) -> String {
     format!("squall/{}/water", game.0)
 }
 
 /// Join requests for this role and these vehicles (query): agents use their team's key, gateways
 /// their boat's. Requests for several teams, several boats or unknown vehicles use a common key.
-#[must_use]
 pub fn join(game: &GameName, scenario: &Scenario, role: Role, vehicles: &[String]) -> String {
     let known = vehicles.iter().map(|name| scenario.vehicle_by_name(name));
     let place = match (role, known.collect::<Option<Vec<VehicleId>>>().as_deref()) {
@@ -168,49 +147,41 @@ pub fn join(game: &GameName, scenario: &Scenario, role: Role, vehicles: &[String
 }
 
 /// All join requests (query).
-#[must_use]
 pub fn all_join(game: &GameName) -> String {
     format!("squall/{}/join/**", game.0)
 }
 
 /// The game's description (query).
-#[must_use]
 pub fn scenario(game: &GameName) -> String {
     format!("squall/{}/scenario", game.0)
 }
 
 /// Control of the game: anybody may publish stops; all other commands are queries to the sim.
-#[must_use]
 pub fn control(game: &GameName) -> String {
     format!("squall/{}/control", game.0)
 }
 
 /// Release of an E-stop, from the sim (publish).
-#[must_use]
 pub fn released(game: &GameName) -> String {
     format!("squall/{}/released", game.0)
 }
 
 /// Presence of a game's sim (liveliness token).
-#[must_use]
 pub fn alive(game: &GameName, sim: &str) -> String {
     format!("squall/{}/alive/sim/{sim}", game.0)
 }
 
 /// All sims of a game (liveliness).
-#[must_use]
 pub fn all_alive(game: &GameName) -> String {
     alive(game, "*")
 }
 
 /// The sims of all games (liveliness).
-#[must_use]
 pub fn everyone_alive() -> String {
     "squall/*/alive/sim/*".to_owned()
 }
 
 /// The game and the sim in an [`alive`] key.
-#[must_use]
 pub fn parse_alive(key: &str) -> Option<(GameName, String)> {
     let (game, sim) = key.strip_prefix("squall/")?.split_once("/alive/sim/")?;
     Some((GameName::new(game).ok()?, sim.to_owned()))

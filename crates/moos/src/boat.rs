@@ -19,7 +19,6 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// The variables of a community that the bridge reads.
-#[must_use]
 pub fn reads() -> BTreeSet<String> {
     back_seat::READS.iter().chain(&requests::READS).map(|name| (*name).to_owned()).collect()
 }
@@ -52,7 +51,6 @@ pub struct BoatMind {
 
 impl BoatMind {
     /// The mind of `vehicle`, whose applications are in this community.
-    #[must_use]
     pub fn new(
         scenario: Arc<Scenario>,
         vehicle: VehicleId,

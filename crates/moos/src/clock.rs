@@ -35,7 +35,6 @@ impl MoosClock {
     }
 
     /// The current MOOS time, s.
-    #[must_use]
     pub fn now_s(self) -> f64 {
         OffsetDateTime::now_utc().unix_timestamp_nanos() as f64 * 1e-9 * self.warp
     }

@@ -187,7 +187,6 @@ impl Community {
     }
 
     /// What was dropped so far.
-    #[must_use]
     pub fn dropped(&self) -> Dropped {
         let dropped = match &self.link {
             Link::Served(server) => server.visit(|database, _| database.dropped),

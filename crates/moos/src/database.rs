@@ -115,7 +115,6 @@ pub struct Database {
 
 impl Database {
     /// An empty database, opened at this MOOS time. The bridge reads the variables `reads`.
-    #[must_use]
     pub fn new(community: &str, reads: BTreeSet<String>, now_s: f64) -> Database {
         Database {
             community: community.to_owned(),

@@ -77,7 +77,6 @@ impl Remote {
     }
 
     /// What was dropped so far.
-    #[must_use]
     pub(crate) fn dropped(&self) -> Dropped {
         self.state.visit(|state| state.dropped)
     }

@@ -93,25 +93,21 @@ pub struct Msg {
 
 impl Msg {
     /// A message of this kind with a number.
-    #[must_use]
     pub fn number(kind: Kind, key: &str, number: f64, time_s: f64) -> Msg {
         Msg { kind, key: key.to_owned(), number, time_s, ..Msg::default() }
     }
 
     /// A message of this kind with text.
-    #[must_use]
     pub fn text(kind: Kind, key: &str, text: &str, time_s: f64) -> Msg {
         Msg { data: DataType::String, bytes: text.as_bytes().to_vec(), ..Msg::number(kind, key, 0.0, time_s) }
     }
 
     /// The text, if the value is valid text.
-    #[must_use]
     pub fn as_text(&self) -> Option<&str> {
         std::str::from_utf8(&self.bytes).ok().filter(|_| self.data == DataType::String)
     }
 
     /// The number, if the value is a number or text that spells one.
-    #[must_use]
     pub fn as_number(&self) -> Option<f64> {
         match self.data {
             DataType::Double => Some(self.number),
@@ -120,7 +116,6 @@ impl Msg {
     }
 
     /// The truth value of `true`, `false` and numbers.
-    #[must_use]
     pub fn as_bool(&self) -> Option<bool> {
         match self.as_text().map(|text| text.trim().to_ascii_lowercase()).as_deref() {
             Some("true" | "yes" | "on") => Some(true),
@@ -229,7 +224,6 @@ pub fn encode(msg: &Msg, out: &mut Vec<u8>) {
 }
 
 /// A packet of encoded messages.
-#[must_use]
 pub fn packet<'a>(messages: impl Iterator<Item = &'a [u8]> + Clone) -> Vec<u8> {
     let length = HEADER + messages.clone().map(<[u8]>::len).sum::<usize>();
     let mut out = Vec::with_capacity(length);
@@ -241,7 +235,6 @@ pub fn packet<'a>(messages: impl Iterator<Item = &'a [u8]> + Clone) -> Vec<u8> {
 }
 
 /// A packet of these messages.
-#[must_use]
 pub fn packet_of(messages: &[Msg]) -> Vec<u8> {
     let encoded = |msg: &Msg| {
         let mut out = Vec::new();

@@ -6,7 +6,6 @@
 /// only sums, products and one division, so that a layer's values vectorise. `libm::tanhf` takes
 /// longer than the layer's sums.
 #[inline]
-#[must_use]
 pub fn tanh(x: f32) -> f32 {
     const ODD: [f32; 7] =
         [-2.760_768_5e-16, 2.000_188e-13, -8.604_672e-11, 5.122_297e-8, 1.485_722_4e-5, 6.372_619_3e-4, 4.893_524_6e-3];

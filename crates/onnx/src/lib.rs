@@ -67,37 +67,31 @@ impl Network {
     }
 
     /// The inputs, in the order of [`Network::evaluate`].
-    #[must_use]
     pub fn inputs(&self) -> &[Port] {
         &self.plan.inputs
     }
 
     /// The outputs, in file order.
-    #[must_use]
     pub fn outputs(&self) -> &[Port] {
         &self.plan.outputs
     }
 
     /// The author's metadata in the file: `metadata_props`.
-    #[must_use]
     pub fn metadata(&self) -> &BTreeMap<String, String> {
         &self.plan.metadata
     }
 
     /// What in the file deviates from what it computes, such as a declared shape of an output.
-    #[must_use]
     pub fn warnings(&self) -> &[String] {
         &self.plan.warnings
     }
 
     /// 128-bit XXH3 digest of the file.
-    #[must_use]
     pub fn digest(&self) -> u128 {
         self.plan.digest
     }
 
     /// The number of values in all inputs together.
-    #[must_use]
     pub fn input_size(&self) -> usize {
         self.plan.input_size
     }
@@ -118,7 +112,6 @@ impl Network {
     ///
     /// # Panics
     /// If `index` is out of range.
-    #[must_use]
     pub fn output(&self, index: usize) -> &[f32] {
         &self.values[self.plan.places[index].clone()]
     }

@@ -6,7 +6,6 @@ use std::f64::consts::{PI, TAU};
 ///
 /// An angle already in range costs two comparisons.
 #[inline]
-#[must_use]
 pub fn wrap_pi(angle_rad: f64) -> f64 {
     if angle_rad > -PI && angle_rad <= PI {
         return angle_rad;
@@ -16,7 +15,6 @@ pub fn wrap_pi(angle_rad: f64) -> f64 {
 }
 
 /// A compass heading in degrees (0 to 360) from an angle in radians.
-#[must_use]
 pub fn compass_deg_from_rad(angle_rad: f64) -> f64 {
     let degrees = angle_rad.to_degrees();
     let turned = degrees - 360.0 * (degrees / 360.0).floor();
@@ -24,7 +22,6 @@ pub fn compass_deg_from_rad(angle_rad: f64) -> f64 {
 }
 
 /// An angle in radians (-pi to pi) from a compass heading in degrees.
-#[must_use]
 pub fn rad_from_compass_deg(heading_deg: f64) -> f64 {
     wrap_pi(heading_deg.to_radians())
 }

@@ -45,7 +45,6 @@ pub enum DecodeError {
 ///
 /// # Panics
 /// Never: every message is a plain struct of numbers, lists and strings.
-#[must_use]
 pub fn encode<M: Message + Serialize>(message: &M) -> Vec<u8> {
     encode_plain(message)
 }
@@ -54,7 +53,6 @@ pub fn encode<M: Message + Serialize>(message: &M) -> Vec<u8> {
 ///
 /// # Panics
 /// If a list has no length in advance: use plain structs of numbers, lists and strings.
-#[must_use]
 pub fn encode_plain<T: Serialize>(message: &T) -> Vec<u8> {
     // Large enough for most messages: growing costs as much as writing.
     let mut bytes = Vec::with_capacity(4096);
@@ -65,7 +63,6 @@ pub fn encode_plain<T: Serialize>(message: &T) -> Vec<u8> {
 
 /// Decodes a message of another system, which has no stamp; none if it has another layout. Up to
 /// three bytes of padding may follow.
-#[must_use]
 pub fn decode_plain<T: DeserializeOwned>(bytes: &[u8]) -> Option<T> {
     let body = bytes.strip_prefix(&ENCAPSULATION)?;
     let (message, used) = cdr_encoding::from_bytes::<T, LittleEndian>(body).ok()?;

@@ -68,41 +68,35 @@ pub struct LatLon {
 
 impl Ned {
     /// The vector (`x` east, `y` north) of files and charts.
-    #[must_use]
     pub fn from_xy(x_east: f64, y_north: f64) -> Ned {
         Ned { north: y_north, east: x_east }
     }
 
     /// The unit vector along a compass bearing in degrees, exact at quarter turns.
-    #[must_use]
     pub fn toward_deg(bearing_deg: f64) -> Ned {
         Rotation::from_heading_deg(bearing_deg).ahead()
     }
 
     /// This vector times `factor`.
     #[inline]
-    #[must_use]
     pub fn scaled(self, factor: f64) -> Ned {
         Ned { north: self.north * factor, east: self.east * factor }
     }
 
     /// The scalar product with `other`.
     #[inline]
-    #[must_use]
     pub fn dot(self, other: Ned) -> f64 {
         self.north * other.north + self.east * other.east
     }
 
     /// The length.
     #[inline]
-    #[must_use]
     pub fn length(self) -> f64 {
         math::length(self.north, self.east)
     }
 
     /// The squared distance to `other`.
     #[inline]
-    #[must_use]
     pub fn distance_squared(self, other: Ned) -> f64 {
         let n = self.north - other.north;
         let e = self.east - other.east;
@@ -111,27 +105,23 @@ impl Ned {
 
     /// The distance to `other`.
     #[inline]
-    #[must_use]
     pub fn distance(self, other: Ned) -> f64 {
         self.distance_squared(other).sqrt()
     }
 
     /// The nearest of `places`; the first of equals.
-    #[must_use]
     pub fn nearest_of(self, places: impl Iterator<Item = Ned>) -> Option<Ned> {
         places.min_by(|x, y| self.distance_squared(*x).total_cmp(&self.distance_squared(*y)))
     }
 
     /// The bearing of `other` from here, radians clockwise from north.
     #[inline]
-    #[must_use]
     pub fn bearing_rad(self, other: Ned) -> f64 {
         math::atan2(other.east - self.east, other.north - self.north)
     }
 
     /// Whether both components are finite.
     #[inline]
-    #[must_use]
     pub fn is_finite(self) -> bool {
         self.north.is_finite() && self.east.is_finite()
     }
@@ -159,14 +149,12 @@ impl Rotation {
 
     /// The rotation for a heading, radians clockwise from north.
     #[inline]
-    #[must_use]
     pub fn from_heading(psi_rad: f64) -> Rotation {
         let (sin, cos) = math::sin_cos(psi_rad);
         Rotation { sin, cos }
     }
 
     /// The rotation for a compass heading in degrees, exact at quarter turns.
-    #[must_use]
     pub fn from_heading_deg(heading_deg: f64) -> Rotation {
         let (sin, cos) = math::sin_cos_deg(heading_deg);
         Rotation { sin, cos }
@@ -174,21 +162,18 @@ impl Rotation {
 
     /// The rotation for a heading further clockwise by `by`.
     #[inline]
-    #[must_use]
     pub fn turned(self, by: Rotation) -> Rotation {
         Rotation { sin: self.sin * by.cos + self.cos * by.sin, cos: self.cos * by.cos - self.sin * by.sin }
     }
 
     /// The unit vector ahead.
     #[inline]
-    #[must_use]
     pub fn ahead(self) -> Ned {
         Ned { north: self.cos, east: self.sin }
     }
 
     /// The unit vector to starboard.
     #[inline]
-    #[must_use]
     pub fn starboard(self) -> Ned {
         Ned { north: -self.sin, east: self.cos }
     }
@@ -197,7 +182,6 @@ impl Rotation {
 impl Pose {
     /// The rotation of its heading.
     #[inline]
-    #[must_use]
     pub fn rotation(self) -> Rotation {
         Rotation::from_heading(self.psi_rad)
     }
@@ -205,7 +189,6 @@ impl Pose {
 
 /// Converts a body vector to the field's frame.
 #[inline]
-#[must_use]
 pub fn ned_from_body(rotation: Rotation, body: Body) -> Ned {
     Ned {
         north: rotation.cos * body.ahead - rotation.sin * body.starboard,
@@ -215,7 +198,6 @@ pub fn ned_from_body(rotation: Rotation, body: Body) -> Ned {
 
 /// Converts a vector of the field's frame to body axes.
 #[inline]
-#[must_use]
 pub fn body_from_ned(rotation: Rotation, ned: Ned) -> Body {
     Body {
         ahead: rotation.cos * ned.north + rotation.sin * ned.east,

@@ -20,14 +20,12 @@ pub struct FlagId(pub u8);
 impl VehicleId {
     /// The index as a `usize`, for list access.
     #[inline]
-    #[must_use]
     pub fn index(self) -> usize {
         usize::from(self.0)
     }
 
     /// The vehicle at `index`. The scenario has already checked the list's length.
     #[inline]
-    #[must_use]
     pub fn at(index: usize) -> VehicleId {
         debug_assert!(index < usize::from(u16::MAX));
         VehicleId(index as u16)
@@ -37,7 +35,6 @@ impl VehicleId {
 impl TeamId {
     /// The index as a `usize`, for list access.
     #[inline]
-    #[must_use]
     pub fn index(self) -> usize {
         usize::from(self.0)
     }
@@ -46,7 +43,6 @@ impl TeamId {
 impl FlagId {
     /// The index as a `usize`, for list access.
     #[inline]
-    #[must_use]
     pub fn index(self) -> usize {
         usize::from(self.0)
     }

@@ -33,7 +33,6 @@ pub trait Kernel {
 
 impl Instructions {
     /// All instruction sets that this machine supports, baseline first.
-    #[must_use]
     pub fn of_this_machine() -> Vec<Instructions> {
         #[cfg_attr(not(target_arch = "x86_64"), expect(unused_mut, reason = "there is one"))]
         let mut sets = vec![Instructions(Set::Baseline)];
@@ -54,7 +53,6 @@ impl Instructions {
     }
 
     /// The fastest instruction set that this machine supports.
-    #[must_use]
     pub fn best() -> Instructions {
         Instructions::of_this_machine().pop().unwrap_or(Instructions(Set::Baseline))
     }

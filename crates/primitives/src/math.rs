@@ -6,14 +6,12 @@
 
 /// Sine and cosine of an angle in radians.
 #[inline]
-#[must_use]
 pub fn sin_cos(angle_rad: f64) -> (f64, f64) {
     libm::sincos(angle_rad)
 }
 
 /// Sine and cosine of an angle in degrees, exact at every quarter turn: fields along the axes keep
 /// exact coordinates.
-#[must_use]
 pub fn sin_cos_deg(angle_deg: f64) -> (f64, f64) {
     let turn = angle_deg - 360.0 * (angle_deg / 360.0).floor();
     match turn {
@@ -27,14 +25,12 @@ pub fn sin_cos_deg(angle_deg: f64) -> (f64, f64) {
 
 /// The angle of the vector (`x`, `y`) from the x axis, in -pi to pi.
 #[inline]
-#[must_use]
 pub fn atan2(y: f64, x: f64) -> f64 {
     libm::atan2(y, x)
 }
 
 /// e to the power `x`.
 #[inline]
-#[must_use]
 pub fn exp(x: f64) -> f64 {
     libm::exp(x)
 }
@@ -44,7 +40,6 @@ pub fn exp(x: f64) -> f64 {
 ///
 /// # Panics
 /// If `points` is empty.
-#[must_use]
 pub fn interpolate(points: impl IntoIterator<Item = (f64, f64)>, x: f64) -> f64 {
     let mut points = points.into_iter();
     let mut before = points.next().expect("a line has a point");
@@ -60,14 +55,12 @@ pub fn interpolate(points: impl IntoIterator<Item = (f64, f64)>, x: f64) -> f64 
 
 /// The length of the vector (`x`, `y`).
 #[inline]
-#[must_use]
 pub fn length(x: f64, y: f64) -> f64 {
     (x * x + y * y).sqrt()
 }
 
 /// Formats a number with `places` decimals; −0.0 becomes 0, because text comparisons distinguish
 /// them.
-#[must_use]
 pub fn decimal(number: f64, places: usize) -> String {
     let text = format!("{number:.places$}");
     if text.trim_start_matches(['-', '0', '.']).is_empty() { text.trim_start_matches('-').to_owned() } else { text }

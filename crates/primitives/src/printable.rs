@@ -10,13 +10,11 @@ const TAIL: usize = 400;
 
 /// A text of many lines. Escapes control characters except line breaks and tabs as in JSON, and
 /// characters that change the writing direction.
-#[must_use]
 pub fn text(text: &str) -> Cow<'_, str> {
     spelt(text, |character| !matches!(character, '\n' | '\t') && steers(character))
 }
 
 /// The same for a text that may have colours (`ESC [ numbers m`).
-#[must_use]
 pub fn coloured(text: &str) -> String {
     let mut parts = text.split('\x1b');
     let mut shown = self::text(parts.next().unwrap_or_default()).into_owned();
@@ -30,19 +28,16 @@ pub fn coloured(text: &str) -> String {
 }
 
 /// One line of a message. Omits the middle of a very long one.
-#[must_use]
 pub fn line(text: &str) -> String {
     shortened(&spelt(text, steers)).into_owned()
 }
 
 /// A message of one or more lines, each treated as above.
-#[must_use]
 pub fn message(text: &str) -> String {
     text.split('\n').map(line).collect::<Vec<_>>().join("\n")
 }
 
 /// The same for a message that may have colours.
-#[must_use]
 pub fn coloured_message(text: &str) -> String {
     text.split('\n').map(|line| shortened(&coloured(line)).into_owned()).collect::<Vec<_>>().join("\n")
 }

@@ -36,25 +36,21 @@ impl From<u64> for Seeds {
 
 impl Seeds {
     /// The first seed and its replacements, by ascending time.
-    #[must_use]
     pub fn new(first: u64, reseed: &[Reseed]) -> Seeds {
         Seeds { first, later: reseed.iter().map(|one| (SimTime::from_s(one.after_s), one.seed)).collect() }
     }
 
     /// The seed of draws for the whole game.
-    #[must_use]
     pub fn first(&self) -> u64 {
         self.first
     }
 
     /// The replacement seeds: the seed of draws after each time, by ascending time.
-    #[must_use]
     pub fn later(&self) -> &[(SimTime, u64)] {
         &self.later
     }
 
     /// The noise `name` of this game.
-    #[must_use]
     pub fn noise(&self, name: &str) -> TimedNoise {
         let later = self.later.iter().map(|(after, seed)| (*after, Noise::new(*seed, name)));
         TimedNoise { first: Noise::new(self.first, name), later: later.collect() }
@@ -71,7 +67,6 @@ pub struct TimedNoise {
 impl TimedNoise {
     /// The noise for draws at `now`.
     #[inline]
-    #[must_use]
     pub fn at(&self, now: SimTime) -> Noise {
         // A new key from a time on, instead of a snapshot. This replays the past, at most doubling
         // the time of a branch. In return, a branch is a game like any other, with a seed and a key

@@ -15,7 +15,6 @@ pub struct Stream(ChaCha8Rng);
 
 impl Stream {
     /// The stream `name` (for example `spawn` or `mind/red_one`) of the game with this seed.
-    #[must_use]
     pub fn new(seed: u64, name: &str) -> Stream {
         let mut key = [0; 32];
         key[..8].copy_from_slice(&seed.to_le_bytes());
@@ -77,14 +76,12 @@ pub struct Noise(u64);
 
 impl Noise {
     /// The noise `name` (for example `gps/red_one`) of the game with this seed.
-    #[must_use]
     pub fn new(seed: u64, name: &str) -> Noise {
         Noise(Stream::new(seed, name).bits())
     }
 
     /// 64 uniform random bits.
     #[inline]
-    #[must_use]
     pub fn bits(&self, count: u64) -> u64 {
         let mut z = self.0.wrapping_add(count.wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15));
         z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
@@ -94,7 +91,6 @@ impl Noise {
 
     /// A number in 0 (included) to 1 (excluded).
     #[inline]
-    #[must_use]
     pub fn unit(&self, count: u64) -> f64 {
         unit(self.bits(count))
     }
@@ -102,21 +98,18 @@ impl Noise {
     /// Two independent normal numbers of mean 0 and variance 1. Uses two units: those of twice the
     /// count and of the next number.
     #[inline]
-    #[must_use]
     pub fn normal_pair(&self, count: u64) -> (f64, f64) {
         (self.normal(2 * count), self.normal(2 * count + 1))
     }
 
     /// A normal number of mean 0 and variance 1, in place of a unit. Further bits, if needed,
     /// derive from the first.
-    #[must_use]
     pub fn normal(&self, count: u64) -> f64 {
         let first = self.bits(count);
         normal(|asked| if asked == 0 { first } else { Noise(first).bits(asked) })
     }
 
     /// An exponentially distributed number of mean 1.
-    #[must_use]
     pub fn exponential(&self, count: u64) -> f64 {
         -libm::log(1.0 - self.unit(count))
     }

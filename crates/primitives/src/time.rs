@@ -21,14 +21,12 @@ impl SimTime {
     pub const NEVER: SimTime = SimTime(i64::MAX / 4);
 
     /// The nearest whole nanosecond to `seconds`.
-    #[must_use]
     pub fn from_s(seconds: f64) -> SimTime {
         SimTime((seconds * 1e9).round() as i64)
     }
 
     /// The time in seconds.
     #[inline]
-    #[must_use]
     pub fn as_s(self) -> f64 {
         self.0 as f64 * 1e-9
     }

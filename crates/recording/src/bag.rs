@@ -169,13 +169,11 @@ impl Bag {
     }
 
     /// A fact of the header; empty if missing.
-    #[must_use]
     pub fn fact(&self, key: &str) -> &str {
         self.facts.get(key).map_or("", String::as_str)
     }
 
     /// Its size, bytes.
-    #[must_use]
     pub fn size(&self) -> u64 {
         self.source.length
     }
@@ -203,7 +201,6 @@ impl Bag {
     ///
     /// # Panics
     /// If `place` is out of range.
-    #[must_use]
     pub fn message(&self, place: usize) -> RecordedMessage<'_> {
         let entry = self.index.entry(&self.source, place);
         let channel = entry.and_then(|entry| self.channels.get(&entry.channel));
@@ -222,13 +219,11 @@ impl Bag {
     }
 
     /// Wall-clock time from the first to the last message, ns.
-    #[must_use]
     pub fn span_utc_ns(&self) -> u64 {
         self.index.span_utc_ns()
     }
 
     /// The topics with messages, by name, with their message counts.
-    #[must_use]
     pub fn topics(&self) -> BTreeMap<&str, usize> {
         let mut topics = BTreeMap::new();
         for (channel, count) in &self.index.counts {

@@ -25,13 +25,11 @@ impl Damaged {
     }
 
     /// The sum of both counts.
-    #[must_use]
     pub fn and(self, others: &Damaged) -> Damaged {
         Damaged { count: self.count + others.count, first: self.first.or_else(|| others.first.clone()) }
     }
 
     /// A note for the user if any message is damaged.
-    #[must_use]
     pub fn remark(&self) -> Option<String> {
         let first = self.first.as_ref()?;
         let messages = if self.count == 1 { "message is" } else { "messages are" };

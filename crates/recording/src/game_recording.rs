@@ -15,7 +15,6 @@ pub const FRAME: &str = "frame";
 pub const INPUTS: &str = "inputs";
 
 /// The topic of a team's pictures.
-#[must_use]
 pub fn picture(team: &str) -> String {
     format!("picture/{team}")
 }
@@ -56,7 +55,6 @@ fn json(value: &impl Serialize) -> String {
 
 impl Header {
     /// The opening of this game's recording.
-    #[must_use]
     pub fn opening(&self) -> Opening {
         let scenario = &self.info.scenario;
         let drawn = scenario.drawn.iter().map(|drawn| (drawn.parameter.clone(), drawn.value.to_string()));
@@ -93,7 +91,6 @@ impl Header {
 
 impl Ending {
     /// The facts of the ending, except the number of dropped messages, which the recorder adds.
-    #[must_use]
     pub fn facts(&self) -> Facts {
         facts([
             ("digest", self.outcome.digest.clone()),
@@ -154,37 +151,31 @@ impl Recording {
     }
 
     /// The underlying recording.
-    #[must_use]
     pub fn bag(&self) -> &Bag {
         &self.bag
     }
 
     /// The header.
-    #[must_use]
     pub fn header(&self) -> &Header {
         &self.header
     }
 
     /// The game's scenario.
-    #[must_use]
     pub fn scenario(&self) -> &Scenario {
         &self.header.info.scenario
     }
 
     /// The ending; none if the file is truncated.
-    #[must_use]
     pub fn ending(&self) -> Option<&Ending> {
         self.ending.as_ref()
     }
 
     /// Whether the file is truncated.
-    #[must_use]
     pub fn is_cut(&self) -> bool {
         self.bag.is_cut || self.ending.is_none()
     }
 
     /// The number of frames.
-    #[must_use]
     pub fn frame_count(&self) -> usize {
         self.bag.topics().get(FRAME).copied().unwrap_or(0)
     }
@@ -193,7 +184,6 @@ impl Recording {
     ///
     /// # Panics
     /// If `i` is out of range.
-    #[must_use]
     pub fn frame(&self, i: usize) -> RecordedMessage<'_> {
         self.bag.message(self.frames.get_or_init(|| self.bag.places(FRAME).collect())[i])
     }

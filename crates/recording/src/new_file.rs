@@ -25,7 +25,6 @@ pub struct NewFile {
 pub struct LentFile(PathBuf);
 
 /// The name of a game's recording without extension: time, game and seed.
-#[must_use]
 pub fn stem(game: &str, seed: u64) -> String {
     format!("{}_{game}_{seed}", utc::file_stamp(utc::now_ns()))
 }
@@ -80,14 +79,12 @@ impl NewFile {
     }
 
     /// Lends the file to a child process.
-    #[must_use]
     pub fn lend(mut self) -> LentFile {
         self.file = None;
         LentFile(std::mem::take(&mut self.path))
     }
 
     /// Its path.
-    #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -107,7 +104,6 @@ impl Drop for NewFile {
 
 impl LentFile {
     /// Its path.
-    #[must_use]
     pub fn path(&self) -> &Path {
         &self.0
     }

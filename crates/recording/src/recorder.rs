@@ -104,19 +104,16 @@ impl Recorder {
     }
 
     /// A recorder of optional data into the same file, valid as long as this recorder exists.
-    #[must_use]
     pub fn bulk(&self) -> BulkRecorder {
         BulkRecorder(self.queue.clone())
     }
 
     /// The number of entries dropped by its [`BulkRecorder`]s.
-    #[must_use]
     pub fn bulk_dropped(&self) -> u64 {
         self.queue.shared.bulk_dropped.load(Ordering::Relaxed)
     }
 
     /// The state of the recording.
-    #[must_use]
     pub fn state(&self) -> RecordingState {
         RecordingState {
             file: self.path.display().to_string(),

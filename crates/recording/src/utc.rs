@@ -8,7 +8,6 @@ const DAYS: [&str; 7] = ["Mon", "Tue", "Wed", "Thu", "Fri", "Sat", "Sun"];
 const MONTHS: [&str; 12] = ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"];
 
 /// The current time, ns since 1970; 0 if the host's clock is earlier than that.
-#[must_use]
 pub fn now_ns() -> u64 {
     u64::try_from(UtcDateTime::now().unix_timestamp_nanos()).unwrap_or(0)
 }
@@ -21,21 +20,18 @@ fn parts(utc_ns: u64) -> (UtcDateTime, [u32; 6]) {
 }
 
 /// Format for file names: `20261121T222000Z`.
-#[must_use]
 pub fn file_stamp(utc_ns: u64) -> String {
     let (_, [year, month, day, hour, minute, second]) = parts(utc_ns);
     format!("{year:04}{month:02}{day:02}T{hour:02}{minute:02}{second:02}Z")
 }
 
 /// For people: `2026-11-21 22:20:00 UTC`.
-#[must_use]
 pub fn text(utc_ns: u64) -> String {
     let (_, [year, month, day, hour, minute, second]) = parts(utc_ns);
     format!("{year:04}-{month:02}-{day:02} {hour:02}:{minute:02}:{second:02} UTC")
 }
 
 /// Format of C's `ctime`: `Sat Nov 21 22:20:00 2026`.
-#[must_use]
 pub fn ctime(utc_ns: u64) -> String {
     let (at, [year, month, day, hour, minute, second]) = parts(utc_ns);
     let weekday = DAYS[usize::from(at.weekday().number_days_from_monday())];

@@ -35,7 +35,6 @@ pub struct Motion {
 
 impl Motion {
     /// As measured by the boat itself.
-    #[must_use]
     pub fn measured(stamp: Stamp, boat: &OwnBoat) -> Motion {
         let (at, nav) = (stamp.valid_ns, boat.nav);
         // A boat does not measure its attitude: level is the estimate that belongs to this picture.
@@ -43,7 +42,6 @@ impl Motion {
     }
 
     /// The truth.
-    #[must_use]
     pub fn truth(stamp: Stamp, boat: &VehicleTruth) -> Motion {
         let VehicleTruth { nav, heave_m, roll_rad, pitch_rad, .. } = *boat;
         Motion { at: stamp.valid_ns, fix: stamp.valid_ns, nav, heave_m, roll_rad, pitch_rad, imu: None }
@@ -54,7 +52,6 @@ impl Motion {
     }
 
     /// Position and orientation of `base_link` in [`MAP`].
-    #[must_use]
     pub fn pose(&self) -> Pose {
         let [x, y, _] = enu(self.nav.at());
         // Roll keeps its sign: both frames turn about the axis ahead. Pitch turns about an axis to
@@ -66,7 +63,6 @@ impl Motion {
     }
 
     /// `nav_msgs/Odometry`: the pose in [`MAP`], the twist in `base_link`.
-    #[must_use]
     pub fn odometry(&self, base_link: &str) -> Odometry {
         let Nav { surge_m_s, sway_m_s, yaw_rate_rad_s, .. } = self.nav;
         let twist = Twist { linear: [surge_m_s, -sway_m_s, 0.0], angular: [0.0, 0.0, -yaw_rate_rad_s] };
@@ -75,21 +71,18 @@ impl Motion {
     }
 
     /// The transform from [`MAP`] to `base_link`.
-    #[must_use]
     pub fn transform(&self, base_link: &str) -> TransformStamped {
         let header = self.header(MAP);
         TransformStamped { header, child_frame_id: base_link.to_owned(), transform: self.pose() }
     }
 
     /// `geometry_msgs/TwistStamped`: the velocity over the ground in [`MAP`].
-    #[must_use]
     pub fn velocity(&self) -> TwistStamped {
         let angular = [0.0, 0.0, -self.nav.yaw_rate_rad_s];
         TwistStamped { header: self.header(MAP), twist: Twist { linear: enu(self.nav.velocity_m_s()), angular } }
     }
 
     /// `sensor_msgs/NavSatFix` of this position, with the time of the fix.
-    #[must_use]
     pub fn fix(&self, base_link: &str, LatLon { lat_deg, lon_deg }: LatLon) -> NavSatFix {
         const GPS: u16 = 1;
         let header = Header { stamp: self.fix.into(), frame_id: base_link.to_owned() };
@@ -97,7 +90,6 @@ impl Motion {
     }
 
     /// `sensor_msgs/Imu` in `base_link`. A covariance that begins with -1 marks a missing part.
-    #[must_use]
     pub fn imu(&self, base_link: &str) -> Imu {
         let missing = [-1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
         let orientation = self.pose().orientation;
@@ -116,13 +108,11 @@ impl Motion {
 }
 
 /// A horizontal vector in east, north and up.
-#[must_use]
 pub fn enu(vector: Ned) -> Vector3 {
     [vector.east, vector.north, 0.0]
 }
 
 /// The orientation after a roll about x, a pitch about y and a yaw about z, in fixed axes.
-#[must_use]
 pub fn quaternion(roll_rad: f64, pitch_rad: f64, yaw_rad: f64) -> Quaternion {
     let [(sr, cr), (sp, cp), (sy, cy)] = [roll_rad, pitch_rad, yaw_rad].map(|angle| math::sin_cos(angle / 2.0));
     [sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy, cr * cp * sy - sr * sp * cy, cr * cp * cy + sr * sp * sy]

@@ -16,7 +16,6 @@ const STALE: u8 = 3;
 const SILENCE: Duration = Duration::from_secs(3);
 
 /// The bridge's own status.
-#[must_use]
 pub fn bridge(game: &str, boats: &[String], refused: Refusals) -> DiagnosticStatus {
     let (level, message) = match refused.total() {
         0 => (OK, format!("in game {game}")),
@@ -27,7 +26,6 @@ pub fn bridge(game: &str, boats: &[String], refused: Refusals) -> DiagnosticStat
 }
 
 /// The status of a boat's gateway, received this long ago.
-#[must_use]
 pub fn gateway(status: &GatewayStatus, age: Duration) -> DiagnosticStatus {
     let newest = status.failsafes.last().map(|failsafe| failsafe.cause.as_str()).unwrap_or_default();
     let (level, message) = if age > SILENCE {
@@ -59,7 +57,6 @@ pub fn gateway(status: &GatewayStatus, age: Duration) -> DiagnosticStatus {
 }
 
 /// All statuses at this game time.
-#[must_use]
 pub fn array(at: SimTime, status: Vec<DiagnosticStatus>) -> DiagnosticArray {
     DiagnosticArray { header: Header { stamp: at.into(), frame_id: String::new() }, status }
 }

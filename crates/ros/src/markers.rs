@@ -40,7 +40,6 @@ fn standing(at: Ned) -> Pose {
 }
 
 /// What does not move: edges, scrimmage line and obstacles.
-#[must_use]
 pub fn field(scenario: &Scenario, at: SimTime) -> MarkerArray {
     let field = &scenario.field;
     let closed = |corners: &[Ned]| corners.iter().chain(corners.first()).copied().collect::<Vec<_>>().into_iter();
@@ -59,7 +58,6 @@ pub fn field(scenario: &Scenario, at: SimTime) -> MarkerArray {
 }
 
 /// What moves: boats as arrows of their length, and flags as spheres, at home or on their carrier.
-#[must_use]
 pub fn game(scenario: &Scenario, frame: &Frame) -> MarkerArray {
     let at = frame.stamp.valid_ns;
     let boats = frame.vehicles.iter().take(scenario.vehicles.len()).enumerate().map(|(i, truth)| {

@@ -42,14 +42,12 @@ fn dds_name(type_name: &str) -> String {
 }
 
 /// The key of a topic's messages or a service's requests. `topic` begins with a slash.
-#[must_use]
 pub fn key(domain: u32, topic: &str, type_name: &str) -> String {
     format!("{domain}/{}/{}/{}", topic.trim_start_matches('/'), dds_name(type_name), type_hash(type_name))
 }
 
 impl Node {
     /// The node's token.
-    #[must_use]
     pub fn token(&self) -> String {
         let Node { domain, session, id, name } = self;
         format!("@ros2_lv/{domain}/{session}/{id}/{id}/NN/%/%/{name}")
@@ -57,7 +55,6 @@ impl Node {
 
     /// The token of one of its endpoints, whose number no other endpoint or node of the session
     /// has.
-    #[must_use]
     pub fn endpoint_token(&self, endpoint: u32, kind: Kind, topic: &str, type_name: &str) -> String {
         let Node { domain, session, id, name } = self;
         let kind = match kind {
@@ -71,28 +68,24 @@ impl Node {
 }
 
 /// The global identifier of the endpoint with this token.
-#[must_use]
 pub fn gid(token: &str) -> [u8; 16] {
     xxh3_128(token.as_bytes()).to_le_bytes()
 }
 
 /// The attachment of a message: its number from 1, the time of sending in ns since 1970, and its
 /// sender.
-#[must_use]
 pub fn attachment(sequence: i64, sent_ns: i64, gid: [u8; 16]) -> Vec<u8> {
     [&sequence.to_le_bytes()[..], &sent_ns.to_le_bytes(), &[16], &gid].concat()
 }
 
 /// The attachment of the answer to a request with this attachment: its number and sender, at
 /// another time. None if it is not one.
-#[must_use]
 pub fn answer_attachment(request: &[u8], sent_ns: i64) -> Option<Vec<u8>> {
     let gid = request.get(17..33).filter(|_| request.len() == 33 && request[16] == 16)?;
     Some([&request[..8], &sent_ns.to_le_bytes(), &[16], gid].concat())
 }
 
 /// Whether ROS 2 accepts `name` as a part of names of topics, nodes and frames.
-#[must_use]
 pub fn is_ros_name(name: &str) -> bool {
     let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
     name.starts_with(|c: char| c.is_ascii_alphabetic()) && name.chars().all(is_word) && !name.contains("__")

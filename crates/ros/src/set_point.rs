@@ -79,7 +79,6 @@ pub struct Follower {
 
 impl Follower {
     /// A follower without a request.
-    #[must_use]
     pub fn new(ttl: SimTime) -> Follower {
         Follower { ttl, newest: None, heading: None }
     }

@@ -83,7 +83,6 @@ fn full_name(name: &str, package: &str) -> String {
 }
 
 /// The definition of a type, without those nested in it.
-#[must_use]
 pub fn definition(type_name: &str) -> Option<&'static str> {
     if let Some(own) = type_name.strip_prefix("squall_msgs/msg/") {
         return DEFINITIONS.iter().find(|(name, _)| *name == own).map(|(_, text)| *text);
@@ -96,7 +95,6 @@ pub fn definition(type_name: &str) -> Option<&'static str> {
 ///
 /// # Panics
 /// If the bridge has no definition of it or of a nested type: a test covers all types in use.
-#[must_use]
 pub fn type_hash(type_name: &str) -> String {
     let mut described = BTreeMap::new();
     describe(type_name, &mut described);

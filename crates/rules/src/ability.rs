@@ -19,14 +19,12 @@ pub struct Ability {
 impl Ability {
     /// Whether it may act on others: tag, grab, capture.
     #[inline]
-    #[must_use]
     pub fn acts(self) -> bool {
         !(self.tagged || self.disabled || self.outside)
     }
 
     /// Whether it may tag an opponent that it can reach.
     #[inline]
-    #[must_use]
     pub fn may_tag(self, now: SimTime) -> bool {
         self.acts() && now >= self.tag_ready
     }
@@ -34,21 +32,18 @@ impl Ability {
 
 impl Rules {
     /// The time from which a boat that tagged at `tagged_at` may tag again.
-    #[must_use]
     pub fn tag_ready_after(&self, tagged_at: SimTime) -> SimTime {
         tagged_at + self.tag_cooldown
     }
 
     /// Remaining wait until `tag_ready` as a share of the tag cooldown, 0 to 1. A cooldown below 1
     /// s counts as 1 s.
-    #[must_use]
     pub fn tag_wait_share(&self, tag_ready: SimTime, now: SimTime) -> f64 {
         (tag_wait_s(tag_ready, now) / self.tag_cooldown.as_s().max(1.0)).min(1.0)
     }
 }
 
 /// Remaining wait until `tag_ready`, s; at least 0.
-#[must_use]
 pub fn tag_wait_s(tag_ready: SimTime, now: SimTime) -> f64 {
     (tag_ready - now).as_s().max(0.0)
 }

@@ -34,7 +34,6 @@ pub struct Tally {
 
 impl Tally {
     /// The counts of `vehicles` boats before any event.
-    #[must_use]
     pub fn new(vehicles: usize) -> Tally {
         Tally { vehicles: vec![Counts::default(); vehicles] }
     }
@@ -64,7 +63,6 @@ impl Tally {
     }
 
     /// The sum over one team's boats.
-    #[must_use]
     pub fn team(&self, team: TeamId, team_of: impl Fn(usize) -> TeamId) -> Counts {
         let mut sum = Counts::default();
         for (_, c) in self.vehicles.iter().enumerate().filter(|(i, _)| team_of(*i) == team) {

@@ -26,7 +26,6 @@ pub enum Directive {
 impl Referee {
     /// The constraint on a boat at `at`. The lower of two speed limits applies.
     #[inline]
-    #[must_use]
     pub fn directive(&self, standing: &Standing, vehicle: VehicleId, at: Ned) -> Directive {
         let boat = &standing.vehicles[vehicle.index()];
         if boat.disabled || !boat.in_play {

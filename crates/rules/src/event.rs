@@ -116,7 +116,6 @@ pub enum Event {
 
 impl Event {
     /// The affected boat: the first in a collision, none at the end of a game.
-    #[must_use]
     pub fn vehicle(self) -> Option<VehicleId> {
         match self {
             Event::Grabbed { vehicle, .. }
@@ -140,7 +139,6 @@ impl Event {
     }
 
     /// The second boat: the tagger, or the other in a collision.
-    #[must_use]
     pub fn other(self) -> Option<VehicleId> {
         match self {
             Event::Tagged { cause: TagCause::Opponent(by), .. } => Some(by),
@@ -150,7 +148,6 @@ impl Event {
     }
 
     /// The flag involved.
-    #[must_use]
     pub fn flag(self) -> Option<FlagId> {
         match self {
             Event::Grabbed { flag, .. } | Event::Captured { flag, .. } | Event::FlagReturned { flag, .. } => Some(flag),
@@ -208,7 +205,6 @@ impl From<Logged> for EventRecord {
 
 impl EventRecord {
     /// Decodes the event, if kind and numbers are known.
-    #[must_use]
     pub fn logged(&self) -> Option<Logged> {
         let vehicle = u16::try_from(self.subject).ok().map(VehicleId);
         let other = u16::try_from(self.object).ok().map(VehicleId);

@@ -94,7 +94,6 @@ pub enum Obstacle {
 
 impl Obstacle {
     /// Whether it contains a place.
-    #[must_use]
     pub fn contains(&self, at: Ned) -> bool {
         match self {
             Obstacle::Circle { centre, radius_m } => centre.distance(at) < *radius_m,
@@ -103,7 +102,6 @@ impl Obstacle {
     }
 
     /// The distance to it, m; 0 inside.
-    #[must_use]
     pub fn distance(&self, at: Ned) -> f64 {
         match self {
             Obstacle::Circle { centre, radius_m } => (centre.distance(at) - radius_m).max(0.0),
@@ -119,7 +117,6 @@ pub fn sides(corners: &[Ned]) -> impl Iterator<Item = (Ned, Ned)> {
 }
 
 /// Whether a polygon contains a place: a ray from there crosses its outline an odd number of times.
-#[must_use]
 pub fn is_within(corners: &[Ned], at: Ned) -> bool {
     let crossed = |(a, b): &(Ned, Ned)| {
         (a.east > at.east) != (b.east > at.east)
@@ -129,13 +126,11 @@ pub fn is_within(corners: &[Ned], at: Ned) -> bool {
 }
 
 /// The distance to the outline of a polygon, m; infinite without corners.
-#[must_use]
 pub fn distance_to_outline(corners: &[Ned], at: Ned) -> f64 {
     sides(corners).map(|(a, b)| distance_to_side(a, b, at)).fold(f64::INFINITY, f64::min)
 }
 
 /// The distance to the line segment from `a` to `b`, m.
-#[must_use]
 pub fn distance_to_side(a: Ned, b: Ned, at: Ned) -> f64 {
     let side = b - a;
     let from_a = at - a;
@@ -146,7 +141,6 @@ pub fn distance_to_side(a: Ned, b: Ned, at: Ned) -> f64 {
 
 /// The distance between a polygon's outline and the line segment from `a` to `b`, m; 0 if they
 /// intersect.
-#[must_use]
 pub fn distance_to_line(corners: &[Ned], (a, b): (Ned, Ned)) -> f64 {
     if is_within(corners, a) || sides(corners).any(|side| do_meet(side, (a, b))) {
         return 0.0;
@@ -156,7 +150,6 @@ pub fn distance_to_line(corners: &[Ned], (a, b): (Ned, Ned)) -> f64 {
 }
 
 /// Whether two line segments have a point in common.
-#[must_use]
 pub fn do_meet((a, b): (Ned, Ned), (c, d): (Ned, Ned)) -> bool {
     let c_side = turn(a, b, c);
     let d_side = turn(a, b, d);
@@ -174,7 +167,6 @@ pub fn do_meet((a, b): (Ned, Ned), (c, d): (Ned, Ned)) -> bool {
 }
 
 /// Twice the area of the triangle, positive clockwise on the chart.
-#[must_use]
 pub fn turn(a: Ned, b: Ned, c: Ned) -> f64 {
     (b.north - a.north) * (c.east - a.east) - (b.east - a.east) * (c.north - a.north)
 }
@@ -204,7 +196,6 @@ impl Zone {
 
     /// Whether `at` is inside or on an edge, with a tolerance of 1 nm against rounding.
     #[inline]
-    #[must_use]
     pub fn contains(&self, at: Ned) -> bool {
         self.edges.iter().all(|(out, limit)| out.dot(at) <= limit + 1e-9)
     }
@@ -239,7 +230,6 @@ const ROWS: [&str; 9] = ["B", "F", "H", "M", "C", "MX", "HX", "FX", "BX"];
 
 impl Field {
     /// Derives all geometry from the plan. Of the two teams, the first has the end at corner 0.
-    #[must_use]
     pub fn new(plan: Plan) -> Field {
         let along = Ned::toward_deg(plan.along_deg);
         let across = Ned { north: along.east, east: -along.north };
@@ -263,42 +253,36 @@ impl Field {
     }
 
     /// The position `along_m` from the first team's end and `across_m` from the edge at corner 0.
-    #[must_use]
     pub fn at(&self, along_m: f64, across_m: f64) -> Ned {
         self.plan.corner + self.along.scaled(along_m) + self.across.scaled(across_m)
     }
 
     /// Field coordinates of `at`: (metres along, metres across).
     #[inline]
-    #[must_use]
     pub fn along_across(&self, at: Ned) -> (f64, f64) {
         let from_corner = at - self.plan.corner;
         (from_corner.dot(self.along), from_corner.dot(self.across))
     }
 
     /// The middle of the field.
-    #[must_use]
     pub fn middle(&self) -> Ned {
         (self.corners[0] + self.corners[2]).scaled(0.5)
     }
 
     /// Whether `at` is on the field, boundary excluded.
     #[inline]
-    #[must_use]
     pub fn contains(&self, at: Ned) -> bool {
         let (x, y) = self.along_across(at);
         x > 0.0 && x < self.plan.width_m && y > 0.0 && y < self.plan.depth_m
     }
 
     /// Distance of `at` from the nearest side of the field, m; negative outside.
-    #[must_use]
     pub fn inside_by_m(&self, at: Ned) -> f64 {
         let (x, y) = self.along_across(at);
         x.min(self.plan.width_m - x).min(y).min(self.plan.depth_m - y)
     }
 
     /// Compass bearing from the end of `team` to its opponent's end, degrees.
-    #[must_use]
     pub fn facing_deg(&self, team: TeamId) -> f64 {
         if team.index() == 0 { self.plan.along_deg } else { self.plan.along_deg + 180.0 }
     }
@@ -306,7 +290,6 @@ impl Field {
     /// Target of a boat of `team` at `at` on its way to a corner of its own end: the nearer of the
     /// two points `inset_m` inside both edges. The corners themselves are on the boundary: a boat
     /// from outside would follow the edge on the wrong side.
-    #[must_use]
     pub fn inside_own_corner(&self, team: TeamId, at: Ned, inset_m: f64) -> Option<Ned> {
         // Clockwise: the field is to starboard of the direction from the first corner to the
         // second.
@@ -321,7 +304,6 @@ impl Field {
     /// The named point of `team`, seen from its own end: a column (`PP P C S SS`, port to
     /// starboard) and a row (`B` back, `F` flag line, `H` half of its side, `M` between there
     /// and the centre, `C` centre line, then `MX HX FX BX` on the other side).
-    #[must_use]
     pub fn point(&self, team: TeamId, name: &str) -> Option<Ned> {
         let row_names = ROWS.iter().enumerate().rev();
         let (column, row) = row_names
@@ -337,7 +319,6 @@ impl Field {
 
     /// The position `ahead_m` from the team's own end and `from_port_m` from the edge on its port
     /// side.
-    #[must_use]
     pub fn seen_from(&self, team: TeamId, ahead_m: f64, from_port_m: f64) -> Ned {
         // The first team faces along, so its port side is where `across` is largest.
         if team.index() == 0 {
@@ -348,7 +329,6 @@ impl Field {
     }
 
     /// All names that [`Field::point`] accepts.
-    #[must_use]
     pub fn point_names() -> Vec<String> {
         COLUMNS.iter().flat_map(|(column, _)| ROWS.iter().map(move |row| format!("{column}{row}"))).collect()
     }

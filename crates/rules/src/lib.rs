@@ -139,7 +139,6 @@ pub struct Rules {
 impl Rules {
     /// Distance at which the rules make two boats relevant to each other, m: the reach of `near` in
     /// [`Referee::advance`].
-    #[must_use]
     pub fn reach_m(&self) -> f64 {
         self.tag_radius_m.max(self.collision_distance_m)
     }
@@ -161,7 +160,6 @@ pub struct Points {
 
 impl Points {
     /// The points for these counts.
-    #[must_use]
     pub fn of(&self, counts: &Counts) -> u32 {
         self.grab * counts.grabs + self.capture * counts.captures + self.tag * counts.tags
     }

@@ -11,7 +11,6 @@ use primitives::id::TeamId;
 impl Rules {
     /// The position that decides a boat's side.
     #[inline]
-    #[must_use]
     pub fn side_place(&self, leg: Leg) -> Ned {
         match self.side_judged {
             SideJudged::AfterMove => leg.to,
@@ -20,7 +19,6 @@ impl Rules {
     }
 
     /// Whether a carrier of `team` that has moved along `leg` is at a capture place.
-    #[must_use]
     pub fn is_capture_place(&self, field: &Field, team: TeamId, leg: Leg) -> bool {
         match self.capture_at {
             CaptureAt::OwnSide => field.is_own_side(team, self.side_place(leg)),
@@ -31,7 +29,6 @@ impl Rules {
 
     /// Target of a carrier of `team` at `at`: the nearest capture place or, if the whole own side
     /// counts, the nearest own flag. None on a field without flags or corners of that team.
-    #[must_use]
     pub fn capture_place(&self, field: &Field, team: TeamId, at: Ned) -> Option<Ned> {
         match self.capture_at {
             CaptureAt::OwnFlag | CaptureAt::OwnSide => field.nearest_own_flag(team, at),
@@ -41,7 +38,6 @@ impl Rules {
 
     /// Whether a tagged boat of `team` at `at` is untagged there.
     #[inline]
-    #[must_use]
     pub fn is_untag_place(&self, field: &Field, team: TeamId, at: Ned) -> bool {
         match self.untag_at {
             UntagAt::OwnFlag => is_near_own_flag(field, team, at, self.untag_radius_m),
@@ -51,7 +47,6 @@ impl Rules {
 
     /// Target of a tagged boat of `team` at `at`: the nearest untag place. None on a field without
     /// flags or corners of that team.
-    #[must_use]
     pub fn untag_place(&self, field: &Field, team: TeamId, at: Ned) -> Option<Ned> {
         match self.untag_at {
             UntagAt::OwnFlag => field.nearest_own_flag(team, at),
@@ -60,7 +55,6 @@ impl Rules {
     }
 
     /// The centre of the nearest untag circle of `team`, with radius `untag_radius_m`.
-    #[must_use]
     pub fn untag_centre(&self, field: &Field, team: TeamId, at: Ned) -> Option<Ned> {
         match self.untag_at {
             UntagAt::OwnFlag => field.nearest_own_flag(team, at),

@@ -89,7 +89,6 @@ impl Standing {
 impl VehicleStanding {
     /// Whether it may act on others: tag, grab, capture.
     #[inline]
-    #[must_use]
     pub fn acts(&self) -> bool {
         self.in_play && Ability::from(self).acts()
     }

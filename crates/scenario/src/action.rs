@@ -31,7 +31,6 @@ pub enum Action {
 
 impl Action {
     /// The discrete action with the largest logit; ties go to the first.
-    #[must_use]
     pub fn likeliest(logits: &[f32]) -> Action {
         Action::Discrete((1..logits.len()).fold(0, |best, i| if logits[i] > logits[best] { i } else { best }))
     }
@@ -39,7 +38,6 @@ impl Action {
 
 impl ActionSpace {
     /// A discrete action in words: "50 % speed, 45° to port".
-    #[must_use]
     pub fn words(self, action: usize) -> String {
         if self == ActionSpace::Options {
             return format!("option {action}");
@@ -60,7 +58,6 @@ impl ActionSpace {
 }
 
 /// The probabilities of actions with these logits.
-#[must_use]
 pub fn probabilities(logits: &[f32]) -> Vec<f32> {
     let most = logits.iter().copied().fold(f32::NEG_INFINITY, f32::max);
     let parts: Vec<f64> = logits.iter().map(|logit| math::exp(f64::from(logit - most))).collect();
@@ -85,7 +82,6 @@ const SPEEDS: [f64; 2] = [1.0, 0.5];
 impl ActionSpace {
     /// Number of discrete actions; none for continuous actions, and for options, which depend on a
     /// strategy.
-    #[must_use]
     pub fn count(self) -> Option<usize> {
         match self {
             ActionSpace::Pyquaticus => Some(SPEEDS.len() * TURNS + 1),
@@ -95,20 +91,17 @@ impl ActionSpace {
 
     /// Number of a policy's outputs: a logit for each discrete action, or a number for each
     /// dimension; a minimum for options.
-    #[must_use]
     pub fn outputs(self) -> usize {
         self.count().unwrap_or(2)
     }
 
     /// Whether actions are discrete.
-    #[must_use]
     pub fn is_discrete(self) -> bool {
         self != ActionSpace::Continuous
     }
 
     /// The action nearest to this course and speed, the inverse of [`ActionSpace::set_point`]; none
     /// for options.
-    #[must_use]
     pub fn nearest(self, asked: SetPoint, heading_rad: f64, speed_max_m_s: f64) -> Option<Action> {
         let turn_rad = wrap_pi(asked.course_rad - heading_rad);
         let share = (asked.speed_m_s / speed_max_m_s).clamp(0.0, 1.0);
@@ -127,7 +120,6 @@ impl ActionSpace {
 
     /// The course and speed of an action for a boat with this heading and top speed. Actions of
     /// another space, non-finite ones and options are a stop.
-    #[must_use]
     pub fn set_point(self, action: Action, heading_rad: f64, speed_max_m_s: f64) -> SetPoint {
         let (turn_rad, share) = match (self, action) {
             (ActionSpace::Pyquaticus, Action::Discrete(i)) if i < SPEEDS.len() * TURNS => {

@@ -63,7 +63,6 @@ pub enum Drive {
 
 impl Boat {
     /// The highest speed its front seat accepts, m/s.
-    #[must_use]
     pub fn speed_max_m_s(&self) -> f64 {
         match &self.drive {
             Drive::Thrusters { autopilot, .. } => autopilot.speed_max_m_s,

@@ -27,7 +27,6 @@ pub(super) fn note_override(path: &Path, bytes: &[u8], built_in: &[u8]) {
 
 /// The built-in replacement for a missing file in a folder of `scenarios`, such as
 /// `scenarios/seas/gale.toml`, however the path is written.
-#[must_use]
 pub fn built_in(path: &Path) -> Option<&'static [u8]> {
     // A path typed within `scenarios` lacks its name. Without a working folder, there is only what
     // was typed.
@@ -50,7 +49,6 @@ pub fn built_in(path: &Path) -> Option<&'static [u8]> {
 
 /// How a command line names a scenario file: by its name if commands find it by that, in
 /// `scenarios` here, in a parent folder, or built in; otherwise by its path, quoted for a shell.
-#[must_use]
 pub fn argument_for(path: &Path) -> String {
     let whole = std::path::absolute(tidied(path)).unwrap_or_else(|_| path.to_owned());
     let parts: Vec<_> = whole.iter().collect();

@@ -10,7 +10,6 @@ use rules::Sharing;
 
 impl Scenario {
     /// Whether any value depends on the seed. Otherwise every seed gives the same game.
-    #[must_use]
     pub fn is_random(&self) -> bool {
         let starts = |start: &StartPosition| matches!(start, StartPosition::Somewhere { .. });
         self.recipe.is_some()

@@ -55,13 +55,11 @@ impl Diagnostics {
     }
 
     /// The path of the file that `reference`, at `at`, refers to.
-    #[must_use]
     pub fn resolve(&self, at: usize, reference: impl AsRef<Path>) -> PathBuf {
         self.sources.resolve(at, reference)
     }
 
     /// The file, line and column (from 1) of the value at `at`.
-    #[must_use]
     pub fn position(&self, at: usize) -> (PathBuf, usize, usize) {
         let Problem { path, line, column, .. } = self.sources.problem(at, String::new());
         (path, line, column)

@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 /// The digest of a plan, from its file's meaning and the content of its games' files: hex.
-#[must_use]
 pub fn digest_of(meaning: &str, files: &[(PathBuf, Arc<[u8]>)]) -> String {
     let contents: Vec<u128> = files.iter().map(|(_, bytes)| xxhash_rust::xxh3::xxh3_128(bytes)).collect();
     let text = format!("{} {meaning} {contents:x?}", primitives::VERSION);
@@ -18,7 +17,6 @@ impl Scenario {
     ///
     /// # Panics
     /// If it cannot be serialised as JSON: maps with keys that are not strings.
-    #[must_use]
     pub fn digest(&self) -> String {
         let texts: Vec<(PathBuf, Arc<[u8]>)> = match &self.recipe {
             None => vec![],

@@ -91,14 +91,12 @@ pub struct FaultSpan {
 impl FaultSpan {
     /// Whether the fault is active at `now`.
     #[inline]
-    #[must_use]
     pub fn is_on(&self, now: SimTime) -> bool {
         self.from <= now && now < self.to
     }
 }
 
 /// The faults of one vehicle in the game of `seeds` that begin before `end`, by start.
-#[must_use]
 pub fn fault_spans(
     faults: &[Fault],
     (vehicle, name): (VehicleId, &str),

@@ -34,7 +34,6 @@ impl Read {
 
 impl Files {
     /// Only these files, without access to the disk.
-    #[must_use]
     pub fn kept(files: Vec<(PathBuf, Vec<u8>)>) -> Files {
         let mut read = Read::default();
         files.into_iter().for_each(|(path, bytes)| read.add(path, bytes.into()));
@@ -42,7 +41,6 @@ impl Files {
     }
 
     /// The files read so far, in order of first request.
-    #[must_use]
     pub fn list(&self) -> Vec<(PathBuf, Arc<[u8]>)> {
         self.read.lock().unwrap_or_else(PoisonError::into_inner).files.clone()
     }

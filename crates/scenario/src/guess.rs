@@ -18,7 +18,6 @@ pub(super) fn nearest<'a>(name: &str, choices: &[&'a str]) -> Option<&'a str> {
 }
 
 /// The suggestion as the end of a message: ` (did you mean seed?)`; or an empty text.
-#[must_use]
 pub fn did_you_mean(name: &str, choices: &[&str]) -> String {
     nearest(name, choices).map(|guess| format!(" (did you mean {guess}?)")).unwrap_or_default()
 }

@@ -72,19 +72,16 @@ impl Kind {
     /// A strategy.
     pub const STRATEGY: Kind = Kind::of::<Strategy>();
     /// The kind of files read as `F`.
-    #[must_use]
     pub const fn of<F: ScenarioFile>() -> Kind {
         Kind { name: F::NAME, folder: F::FOLDER, keys: generated::<F::Keys>, check: |path| F::load(path).map(drop) }
     }
 
     /// Its name, also that of its schema file.
-    #[must_use]
     pub fn name(self) -> &'static str {
         self.name
     }
 
     /// The folder of its files.
-    #[must_use]
     pub fn folder(self) -> &'static str {
         self.folder
     }
@@ -98,14 +95,12 @@ impl Kind {
     }
 
     /// The kind with the folder of `path`, if any.
-    #[must_use]
     pub fn by_folder(kinds: &[Kind], path: &Path) -> Option<Kind> {
         let folder = path.parent()?.file_name()?;
         kinds.iter().copied().find(|kind| folder == kind.folder)
     }
 
     /// The kind with the most of these top-level keys; ties go to the first.
-    #[must_use]
     pub fn by_keys(kinds: &[Kind], keys: &BTreeSet<String>) -> Kind {
         // `max_by_key` returns the last of equal elements.
         kinds.iter().copied().rev().max_by_key(|kind| kind.known(keys)).unwrap_or(Kind::GAME)
@@ -113,7 +108,6 @@ impl Kind {
 
     /// The kind to which a file with these top-level keys clearly belongs, if not to this one: with
     /// at least two more of them.
-    #[must_use]
     pub fn other_by_keys(self, kinds: &[Kind], keys: &BTreeSet<String>) -> Option<Kind> {
         Some(Kind::by_keys(kinds, keys)).filter(|other| other.known(keys) >= self.known(keys) + 2)
     }

@@ -124,7 +124,6 @@ pub struct Scenario {
 
 impl Scenario {
     /// The vehicle with this name.
-    #[must_use]
     pub fn vehicle_by_name(&self, name: &str) -> Option<VehicleId> {
         self.vehicles.iter().position(|vehicle| vehicle.name == name).map(VehicleId::at)
     }
@@ -166,7 +165,6 @@ impl Scenario {
     }
 
     /// Whether everything that an event refers to exists in the game: the sender may be wrong.
-    #[must_use]
     pub fn has(&self, event: Event) -> bool {
         let flag = event.flag();
         let team = if let Event::Ended { winner } = event { winner } else { None };
@@ -176,25 +174,21 @@ impl Scenario {
     }
 
     /// The simulated time from one decision to the next.
-    #[must_use]
     pub fn decision(&self) -> SimTime {
         self.tick * i64::from(self.ticks_per_decision)
     }
 
     /// The seeds of randomness during this game.
-    #[must_use]
     pub fn seeds(&self) -> Seeds {
         Seeds::new(self.seed, &self.reseed)
     }
 
     /// The team of a vehicle.
-    #[must_use]
     pub fn team_of(&self, vehicle: VehicleId) -> TeamId {
         self.vehicles[vehicle.index()].team
     }
 
     /// The numbers of mates and enemies of a vehicle.
-    #[must_use]
     pub fn sides_of(&self, vehicle: VehicleId) -> (usize, usize) {
         let team = self.team_of(vehicle);
         let mates = self.vehicles.iter().filter(|other| other.team == team).count() - 1;
@@ -202,13 +196,11 @@ impl Scenario {
     }
 
     /// The boat of a vehicle.
-    #[must_use]
     pub fn boat_of(&self, vehicle: VehicleId) -> &Boat {
         &self.boats[self.vehicles[vehicle.index()].boat]
     }
 
     /// The strategy that a vehicle follows.
-    #[must_use]
     pub fn strategy_of(&self, vehicle: VehicleId) -> &Strategy {
         &self.strategies[self.vehicles[vehicle.index()].strategy]
     }

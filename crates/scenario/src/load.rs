@@ -130,7 +130,6 @@ pub struct GameVariants {
 impl GameVariants {
     /// Reads the game with these values; later ones must set the same keys. [`GameVariants::load`]
     /// returns the faults.
-    #[must_use]
     pub fn new(game: &Path, overrides: &Overrides) -> GameVariants {
         let mut diagnostics = Diagnostics::new(Drawing::Least);
         diagnostics.overrides = overrides.clone();
@@ -172,7 +171,6 @@ pub fn check_file(kinds: &[Kind], path: &Path) -> Result<Kind, Problems> {
 }
 
 /// The kind that a file belongs to by its folder or its keys, if clearly not the expected one.
-#[must_use]
 pub fn other_kind(kinds: &[Kind], path: &Path, expected: Kind) -> Option<Kind> {
     match Kind::by_folder(kinds, path) {
         Some(kind) => (kind != expected).then_some(kind),

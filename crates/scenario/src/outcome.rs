@@ -75,7 +75,6 @@ pub struct EventOutcome {
 
 impl EventOutcome {
     /// The event with the scenario's names.
-    #[must_use]
     pub fn new(scenario: &Scenario, logged: &Logged) -> EventOutcome {
         let name = |vehicle: VehicleId| scenario.vehicles[vehicle.index()].name.clone();
         let team = |team: TeamId| scenario.teams[team.index()].name.clone();
@@ -98,7 +97,6 @@ impl EventOutcome {
     }
 
     /// The event as a sentence, without its time.
-    #[must_use]
     pub fn sentence(&self) -> String {
         let who = self.vehicle.as_deref().unwrap_or("nobody");
         let other = self.other.as_deref().unwrap_or("nobody");
@@ -135,7 +133,6 @@ impl EventOutcome {
 impl Outcome {
     /// The outcome of a game with this digest of its final state and all events, after this many
     /// physics ticks, with these points by team index.
-    #[must_use]
     pub fn new(scenario: &Scenario, digest: u128, ticks: u64, score: &[u32], events: &[Logged]) -> Outcome {
         let mut tally = Tally::new(scenario.vehicles.len());
         events.iter().for_each(|logged| tally.add(logged.event));

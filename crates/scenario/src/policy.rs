@@ -74,25 +74,21 @@ impl PolicyModel {
     }
 
     /// A separate copy of the network for evaluation.
-    #[must_use]
     pub fn network(&self) -> Network {
         self.network.clone()
     }
 
     /// Index of the network output with the action: logits, an index, or components.
-    #[must_use]
     pub fn output(&self) -> usize {
         self.output
     }
 
     /// The number of values of an observation.
-    #[must_use]
     pub fn input_size(&self) -> usize {
         self.network.input_size()
     }
 
     /// The number of discrete actions; none if its actions are continuous.
-    #[must_use]
     pub fn actions(&self) -> Option<usize> {
         let outputs = self.network.outputs()[self.output].size;
         // A single output is the index of the action.
@@ -100,21 +96,18 @@ impl PolicyModel {
     }
 
     /// The names of its options, if its metadata has them.
-    #[must_use]
     pub fn options(&self) -> Option<Vec<&str>> {
         let names = self.network.metadata().get(OPTIONS)?;
         (self.spec.action == ActionSpace::Options).then(|| names.split(',').collect())
     }
 
     /// A discrete action in words: "50 % speed, 45° to port", or the name of the option.
-    #[must_use]
     pub fn words(&self, action: usize) -> String {
         let option = self.options().and_then(|names| names.get(action).map(|name| (*name).to_owned()));
         option.unwrap_or_else(|| self.spec.action.words(action))
     }
 
     /// The bytes of its file.
-    #[must_use]
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
     }
@@ -122,7 +115,6 @@ impl PolicyModel {
 
 impl PolicySpec {
     /// The spec as metadata entries of a model.
-    #[must_use]
     pub fn metadata(&self) -> [(String, String); 4] {
         [
             (OBSERVATION, json(&self.observation)),
@@ -135,7 +127,6 @@ impl PolicySpec {
 }
 
 /// The names of options as a metadata entry of a model.
-#[must_use]
 pub fn options_metadata(names: &[String]) -> (String, String) {
     (OPTIONS.to_owned(), names.join(","))
 }

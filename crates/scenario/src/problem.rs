@@ -21,13 +21,11 @@ pub struct Problem {
 
 impl Problem {
     /// A problem with a whole file.
-    #[must_use]
     pub fn of_file(path: PathBuf, message: String) -> Problem {
         Problem { path, line: 1, column: 1, message, source: String::new() }
     }
 
     /// Its place, as in `boats/heron.toml:3:17`.
-    #[must_use]
     pub fn place(&self) -> String {
         format!("{}:{}:{}", printable::line(&self.path.display().to_string()), self.line, self.column)
     }

@@ -31,20 +31,17 @@ pub struct Document<T> {
 impl<T> Document<T> {
     /// The offset of the value at `path`, for example `team.1.name`, or else of the innermost
     /// existing table.
-    #[must_use]
     pub fn at(&self, path: &str) -> usize {
         self.tree.find(path).0.at
     }
 
     /// Whether the file or one of its bases has a value there.
-    #[must_use]
     pub fn has(&self, path: &str) -> bool {
         self.tree.find(path).1
     }
 
     /// Whether the value there, or its absence, satisfies the schema, including its parts and
     /// parents.
-    #[must_use]
     pub fn is_sound(&self, path: &str) -> bool {
         let is_below = |long: &str, short: &str| {
             long.strip_prefix(short).is_some_and(|rest| rest.is_empty() || short.is_empty() || rest.starts_with('.'))
@@ -60,7 +57,6 @@ impl<T> Document<T> {
     }
 
     /// Whether no fault was found in it, or in anything checked since it was read.
-    #[must_use]
     pub fn is_faultless(&self, diagnostics: &Diagnostics) -> bool {
         diagnostics.faults() == self.faults
     }

@@ -18,7 +18,6 @@ const OPENING: &str = include_str!("reference/strategies.md");
 const EXPRESSIONS: &str = include_str!("reference/expressions.md");
 
 /// The page of these kinds of files except strategies, in Markdown.
-#[must_use]
 pub fn file_reference(kinds: &[Kind]) -> String {
     let mut page = FILES.to_owned();
     for kind in kinds.iter().filter(|kind| **kind != Kind::STRATEGY) {
@@ -69,7 +68,6 @@ fn collect(sections: &mut Vec<Section>, heading: &str, path: &str, (about, said)
 }
 
 /// The page of strategies, in Markdown.
-#[must_use]
 pub fn reference() -> String {
     let root = declared(Kind::STRATEGY);
     let mut page = OPENING.to_owned();
@@ -180,7 +178,6 @@ fn table(page: &mut String, about: &Value, wanted: impl Fn(&str, &Value) -> bool
 
 /// The meaning of a setting's key, such as `sea.wind.speed_m_s`, as in the reference; `None` for an
 /// unknown key.
-#[must_use]
 pub fn meaning(key: &str) -> Option<String> {
     let (kind, key) = target_of(key)?;
     let about = key.split('.').try_fold(declared(kind), key_in)?;

@@ -46,7 +46,6 @@ pub(super) fn declared(kind: Kind) -> &'static Value {
 ///
 /// # Panics
 /// Never: the schema of a distribution is JSON.
-#[must_use]
 pub fn schema(kind: Kind) -> Value {
     let mut schema = declared(kind).clone();
     let has_drawn = schema.to_string().contains(DRAWN);

@@ -32,7 +32,6 @@ pub struct Sea {
 
 impl Sea {
     /// Whether nothing here moves boats. Otherwise one end of a field is better than the other.
-    #[must_use]
     pub fn is_at_rest(&self) -> bool {
         let Current { mean_m_s, wander, tide, shear, eddies, random_eddies } = &self.current;
         let stream = *mean_m_s != Ned::default() || wander.is_some() || tide.is_some() || shear.is_some();
@@ -42,7 +41,6 @@ impl Sea {
     }
 
     /// Fresh water at rest, without wind.
-    #[must_use]
     pub fn at_rest() -> Sea {
         Sea {
             name: "at_rest".into(),

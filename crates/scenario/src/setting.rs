@@ -110,7 +110,6 @@ impl Setting {
     }
 
     /// The setting as an argument of a command line, quoted for a shell.
-    #[must_use]
     pub fn argument(&self) -> String {
         format!("--set '{}={}'", self.key, self.value.replace('\'', "'\\''"))
     }

@@ -95,7 +95,6 @@ impl Sources {
 }
 
 /// `path` without `.` and `name/..`, so that each file has a single path.
-#[must_use]
 pub fn tidied(path: &Path) -> PathBuf {
     let mut tidy = PathBuf::new();
     for part in path.components() {

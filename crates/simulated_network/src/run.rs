@@ -33,7 +33,6 @@ pub struct SimulatedNetwork(Arc<World>);
 
 impl SimulatedNetwork {
     /// A network whose random choices all follow from `seed`.
-    #[must_use]
     pub fn new(seed: u64, conditions: Conditions) -> SimulatedNetwork {
         bus::replace_runtime(&SimulatedRuntime);
         let state = State {
@@ -110,7 +109,6 @@ impl SimulatedNetwork {
     }
 
     /// Runs until all nodes have ended or virtual time reaches `limit`.
-    #[must_use]
     pub fn run(self, limit: Duration) -> Run {
         self.0.state.lock().limit_ns = nanos(limit);
         self.0.run();

@@ -81,7 +81,6 @@ impl Pair {
     pub const ALL: [Pair; 5] = [Pair::RadS, Pair::Pct, Pair::ThrustRudder, Pair::SpeedHeading, Pair::Newton];
 
     /// The names of the two columns, in order.
-    #[must_use]
     pub fn columns(self) -> [&'static str; 2] {
         match self {
             Pair::RadS => ["port_rad_s", "starboard_rad_s"],
@@ -104,7 +103,6 @@ pub enum Engine {
 
 impl Engine {
     /// The engine of `boat`.
-    #[must_use]
     pub fn new(boat: &Boat) -> Engine {
         match &boat.drive {
             // The tick affects how an engine responds, not the commands it accepts.
@@ -158,7 +156,6 @@ impl Engine {
     }
 
     /// The command for two numbers within [`Engine::ranges`].
-    #[must_use]
     pub fn command(&self, pair: Pair, [a, b]: [f64; 2]) -> Command {
         match (self, pair) {
             (_, Pair::ThrustRudder) => Command::Impose { thrust: a, rudder: b },

@@ -15,7 +15,6 @@ pub struct Drift {
 
 impl Drift {
     /// The drift in these samples; `None` if there are too few.
-    #[must_use]
     pub fn of(samples: &[Sample]) -> Option<Drift> {
         let middle = samples.len() / 2;
         let half = &samples[middle..];
@@ -32,13 +31,11 @@ impl Drift {
     }
 
     /// Speed over the ground, m/s.
-    #[must_use]
     pub fn speed_m_s(&self) -> f64 {
         self.velocity_m_s.length()
     }
 
     /// The bearing it drifts to, rad; `None` if it does not move.
-    #[must_use]
     pub fn toward_rad(&self) -> Option<f64> {
         (self.speed_m_s() > STAYS_M_S).then(|| Ned::default().bearing_rad(self.velocity_m_s))
     }

@@ -37,7 +37,6 @@ impl Manoeuvre {
     pub const NAMES: &[&str] = Manoeuvre::VARIANTS;
 
     /// Its name on the command line and in file names.
-    #[must_use]
     pub fn name(self) -> &'static str {
         self.into()
     }
@@ -234,7 +233,6 @@ fn is_steady(samples: &[Sample]) -> bool {
 }
 
 /// The boat's turn since the first sample, including whole turns, rad clockwise, at each sample.
-#[must_use]
 pub fn turned_rad(samples: &[Sample]) -> Vec<f64> {
     let mut turned = 0.0;
     let mut before = samples.first().map_or(0.0, |sample| sample.psi_rad);

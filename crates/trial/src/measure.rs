@@ -23,7 +23,6 @@ fn measure(name: &'static str, value: f64, unit: &'static str) -> Measure {
 }
 
 /// The results of a manoeuvre.
-#[must_use]
 pub fn measures(plan: &Plan, sailed: &Sailed) -> Vec<Measure> {
     let mut list = match plan.manoeuvre {
         Manoeuvre::TurningCircle => turning_circle(plan, sailed),

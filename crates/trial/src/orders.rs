@@ -40,13 +40,11 @@ impl Orders {
     }
 
     /// The time of the last command.
-    #[must_use]
     pub fn end(&self) -> SimTime {
         self.steps.last().map_or(SimTime::ZERO, |(at, _)| *at)
     }
 
     /// The command at `now`: the last one not later; before the first, a hold.
-    #[must_use]
     pub fn at(&self, now: SimTime) -> Command {
         let passed = self.steps.partition_point(|(at, _)| *at <= now);
         passed.checked_sub(1).map_or(Command::Hold, |last| self.steps[last].1)

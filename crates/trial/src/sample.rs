@@ -31,7 +31,6 @@ pub struct Sample {
 
 impl Sample {
     /// The values of a row, in the units and the order of [`COLUMNS`].
-    #[must_use]
     pub fn row(&self) -> [f64; 9] {
         [
             self.t_s,
@@ -47,7 +46,6 @@ impl Sample {
     }
 
     /// Speed over the ground, m/s.
-    #[must_use]
     pub fn speed_m_s(&self) -> f64 {
         primitives::math::length(self.nu.surge, self.nu.sway)
     }

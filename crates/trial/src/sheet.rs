@@ -111,31 +111,26 @@ impl Sheet {
     }
 
     /// The columns' names.
-    #[must_use]
     pub fn heads(&self) -> &[String] {
         &self.heads
     }
 
     /// The index of a column, if it exists.
-    #[must_use]
     pub fn column(&self, head: &str) -> Option<usize> {
         self.heads.iter().position(|known| known == head)
     }
 
     /// The text in a row and column; the row must exist.
-    #[must_use]
     pub fn text(&self, row: usize, column: usize) -> &str {
         self.rows[row].1.get(column).unwrap_or_default()
     }
 
     /// What was ignored when the file was read.
-    #[must_use]
     pub fn notes(&self) -> &[Mistake] {
         &self.notes
     }
 
     /// Whether a cell is without a value: empty, NaN, N/A or the like.
-    #[must_use]
     pub fn is_missing(&self, row: usize, column: usize) -> bool {
         MISSING.contains(&self.text(row, column).to_lowercase().as_str())
     }
@@ -186,7 +181,6 @@ impl Sheet {
     }
 
     /// A fault of the file, or of one of its lines.
-    #[must_use]
     pub fn mistake(&self, line: Option<u64>, message: String) -> Mistake {
         Mistake { file: self.file.clone(), line, message }
     }

@@ -34,7 +34,6 @@ pub struct TrialBoat {
 
 impl TrialBoat {
     /// A boat at its start. `seed` selects the randomness of the sea and of its sensors.
-    #[must_use]
     pub fn new(boat: &Boat, sea: &Sea, tick: SimTime, seed: u64, start: &Start) -> TrialBoat {
         let vehicle = VehiclePlan { name: "boat", kind: 0, start: Pose::default(), is_external: false, faults: vec![] };
         let mut world = World::new(&WorldPlan {
@@ -64,13 +63,11 @@ impl TrialBoat {
     }
 
     /// The length of a tick.
-    #[must_use]
     pub fn tick(&self) -> SimTime {
         self.tick
     }
 
     /// Simulated time since the start.
-    #[must_use]
     pub fn now(&self) -> SimTime {
         self.world.state().now
     }
@@ -96,13 +93,11 @@ impl TrialBoat {
     }
 
     /// Whether its state is finite.
-    #[must_use]
     pub fn is_sound(&self) -> bool {
         !self.world.state().boats[0].quarantined
     }
 
     /// The sample at `t_s` of the trial, before `command`.
-    #[must_use]
     pub fn sample(&self, t_s: f64, command: Command) -> Sample {
         let state = self.world.state();
         let boat = state.boats[0];
@@ -118,7 +113,6 @@ impl TrialBoat {
     }
 
     /// The settings of its two thrusters, or thrust and rudder in per cent.
-    #[must_use]
     pub fn settings(&self) -> [f64; 2] {
         let state = self.world.state();
         match state.points.first() {

@@ -13,7 +13,6 @@ const FIELD_M: f64 = 1000.0;
 const SEA_WATER_KG_M3: f64 = 1025.0;
 
 /// The default sea of a trial: salt water at rest, no wind.
-#[must_use]
 pub fn still_sea() -> Sea {
     Sea { name: "still".into(), water_density_kg_m3: SEA_WATER_KG_M3, ..Sea::at_rest() }
 }
@@ -26,7 +25,6 @@ pub fn set_mean_current(sea: &mut Sea, speed_m_s: f64, toward_deg: f64) {
 }
 
 /// A field without walls or obstacles round the datum.
-#[must_use]
 pub fn open_field() -> Field {
     Field::new(Plan {
         name: "open_water".into(),

@@ -32,7 +32,6 @@ pub struct Plan {
 
 impl Plan {
     /// A boat without a site yet, which is armed by an operator and needs no pre-flight check.
-    #[must_use]
     pub fn new(vehicle: &str, gateway: Gateway) -> Plan {
         let vehicle = vehicle.to_owned();
         let preflight = Preflight::NotRequired;

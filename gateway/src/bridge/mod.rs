@@ -101,7 +101,6 @@ pub struct Bridge {
 
 impl Bridge {
     /// A disarmed bridge without a link.
-    #[must_use]
     pub fn new(plan: Plan) -> Bridge {
         let Gateway { control, battery, currents, failsafe, .. } = &plan.gateway;
         Bridge {
@@ -135,7 +134,6 @@ impl Bridge {
     }
 
     /// The supervisor's state.
-    #[must_use]
     pub fn state(&self) -> State {
         self.supervisor.state()
     }
@@ -184,7 +182,6 @@ impl Bridge {
     }
 
     /// The latest time of the next call.
-    #[must_use]
     pub fn due(&self, now: SimTime) -> SimTime {
         let period = self.period();
         let coming = |at: SimTime| if at > now { at } else { now + period };

@@ -20,7 +20,6 @@ pub(super) struct Counters {
 impl Bridge {
     /// The status now, with the conditions missing at the last step. Changes nothing, so queries do
     /// not affect a replay. The shell adds what only it knows: link name, control port, latencies.
-    #[must_use]
     pub fn status(&self, now: SimTime) -> GatewayStatus {
         let known = self.on_site.as_ref().and_then(|site| site.estimator.nav(now));
         let battery = self.battery.volts(now);

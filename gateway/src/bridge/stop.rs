@@ -6,7 +6,6 @@ use primitives::SimTime;
 
 impl Bridge {
     /// The shutdown message, sent before the link closes: zero thrust, then standby.
-    #[must_use]
     pub fn shutdown_message(&self) -> Vec<u8> {
         let mut message = Vec::new();
         // Work on a copy: the guard's message is regenerated repeatedly and must change nothing.
@@ -24,7 +23,6 @@ impl Bridge {
     }
 
     /// The message that the guard sends the boat when the gateway cannot.
-    #[must_use]
     pub fn guard_message(&self) -> Vec<u8> {
         self.protocol.guard_message()
     }

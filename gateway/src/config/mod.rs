@@ -83,7 +83,6 @@ impl ScenarioFile for Gateway {
 ///
 /// # Panics
 /// Never: every key has a default.
-#[must_use]
 pub fn default_gateway() -> Gateway {
     scenario::default_of().expect("every key has a default")
 }
@@ -150,7 +149,6 @@ pub enum SwitchWord {
 
 impl SwitchWord {
     /// As it is sent.
-    #[must_use]
     pub fn text(self) -> &'static str {
         match self {
             SwitchWord::ThrOn => "THR_ON",

@@ -82,7 +82,6 @@ pub struct Emulator {
 
 impl Emulator {
     /// A boat in standby; the back seat has control.
-    #[must_use]
     pub fn new(plan: Plan) -> Emulator {
         Emulator {
             frame: LocalFrame::new(plan.datum),
@@ -140,13 +139,11 @@ impl Emulator {
     }
 
     /// The last command.
-    #[must_use]
     pub fn command(&self) -> &Command {
         &self.command
     }
 
     /// Commands followed, and commands ignored because another operator was in control.
-    #[must_use]
     pub fn counters(&self) -> (u64, u64) {
         (self.followed, self.ignored)
     }

@@ -203,7 +203,6 @@ pub struct Sitl {
 
 impl Sitl {
     /// Waits for a firmware with these thrusters.
-    #[must_use]
     pub fn new(servos: Servos) -> Sitl {
         Sitl {
             servos,
@@ -297,7 +296,6 @@ impl Sitl {
     }
 
     /// The thrusters' order.
-    #[must_use]
     pub fn order(&self) -> Order {
         let Some((outputs, _)) = self.outputs.as_ref().filter(|_| !self.is_silent) else { return Order::Hold };
         let thrust = |channel: usize| self.servos.thrust(outputs.pulses_us[channel - 1]);

@@ -34,7 +34,6 @@ pub struct GeofenceArea {
 
 impl GeofenceArea {
     /// The geofence on this field.
-    #[must_use]
     pub fn new(field: &Field, rules: &Geofence) -> GeofenceArea {
         let frame = LocalFrame::new(field.plan.datum);
         let laid_out = |corners: &Vec<[f64; 2]>| -> Vec<Ned> {

@@ -58,7 +58,6 @@ pub struct Coasting {
 
 impl Coasting {
     /// The model from the boat file.
-    #[must_use]
     pub fn of(boat: &Boat) -> Coasting {
         let hull = &boat.hull;
         match &boat.drive {

@@ -57,7 +57,6 @@ impl Breach {
 
 impl GeofenceWatch {
     /// The geofence on this field, for a boat with this coasting model.
-    #[must_use]
     pub fn new(field: &Field, rules: &Geofence, coasting: Option<Coasting>) -> GeofenceWatch {
         GeofenceWatch::of_area(GeofenceArea::new(field, rules), rules, coasting)
     }

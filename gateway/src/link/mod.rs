@@ -73,7 +73,6 @@ impl Link {
 
     /// The address to connect to, such as `tcp://127.0.0.1:8003`: with the real port instead of 0, or a PTY slave's
     /// path.
-    #[must_use]
     pub fn reach(&self) -> String {
         self.reach.clone()
     }

@@ -43,7 +43,6 @@ pub struct Unreadable {
 
 impl Unreadable {
     /// A byte of the payload.
-    #[must_use]
     pub fn byte(&self, at: usize) -> u8 {
         self.payload.get(at).copied().unwrap_or(0)
     }
@@ -139,7 +138,6 @@ struct NotAFrame;
 
 impl Framer {
     /// An empty framer.
-    #[must_use]
     pub fn new() -> Framer {
         Framer::default()
     }
@@ -186,7 +184,6 @@ impl Framer {
     }
 
     /// The counts so far.
-    #[must_use]
     pub fn counts(&self) -> &Counts {
         &self.counts
     }

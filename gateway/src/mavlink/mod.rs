@@ -31,7 +31,6 @@ pub struct Writer {
 
 impl Writer {
     /// A writer for this system and component.
-    #[must_use]
     pub fn new(system: u8, component: u8) -> Writer {
         Writer { system, component, sequence: 0 }
     }

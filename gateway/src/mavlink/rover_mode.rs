@@ -31,7 +31,6 @@ pub enum RoverMode {
 
 impl RoverMode {
     /// The mode for a number.
-    #[must_use]
     pub fn from_number(number: u32) -> RoverMode {
         match number {
             0 => RoverMode::Manual,
@@ -49,13 +48,11 @@ impl RoverMode {
     }
 
     /// Whether Rover arms in this mode. Unnamed modes are assumed not to arm.
-    #[must_use]
     pub fn allows_arming(self) -> bool {
         !matches!(self, RoverMode::Rtl | RoverMode::SmartRtl | RoverMode::Initialising | RoverMode::Other(_))
     }
 
     /// Its number.
-    #[must_use]
     pub fn number(self) -> u32 {
         match self {
             RoverMode::Manual => 0,

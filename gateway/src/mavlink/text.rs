@@ -7,7 +7,6 @@ const BEGIN: &str = "CharArray { data: [";
 const END: &str = " }";
 
 /// All fields of a message, with its texts as text: the crate prints character codes.
-#[must_use]
 pub fn message_text(message: &MavMessage) -> String {
     let printed = format!("{message:?}");
     let mut parts = printed.split(BEGIN);

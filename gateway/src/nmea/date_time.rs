@@ -44,7 +44,6 @@ impl TimeOfDay {
     }
 
     /// Adds an interval, wrapping at midnight.
-    #[must_use]
     pub fn later(self, by: SimTime) -> TimeOfDay {
         let ms = i64::from(self.0) + (by.as_s() * 1000.0).round() as i64;
         TimeOfDay(ms.rem_euclid(i64::from(DAY_MS)) as u32)
@@ -52,7 +51,6 @@ impl TimeOfDay {
 
     /// The time from `other` to this one, s: the shorter way around the clock, negative if this one
     /// is earlier.
-    #[must_use]
     pub fn since_s(self, other: TimeOfDay) -> f64 {
         let day_s = f64::from(DAY_MS) * 1e-3;
         let apart_s = (f64::from(self.0) - f64::from(other.0)) * 1e-3;
@@ -62,7 +60,6 @@ impl TimeOfDay {
 }
 
 /// The date and the time of day at this UTC, ns since 1970.
-#[must_use]
 pub fn date_and_time(utc_ns: u64) -> (Date, TimeOfDay) {
     let at = UtcDateTime::from_unix_timestamp_nanos(i128::from(utc_ns)).unwrap_or(UtcDateTime::UNIX_EPOCH);
     let date = Date { year: u16::try_from(at.year()).unwrap_or(0), month: u8::from(at.month()), day: at.day() };
@@ -96,13 +93,11 @@ impl Date {
     }
 
     /// Whether the date exists in the calendar.
-    #[must_use]
     pub fn is_valid(self) -> bool {
         self.in_calendar().is_some()
     }
 
     /// The days from `other` to this date, negative if this one is earlier.
-    #[must_use]
     pub fn days_since(self, other: Date) -> i64 {
         let day = |date: Date| date.in_calendar().map_or(0, |date| i64::from(date.to_julian_day()));
         day(self) - day(other)

@@ -14,26 +14,22 @@ impl FixQuality {
     pub const NONE: FixQuality = FixQuality(0);
 
     /// The quality for a number in GGA.
-    #[must_use]
     pub const fn from_gga(number: u8) -> FixQuality {
         FixQuality(number)
     }
 
     /// Whether it is a satellite fix at least as good as `required`.
-    #[must_use]
     pub fn meets(self, required: FixQuality) -> bool {
         self.is_fix() && self.rank() >= required.rank()
     }
 
     /// Whether it comes from satellites. Dead reckoning, manual input and simulators do not measure
     /// a position.
-    #[must_use]
     pub fn is_fix(self) -> bool {
         self.rank() > 0
     }
 
     /// The quality as text.
-    #[must_use]
     pub fn in_words(self) -> &'static str {
         match self.0 {
             0 => "no fix",

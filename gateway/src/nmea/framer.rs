@@ -59,7 +59,6 @@ impl Default for Framer {
 
 impl Framer {
     /// A framer that waits for its first `$`.
-    #[must_use]
     pub fn new() -> Framer {
         Framer { content: [0; CONTENT_MAX], filled: None, counts: Counts::default(), rejected: None }
     }
@@ -93,13 +92,11 @@ impl Framer {
     }
 
     /// The counts so far.
-    #[must_use]
     pub fn counts(&self) -> Counts {
         self.counts
     }
 
     /// The last line that was not a sentence, to help find the cause.
-    #[must_use]
     pub fn rejected(&self) -> Option<&Rejected> {
         self.rejected.as_ref()
     }

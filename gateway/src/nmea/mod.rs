@@ -134,7 +134,6 @@ impl Sentence {
     ///
     /// A non-finite number becomes an empty field, as does any field that would make the sentence
     /// too long.
-    #[must_use]
     pub fn line(&self) -> String {
         // Rounded before writing, so that thrust and difference together still stay within 100 %.
         let mut rounded = match self.clone() {
@@ -195,7 +194,6 @@ impl Sentence {
 }
 
 /// The exclusive or of all bytes of a body.
-#[must_use]
 pub fn checksum(body: &[u8]) -> u8 {
     body.iter().fold(0, |sum, byte| sum ^ byte)
 }

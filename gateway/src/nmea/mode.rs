@@ -58,25 +58,21 @@ impl Mode {
     ];
 
     /// Every mode, in the order above.
-    #[must_use]
     pub fn all() -> [Mode; 14] {
         Mode::LETTERS.map(|(mode, _)| mode)
     }
 
     /// Whether the boat follows set-points in this mode.
-    #[must_use]
     pub fn is_set_point(self) -> bool {
         matches!(self, Mode::Thruster | Mode::Heading | Mode::Speed)
     }
 
     /// The letter on the wire.
-    #[must_use]
     pub fn letter(self) -> char {
         Mode::LETTERS[self as usize].1
     }
 
     /// The mode for a letter, which is case-sensitive.
-    #[must_use]
     pub fn from_letter(letter: char) -> Option<Mode> {
         Mode::LETTERS.iter().find(|(_, known)| *known == letter).map(|(mode, _)| *mode)
     }

@@ -21,7 +21,6 @@ pub enum Operator {
 
 impl Operator {
     /// The number on the wire.
-    #[must_use]
     pub fn number(self) -> u8 {
         match self {
             Operator::Primary => 1,
@@ -34,7 +33,6 @@ impl Operator {
     }
 
     /// The operator for a number.
-    #[must_use]
     pub fn from_number(number: u8) -> Operator {
         match number {
             1 => Operator::Primary,

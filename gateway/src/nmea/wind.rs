@@ -50,7 +50,6 @@ impl SpeedUnit {
     ];
 
     /// One of this unit, m/s.
-    #[must_use]
     pub fn m_s(self) -> f64 {
         SpeedUnit::ALL[self as usize].2
     }

@@ -11,7 +11,6 @@ const INHIBITORS: &str = "/run/systemd/inhibit";
 
 /// Checks whether this folder has space for recordings, and whether something prevents the machine
 /// from sleeping.
-#[must_use]
 pub fn machine_checks(folder: &Path) -> Vec<Check> {
     vec![space(folder), sleep(Path::new(INHIBITORS))]
 }

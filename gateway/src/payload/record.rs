@@ -17,7 +17,6 @@ pub struct PayloadEncoder {
 
 impl PayloadEncoder {
     /// For the payload of this name.
-    #[must_use]
     pub fn new(name: &str) -> PayloadEncoder {
         PayloadEncoder { bytes_topic: format!("payload/{name}"), values_topic: format!("values/{name}"), pieces: 0 }
     }
@@ -32,7 +31,6 @@ impl PayloadEncoder {
     }
 
     /// The entry for a measurement.
-    #[must_use]
     pub fn values(&self, at: SimTime, measurement: &Measurement) -> Entry {
         json(&self.values_topic, at, measurement)
     }

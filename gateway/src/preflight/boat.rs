@@ -24,7 +24,6 @@ pub struct Water {
 }
 
 /// The checks of what a boat has sent so far, by the host's clock.
-#[must_use]
 pub fn boat_checks(seen: &SensorCheck, host: HostTime, gateway: &Gateway, water: Option<&Water>) -> Vec<Check> {
     let missing = seen.missing();
     let sentences = if missing.is_empty() { "nothing is missing".to_owned() } else { missing.join("; ") };

@@ -40,7 +40,6 @@ impl CompassSwing {
     }
 
     /// The number of 30-degree sectors to which the boat has pointed.
-    #[must_use]
     pub fn sectors(&self) -> usize {
         let sector = |psi_rad: f64| (psi_rad / TAU * SECTORS as f64) as usize % SECTORS;
         let mut seen = [false; SECTORS];
@@ -91,7 +90,6 @@ impl CompassSwing {
 
 impl Deviation {
     /// The lines to paste into the boat's file.
-    #[must_use]
     pub fn toml(&self) -> String {
         let names = ["a_deg", "b_deg", "c_deg", "d_deg", "e_deg"].into_iter();
         let lines = names.zip(self.a_to_e_deg).map(|(name, value_deg)| format!("{name} = {value_deg:.2}\n"));

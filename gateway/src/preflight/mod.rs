@@ -37,13 +37,11 @@ pub struct Check {
 
 impl Check {
     /// A check that passes if `is_well`.
-    #[must_use]
     pub fn of(name: &str, is_well: bool, found: String) -> Check {
         Check { name: name.to_owned(), verdict: if is_well { Verdict::Passed } else { Verdict::Failed }, found }
     }
 
     /// A check that was not done, and why.
-    #[must_use]
     pub fn not_done(name: &str, why: impl Into<String>) -> Check {
         Check { name: name.to_owned(), verdict: Verdict::NotChecked, found: why.into() }
     }
@@ -66,7 +64,6 @@ pub struct Report {
 
 impl Report {
     /// The reasons why it has not passed: failed checks, and required checks that were not done.
-    #[must_use]
     pub fn faults(&self) -> Vec<String> {
         let failed = self.checks.iter().filter(|check| check.verdict == Verdict::Failed);
         let failed = failed.map(|check| format!("{} ({})", check.name, check.found));
@@ -98,7 +95,6 @@ impl Report {
     }
 
     /// The report as text.
-    #[must_use]
     pub fn text(&self) -> String {
         let line = |check: &Check| {
             let verdict = match check.verdict {

@@ -30,7 +30,6 @@ pub enum Protocol {
 
 impl Protocol {
     /// The protocol of a boat that this gateway drives.
-    #[must_use]
     pub fn new(gateway: &Gateway) -> Protocol {
         match gateway.protocol {
             BoatProtocol::Surveyor => Protocol::Surveyor(Box::new(Surveyor::new(gateway.upload_gap_s))),

@@ -70,7 +70,6 @@ pub struct Received {
 
 impl Received {
     /// The rate, 1/s.
-    #[must_use]
     pub fn rate_hz(&self) -> Option<f64> {
         let (first, last) = self.between?;
         let span_s = (last - first).as_s();
@@ -132,7 +131,6 @@ pub struct SensorCheck {
 
 impl SensorCheck {
     /// An empty check for a boat with this protocol.
-    #[must_use]
     pub fn new(gateway: &Gateway) -> SensorCheck {
         let framer = match gateway.protocol {
             BoatProtocol::Surveyor => Framer::Nmea(Box::default()),
@@ -179,14 +177,12 @@ impl SensorCheck {
     }
 
     /// The counters of the link by name.
-    #[must_use]
     pub fn counts(&self) -> Vec<(String, u64)> {
         let [known, _] = self.protocol.counts();
         known
     }
 
     /// A true heading for comparison, degrees: as reported, or the course of a boat that makes way.
-    #[must_use]
     pub fn true_deg(&self) -> Option<f64> {
         let course =
             || self.track.filter(|(_, speed_m_s)| *speed_m_s >= COURSE_MIN_M_S).map(|(course_deg, _)| course_deg);
@@ -204,7 +200,6 @@ impl SensorCheck {
     }
 
     /// The fault of the boat's clock or date, or of the host's, if any.
-    #[must_use]
     pub fn clock_fault(&self, host: HostTime) -> Option<String> {
         let off = self.clock_behind_s(host).filter(|behind_s| !CLOCK_BEHIND_S.contains(behind_s));
         let days = self.date.map_or(0, |(came, date)| {
@@ -224,7 +219,6 @@ impl SensorCheck {
     }
 
     /// The boat's reports as text.
-    #[must_use]
     pub fn findings(&self, host: HostTime) -> Vec<String> {
         let mut found = Vec::new();
         if let Some(Fix { at, quality: Some(quality), hdop, .. }) = self.fix {
@@ -280,7 +274,6 @@ impl SensorCheck {
     }
 
     /// The data missing for driving the boat.
-    #[must_use]
     pub fn missing(&self) -> Vec<String> {
         let mut missing = self.unmet();
         if let Some(operator) = self.control.as_ref().and_then(|control| control.operator)
@@ -307,7 +300,6 @@ impl SensorCheck {
     }
 
     /// What was received if none of it could be read, with the reason.
-    #[must_use]
     pub fn unread(&self) -> String {
         let lines = match &self.framer {
             Framer::Nmea(framer) => framer.rejected().map(|last| {

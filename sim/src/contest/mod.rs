@@ -113,43 +113,36 @@ impl Contest {
     }
 
     /// The scenario, with the seed of this game.
-    #[must_use]
     pub fn scenario(&self) -> &Scenario {
         &self.scenario
     }
 
     /// The world.
-    #[must_use]
     pub fn world(&self) -> &World {
         &self.world
     }
 
     /// The open decision.
-    #[must_use]
     pub fn decision(&self) -> u64 {
         self.state.decision
     }
 
     /// Simulated time.
-    #[must_use]
     pub fn now(&self) -> SimTime {
         self.world.state().now
     }
 
     /// Whether the game is over.
-    #[must_use]
     pub fn is_over(&self) -> bool {
         self.state.standing.over
     }
 
     /// Points, by team index.
-    #[must_use]
     pub fn score(&self) -> &[u32] {
         &self.state.standing.score
     }
 
     /// All events so far.
-    #[must_use]
     pub fn events(&self) -> &[Logged] {
         &self.state.events
     }
@@ -175,13 +168,11 @@ impl Contest {
     }
 
     /// The pictures last built by [`Contest::pictures`].
-    #[must_use]
     pub fn last_pictures(&self) -> &[Picture] {
         &self.state.pictures
     }
 
     /// The picture of a vehicle's team last built by [`Contest::pictures`].
-    #[must_use]
     pub fn picture_of(&self, vehicle: VehicleId) -> &Picture {
         &self.state.pictures[self.scenario.team_of(vehicle).index()]
     }
@@ -253,7 +244,6 @@ impl Contest {
 
     /// Whether a boat's position has ever been known: for a real boat from a report, for a
     /// simulated one always.
-    #[must_use]
     pub fn has_position(&self, vehicle: VehicleId) -> bool {
         self.state.tracks[vehicle.index()].as_ref().is_none_or(Track::has_fix)
     }
@@ -426,7 +416,6 @@ impl Contest {
     ///
     /// # Panics
     /// If the score differs from the sum over the events.
-    #[must_use]
     pub fn outcome(&self) -> Outcome {
         self.assert_score();
         Outcome::new(&self.scenario, self.digest(), self.world.state().tick, self.score(), &self.state.events)

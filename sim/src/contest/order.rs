@@ -49,13 +49,11 @@ impl Contest {
     }
 
     /// A vehicle's order in force: the last one that arrived and has not expired.
-    #[must_use]
     pub fn order_in_force(&self, vehicle: VehicleId) -> Order {
         self.state.orders[vehicle.index()].order
     }
 
     /// The time of the picture that a vehicle's newest order answers.
-    #[must_use]
     pub fn given_at(&self, vehicle: VehicleId) -> SimTime {
         self.state.orders[vehicle.index()].given_at
     }
@@ -64,7 +62,6 @@ impl Contest {
     /// boat driven home gets a course at the speed that the rules allow; a speed limit also scales
     /// thrust. A real boat holds while its position or its agent is lost, after its order has
     /// expired, and after the end of the game: whatever the rules require, it must be supervised.
-    #[must_use]
     pub fn effective_command(&self, vehicle: VehicleId) -> Order {
         let i = vehicle.index();
         if self.is_stopped(i) {

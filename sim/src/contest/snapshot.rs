@@ -33,7 +33,6 @@ impl Contest {
     /// All changing state as bytes, marked with its game. A contest of the same game restored from
     /// it continues identically, to the last bit. Inputs kept for [`Contest::take_inputs`] are not
     /// included.
-    #[must_use]
     pub fn snapshot(&self) -> Vec<u8> {
         // Sea, faults and contact engine are omitted on purpose: they are functions of scenario,
         // seed and time.
@@ -77,7 +76,6 @@ impl Contest {
     /// A 128-bit hash over world, standing and all events. In games with radio links, limits on
     /// sharing or command watchdogs it also covers orders in force, messages in transit and
     /// contacts; with real boats, their fixes.
-    #[must_use]
     pub fn digest(&self) -> u128 {
         let ContestState { standing, orders, tracks, events, known, .. } = &self.state;
         let mut hash = xxh3::Xxh3::new();

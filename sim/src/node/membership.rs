@@ -44,7 +44,6 @@ impl Place {
 
 impl Membership {
     /// The membership of a game before any join.
-    #[must_use]
     pub fn new(scenario: &Scenario, role: Role) -> Membership {
         let places = scenario.vehicles.iter().map(|vehicle| Place {
             name: vehicle.name.clone(),
@@ -181,7 +180,6 @@ impl Membership {
     }
 
     /// Whether all present nodes have answered `tick`.
-    #[must_use]
     pub fn all_answered(&self, tick: u64) -> bool {
         let answered = |holder: &Holder| holder.newest.is_some_and(|newest| newest >= tick);
         self.places.iter().filter_map(Place::present).all(answered)
@@ -193,7 +191,6 @@ impl Membership {
     }
 
     /// Whether no node is present.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.places.iter().all(|place| place.present().is_none())
     }

@@ -15,14 +15,12 @@ pub struct Band {
 
 impl Band {
     /// The mean spectral density, m²/Hz.
-    #[must_use]
     pub fn density_m2_hz(&self) -> f64 {
         self.variance_m2 / (self.range_hz.1 - self.range_hz.0)
     }
 }
 
 /// The frequency range of the components of a sea with this peak period, Hz.
-#[must_use]
 pub fn range_hz(tp_s: f64) -> (f64, f64) {
     (BAND.0 / tp_s, BAND.1 / tp_s)
 }
@@ -30,7 +28,6 @@ pub fn range_hz(tp_s: f64) -> (f64, f64) {
 impl WaveField {
     /// Divides `range_hz` into `count` equal bands. A component outside the range counts in the
     /// nearest band, so that the variances add up to that of the sea.
-    #[must_use]
     pub fn bands(&self, range_hz: (f64, f64), count: usize) -> Vec<Band> {
         let width_hz = (range_hz.1 - range_hz.0) / count as f64;
         let edge_hz = |i: usize| range_hz.0 + i as f64 * width_hz;

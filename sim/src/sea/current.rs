@@ -34,7 +34,6 @@ pub struct CurrentNow<'a> {
 
 impl CurrentField {
     /// The current over `field`.
-    #[must_use]
     pub fn new(current: &Current, field: &Field, seeds: &Seeds) -> CurrentField {
         let drawn = current.random_eddies.map(|random| eddy::draw(&random, field, seeds.first())).unwrap_or_default();
         let process = |wander: &Wander| {
@@ -61,14 +60,12 @@ impl CurrentField {
 
     /// Whether the current is the same everywhere.
     #[inline]
-    #[must_use]
     pub fn is_uniform(&self) -> bool {
         self.shear.is_none() && self.eddies.is_empty()
     }
 
     /// The current at `now`.
     #[inline]
-    #[must_use]
     pub fn at_time(&self, now: SimTime) -> CurrentNow<'_> {
         let mut uniform_m_s = self.mean_m_s;
         if let Some((wander, process)) = &self.wander {
@@ -97,7 +94,6 @@ fn wander_place(wander: &Wander, now: SimTime) -> f64 {
 impl CurrentNow<'_> {
     /// The water's velocity at a place, m/s.
     #[inline]
-    #[must_use]
     pub fn at(&self, place: Ned) -> Ned {
         self.over_hull(place, Rotation::NORTH).0
     }
@@ -108,7 +104,6 @@ impl CurrentNow<'_> {
     /// The hull is assumed short compared with the curvature of the flow: for one of a tenth of an
     /// eddy's core radius, the mean over its length differs by a thousandth.
     #[inline]
-    #[must_use]
     pub fn over_hull(&self, place: Ned, rotation: Rotation) -> (Ned, f64) {
         let ahead = rotation.ahead();
         let starboard = rotation.starboard();

@@ -58,7 +58,6 @@ impl Vortex {
 
 /// Draws eddies from the stream `eddies` of this seed: uniform over the field, with random
 /// directions of rotation.
-#[must_use]
 pub fn draw(random: &RandomEddies, field: &Field, seed: u64) -> Vec<Eddy> {
     let mut stream = Stream::new(seed, "eddies");
     let draw_one = |_| {

@@ -75,7 +75,6 @@ impl Row {
 
 impl HullWaves {
     /// The waves of `field` on this boat, in water of this density.
-    #[must_use]
     pub fn new(field: &WaveField, boat: &Boat, water_density_kg_m3: f64) -> HullWaves {
         HullWaves::of(field, boat, water_density_kg_m3, &Patches::new(field, boat))
     }
@@ -109,13 +108,11 @@ impl HullWaves {
     }
 
     /// The waves at a boat.
-    #[must_use]
     pub fn at(&self, pose: Pose, time_s: f64) -> WaveSample {
         self.sample(&self.instructions.run(At { waves: self, pose, time_s }), pose.psi_rad)
     }
 
     /// The waves at a boat, and the depth of its propellers minus that in calm water, m.
-    #[must_use]
     pub fn at_with(&self, submergence: &Submergence, pose: Pose, time_s: f64) -> (WaveSample, [f64; 2]) {
         let (sums, change_m) = self.instructions.run(AtWith { waves: self, submergence, pose, time_s });
         (self.sample(&sums, pose.psi_rad), [change_m.sum(0), change_m.sum(1)])

@@ -115,7 +115,6 @@ pub struct SeaForcing {
 impl SeaModel {
     /// This sea over this field, for these kinds of boat and ticks of this length, with the
     /// randomness of `seeds`.
-    #[must_use]
     pub fn new(sea: &Sea, boats: &[Boat], field: &Field, tick: SimTime, seeds: &Seeds) -> SeaModel {
         let waves = sea.waves.as_ref().map(|waves| WaveField::new(waves, sea.depth_m, seeds.first()));
         // At least half a metre: the wind profile is a power of the height and has no meaning at
@@ -197,14 +196,12 @@ impl SeaModel {
 
     /// Whether the water moves alike everywhere.
     #[inline]
-    #[must_use]
     pub fn is_uniform(&self) -> bool {
         self.waves.is_none() && self.current.is_uniform()
     }
 
     /// The sea at `now`.
     #[inline]
-    #[must_use]
     pub fn at_time(&self, now: SimTime) -> SeaNow<'_> {
         // In whole nanoseconds, so that wave times have the same bits in a played and in a restored
         // game.
@@ -217,7 +214,6 @@ impl SeaNow<'_> {
     /// The sea's effect on a boat of this kind with this hull, in the tick that starts now. `nu` is
     /// its velocity over the ground in body axes.
     #[inline]
-    #[must_use]
     pub fn forcing(&self, kind: usize, hull: &HullModel, pose: Pose, rotation: Rotation, nu: Planar) -> SeaForcing {
         let boat = &self.model.kinds[kind];
         let (current_m_s, turning_rad_s) = self.current.over_hull(pose.at, rotation);
@@ -271,31 +267,26 @@ impl SeaNow<'_> {
     }
 
     /// The waves, if there are any.
-    #[must_use]
     pub fn waves(&self) -> Option<&WaveField> {
         self.model.waves.as_ref()
     }
 
     /// The waves for observers; none in calm water.
-    #[must_use]
     pub fn water(&self) -> Water {
         Water { waves: self.waves().map(WaveField::plane_waves).unwrap_or_default() }
     }
 
     /// The current at a place, m/s, which carries a point boat along.
-    #[must_use]
     pub fn current_at(&self, at: Ned) -> Ned {
         self.current.at(at)
     }
 
     /// Height of the water at a place above calm level, m.
-    #[must_use]
     pub fn elevation_m(&self, at: Ned) -> f64 {
         self.model.waves.as_ref().map_or(0.0, |waves| waves.surface(at, self.now.as_s()).elevation_m)
     }
 
     /// The velocity of the air 10 m above the water, m/s.
-    #[must_use]
     pub fn wind_at(&self, at: Ned) -> Ned {
         // Ten metres is the reference height of wind reports and Beaufort numbers, not a boat's
         // height.
@@ -303,7 +294,6 @@ impl SeaNow<'_> {
     }
 
     /// The present attitude of a boat of this kind in the waves.
-    #[must_use]
     pub fn attitude(&self, kind: usize, pose: Pose, rotation: Rotation, nu: Planar) -> Attitude {
         if self.model.waves.is_none() {
             return Attitude::default();

@@ -24,7 +24,6 @@ const PIECES: usize = 2048;
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// Spectral density of the surface elevation, m² s, at the angular frequency `omega_rad_s` > 0.
-#[must_use]
 pub fn jonswap_m2_s(waves: &Waves, omega_rad_s: f64) -> f64 {
     Jonswap::new(waves).density_m2_s(omega_rad_s)
 }
@@ -54,7 +53,6 @@ impl Jonswap {
 }
 
 /// The same as a density over frequency, m²/Hz, at `frequency_hz` > 0.
-#[must_use]
 pub fn density_m2_hz(waves: &Waves, frequency_hz: f64) -> f64 {
     TAU * jonswap_m2_s(waves, TAU * frequency_hz)
 }

@@ -17,7 +17,6 @@ pub struct Submergence {
 
 impl Submergence {
     /// The submergence of propellers at `places` of this boat.
-    #[must_use]
     pub fn new(field: &WaveField, boat: &Boat, places: [Body; 2]) -> Submergence {
         Submergence::of(field, boat, places, &Patches::new(field, boat))
     }

@@ -59,7 +59,6 @@ pub struct WindSummary {
 
 impl Summary {
     /// The effects of a sea on a boat on this field.
-    #[must_use]
     pub fn new(sea: &Sea, boat: &Boat, field: &Field, seed: u64) -> Summary {
         let hull = HullModel::new(&boat.hull, sea.water_density_kg_m3);
         Summary {

@@ -99,7 +99,6 @@ impl PlaneWave {
 }
 
 /// The wavenumber with ω² = g k tanh k h; in deep water ω² = g k. `depth_m` may be infinite.
-#[must_use]
 pub fn wavenumber_rad_m(omega_rad_s: f64, depth_m: f64) -> f64 {
     let deep = omega_rad_s * omega_rad_s / GRAVITY_M_S2;
     if deep * depth_m > 20.0 {
@@ -233,13 +232,11 @@ pub struct WaveField {
 impl WaveField {
     /// The field drawn from this spectrum by the seed's stream `waves`, in water of this depth
     /// (`None` is deep).
-    #[must_use]
     pub fn new(waves: &Waves, depth_m: Option<f64>, seed: u64) -> WaveField {
         WaveField::of(&spectrum::components(waves, seed), depth_m, waves.drift_factor)
     }
 
     /// The field of these components: a regular wave, or a sea measured elsewhere.
-    #[must_use]
     pub fn of(components: &[Component], depth_m: Option<f64>, drift_factor: f64) -> WaveField {
         // Infinite rather than merely large: every formula above has its limit there and needs no
         // special case.
@@ -251,7 +248,6 @@ impl WaveField {
 
     /// The same field, computed with these instructions, as is everything built from it. The choice
     /// affects only the speed.
-    #[must_use]
     pub fn with_instructions(self, instructions: Instructions) -> WaveField {
         WaveField { instructions, ..self }
     }
@@ -262,7 +258,6 @@ impl WaveField {
     }
 
     /// The components for observers.
-    #[must_use]
     pub fn plane_waves(&self) -> Vec<messages::water::PlaneWave> {
         let plane = |wave: &PlaneWave| messages::water::PlaneWave {
             amplitude_m: wave.component.amplitude_m,
@@ -275,20 +270,17 @@ impl WaveField {
     }
 
     /// The surface at a place and time.
-    #[must_use]
     pub fn surface(&self, at: Ned, time_s: f64) -> Surface {
         let sums = self.instructions.run(SurfaceAt { blocks: &self.blocks, at, time_s });
         Surface { elevation_m: sums.sum(0), slope: Ned { north: sums.sum(1), east: sums.sum(2) } }
     }
 
     /// Significant wave height, m: four standard deviations of the elevation.
-    #[must_use]
     pub fn hs_m(&self) -> f64 {
         4.0 * self.mean(|_| 1.0).sqrt()
     }
 
     /// Length of a wave of this period in this field's water, m.
-    #[must_use]
     pub fn wavelength_m(&self, period_s: f64) -> f64 {
         let depth_m = self.waves.first().map_or(f64::INFINITY, |w| w.depth_m);
         TAU / wavenumber_rad_m(TAU / period_s, depth_m)
@@ -296,7 +288,6 @@ impl WaveField {
 
     /// Standard deviation of the horizontal orbital velocity at the surface, both directions
     /// combined, m/s.
-    #[must_use]
     pub fn orbital_rms_m_s(&self) -> f64 {
         self.mean(|w| {
             let per_m = w.component.omega_rad_s * w.orbital_at(0.0);
@@ -306,14 +297,12 @@ impl WaveField {
     }
 
     /// Standard deviation of the steepest slope, as an angle, rad.
-    #[must_use]
     pub fn slope_rms_rad(&self) -> f64 {
         libm::atan(self.mean(|w| w.wavenumber_rad_m * w.wavenumber_rad_m).sqrt())
     }
 
     /// Stokes drift averaged over a hull's draught, m/s: for a wave at the depth z it is a² ω k
     /// cosh 2k(z + h) / (2 sinh² k h).
-    #[must_use]
     pub fn stokes_drift_m_s(&self, draught_m: f64) -> Ned {
         self.drift_m_s(|w| w.stokes_m_s(draught_m))
     }
@@ -321,7 +310,6 @@ impl WaveField {
     /// The part due to faster water where it has risen: a² ω k sinh² k(z + h) / (2 sinh² k h), half
     /// of it in deep water. A body that moves to and fro with the water experiences the other part
     /// by itself.
-    #[must_use]
     pub fn rise_drift_m_s(&self, draught_m: f64) -> Ned {
         // cosh 2x = 2 sinh² x + 1.
         self.drift_m_s(|w| {
@@ -346,7 +334,6 @@ impl WaveField {
     ///
     /// with b between the heading and the wave's travel. R is only a rough estimate of the hull's
     /// reflection, hence `drift_factor`.
-    #[must_use]
     pub fn mean_drift_newton(&self, boat: &Boat, water_density_kg_m3: f64, heading_rad: f64) -> Planar {
         let travel = |wave: &PlaneWave| {
             let (sin, cos) = libm::sincos(wave.component.toward_rad - heading_rad);

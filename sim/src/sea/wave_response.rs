@@ -110,7 +110,6 @@ pub(super) fn transfer(natural_rad_s: f64, damping: f64, omega_rad_s: f64) -> (f
 
 impl WaveResponse {
     /// The response of this boat to the waves of `field`.
-    #[must_use]
     pub fn new(field: &WaveField, boat: &Boat) -> WaveResponse {
         WaveResponse::of(field, boat, &Patches::new(field, boat))
     }
@@ -136,7 +135,6 @@ impl WaveResponse {
     }
 
     /// The attitude of a boat with this velocity over the ground and yaw rate.
-    #[must_use]
     pub fn at(&self, pose: Pose, velocity_m_s: Ned, turn_rad_s: f64, time_s: f64) -> Attitude {
         let Sums { values, rates, heave_acceleration } =
             self.instructions.run(At { response: self, pose, velocity_m_s, turn_rad_s, time_s });

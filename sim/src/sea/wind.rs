@@ -52,7 +52,6 @@ struct Frozen {
 impl WindField {
     /// The wind over `field`. Gusts travel with the mean wind at `reference_height_m` above the
     /// water, usually the height of the boats' windage.
-    #[must_use]
     pub fn new(wind: &Wind, reference_height_m: f64, field: &Field, seeds: &Seeds) -> WindField {
         let upwind = Rotation::from_heading(wind.from_rad);
         let downwind = upwind.ahead().scaled(-1.0);
@@ -93,7 +92,6 @@ impl WindField {
 
     /// The mean speed at a height above the water, m/s: U10 (z / 10 m)^α. Called once per boat,
     /// when the world is created.
-    #[must_use]
     pub fn mean_m_s(&self, height_m: f64) -> f64 {
         self.speed_10m_m_s * libm::pow(height_m / 10.0, self.profile_exponent)
     }
@@ -110,7 +108,6 @@ impl WindField {
     /// The air's velocity over the ground, m/s, at a place with the mean speed `mean_m_s` (from
     /// [`WindField::mean_m_s`]).
     #[inline]
-    #[must_use]
     pub fn at(&self, place: Ned, mean_m_s: f64, now: SimTime) -> Ned {
         let Some(gusts) = &self.gusts else { return self.downwind.scaled(mean_m_s) };
         // Two processes, along and across: gusts change the direction as well.

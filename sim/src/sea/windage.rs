@@ -21,7 +21,6 @@ const AIR_DENSITY_KG_M3: f64 = 1.225;
 
 /// The air's velocity past a boat in body axes, m/s, from the wind over the ground.
 #[inline]
-#[must_use]
 pub fn wind_past_boat(rotation: Rotation, wind_m_s: Ned, nu: Planar) -> Body {
     let wind = body_from_ned(rotation, wind_m_s);
     Body { ahead: wind.ahead - nu.surge, starboard: wind.starboard - nu.sway }
@@ -29,7 +28,6 @@ pub fn wind_past_boat(rotation: Rotation, wind_m_s: Ned, nu: Planar) -> Body {
 
 /// The force on a hull of `length_m`, N and N m, for this air velocity in body axes, m/s.
 #[inline]
-#[must_use]
 pub fn wind_force(windage: &Windage, length_m: f64, past: Body) -> Planar {
     let Body { ahead: a, starboard: s } = past;
     let half_rho = 0.5 * AIR_DENSITY_KG_M3;

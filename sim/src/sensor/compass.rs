@@ -36,7 +36,6 @@ pub struct CompassState {
 
 impl CompassModel {
     /// The compass of the boat named `vehicle`, with these faults.
-    #[must_use]
     pub fn new(compass: &Compass, tick: SimTime, seeds: &Seeds, vehicle: &str, faults: &[FaultSpan]) -> CompassModel {
         CompassModel {
             compass: compass.clone(),
@@ -47,7 +46,6 @@ impl CompassModel {
     }
 
     /// The deviation at a heading, rad, east positive.
-    #[must_use]
     pub fn deviation_rad(&self, psi_rad: f64) -> f64 {
         let [a, b, c, d, e] = self.compass.deviation_rad;
         let (sin, cos) = math::sin_cos(psi_rad);

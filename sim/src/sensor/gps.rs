@@ -82,7 +82,6 @@ impl GpsModel {
     ///
     /// # Panics
     /// If its latency exceeds [`UNDER_WAY_MAX`] periods.
-    #[must_use]
     pub fn new(gps: &Gps, tick: SimTime, seeds: &Seeds, vehicle: &str, faults: &[FaultSpan]) -> GpsModel {
         let period = whole_ticks(gps.period_s, tick);
         let latency = SimTime::from_s(gps.latency_s);

@@ -47,7 +47,6 @@ pub struct ImuState {
 
 impl ImuReading {
     /// The true values.
-    #[must_use]
     pub fn of(truth: &Truth) -> ImuReading {
         let Truth { nu, nu_dot, attitude, .. } = *truth;
         let (sin_roll, cos_roll) = math::sin_cos(attitude.roll_rad);
@@ -85,7 +84,6 @@ impl From<ImuReading> for picture::Imu {
 
 impl ImuModel {
     /// Gyro and accelerometers of the boat named `vehicle`, read every tick.
-    #[must_use]
     pub fn new(imu: &Imu, tick: SimTime, seeds: &Seeds, vehicle: &str) -> ImuModel {
         let noise = seeds.noise(&format!("imu/{vehicle}"));
         ImuModel { imu: imu.clone(), noise, tick, bias_step: GaussMarkovStep::new(tick, imu.bias_time_s) }

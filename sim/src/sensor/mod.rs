@@ -53,7 +53,6 @@ pub struct SensorState {
 
 impl SensorState {
     /// The compass error at its last reading, rad, by which the front seat steers wrong.
-    #[must_use]
     pub fn heading_error_rad(&self) -> f64 {
         self.compass.error_rad
     }
@@ -61,7 +60,6 @@ impl SensorState {
 
 impl SensorModel {
     /// The sensors of the boat named `vehicle`, read once per tick, with these faults.
-    #[must_use]
     pub fn new(sensors: &Sensors, tick: SimTime, seeds: &Seeds, vehicle: &str, faults: &[FaultSpan]) -> SensorModel {
         let compass = |compass| CompassModel::new(compass, tick, seeds, vehicle, faults);
         SensorModel {
@@ -72,7 +70,6 @@ impl SensorModel {
     }
 
     /// The measurements at `now`. Must be called for every tick from 0, in order.
-    #[must_use]
     pub fn read(&self, state: &mut SensorState, truth: &Truth, now: SimTime) -> Reading {
         let psi_rad = match &self.compass {
             None => truth.pose.psi_rad,

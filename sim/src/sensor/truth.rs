@@ -23,7 +23,6 @@ pub struct Truth {
 
 impl Truth {
     /// Velocity over the ground, m/s.
-    #[must_use]
     pub fn velocity_m_s(&self) -> Ned {
         self.nu.in_ned(self.pose.rotation())
     }

@@ -53,7 +53,6 @@ impl Nearness {
 
 impl Encounters {
     /// The sum over all relations.
-    #[must_use]
     pub fn all(&self) -> Nearness {
         let mut sum = self.mate;
         sum.merge(self.enemy);

@@ -132,7 +132,6 @@ struct BoatTrack {
 
 impl GameQuality {
     /// Starts before the first step of a game.
-    #[must_use]
     pub fn new(scenario: &Scenario) -> GameQuality {
         let mut quality = Quality { games: 1, ..Quality::default() };
         for team in (0..scenario.teams.len()).map(|team| TeamId(team as u8)) {
@@ -190,7 +189,6 @@ impl GameQuality {
     }
 
     /// The quality of the whole game.
-    #[must_use]
     pub fn end(mut self) -> Quality {
         self.encounters.end(&mut self.quality);
         self.quality

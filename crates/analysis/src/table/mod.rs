@@ -62,7 +62,6 @@ pub enum TableError {
 }
 
 /// The topics of a recording that have tables, by name.
-#[must_use]
 pub fn topics(bag: &Bag) -> Vec<String> {
     let mut known: Vec<String> = bag.topics().into_keys().map(str::to_owned).collect();
     if known.iter().any(|topic| topic == FRAME) {

@@ -148,7 +148,6 @@ impl StopClient {
 
     /// Waits up to `limit` until every stop is done, and returns the unfinished ones. Call it after
     /// the last request. Without a game to name its boats, the known ones count.
-    #[must_use]
     pub fn finish(&self, limit: Duration) -> Vec<String> {
         let start = clock::now();
         // The sim's answer proves nothing: the sim may be suspended while all boats have stopped,
@@ -164,7 +163,6 @@ impl StopClient {
     }
 
     /// The known control ports, with their boats and tokens.
-    #[must_use]
     pub fn gateways(&self) -> Vec<(SocketAddr, Option<String>, Option<Token>)> {
         let gateways = self.0.gateways.lock();
         let known = gateways.iter().map(|(at, gateway)| (*at, gateway.vehicle.lock().clone(), gateway.token.get()));

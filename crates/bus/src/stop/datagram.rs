@@ -54,7 +54,6 @@ impl StopRequest {
     ///
     /// # Panics
     /// Never: a request is JSON.
-    #[must_use]
     pub fn encode(&self) -> Vec<u8> {
         let mut bytes = serde_json::to_vec(self).expect("a request is JSON");
         // The answer may be no longer than the request, and has to name all boats. With its headers
@@ -65,7 +64,6 @@ impl StopRequest {
     }
 
     /// Decodes a datagram; `None` if it is too long, garbage, or a command that needs a token.
-    #[must_use]
     pub fn decode(bytes: &[u8]) -> Option<StopRequest> {
         if bytes.len() > DATAGRAM_MAX {
             return None;
@@ -81,7 +79,6 @@ impl StopRequest {
     ///
     /// # Panics
     /// Never: an answer is JSON.
-    #[must_use]
     pub fn answer(&self, room: usize, token: Option<&Token>, boats: &States) -> Option<Vec<u8>> {
         let boats = to_raw_value(boats).expect("states are JSON");
         let mac = token.map(|token| token.prove(self.challenge(), ANSWER_KEY, boats.get().as_bytes()).mac);

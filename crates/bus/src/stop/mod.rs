@@ -64,7 +64,6 @@ pub enum StopCommand {
 
 impl StopCommand {
     /// The operator command for a gateway.
-    #[must_use]
     pub fn operator_command(self) -> OperatorCommand {
         match self {
             StopCommand::EStop => OperatorCommand::EStop,
@@ -73,7 +72,6 @@ impl StopCommand {
     }
 
     /// The stop in this command, if it is one.
-    #[must_use]
     pub fn of(command: &OperatorCommand) -> Option<StopCommand> {
         match command {
             OperatorCommand::EStop => Some(StopCommand::EStop),
@@ -83,7 +81,6 @@ impl StopCommand {
     }
 
     /// Whether this state of a boat, as gateways spell it, shows the stop.
-    #[must_use]
     pub fn is_shown_by(self, state: &str) -> bool {
         state.starts_with("e-stopped") || (self == StopCommand::Disarm && state.starts_with("disarmed"))
     }

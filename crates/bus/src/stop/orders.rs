@@ -155,7 +155,6 @@ impl StopOrders {
     }
 
     /// Whether a boat has shown the last stop of this kind that was requested for it alone.
-    #[must_use]
     pub fn is_shown(&self, vehicle: &str, command: StopCommand) -> bool {
         let is_it = |stop: &&Stop| stop.command == command && stop.target.as_deref() == Some(vehicle);
         self.stops.iter().find(is_it).is_some_and(|stop| stop.shown.contains_key(vehicle))
@@ -168,7 +167,6 @@ impl StopOrders {
 
     /// Whether every stop is done for certain; a stop of all is not before a game has named its
     /// boats.
-    #[must_use]
     pub fn is_done(&self, now: Instant) -> bool {
         let is_for_all = self.stops.iter().any(|stop| stop.target.is_none());
         let is_sure = |stop: &Stop| now >= stop.asked + DOUBTED || stop.shown.values().all(|is_sure| *is_sure);
@@ -381,7 +379,6 @@ impl StopOrders {
 
     /// The latest stops that boats have not shown yet, as text, one each. Empty if all stops are
     /// done.
-    #[must_use]
     pub fn unfinished(&self) -> Vec<String> {
         let mut left = Vec::new();
         for stop in &self.stops {

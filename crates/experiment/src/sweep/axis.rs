@@ -71,7 +71,6 @@ impl fmt::Display for AxisValue {
 
 impl AxisValue {
     /// The value as TOML. Whole numbers have no decimal point, since some keys require integers.
-    #[must_use]
     pub fn toml(&self) -> String {
         match self {
             AxisValue::Text(text) => serde_json::Value::from(text.as_str()).to_string(),
@@ -80,7 +79,6 @@ impl AxisValue {
     }
 
     /// The value as a number, if it is one.
-    #[must_use]
     pub fn number(&self) -> Option<f64> {
         if let AxisValue::Number(number) = self { Some(*number) } else { None }
     }
@@ -125,7 +123,6 @@ impl Axis {
     }
 
     /// What it varies, from the reference of scenario files; `None` if its key is not there.
-    #[must_use]
     pub fn meaning(&self) -> Option<String> {
         match self.target() {
             Target::Opponent => Some("Strategy of the opponents.".to_owned()),
@@ -135,13 +132,11 @@ impl Axis {
     }
 
     /// Whether its values are the paths of files.
-    #[must_use]
     pub fn is_of_files(&self) -> bool {
         self.target() != Target::Key
     }
 
     /// The levels of the axis in a grid, in order.
-    #[must_use]
     pub fn levels(&self) -> Vec<AxisValue> {
         if !self.values.is_empty() {
             return self.values.clone();
@@ -170,7 +165,6 @@ impl Axis {
     ///
     /// # Panics
     /// If it has neither values, a range nor a distribution.
-    #[must_use]
     pub fn at(&self, share: f64) -> AxisValue {
         let share = share.clamp(0.0, 1.0);
         if !self.values.is_empty() {
@@ -187,7 +181,6 @@ impl Axis {
     }
 
     /// The value while another axis changes alone.
-    #[must_use]
     pub fn nominal(&self) -> AxisValue {
         self.nominal.clone().unwrap_or_else(|| match self.values.len() {
             0 => self.at(0.5),

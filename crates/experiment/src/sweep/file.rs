@@ -115,7 +115,6 @@ impl Sweep {
     /// # Panics
     /// If the entry or side does not exist, or a key is invalid; a checked sweep has only valid
     /// keys.
-    #[must_use]
     pub fn overrides(&self, teams: &[String], entry: usize, side: usize, values: &[AxisValue]) -> Overrides {
         let mut opponent = self.opponent.clone();
         let mut settings = vec![];

@@ -14,7 +14,6 @@ pub(crate) fn page(title: &str, json: &str) -> String {
 /// The page as files of a server that forbids inline styles and scripts, each under its path.
 /// `json` is a report. `has_games` says whether games can be watched there, at `/?game=` and their
 /// index.
-#[must_use]
 pub fn served(json: &serde_json::Value, has_games: bool) -> [(&'static str, String); 4] {
     let (before, _) = halves(PAGE, "<meta http-equiv");
     let (style, after) = between(PAGE, "style");

@@ -93,7 +93,6 @@ impl Journal {
     }
 
     /// The number of games in the journal.
-    #[must_use]
     pub fn games(&self) -> usize {
         self.known.len()
     }

@@ -15,7 +15,6 @@ pub struct Metric {
 
 impl Metric {
     /// The index of the metric with this name in [`METRICS`] and in lists by metric.
-    #[must_use]
     pub fn place(name: &str) -> Option<usize> {
         METRICS.iter().position(|metric| metric.name == name)
     }
@@ -30,13 +29,11 @@ impl Metrics {
     ///
     /// # Panics
     /// If there is none.
-    #[must_use]
     pub fn of(&self, name: &str) -> f64 {
         self.0[Metric::place(name).expect("a metric has this name")]
     }
 
     /// The points of the entry and of its opponent.
-    #[must_use]
     pub fn score(&self) -> [f64; 2] {
         ["score", "opponent_score"].map(|name| self.of(name))
     }

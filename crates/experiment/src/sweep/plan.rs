@@ -87,37 +87,31 @@ impl Plan {
     }
 
     /// The sweep.
-    #[must_use]
     pub fn sweep(&self) -> &Sweep {
         &self.sweep
     }
 
     /// The names of the game's teams.
-    #[must_use]
     pub fn teams(&self) -> &[String] {
         &self.teams
     }
 
     /// The points.
-    #[must_use]
     pub fn points(&self) -> &[Point] {
         &self.points
     }
 
     /// The number of seeds at each point.
-    #[must_use]
     pub fn seeds(&self) -> u64 {
         self.seeds
     }
 
     /// The number of games at each point.
-    #[must_use]
     pub fn games_per_point(&self) -> usize {
         usize::try_from(self.seeds).map_or(usize::MAX, |seeds| seeds.saturating_mul(2 * self.sweep.entries.len()))
     }
 
     /// The total number of games.
-    #[must_use]
     pub fn games(&self) -> usize {
         self.games_per_point().saturating_mul(self.points.len())
     }
@@ -126,7 +120,6 @@ impl Plan {
     ///
     /// # Panics
     /// If `index` is out of range.
-    #[must_use]
     pub fn job(&self, index: usize) -> Job {
         assert!(index < self.games(), "game {index} of {}", self.games());
         let point = index / self.games_per_point();
@@ -149,7 +142,6 @@ impl Plan {
     }
 
     /// The command that replays a game.
-    #[must_use]
     pub fn command(&self, job: &Job) -> String {
         let Overrides { strategies, settings, .. } = self.overrides(job.point, job.entry, job.side);
         let mut command = format!("squall run {}", argument_for(&self.sweep.game));
@@ -176,7 +168,6 @@ impl Plan {
     /// Identifies the plan: a study is resumed only with the same digest. It depends on the
     /// contents of files, not on their location: moved files with the same references to each other
     /// give the same digest.
-    #[must_use]
     pub fn digest(&self) -> String {
         let nowhere = PathBuf::new;
         let entry = |entry: &Entrant| Entrant { strategy: nowhere(), ..entry.clone() };
@@ -194,7 +185,6 @@ impl Plan {
     }
 
     /// The plan with all required files, for a process on another machine.
-    #[must_use]
     pub fn pack(&self) -> Packed {
         Packed::new(&self.sweep, self.files(), self.digest())
     }

@@ -124,7 +124,6 @@ pub struct Failure {
 
 impl Report {
     /// The report on the rows of a plan's first games, in order.
-    #[must_use]
     pub fn new(plan: &Plan, rows: &[Row]) -> Report {
         let sweep = plan.sweep();
         let observed = observations(plan, rows);

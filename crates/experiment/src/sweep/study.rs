@@ -154,7 +154,6 @@ impl Study {
     }
 
     /// The number of games in it, which is the index of the next one.
-    #[must_use]
     pub fn done(&self) -> usize {
         self.done
     }
@@ -210,7 +209,6 @@ impl Study {
 }
 
 /// The line of a game in the table of games, and the lines of its boats.
-#[must_use]
 pub fn lines(plan: &Plan, played: &Played) -> (String, String) {
     let index = played.row.job.index;
     let boat = |boat: &BoatRow| {
@@ -229,7 +227,6 @@ pub fn lines(plan: &Plan, played: &Played) -> (String, String) {
 
 /// The games in `text`, in the format of `games.csv`, up to the first line that is incomplete or of
 /// another plan.
-#[must_use]
 pub fn rows_in(plan: &Plan, text: &str) -> Vec<Row> {
     table::csv_rows(plan, text).map(|(row, _)| row).collect()
 }

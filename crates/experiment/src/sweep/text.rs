@@ -19,7 +19,6 @@ const COLUMNS: [(&str, &str, f64, usize); 5] = [
 const SHOWN: usize = 6;
 
 /// The report as text, at most 80 columns wide except for commands.
-#[must_use]
 pub fn text(report: &Report) -> String {
     let mut text = String::new();
     let mut line = |line: String| {
@@ -102,7 +101,6 @@ fn interactions(all: &[Interaction], line: &mut impl FnMut(String)) {
 }
 
 /// The result of a search for rare failures, as text.
-#[must_use]
 pub fn found_text(found: &Found) -> String {
     let Found { entry, condition, games, failures, rate, .. } = found;
     let interval = rate.low.zip(rate.high).map(|(low, high)| format!(" ({low:.4} to {high:.4})"));

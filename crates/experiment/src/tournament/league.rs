@@ -81,7 +81,6 @@ impl League {
     ///
     /// # Panics
     /// If the game is not part of the plan that these pairings belong to.
-    #[must_use]
     pub fn line(plan: &Plan, pairings: &[String], record: &Record) -> String {
         let [blue, red] = record.of.sides.map(|entry| plan.tournament().entries[entry].name.clone());
         let outcome = match record.result.clone() {
@@ -97,7 +96,6 @@ impl League {
 
     /// The known games of a plan, in the order in which they were played, and the indices of the
     /// others.
-    #[must_use]
     pub fn split(&self, plan: &Plan, pairings: &[String]) -> (Vec<Record>, Vec<usize>) {
         let mut known = vec![];
         let mut new = vec![];

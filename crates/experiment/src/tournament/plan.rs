@@ -74,31 +74,26 @@ impl Plan {
     }
 
     /// The tournament.
-    #[must_use]
     pub fn tournament(&self) -> &Tournament {
         &self.tournament
     }
 
     /// The names of the game's teams, the first one first.
-    #[must_use]
     pub fn teams(&self) -> &[String] {
         &self.teams
     }
 
     /// The number of seeds, starting at the tournament's first.
-    #[must_use]
     pub fn seeds(&self) -> u64 {
         self.seeds
     }
 
     /// The number of games per seed.
-    #[must_use]
     pub fn games_per_seed(&self) -> usize {
         self.rounds.len()
     }
 
     /// The total number of games.
-    #[must_use]
     pub fn games(&self) -> usize {
         usize::try_from(self.seeds).map_or(usize::MAX, |seeds| seeds.saturating_mul(self.rounds.len()))
     }
@@ -107,7 +102,6 @@ impl Plan {
     ///
     /// # Panics
     /// If `index` is out of range.
-    #[must_use]
     pub fn match_at(&self, index: usize) -> (Match, &Scenario) {
         assert!(index < self.games(), "match {index} of {}", self.games());
         let (sides, scenario) = &self.rounds[index % self.rounds.len()];
@@ -121,7 +115,6 @@ impl Plan {
     ///
     /// # Panics
     /// If the game is not part of the plan.
-    #[must_use]
     pub fn place_of(&self, of: Match) -> usize {
         let round = self.rounds.iter().position(|(sides, _)| *sides == of.sides).expect("they play each other");
         of.seed.wrapping_sub(self.tournament.seed) as usize * self.rounds.len() + round
@@ -129,14 +122,12 @@ impl Plan {
 
     /// Identifies the games of each seed, in order, by their parsed files. Another version of
     /// Squall or another file gives another game; other entry names or file locations do not.
-    #[must_use]
     pub fn pairings(&self) -> Vec<String> {
         self.rounds.iter().map(|(_, scenario)| scenario.digest()).collect()
     }
 
     /// Identifies the plan. It depends on the contents of files, not on their location: moved files
     /// with the same references to each other give the same digest.
-    #[must_use]
     pub fn digest(&self) -> String {
         let nowhere = |entry: &Entrant| Entrant { strategy: PathBuf::new(), ..entry.clone() };
         let entries = self.tournament.entries.iter().map(nowhere).collect();
@@ -146,7 +137,6 @@ impl Plan {
     }
 
     /// The plan with all required files, for a process on another machine.
-    #[must_use]
     pub fn pack(&self) -> Packed {
         Packed::new(&self.tournament, self.files.list(), self.digest())
     }

@@ -51,7 +51,6 @@ const CLOSE: f64 = 1e-10;
 ///
 /// # Panics
 /// If a game has an unknown entry.
-#[must_use]
 pub fn ratings(entries: usize, rounds: &[Vec<Meeting>]) -> Vec<Rating> {
     let all: Vec<Meeting> = rounds.iter().flatten().copied().collect();
     let mut strengths = DVector::zeros(entries);

@@ -184,7 +184,6 @@ struct Appearance<'a> {
 
 impl Report {
     /// The report on the records of a plan's games, in the order in which they were played.
-    #[must_use]
     pub fn new(plan: &Plan, played: &[Record]) -> Report {
         let tournament = plan.tournament();
         let mut records = played.to_vec();

@@ -25,7 +25,6 @@ pub const WIDTH: usize = 120;
 
 /// The report as text, in tables of at most `columns` characters if names allow it; each command
 /// stays on one line.
-#[must_use]
 pub fn text(report: &Report, columns: usize) -> String {
     let mut text = String::new();
     let sea = report.sea.as_ref().map_or(String::new(), |sea| format!(", sea {sea}"));
@@ -197,7 +196,6 @@ fn again(text: &mut String, report: &Report) {
 }
 
 /// A comma-separated line for each entry. Names contain no commas, and paths are quoted.
-#[must_use]
 pub fn csv(report: &Report) -> String {
     let mut text = String::new();
     let heads: String = COLUMNS.iter().map(|(name, _, _)| format!(",{name},{name}_low,{name}_high")).collect();

@@ -54,7 +54,6 @@ pub const TARGETS: [Target; 13] = [
 ];
 
 /// The target with this name.
-#[must_use]
 pub fn named(name: &str) -> Option<Target> {
     TARGETS.into_iter().find(|target| target.name == name)
 }

@@ -118,7 +118,6 @@ impl Games {
     }
 
     /// The setup.
-    #[must_use]
     pub fn setup(&self) -> &Setup {
         &self.setup
     }
@@ -135,27 +134,23 @@ impl Games {
     }
 
     /// The total number of rows, and the number per game.
-    #[must_use]
     pub fn rows(&self) -> (usize, usize) {
         (self.slots.len() * self.rows_per_game, self.rows_per_game)
     }
 
     /// The episodes that ended in the last step, in the order of their games.
-    #[must_use]
     pub fn finished(&self) -> &[Finished] {
         &self.finished
     }
 
     /// The teacher's actions in a game's last step, by row. None where no action of the policy
     /// corresponds.
-    #[must_use]
     pub fn taught(&self, game: usize) -> &[Option<Action>] {
         &self.slots[game].taught
     }
 
     /// A game's values for a critic beyond the observations, row by row: current, and at the end of
     /// a game that ended in the last step. Rows of boats without actions are left out.
-    #[must_use]
     pub fn truth(&self, game: usize) -> (&[f32], &[f32]) {
         let [now, last] = &self.slots[game].truth;
         (now, last)
@@ -168,19 +163,16 @@ impl Games {
     }
 
     /// The game that a slot is playing.
-    #[must_use]
     pub fn contest(&self, game: usize) -> &Contest {
         self.slots[game].game.contest()
     }
 
     /// The boats of a game that receive actions, in row order.
-    #[must_use]
     pub fn boats(&self, game: usize) -> &[VehicleId] {
         self.slots[game].game.boats_with_actions()
     }
 
     /// A game's state of play.
-    #[must_use]
     pub fn standing(&self, game: usize) -> Standing {
         self.slots[game].game.standing()
     }

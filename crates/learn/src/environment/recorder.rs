@@ -51,7 +51,6 @@ pub enum RecordingNames {
 }
 
 /// The file name of a recording.
-#[must_use]
 pub fn recording_name(seed: u64, number: u64) -> String {
     format!("{seed}_{number}.mcap")
 }
@@ -71,7 +70,6 @@ pub struct Recordings {
 
 impl Recordings {
     /// Returns watches that record games. Results go to the log. Errors do not stop games.
-    #[must_use]
     pub fn watches(self, log: Arc<RecordingLog>) -> Watches {
         let recordings = Arc::new(self);
         Arc::new(move |number| {

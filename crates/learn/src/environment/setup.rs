@@ -176,7 +176,6 @@ impl Setup {
     }
 
     /// The options that a policy chooses from. None in other action spaces.
-    #[must_use]
     pub fn options(&self) -> Option<&[String]> {
         match &self.control {
             Control::Helm(strategy) if self.spaces.action == ActionSpace::Options => {
@@ -188,13 +187,11 @@ impl Setup {
     }
 
     /// The number of discrete actions. None if actions are continuous.
-    #[must_use]
     pub fn actions(&self) -> Option<usize> {
         self.options().map(<[String]>::len).or(self.spaces.action.count())
     }
 
     /// The number of rows per game: the boats that may receive actions.
-    #[must_use]
     pub fn rows_per_game(&self) -> usize {
         let of_team = if self.mates.is_some() { 1 } else { self.team_size() };
         let is_self_play = self.opponents.iter().any(|(_, player)| matches!(player, Player::Policy));
@@ -218,26 +215,22 @@ impl Setup {
     }
 
     /// The number of boats in a team.
-    #[must_use]
     pub fn team_size(&self) -> usize {
         self.boats_of(TeamId(0)).count()
     }
 
     /// The names of the values of an observation.
-    #[must_use]
     pub fn observation_names(&self) -> Vec<String> {
         let boats = self.team_size();
         self.spaces.observation.names(boats.saturating_sub(1), boats)
     }
 
     /// The size of a critic's input.
-    #[must_use]
     pub fn state_size(&self) -> usize {
         self.observation_size() + self.truth_size()
     }
 
     /// The names of the values that only the critic receives.
-    #[must_use]
     pub fn truth_names(&self) -> Vec<String> {
         let boats = self.team_size();
         match self.critic {
@@ -247,7 +240,6 @@ impl Setup {
     }
 
     /// The number of values that only the critic receives.
-    #[must_use]
     pub fn truth_size(&self) -> usize {
         match self.critic {
             CriticInput::Observation => 0,
@@ -256,7 +248,6 @@ impl Setup {
     }
 
     /// The size of an observation.
-    #[must_use]
     pub fn observation_size(&self) -> usize {
         let boats = self.team_size();
         self.spaces.observation.size(boats.saturating_sub(1), boats)

@@ -71,38 +71,32 @@ impl VectorEnvironment {
     }
 
     /// The observations, rows × values.
-    #[must_use]
     pub fn observations(&self) -> &[f32] {
         &self.shown.observations
     }
 
     /// The last observations before a new game began, rows × values. Valid only for games that
     /// ended in the last step.
-    #[must_use]
     pub fn final_observations(&self) -> &[f32] {
         &self.shown.final_observations
     }
 
     /// A critic's inputs, rows × [`Setup::state_size`].
-    #[must_use]
     pub fn states(&self) -> &[f32] {
         if self.setup().truth_size() == 0 { &self.shown.observations } else { &self.shown.states }
     }
 
     /// A critic's inputs before a new game began. Valid only for games that ended in the last step.
-    #[must_use]
     pub fn final_states(&self) -> &[f32] {
         if self.setup().truth_size() == 0 { &self.shown.final_observations } else { &self.shown.final_states }
     }
 
     /// The rewards of the last step, by row.
-    #[must_use]
     pub fn rewards(&self) -> &[f32] {
         &self.shown.rewards
     }
 
     /// By row, whether the next action takes effect; see [`Rows::counts`](super::Rows::counts).
-    #[must_use]
     pub fn counts(&self) -> &[bool] {
         &self.shown.counts
     }

@@ -33,7 +33,6 @@ pub struct Adam {
 
 impl Adam {
     /// An optimiser for this number of parameters.
-    #[must_use]
     pub fn new(parameters: usize, settings: AdamSettings) -> Adam {
         Adam { settings, powers: (1.0, 1.0), mean: vec![0.0; parameters], square: vec![0.0; parameters] }
     }

@@ -22,7 +22,6 @@ pub struct Trace {
 
 impl Trace {
     /// The output, rows × values.
-    #[must_use]
     pub fn output(&self) -> &[f32] {
         self.layers.last().map_or(&[], Vec::as_slice)
     }
@@ -44,7 +43,6 @@ impl Perceptron {
     ///
     /// # Panics
     /// With fewer than two sizes, or a size of 0.
-    #[must_use]
     pub fn new(sizes: &[usize], output_gain: f32, stream: &mut Stream) -> Perceptron {
         assert!(sizes.len() >= 2 && !sizes.contains(&0), "{sizes:?}");
         let count = sizes.windows(2).map(|pair| (pair[0] + 1) * pair[1]).sum();
@@ -60,13 +58,11 @@ impl Perceptron {
     }
 
     /// Row size of each layer, the input first.
-    #[must_use]
     pub fn sizes(&self) -> &[usize] {
         &self.sizes
     }
 
     /// All weights and biases.
-    #[must_use]
     pub fn parameters(&self) -> &[f32] {
         &self.parameters
     }
@@ -77,7 +73,6 @@ impl Perceptron {
     }
 
     /// The weights of a layer, inputs × outputs, and its biases.
-    #[must_use]
     pub fn layer(&self, i: usize) -> (&[f32], &[f32]) {
         let layer = self.layers().nth(i).expect("the layer exists");
         (&self.parameters[layer.weights..layer.biases], &self.parameters[layer.biases..layer.end])

@@ -25,7 +25,6 @@ pub struct DqnLearner {
 
 impl DqnLearner {
     /// A new network of this shape.
-    #[must_use]
     pub fn new(observation: usize, hidden: &[usize], actions: usize, seed: u64) -> DqnLearner {
         let sizes = [&[observation], hidden, &[actions]].concat();
         // Hyperbolic tangents, unlike in the paper: boats evaluate only such networks.
@@ -54,7 +53,6 @@ impl DqnLearner {
 
     /// The gradient with respect to the network's parameters, and the loss: the mean Huber loss,
     /// with a limit of 1, of the temporal-difference errors.
-    #[must_use]
     pub fn gradient(&self, minibatch: &Minibatch<u16>, settings: &Dqn) -> (Vec<f32>, f32) {
         let size = self.network.sizes()[0];
         let slopes: Vec<Slope> = minibatch

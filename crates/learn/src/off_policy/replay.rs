@@ -51,7 +51,6 @@ pub struct Minibatch<A> {
 
 impl<A> Minibatch<A> {
     /// The number of transitions.
-    #[must_use]
     pub fn count(&self) -> usize {
         self.rewards.len()
     }
@@ -62,7 +61,6 @@ impl<A: Copy + Default> Replay<A> {
     ///
     /// # Panics
     /// If either is 0.
-    #[must_use]
     pub fn new(size: usize, capacity: usize) -> Replay<A> {
         // The buffer is part of a training run's saved state, about 100 MB by default. Refilling it by
         // playing would need the games' earlier state.
@@ -71,7 +69,6 @@ impl<A: Copy + Default> Replay<A> {
     }
 
     /// The number of transitions.
-    #[must_use]
     pub fn count(&self) -> usize {
         self.kept.count()
     }

@@ -46,7 +46,6 @@ pub struct Td3Losses {
 
 impl Td3Learner {
     /// A new policy with this number of inputs.
-    #[must_use]
     pub fn new(observation: usize, hidden: &[usize], seed: u64) -> Td3Learner {
         let sizes = |from: usize, to: usize| [&[from], hidden, &[to]].concat();
         let actor = Perceptron::new(&sizes(observation, NUMBERS), 0.01, &mut Stream::new(seed, "actor"));
@@ -164,7 +163,6 @@ impl Td3Learner {
     /// The negative mean value of the policy's actions according to the first critic, over
     /// transitions whose action the boat followed, and its gradient with respect to the policy's
     /// parameters.
-    #[must_use]
     pub fn actor_gradient(&self, minibatch: &Minibatch<Numbers>) -> (Vec<f32>, f32) {
         let critic = &self.critics[0];
         let size = self.actor.sizes()[0];
@@ -199,7 +197,6 @@ impl Td3Learner {
 }
 
 /// Converts a policy's output to an action.
-#[must_use]
 pub fn action(output: &[f32]) -> Numbers {
     std::array::from_fn(|i| tanh(output[i]))
 }

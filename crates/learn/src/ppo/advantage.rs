@@ -20,7 +20,6 @@ pub struct Steps {
 
 impl Steps {
     /// The advantage of every step, steps × rows. Added to `values`, they give the returns to learn.
-    #[must_use]
     pub fn advantages(&self, discount: f32, lambda: f32) -> Vec<f32> {
         let Steps { rows, rewards, values, next_values, over, ended } = self;
         let mut advantages = vec![0.0; rewards.len()];

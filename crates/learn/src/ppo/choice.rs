@@ -9,7 +9,6 @@ pub fn log_probabilities(logits: &[f32], out: &mut [f32]) {
 }
 
 /// The action that a uniform random number from 0 to 1 selects.
-#[must_use]
 pub fn drawn(log_probabilities: &[f32], unit: f64) -> usize {
     let mut left = unit;
     let chosen = log_probabilities.iter().position(|log| {
@@ -20,7 +19,6 @@ pub fn drawn(log_probabilities: &[f32], unit: f64) -> usize {
 }
 
 /// The action with the largest logit. Ties go to the first.
-#[must_use]
 pub fn likeliest(logits: &[f32]) -> usize {
     (1..logits.len()).fold(0, |best, i| if logits[i] > logits[best] { i } else { best })
 }

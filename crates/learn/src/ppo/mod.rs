@@ -37,7 +37,6 @@ pub struct Scale {
 
 impl Scale {
     /// The standard deviation; 1 without returns so far.
-    #[must_use]
     pub fn deviation(&self) -> f32 {
         if self.count < 2.0 { 1.0 } else { (self.squares / self.count).sqrt().max(1e-3) as f32 }
     }
@@ -90,7 +89,6 @@ pub enum Lesson {
 
 impl ActorCritic {
     /// A new policy with these numbers of inputs and actions, and a critic with `state` inputs.
-    #[must_use]
     pub fn new(observation: usize, state: usize, hidden: &[usize], actions: usize, seed: u64) -> ActorCritic {
         let sizes = |from: usize, to: usize| [&[from], hidden, &[to]].concat();
         let actor = Perceptron::new(&sizes(observation, actions), 0.01, &mut Stream::new(seed, "actor"));

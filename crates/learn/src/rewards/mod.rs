@@ -134,7 +134,6 @@ pub struct Place {
 
 impl Place {
     /// The value of a boat's place.
-    #[must_use]
     pub fn of(&self, boat: &BoatProgress) -> f64 {
         if boat.tagged {
             return 0.0;
@@ -152,7 +151,6 @@ impl Place {
 
 impl Potential {
     /// The potential of a boat.
-    #[must_use]
     pub fn of(&self, boat: &BoatProgress) -> f64 {
         if boat.tagged {
             -self.untag * boat.from_home
@@ -166,7 +164,6 @@ impl Potential {
 
 impl Rewards {
     /// Whether the positions of other boats matter; see [`Among`].
-    #[must_use]
     pub fn mind_others(&self) -> bool {
         let Place { intruder, guard, shield, clear, .. } = self.place;
         [intruder, guard, shield, clear].iter().any(|worth| *worth != 0.0)
@@ -209,7 +206,6 @@ impl Rewards {
     }
 
     /// A team's reward for the end of a game with this score.
-    #[must_use]
     pub fn of_end(&self, score: &[u32], team: TeamId) -> f64 {
         let own = f64::from(score[team.index()]);
         let ahead = 2.0 * own - score.iter().map(|points| f64::from(*points)).sum::<f64>();

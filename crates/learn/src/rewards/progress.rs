@@ -51,7 +51,6 @@ pub struct Among {
 
 /// Each boat's progress by its own sensors, with `among_others` including its position among the
 /// others.
-#[must_use]
 pub fn progress(contest: &Contest, among_others: bool) -> Vec<BoatProgress> {
     let scenario = contest.scenario();
     let placed = |team: TeamId| Placed { at: Ned::default(), team, tagged: false, carrying: false };

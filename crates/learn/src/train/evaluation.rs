@@ -34,7 +34,6 @@ impl Played {
     }
 
     /// The share of games won; a draw counts half.
-    #[must_use]
     pub fn won(&self) -> f64 {
         let [won, drawn, lost] = self.results.map(f64::from);
         (won + 0.5 * drawn) / (won + drawn + lost).max(1.0)

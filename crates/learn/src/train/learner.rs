@@ -47,7 +47,6 @@ impl Learner {
     }
 
     /// The network that chooses actions.
-    #[must_use]
     pub fn actor(&self) -> &Perceptron {
         match self {
             Learner::Ppo(learner) => &learner.actor,

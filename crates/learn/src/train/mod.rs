@@ -159,37 +159,31 @@ impl Trainer {
     }
 
     /// The training.
-    #[must_use]
     pub fn training(&self) -> &Training {
         &self.training
     }
 
     /// The current learner.
-    #[must_use]
     pub fn learner(&self) -> &Learner {
         &self.state.learner
     }
 
     /// The number of samples learnt so far, and of all stages.
-    #[must_use]
     pub fn samples(&self) -> (u64, u64) {
         (self.state.samples, self.training.stage.iter().map(|stage| stage.samples).sum())
     }
 
     /// The best policy so far.
-    #[must_use]
     pub fn best(&self) -> Option<&Best> {
         self.state.best.as_ref()
     }
 
     /// Whether all stages are complete.
-    #[must_use]
     pub fn is_over(&self) -> bool {
         self.state.stage >= self.training.stage.len()
     }
 
     /// The state from which a training run can be resumed.
-    #[must_use]
     pub fn state(&self) -> Vec<u8> {
         self.state.write(&self.training)
     }
@@ -212,7 +206,6 @@ impl Trainer {
     }
 
     /// The policy's spaces and period.
-    #[must_use]
     pub fn spec(&self) -> PolicySpec {
         let Training { observation, action, period_s, .. } = self.training;
         PolicySpec { observation, action, period_s }

@@ -55,7 +55,6 @@ pub struct Evaluated {
 
 impl Evaluated {
     /// The share of all games won; a draw counts half.
-    #[must_use]
     pub fn won(&self) -> f64 {
         self.played.iter().map(|(_, played)| played.won()).sum::<f64>() / self.played.len().max(1) as f64
     }

@@ -17,7 +17,6 @@ pub enum Algorithm {
 
 impl Training {
     /// The algorithm of the training.
-    #[must_use]
     pub fn algorithm(&self) -> Algorithm {
         match (self.td3, self.dqn) {
             (Some(td3), _) => Algorithm::Td3(td3),
@@ -29,7 +28,6 @@ impl Training {
 
 impl Algorithm {
     /// The name of the algorithm's table.
-    #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
             Algorithm::Ppo(_) => "ppo",
@@ -39,13 +37,11 @@ impl Algorithm {
     }
 
     /// Whether actions are discrete rather than continuous.
-    #[must_use]
     pub fn is_discrete(&self) -> bool {
         !matches!(self, Algorithm::Td3(_))
     }
 
     /// Steps of every game per update.
-    #[must_use]
     pub fn steps(&self) -> usize {
         match self {
             Algorithm::Ppo(ppo) => ppo.steps,
@@ -55,7 +51,6 @@ impl Algorithm {
     }
 
     /// Value of a reward one step later.
-    #[must_use]
     pub fn discount(&self) -> f32 {
         match self {
             Algorithm::Ppo(ppo) => ppo.discount,
@@ -192,7 +187,6 @@ pub struct Dqn {
 
 impl Dqn {
     /// The share of uniformly random actions after this many samples.
-    #[must_use]
     pub fn epsilon_after(&self, samples: u64) -> f32 {
         let done = (samples as f64 / self.epsilon_samples as f64).min(1.0) as f32;
         self.epsilon + (self.epsilon_end - self.epsilon) * done

@@ -7,7 +7,6 @@ use primitives::id::{FlagId, TeamId};
 impl Field {
     /// Whether `at` is on `team`'s own side; the scrimmage line is on both.
     #[inline]
-    #[must_use]
     pub fn is_own_side(&self, team: TeamId, at: Ned) -> bool {
         self.zones.get(team.index()).is_some_and(|zone| zone.contains(at))
     }
@@ -20,14 +19,12 @@ impl Field {
     }
 
     /// The nearest of `team`'s own flags' homes; none without flags.
-    #[must_use]
     pub fn nearest_own_flag(&self, team: TeamId, at: Ned) -> Option<Ned> {
         at.nearest_of(self.own_flags(team).map(|(_, home)| home))
     }
 
     /// The corners of `team`'s own end.
     #[inline]
-    #[must_use]
     pub fn own_corners(&self, team: TeamId) -> &[Ned] {
         self.own_corners.get(team.index()).map_or(&[], |corners| corners)
     }

@@ -29,7 +29,6 @@ pub enum ObservationSpace {
 
 impl ObservationSpace {
     /// Incremented when the meaning of a value changes.
-    #[must_use]
     pub fn version(self) -> u32 {
         match self {
             ObservationSpace::Pyquaticus => pyquaticus::VERSION,
@@ -38,7 +37,6 @@ impl ObservationSpace {
     }
 
     /// The number of values for a boat with this many mates and enemies.
-    #[must_use]
     pub fn size(self, mates: usize, enemies: usize) -> usize {
         match self {
             ObservationSpace::Pyquaticus => pyquaticus::OWN_NAMES.len() + (mates + enemies) * pyquaticus::OTHER,
@@ -51,7 +49,6 @@ impl ObservationSpace {
 
     /// The names of the values, in order. Names of older frames begin with their age in policy
     /// decisions: `t-1.speed`.
-    #[must_use]
     pub fn names(self, mates: usize, enemies: usize) -> Vec<String> {
         match self {
             ObservationSpace::Pyquaticus => names_of(&pyquaticus::OWN_NAMES, &pyquaticus::OTHER_NAMES, mates, enemies),

@@ -110,13 +110,11 @@ impl Values for () {}
 
 impl Expression {
     /// True or false.
-    #[must_use]
     pub fn truth(is: bool) -> Expression {
         Expression::Constant(truth(is))
     }
 
     /// The value; NaN becomes 0.
-    #[must_use]
     pub fn value(&self, values: &impl Values) -> f64 {
         let value = match self {
             Expression::Constant(value) => *value,
@@ -142,13 +140,11 @@ impl Expression {
     }
 
     /// Whether it is true.
-    #[must_use]
     pub fn is_true(&self, values: &impl Values) -> bool {
         self.value(values) != 0.0
     }
 
     /// Its value, if it depends neither on the game nor on variables.
-    #[must_use]
     pub fn constant(&self) -> Option<f64> {
         let mut asks = false;
         self.walk(&mut |part| asks |= part.asks());
@@ -156,14 +152,12 @@ impl Expression {
     }
 
     /// Whether it refers directly to the game or to a variable.
-    #[must_use]
     pub fn asks(&self) -> bool {
         use Expression::{Between, Fact, Mates, Measure, Variable};
         matches!(self, Variable(_) | Fact(_) | Measure(..) | Between(..) | Mates(_))
     }
 
     /// The variable, if the expression is one.
-    #[must_use]
     pub fn as_variable(&self) -> Option<u16> {
         if let Expression::Variable(index) = self { Some(*index) } else { None }
     }
@@ -183,13 +177,11 @@ impl Expression {
 
 impl Join {
     /// Whether the result is true or false.
-    #[must_use]
     pub fn is_truth(self) -> bool {
         !matches!(self, Join::Plus | Join::Minus | Join::Times | Join::Over | Join::Least | Join::Greatest)
     }
 
     /// Joins two values.
-    #[must_use]
     pub fn of(self, a: f64, b: f64) -> f64 {
         match self {
             Join::And => truth(a != 0.0 && b != 0.0),

@@ -16,13 +16,11 @@ pub enum Kind {
 
 impl Kind {
     /// A truth if `is_truth`, otherwise a number.
-    #[must_use]
     pub fn of(is_truth: bool) -> Kind {
         if is_truth { Kind::Truth } else { Kind::Number }
     }
 
     /// A value of this kind, as written in files.
-    #[must_use]
     pub fn text_of(&self, value: f64) -> String {
         match self {
             Kind::Truth => (value != 0.0).to_string(),
@@ -107,7 +105,6 @@ pub enum Measure {
 
 impl Fact {
     /// Whether it is a truth rather than a number.
-    #[must_use]
     pub fn is_truth(self) -> bool {
         use Fact::{
             CanTag, Disabled, EnemyFlagTaken, EnemyInZone, FlagTaken, HasFlag, MateHasFlag, Outside, OwnSide, Tagged,
@@ -117,7 +114,6 @@ impl Fact {
     }
 
     /// Whether it is a count.
-    #[must_use]
     pub fn is_whole(self) -> bool {
         !self.is_truth() && !matches!(self, Fact::TimeS | Fact::TimeLeftS | Fact::ModeS | Fact::StepS | Fact::SpeedMS)
     }
@@ -125,19 +121,16 @@ impl Fact {
 
 impl Measure {
     /// Whether it is a truth rather than a number.
-    #[must_use]
     pub fn is_truth(self) -> bool {
         matches!(self, Measure::Known | Measure::OnOwnSide | Measure::IsTagged)
     }
 
     /// Whether it is a count.
-    #[must_use]
     pub fn is_whole(self) -> bool {
         self == Measure::MatesNearer
     }
 
     /// Whether it applies to two places.
-    #[must_use]
     pub fn is_of_two(self) -> bool {
         matches!(self, Measure::Distance | Measure::Closing)
     }

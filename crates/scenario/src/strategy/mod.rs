@@ -183,7 +183,6 @@ impl Strategy {
     }
 
     /// Whether a person may steer boats with this strategy.
-    #[must_use]
     pub fn is_steered(&self) -> bool {
         self.roles.iter().any(|role| role.proposer() == Some(Proposer::Person))
     }
@@ -199,7 +198,6 @@ impl Program {
     }
 
     /// The accepted external source of courses and speeds, if any.
-    #[must_use]
     pub fn proposer(&self) -> Option<Proposer> {
         self.behaviours.iter().find_map(|behaviour| match &behaviour.task {
             Task::Policy(policy) if policy.model.is_none() && policy.sets.is_none() => Some(policy.by),
@@ -208,7 +206,6 @@ impl Program {
     }
 
     /// Index of the variable whose text an external source sets, if the program has options.
-    #[must_use]
     pub fn options(&self) -> Option<u16> {
         self.behaviours.iter().find_map(|behaviour| match &behaviour.task {
             Task::Policy(policy) if policy.model.is_none() => policy.sets,
@@ -217,7 +214,6 @@ impl Program {
     }
 
     /// The texts of a variable; empty for other kinds.
-    #[must_use]
     pub fn texts(&self, variable: u16) -> &[String] {
         match &self.variables[usize::from(variable)].kind {
             Kind::Text(texts) => texts,
@@ -226,7 +222,6 @@ impl Program {
     }
 
     /// Whether a mode has no children.
-    #[must_use]
     pub fn is_leaf(&self, mode: usize) -> bool {
         self.modes.iter().all(|other| other.parent != Some(mode))
     }
@@ -237,7 +232,6 @@ impl Program {
     }
 
     /// The mode's name after those of its parents, outermost first: `defending:intercepting`.
-    #[must_use]
     pub fn path(&self, mode: usize) -> String {
         let name = &self.modes[mode].name;
         self.modes[mode].parent.map_or_else(|| name.clone(), |parent| format!("{}:{name}", self.path(parent)))
@@ -247,7 +241,6 @@ impl Program {
     ///
     /// # Panics
     /// If the last of siblings has a condition, which no checked program has.
-    #[must_use]
     pub fn leaf(&self, values: &impl Values) -> usize {
         let mut within = None;
         loop {

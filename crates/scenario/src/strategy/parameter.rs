@@ -17,13 +17,11 @@ pub struct Parameter {
 
 impl Parameter {
     /// Its value now.
-    #[must_use]
     pub fn value(&self, values: &impl Values) -> f64 {
         self.expression.value(values).clamp(self.range.0, self.range.1)
     }
 
     /// Its value, if constant.
-    #[must_use]
     pub fn constant(&self) -> Option<f64> {
         self.expression.constant().map(|value| value.clamp(self.range.0, self.range.1))
     }

@@ -63,21 +63,18 @@ pub enum Boat {
 
 impl Place {
     /// The mark, boat or named point with this name.
-    #[must_use]
     pub fn by_name(name: &str) -> Option<Place> {
         let point = || Field::point_names().into_iter().find(|point| point == name).map(Place::Point);
         Mark::by_name(name).map(Place::Mark).or_else(|| Boat::by_name(name).map(Place::Boat)).or_else(point)
     }
 
     /// All names of places.
-    #[must_use]
     pub fn names() -> Vec<String> {
         let fixed = [Mark::names(), Boat::names()].concat().into_iter().map(str::to_owned);
         fixed.chain(Field::point_names()).collect()
     }
 
     /// The names, abbreviated.
-    #[must_use]
     pub fn names_in_short() -> String {
         let marks = Mark::names().join(", ");
         let boats = Boat::names().join(", ");

@@ -17,7 +17,6 @@ enum Precedence {
 
 impl Program {
     /// The kind of an expression's value in this program.
-    #[must_use]
     pub fn kind_of(&self, expression: &Expression) -> Kind {
         match expression {
             Expression::Constant(_) | Expression::Mates(_) | Expression::Minus(_) => Kind::Number,
@@ -34,19 +33,16 @@ impl Program {
     }
 
     /// A condition of this program, as typed.
-    #[must_use]
     pub fn condition_text(&self, expression: &Expression) -> String {
         self.text(expression, &Kind::Truth, Precedence::Choice)
     }
 
     /// A number of this program, as typed.
-    #[must_use]
     pub fn number_text(&self, expression: &Expression) -> String {
         self.text(expression, &Kind::Number, Precedence::Choice)
     }
 
     /// A value for a variable of this program, as typed.
-    #[must_use]
     pub fn value_text(&self, variable: u16, expression: &Expression) -> String {
         self.text(expression, &self.variables[usize::from(variable)].kind, Precedence::Choice)
     }

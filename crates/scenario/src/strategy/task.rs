@@ -37,13 +37,11 @@ pub enum Task {
 
 impl Task {
     /// The kind's name in files.
-    #[must_use]
     pub fn kind(&self) -> &'static str {
         self.into()
     }
 
     /// Whether it is a safety behaviour, which has a greater default weight.
-    #[must_use]
     pub fn is_safety(&self) -> bool {
         matches!(self, Task::OpRegion(_) | Task::AvoidCollision(_) | Task::AvoidObstacle(_))
     }

@@ -21,13 +21,11 @@ struct Said {
 
 impl PreparingView {
     /// Shows progress.
-    #[must_use]
     pub fn new(text: &str) -> PreparingView {
         PreparingView::of(text, false)
     }
 
     /// Shows why no game is available.
-    #[must_use]
     pub fn failed(text: &str) -> PreparingView {
         PreparingView::of(text, true)
     }

@@ -40,7 +40,6 @@ pub struct Showing(watch::Sender<Option<Arc<dyn View>>>);
 
 impl Showing {
     /// Starts with this view.
-    #[must_use]
     pub fn new(first: Arc<dyn View>) -> Arc<Showing> {
         Arc::new(Showing(watch::Sender::new(Some(first))))
     }
@@ -51,13 +50,11 @@ impl Showing {
     }
 
     /// A handle for one page.
-    #[must_use]
     pub fn shown(self: &Arc<Showing>) -> Shown {
         Shown { receiver: self.0.subscribe(), _kept: Some(Arc::clone(self)) }
     }
 
     /// Whether any page shows it.
-    #[must_use]
     pub fn is_watched(&self) -> bool {
         self.0.receiver_count() > 0
     }

@@ -82,13 +82,11 @@ pub enum PageRequest {
 
 impl PageRequest {
     /// The request's name in the protocol.
-    #[must_use]
     pub fn name(&self) -> &'static str {
         self.into()
     }
 
     /// The access that the request needs in a live game.
-    #[must_use]
     pub fn needs(&self) -> Access {
         match self {
             PageRequest::Ack

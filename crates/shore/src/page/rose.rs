@@ -122,7 +122,6 @@ pub(super) fn helm_text(scenario: &Scenario, vehicle: VehicleId, functions: bool
 }
 
 /// Whether a report is consistent and about this vehicle. Replies from agents are not trusted.
-#[must_use]
 pub fn is_sound(report: &HelmReport, vehicle: VehicleId, vehicles: usize) -> bool {
     let is_grid = (1..=3600).contains(&report.courses)
         && (2..=1000).contains(&report.speeds)

@@ -31,7 +31,6 @@ pub struct PageSession {
 
 impl PageSession {
     /// Starts a session with a page.
-    #[must_use]
     pub fn new(viewer: Box<dyn Viewer>, access: Access) -> PageSession {
         PageSession { viewer, access, undrawn: 0, unconfirmed: 0, pings: (0, 0), refusals: VecDeque::new() }
     }

@@ -80,13 +80,11 @@ pub enum Outgoing {
 
 impl Outgoing {
     /// Marks the CDR of a past frame.
-    #[must_use]
     pub fn past(cdr: &[u8]) -> Outgoing {
         Outgoing::Past(marked(2, cdr))
     }
 
     /// Marks the CDR of a current frame.
-    #[must_use]
     pub fn now(cdr: &[u8]) -> Outgoing {
         Outgoing::Now(marked(1, cdr))
     }

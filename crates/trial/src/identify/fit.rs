@@ -96,7 +96,6 @@ const WEIGHINGS: usize = 3;
 const LEAST_SIGMA: f64 = 1e-4;
 
 /// The names of all parameters.
-#[must_use]
 pub fn names() -> Vec<&'static str> {
     PARAMETERS.iter().map(|parameter| parameter.name).collect()
 }

@@ -15,7 +15,6 @@ pub use parameter::{PARAMETERS, Parameter};
 pub use rollout::Setting;
 
 /// A boat file with the fitted parameters and everything else from `base`. `log` is the log's name.
-#[must_use]
 pub fn written(fit: &Fit, base: &str, log: &str) -> String {
     let mut text = format!("# Fitted to {} by squall identify: value ± 95 %.\n", log.replace(['\n', '\r'], " "));
     for quality in &fit.qualities {

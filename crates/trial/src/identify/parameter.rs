@@ -60,7 +60,6 @@ fn thruster(boat: &mut Boat) -> Option<&mut Thruster> {
 
 impl Parameter {
     /// Its value in `boat`, if present.
-    #[must_use]
     pub fn value(&self, boat: &Boat) -> Option<f64> {
         (self.place)(&mut boat.clone()).copied()
     }

@@ -68,7 +68,6 @@ pub struct ArduPilot {
 impl ArduPilot {
     /// A boat in HOLD, disarmed, on a field with this origin, with this fraction of its charge;
     /// `None` is full and never drains.
-    #[must_use]
     pub fn new(datum: LatLon, charge: Option<f64>) -> ArduPilot {
         ArduPilot {
             frame: LocalFrame::new(datum),
@@ -124,7 +123,6 @@ impl ArduPilot {
     }
 
     /// The mode, and whether the boat is armed.
-    #[must_use]
     pub fn mode(&self) -> (RoverMode, bool) {
         (self.mode, self.is_armed)
     }

@@ -69,7 +69,6 @@ pub struct Conversation {
 
 impl Command {
     /// The command as the sonde receives it, without the end of the line.
-    #[must_use]
     pub fn word(self) -> &'static str {
         match self {
             Command::Parameters => "para",

@@ -3,7 +3,6 @@
 //! Source: the list of parameter codes in the manuals of YSI's EXO sondes and their signal output adapters.
 
 /// Name and unit of a parameter, if its code is known.
-#[must_use]
 pub fn parameter(code: u16) -> Option<(&'static str, &'static str)> {
     let at = PARAMETERS.binary_search_by_key(&code, |(code, ..)| *code).ok()?;
     let (_, name, unit) = PARAMETERS[at];

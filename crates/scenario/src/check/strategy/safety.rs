@@ -87,7 +87,6 @@ fn hold_below_guards(scope: &mut Scope<'_>, program: &mut Program) {
 impl Behaviour {
     /// Whether this is a safety behaviour that always works: for the whole field or all other
     /// boats, without condition or end, with a weight and effective numbers.
-    #[must_use]
     pub fn is_guard(&self) -> bool {
         matches!(self.task, Task::OpRegion(_) | Task::AvoidCollision(_)) && self.no_guard_since().is_none()
     }

@@ -88,7 +88,6 @@ impl LiveView {
     }
 
     /// Whether the game shown has real boats.
-    #[must_use]
     pub fn has_real_boats(&self) -> bool {
         self.shared.state.lock().on().is_ok_and(|game| game.has_real_boats())
     }

@@ -36,13 +36,11 @@ struct SharedReplay {
 
 impl ReplayView {
     /// Shows a recording. Without `helms` there are no helm reports.
-    #[must_use]
     pub fn new(source: Arc<Recorded>, helms: Option<Box<dyn Helms>>) -> ReplayView {
         ReplayView::about(None, source, helms)
     }
 
     /// Shows a recording with a text about its origin.
-    #[must_use]
     pub fn about(about: Option<String>, source: Arc<Recorded>, helms: Option<Box<dyn Helms>>) -> ReplayView {
         let news = Changes::default();
         let scenario = source.recording.scenario().clone();

@@ -28,7 +28,6 @@ pub struct Recorded {
 
 impl Recorded {
     /// Reads the whole recording once and skips damaged frames.
-    #[must_use]
     pub fn new(recording: Arc<Recording>, file: String) -> Recorded {
         let scenario = recording.scenario();
         let sent = |topic: String| {
@@ -91,7 +90,6 @@ impl Recorded {
     }
 
     /// A boat's own position estimate at a frame.
-    #[must_use]
     pub fn estimate(&self, vehicle: VehicleId, frame: usize) -> Option<OwnBoat> {
         let team = self.recording.scenario().vehicles.get(vehicle.index())?.team;
         let place = last_until(&self.pictures[team.index()], *self.frame_times.get(frame)?)?;
@@ -100,7 +98,6 @@ impl Recorded {
     }
 
     /// The last status from a boat's gateway up to a time.
-    #[must_use]
     pub fn status(&self, vehicle: VehicleId, at: SimTime) -> Option<GatewayStatus> {
         self.status_at(last_until(self.statuses.get(vehicle.index())?, at)?)
     }
