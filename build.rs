@@ -1,19 +1,37 @@
-//! Says which commit a program is built from: of `squall`, and of `squall-gateway` in a folder below.
+//! Says which commit a program is built from: of `squall`, and of `squall-gateway` in a folder
+//! below.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// The sources of the programs.
-const SOURCES: [&str; 9] =
-    ["Cargo.toml", "Cargo.lock", "build.rs", "src", "scenarios", "crates", "sim", "agent", "gateway"];
+const SOURCES: [&str; 9] = [
+    "Cargo.toml",
+    "Cargo.lock",
+    "build.rs",
+    "src",
+    "scenarios",
+    "crates",
+    "sim",
+    "agent",
+    "gateway",
+];
 
 fn main() {
     let root = root();
     let commit = commit(&root);
-    println!("cargo::rustc-env=SQUALL_COMMIT={}", commit.as_deref().unwrap_or("unknown"));
-    // Of a new commit HEAD's log tells; whether the sources are as committed may change with any of them.
-    let watched = ["HEAD", "logs/HEAD"].into_iter().filter_map(|file| git(&root, &["rev-parse", "--git-path", file]));
-    let watched = watched.map(|path| root.join(path)).filter(|path| path.exists());
+    println!(
+        "cargo::rustc-env=SQUALL_COMMIT={}",
+        commit.as_deref().unwrap_or("unknown")
+    );
+    // Of a new commit HEAD's log tells; whether the sources are as committed may change with any of
+    // them.
+    let watched = ["HEAD", "logs/HEAD"]
+        .into_iter()
+        .filter_map(|file| git(&root, &["rev-parse", "--git-path", file]));
+    let watched = watched
+        .map(|path| root.join(path))
+        .filter(|path| path.exists());
     for path in watched.chain(SOURCES.map(|path| root.join(path))) {
         println!("cargo::rerun-if-changed={}", path.display());
     }
@@ -22,7 +40,10 @@ fn main() {
 /// The folder of the workspace: the one above the package that has the lock file.
 fn root() -> PathBuf {
     let package = PathBuf::from(std::env::var_os("CARGO_MANIFEST_DIR").expect("cargo sets it"));
-    let root = package.ancestors().find(|folder| folder.join("Cargo.lock").exists()).map(Path::to_owned);
+    let root = package
+        .ancestors()
+        .find(|folder| folder.join("Cargo.lock").exists())
+        .map(Path::to_owned);
     root.unwrap_or(package)
 }
 
@@ -31,8 +52,16 @@ fn commit(root: &Path) -> Option<String> {
     // A packed copy inside another repository is not part of it.
     git(root, &["ls-files", "--error-unmatch", "build.rs"])?;
     let commit = git(root, &["rev-parse", "--short=12", "HEAD"])?;
-    let is_clean = git(root, &[&["diff", "--quiet", "HEAD", "--"], &SOURCES[..]].concat()).is_some();
-    Some(if is_clean { commit } else { format!("{commit}-dirty") })
+    let is_clean = git(
+        root,
+        &[&["diff", "--quiet", "HEAD", "--"], &SOURCES[..]].concat(),
+    )
+    .is_some();
+    Some(if is_clean {
+        commit
+    } else {
+        format!("{commit}-dirty")
+    })
 }
 
 /// The output of git in this folder, if it succeeds.

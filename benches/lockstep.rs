@@ -1,12 +1,16 @@
-//! Compares lockstep ticks per second across processes with a bare zenoh ping of the same sizes in the
-//! same run.
+//! Compares lockstep ticks per second across processes with a bare zenoh ping of the same sizes in
+//! the same run.
 //!
 //! The ping measures the cost of transport alone: a hub publishes one message per team to N leaf
-//! processes and waits until each has answered. Topology and message sizes are the same, but there is
-//! no game. The cases alternate, so that both see the same machine. The bench prints medians, the cost
-//! of keys (TLS and rules by certificate), and the rate of the same game in one process. Boats with the
-//! strategy *idle* stay still, so that only the game's messages remain.
-#![allow(clippy::print_stdout, clippy::disallowed_methods, reason = "a benchmark reads the clock and prints")]
+//! processes and waits until each has answered. Topology and message sizes are the same, but there
+//! is no game. The cases alternate, so that both see the same machine. The bench prints medians,
+//! the cost of keys (TLS and rules by certificate), and the rate of the same game in one process.
+//! Boats with the strategy *idle* stay still, so that only the game's messages remain.
+#![allow(
+    clippy::print_stdout,
+    clippy::disallowed_methods,
+    reason = "a benchmark reads the clock and prints"
+)]
 
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
@@ -27,7 +31,11 @@ struct Case {
 fn main() {
     let args: Vec<String> = std::env::args().collect();
     if let Some(at) = args.iter().position(|arg| arg == "--echo") {
-        return echo(&args[at + 1], args[at + 2].parse().expect("a size"), &args[at + 3]);
+        return echo(
+            &args[at + 1],
+            args[at + 2].parse().expect("a size"),
+            &args[at + 3],
+        );
     }
     // `cargo test --benches` runs this with `--test`: there is nothing to check.
     if !args.iter().any(|arg| arg == "--bench") {
@@ -55,23 +63,53 @@ fn main() {
     bus::keys::make(keys.path(), &parts, &hosts, Duration::from_secs(3600)).expect("keys");
     let with_keys = ["--keys", keys.path().to_str().expect("UTF-8")];
     for case in [
-        Case { processes: 4, vehicles: 4, strategy: "pav01" },
-        Case { processes: 16, vehicles: 16, strategy: "pav01" },
-        Case { processes: 64, vehicles: 64, strategy: "pav01" },
-        Case { processes: 4, vehicles: 64, strategy: "idle" },
-        Case { processes: 4, vehicles: 64, strategy: "pav01" },
+        Case {
+            processes: 4,
+            vehicles: 4,
+            strategy: "pav01",
+        },
+        Case {
+            processes: 16,
+            vehicles: 16,
+            strategy: "pav01",
+        },
+        Case {
+            processes: 64,
+            vehicles: 64,
+            strategy: "pav01",
+        },
+        Case {
+            processes: 4,
+            vehicles: 64,
+            strategy: "idle",
+        },
+        Case {
+            processes: 4,
+            vehicles: 64,
+            strategy: "pav01",
+        },
     ] {
         let each = (case.vehicles / case.processes).to_string();
         let apart = ["--agents-per-process", &each];
         let round = |_| {
             let keyed = squall(&case, &[&apart[..], &with_keys].concat());
-            [squall(&case, &apart), bare(&case), keyed, squall(&case, &["--in-process"])]
+            [
+                squall(&case, &apart),
+                bare(&case),
+                keyed,
+                squall(&case, &["--in-process"]),
+            ]
         };
         let rounds: Vec<[f64; 4]> = (0..ROUNDS).map(round).collect();
         let over_bare = median(rounds.iter().map(|r| r[1] / r[0]));
         let for_keys = median(rounds.iter().map(|r| r[0] / r[2]));
-        let [ticks, pings, keyed, alone] = [0, 1, 2, 3].map(|i| median(rounds.iter().map(|r| r[i])));
-        let Case { processes, vehicles, strategy } = case;
+        let [ticks, pings, keyed, alone] =
+            [0, 1, 2, 3].map(|i| median(rounds.iter().map(|r| r[i])));
+        let Case {
+            processes,
+            vehicles,
+            strategy,
+        } = case;
         println!(
             "| {processes} | {vehicles} | {strategy} | {ticks:.0} | {pings:.0} | {over_bare:.2} | {keyed:.0} | {for_keys:.2} | \
              {alone:.0} |"
@@ -92,10 +130,17 @@ fn squall(case: &Case, options: &[&str]) -> f64 {
     let game = dir.path().join("bench.toml");
     let json = dir.path().join("result.json");
     let fleet = |team: &str| {
-        format!("[[fleet]]\nteam = \"{team}\"\nname = \"{team}_{{}}\"\ncount = {}\nspawn = {{}}\n", case.vehicles / 2)
+        format!(
+            "[[fleet]]\nteam = \"{team}\"\nname = \"{team}_{{}}\"\ncount = {}\nspawn = {{}}\n",
+            case.vehicles / 2
+        )
     };
     let team = |team: &str| {
-        format!("[[team]]\nname = \"{team}\"\nstrategy = \"{}/strategies/{}.toml\"\n", root.display(), case.strategy)
+        format!(
+            "[[team]]\nname = \"{team}\"\nstrategy = \"{}/strategies/{}.toml\"\n",
+            root.display(),
+            case.strategy
+        )
     };
     let text = |duration_s: f64| {
         format!(
@@ -113,10 +158,20 @@ fn squall(case: &Case, options: &[&str]) -> f64 {
     loop {
         std::fs::write(&game, text(duration_s)).expect("a file");
         let mut command = Command::new(env!("CARGO_BIN_EXE_squall"));
-        command.args(["run", &game.display().to_string(), "--no-record", "--json", &json.display().to_string()]);
+        command.args([
+            "run",
+            &game.display().to_string(),
+            "--no-record",
+            "--json",
+            &json.display().to_string(),
+        ]);
         command.args(options);
         let output = command.output().expect("squall runs");
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        assert!(
+            output.status.success(),
+            "{}",
+            String::from_utf8_lossy(&output.stderr)
+        );
         let result = std::fs::read_to_string(&json).expect("a result");
         let result: serde_json::Value = serde_json::from_str(&result).expect("JSON");
         let wall_s = result["run"]["wall_s"].as_f64().expect("a number");
@@ -135,17 +190,35 @@ fn sizes(case: &Case) -> (usize, usize) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
     let mut scenario = scenario::load(&root.join("games/swarm_20v20.toml")).expect("a game");
     let spare = scenario.vehicles.clone();
-    let own = spare.iter().filter(|v| v.team.0 == 0).cycle().take(case.vehicles / 2).cloned();
-    let others = spare.iter().filter(|v| v.team.0 == 1).cycle().take(case.vehicles / 2).cloned();
+    let own = spare
+        .iter()
+        .filter(|v| v.team.0 == 0)
+        .cycle()
+        .take(case.vehicles / 2)
+        .cloned();
+    let others = spare
+        .iter()
+        .filter(|v| v.team.0 == 1)
+        .cycle()
+        .take(case.vehicles / 2)
+        .cloned();
     scenario.vehicles = own.chain(others).collect();
     for (i, vehicle) in scenario.vehicles.iter_mut().enumerate() {
-        let at = primitives::Ned { north: i as f64 * 8.0, east: 0.0 };
+        let at = primitives::Ned {
+            north: i as f64 * 8.0,
+            east: 0.0,
+        };
         vehicle.start_position = scenario::StartPosition::At(primitives::Pose { at, psi_rad: 0.0 });
     }
     let mut contest = sim::Contest::new(&scenario, 1).expect("the start positions are given");
     let picture = encode(&contest.pictures()[0]).len();
-    let mine = (0..case.vehicles / case.processes).map(|i| VehicleOrder::new(VehicleId(i as u16), Order::Hold));
-    let orders = encode(&Orders { orders: mine.collect(), ..Orders::default() }).len();
+    let mine = (0..case.vehicles / case.processes)
+        .map(|i| VehicleOrder::new(VehicleId(i as u16), Order::Hold));
+    let orders = encode(&Orders {
+        orders: mine.collect(),
+        ..Orders::default()
+    })
+    .len();
     (picture, orders)
 }
 
@@ -171,16 +244,31 @@ fn echo(endpoint: &str, size: usize, name: &str) {
         .congestion_control(zenoh::qos::CongestionControl::Block)
         .wait()
         .expect("a publisher");
-    let team = if name.ends_with(['0', '2', '4', '6', '8']) { 0 } else { 1 };
+    let team = if name.ends_with(['0', '2', '4', '6', '8']) {
+        0
+    } else {
+        1
+    };
     let (sender, receiver) = channel();
     let _subscriber = session
         .declare_subscriber(format!("bare/out/{team}"))
-        .callback(move |sample| sender.send(sample.payload().to_bytes().len()).unwrap_or_default())
+        .callback(move |sample| {
+            sender
+                .send(sample.payload().to_bytes().len())
+                .unwrap_or_default()
+        })
         .wait()
         .expect("a subscriber");
-    let _token = session.liveliness().declare_token(format!("bare/alive/{name}")).wait().expect("a token");
+    let _token = session
+        .liveliness()
+        .declare_token(format!("bare/alive/{name}"))
+        .wait()
+        .expect("a token");
     // A message of one byte ends the run.
-    while receiver.recv_timeout(Duration::from_secs(20)).is_ok_and(|bytes| bytes > 1) {
+    while receiver
+        .recv_timeout(Duration::from_secs(20))
+        .is_ok_and(|bytes| bytes > 1)
+    {
         back.put(vec![0_u8; size]).wait().expect("a session");
     }
 }
@@ -194,7 +282,11 @@ fn bare(case: &Case) -> f64 {
     let (sender, receiver) = channel();
     let _subscriber = session
         .declare_subscriber("bare/back/*")
-        .callback(move |sample| sender.send(sample.payload().to_bytes().len()).unwrap_or_default())
+        .callback(move |sample| {
+            sender
+                .send(sample.payload().to_bytes().len())
+                .unwrap_or_default()
+        })
         .wait()
         .expect("a subscriber");
     let out = [0, 1].map(|team| {
@@ -204,8 +296,18 @@ fn bare(case: &Case) -> f64 {
             .wait()
             .expect("a publisher")
     });
-    let mut leaves: Vec<Child> = (0..case.processes).map(|i| start_leaf(&endpoint, back_size, i)).collect();
-    let alive = || session.liveliness().get("bare/alive/*").wait().expect("a session").into_iter().count();
+    let mut leaves: Vec<Child> = (0..case.processes)
+        .map(|i| start_leaf(&endpoint, back_size, i))
+        .collect();
+    let alive = || {
+        session
+            .liveliness()
+            .get("bare/alive/*")
+            .wait()
+            .expect("a session")
+            .into_iter()
+            .count()
+    };
     while alive() < case.processes {
         std::thread::sleep(Duration::from_millis(10));
     }
@@ -213,15 +315,21 @@ fn bare(case: &Case) -> f64 {
     let mut rounds = 0;
     while start.elapsed().as_secs_f64() < RUN_S {
         for publisher in &out {
-            publisher.put(vec![0_u8; out_size]).wait().expect("a session");
+            publisher
+                .put(vec![0_u8; out_size])
+                .wait()
+                .expect("a session");
         }
         for _ in 0..case.processes {
-            receiver.recv_timeout(Duration::from_secs(10)).expect("every leaf answers");
+            receiver
+                .recv_timeout(Duration::from_secs(10))
+                .expect("every leaf answers");
         }
         rounds += 1;
     }
     let rate = f64::from(rounds) / start.elapsed().as_secs_f64();
-    out.iter().for_each(|publisher| publisher.put(vec![0_u8]).wait().expect("a session"));
+    out.iter()
+        .for_each(|publisher| publisher.put(vec![0_u8]).wait().expect("a session"));
     leaves.iter_mut().for_each(|leaf| drop(leaf.wait()));
     rate
 }
@@ -229,6 +337,8 @@ fn bare(case: &Case) -> f64 {
 fn start_leaf(endpoint: &str, size: usize, i: usize) -> Child {
     let mut command = Command::new(std::env::current_exe().expect("the path of this program"));
     command.args(["--echo", endpoint, &size.to_string(), &format!("leaf{i}")]);
-    command.env(bus::RUNTIME_VARIABLE, bus::RUNTIME).stdout(Stdio::null());
+    command
+        .env(bus::RUNTIME_VARIABLE, bus::RUNTIME)
+        .stdout(Stdio::null());
     command.spawn().expect("a leaf starts")
 }

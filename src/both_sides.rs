@@ -16,7 +16,10 @@ pub(crate) struct BothSides {
 /// Whether the teams follow the same strategies, so that exchanging them has no effect.
 pub(crate) fn are_equal(scenario: &Scenario) -> bool {
     let of_team = |team: u8| {
-        let boats = scenario.vehicles.iter().filter(move |vehicle| vehicle.team == TeamId(team));
+        let boats = scenario
+            .vehicles
+            .iter()
+            .filter(move |vehicle| vehicle.team == TeamId(team));
         boats.map(|vehicle| &scenario.strategies[vehicle.strategy])
     };
     of_team(0).eq(of_team(1))
@@ -27,8 +30,13 @@ impl BothSides {
     pub(crate) fn new(scenario: &Scenario) -> Result<BothSides> {
         scenario.has_no_real_boats()?;
         let name = |team: usize| {
-            let first = scenario.vehicles.iter().find(|vehicle| vehicle.team == TeamId(team as u8));
-            first.map_or(String::new(), |vehicle| scenario.strategies[vehicle.strategy].name.clone())
+            let first = scenario
+                .vehicles
+                .iter()
+                .find(|vehicle| vehicle.team == TeamId(team as u8));
+            first.map_or(String::new(), |vehicle| {
+                scenario.strategies[vehicle.strategy].name.clone()
+            })
         };
         let teams = [0, 1].map(|team| (scenario.teams[team].name.clone(), name(team)));
         if are_equal(scenario) {
@@ -43,8 +51,9 @@ impl BothSides {
     /// Each strategy's points in both games: first the strategy that starts with the first team.
     fn points(&self, reports: &[Report]) -> [u32; 2] {
         let points = |entry: usize| {
-            let of_game =
-                |(game, report): (usize, &Report)| report.outcome.score.teams[&self.teams[(entry + game) % 2].0];
+            let of_game = |(game, report): (usize, &Report)| {
+                report.outcome.score.teams[&self.teams[(entry + game) % 2].0]
+            };
             reports.iter().enumerate().map(of_game).sum()
         };
         [points(0), points(1)]
@@ -62,6 +71,10 @@ impl BothSides {
     /// The points of each strategy as JSON.
     pub(crate) fn sum(&self, reports: &[Report]) -> serde_json::Value {
         let entry = |((team, strategy), points): (&(String, String), u32)| serde_json::json!({ "first_as": team, "strategy": strategy, "score": points });
-        self.teams.iter().zip(self.points(reports)).map(entry).collect()
+        self.teams
+            .iter()
+            .zip(self.points(reports))
+            .map(entry)
+            .collect()
     }
 }

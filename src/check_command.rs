@@ -16,7 +16,8 @@ pub(crate) struct Args {
 
 #[derive(clap::Args)]
 pub(crate) struct SchemaArgs {
-    /// Kind of file: game, field, rules, boat, sea, strategy, tournament, gateway, rewards, training or sweep
+    /// Kind of file: game, field, rules, boat, sea, strategy, tournament, gateway, rewards,
+    /// training or sweep
     #[arg(value_parser = kind)]
     kind: Kind,
 }
@@ -26,12 +27,19 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     for file in args.files.iter().flatten() {
         if !scenario_files::is_toml(file) {
             errors += 1;
-            screen::print(&format!("{}: not a scenario file, expected NAME.toml\n", file.display()));
+            screen::print(&format!(
+                "{}: not a scenario file, expected NAME.toml\n",
+                file.display()
+            ));
             continue;
         }
         match check_file(KINDS, file) {
             Ok(kind) => {
-                screen::show(&format!("{}: {} {kind}\n", file.display(), style::good("valid")));
+                screen::show(&format!(
+                    "{}: {} {kind}\n",
+                    file.display(),
+                    style::good("valid")
+                ));
                 for warning in warnings(file, kind) {
                     screen::show(&format!("  {} {warning}\n", style::warning("warning:")));
                 }
@@ -54,7 +62,9 @@ fn warnings(file: &Path, kind: Kind) -> Vec<String> {
     if kind != Kind::GAME {
         return Vec::new();
     }
-    load(file).map(|scenario| agent::warnings(&scenario)).unwrap_or_default()
+    load(file)
+        .map(|scenario| agent::warnings(&scenario))
+        .unwrap_or_default()
 }
 
 pub(crate) fn print_schema(args: &SchemaArgs) -> Result<ExitCode> {
@@ -65,6 +75,15 @@ pub(crate) fn print_schema(args: &SchemaArgs) -> Result<ExitCode> {
 /// Parses the name of a kind, or of its folder.
 pub(crate) fn kind(word: &str) -> Result<Kind, String> {
     let names: Vec<&str> = KINDS.iter().map(|kind| kind.name()).collect();
-    let found = KINDS.iter().copied().find(|kind| [kind.name(), kind.folder()].contains(&word));
-    found.ok_or_else(|| format!("expected one of {}{}", names.join(", "), did_you_mean(word, &names)))
+    let found = KINDS
+        .iter()
+        .copied()
+        .find(|kind| [kind.name(), kind.folder()].contains(&word));
+    found.ok_or_else(|| {
+        format!(
+            "expected one of {}{}",
+            names.join(", "),
+            did_you_mean(word, &names)
+        )
+    })
 }

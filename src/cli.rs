@@ -19,10 +19,28 @@ use std::process::ExitCode;
 const GROUPS: [(&str, &[&str]); 6] = [
     ("Play", &["demo", "run", "tournament", "sweep"]),
     ("Learn", &["train", "policy"]),
-    ("Watch", &["view", "watch", "list", "runs", "replay", "log", "helm"]),
-    ("Over a network, and real boats", &["sim", "agent", "gateway", "moos", "ros", "keys"]),
+    (
+        "Watch",
+        &["view", "watch", "list", "runs", "replay", "log", "helm"],
+    ),
+    (
+        "Over a network, and real boats",
+        &["sim", "agent", "gateway", "moos", "ros", "keys"],
+    ),
     ("Boats and seas", &["sea", "trial", "identify"]),
-    ("Files", &["files", "copy", "new", "strategy", "check", "schema", "completions", "man"]),
+    (
+        "Files",
+        &[
+            "files",
+            "copy",
+            "new",
+            "strategy",
+            "check",
+            "schema",
+            "completions",
+            "man",
+        ],
+    ),
 ];
 
 /// First steps, printed when no subcommand is given.
@@ -53,11 +71,18 @@ pub(crate) struct ManArgs {
 /// The command line with its subcommands in groups.
 pub(crate) fn command() -> Command {
     let command = Cli::command();
-    let width = command.get_subcommands().map(|one| one.get_name().len()).max().unwrap_or(0);
+    let width = command
+        .get_subcommands()
+        .map(|one| one.get_name().len())
+        .max()
+        .unwrap_or(0);
     let mut text = String::new();
     for (group, names) in GROUPS {
         let mut lines = String::new();
-        for one in names.iter().filter_map(|name| command.find_subcommand(name)) {
+        for one in names
+            .iter()
+            .filter_map(|name| command.find_subcommand(name))
+        {
             // The first sentence only; the command's own help has the rest.
             let about = one.get_about().map(ToString::to_string).unwrap_or_default();
             let about = about.split([':', ';', ',']).next().unwrap_or_default();
@@ -69,23 +94,29 @@ pub(crate) fn command() -> Command {
     }
     text.push_str("`squall COMMAND --help` prints details and examples.\n");
     text.push_str("Exit codes: 0 success, 1 failure, 2 a mistake in the command line, 130 Ctrl-C.");
-    command.help_template("{about}\n\n{usage-heading} {usage}{after-help}\n\nOptions:\n{options}").after_help(text)
+    command
+        .help_template("{about}\n\n{usage-heading} {usage}{after-help}\n\nOptions:\n{options}")
+        .after_help(text)
 }
 
 /// Parses the command line. On a command that only another build has, it exits and names that
 /// build.
 pub(crate) fn matches() -> ArgMatches {
     let mut command = number::with_negative_numbers(command());
-    command.try_get_matches_from_mut(std::env::args_os()).unwrap_or_else(|error| {
-        if let Some(ContextValue::String(name)) = error.get(ContextKind::InvalidSubcommand)
-            && GROUPS.iter().any(|(_, names)| names.contains(&name.as_str()))
-            && command.find_subcommand(name).is_none()
-        {
-            screen::complain(&not_built(&format!("the command {name}")));
-            std::process::exit(error.exit_code());
-        }
-        error.exit()
-    })
+    command
+        .try_get_matches_from_mut(std::env::args_os())
+        .unwrap_or_else(|error| {
+            if let Some(ContextValue::String(name)) = error.get(ContextKind::InvalidSubcommand)
+                && GROUPS
+                    .iter()
+                    .any(|(_, names)| names.contains(&name.as_str()))
+                && command.find_subcommand(name).is_none()
+            {
+                screen::complain(&not_built(&format!("the command {name}")));
+                std::process::exit(error.exit_code());
+            }
+            error.exit()
+        })
 }
 
 /// The message for a command that this build does not include.
@@ -97,7 +128,15 @@ pub(crate) fn not_built(what: &str) -> String {
 
 pub(crate) fn first() -> ExitCode {
     // Skip commands that only another build understands.
-    let command = |line: &str| Some(line.trim().strip_prefix("squall ")?.split("  ").next()?.to_owned());
+    let command = |line: &str| {
+        Some(
+            line.trim()
+                .strip_prefix("squall ")?
+                .split("  ")
+                .next()?
+                .to_owned(),
+        )
+    };
     let is_known = |line: &&str| command(line).and_then(|words| refused(&words)).is_none();
     let lines: Vec<&str> = FIRST.lines().filter(is_known).collect();
     screen::print(&(lines.join("\n") + "\n"));
@@ -124,7 +163,10 @@ pub(crate) fn completions(args: &CompletionArgs) -> ExitCode {
             let names: Vec<String> = values.map(|value| value.get_name().to_owned()).collect();
             if !names.is_empty() {
                 let is_used = format!("__fish_squall_using_subcommand {}", one.get_name());
-                screen::print(&format!("complete -c squall -n \"{is_used}\" -a \"{}\"\n", names.join(" ")));
+                screen::print(&format!(
+                    "complete -c squall -n \"{is_used}\" -a \"{}\"\n",
+                    names.join(" ")
+                ));
             }
         }
     }
@@ -134,10 +176,18 @@ pub(crate) fn completions(args: &CompletionArgs) -> ExitCode {
 /// The command line, with the names of files as the possible values of their arguments.
 fn with_names(command: Command) -> Command {
     let with_names_of = |arg: Arg| {
-        let value = arg.get_value_names().and_then(|names| names.first()).map(|name| name.to_lowercase());
-        match value.map(|value| names_for(&value)).filter(|names| !names.is_empty()) {
+        let value = arg
+            .get_value_names()
+            .and_then(|names| names.first())
+            .map(|name| name.to_lowercase());
+        match value
+            .map(|value| names_for(&value))
+            .filter(|names| !names.is_empty())
+        {
             // clap wants static names, and this process ends soon.
-            Some(names) => arg.value_parser(PossibleValuesParser::new(names.into_iter().map(|name| &*name.leak()))),
+            Some(names) => arg.value_parser(PossibleValuesParser::new(
+                names.into_iter().map(|name| &*name.leak()),
+            )),
             None => arg,
         }
     };
@@ -146,19 +196,31 @@ fn with_names(command: Command) -> Command {
 
 /// The names that a value with this placeholder in the help may have.
 fn names_for(value: &str) -> BTreeSet<String> {
-    let all = |kinds: &[Kind]| kinds.iter().flat_map(|kind| scenario_files::all_names(*kind)).collect();
+    let all = |kinds: &[Kind]| {
+        kinds
+            .iter()
+            .flat_map(|kind| scenario_files::all_names(*kind))
+            .collect()
+    };
     match value {
         "kind" => KINDS.iter().map(|kind| kind.name().to_owned()).collect(),
         "template" => TEMPLATES.map(|(kind, _)| kind.name().to_owned()).into(),
         "scenario" => all(KINDS),
         "policy" => scenario_files::policies(),
         "tournament" => all(&[Kind::of::<Tournament>(), Kind::STRATEGY]),
-        _ => all(KINDS.iter().find(|kind| kind.name() == value).map_or(&[], std::slice::from_ref)),
+        _ => all(KINDS
+            .iter()
+            .find(|kind| kind.name() == value)
+            .map_or(&[], std::slice::from_ref)),
     }
 }
 
 pub(crate) fn man(args: &ManArgs) -> Result<ExitCode> {
-    if let Some(command) = args.folder.to_str().filter(|name| command().find_subcommand(name).is_some()) {
+    if let Some(command) = args
+        .folder
+        .to_str()
+        .filter(|name| command().find_subcommand(name).is_some())
+    {
         bail!(UsageError(format!(
             "{command} is a command, whose page is squall {command} --help; expected a folder for all pages, such as man1"
         )));
@@ -181,13 +243,26 @@ mod tests {
     #[test]
     fn every_subcommand_is_in_one_group_and_its_help_has_an_example() {
         let command = Cli::command();
-        let grouped: Vec<&str> = GROUPS.iter().flat_map(|(_, names)| names.iter().copied()).collect();
+        let grouped: Vec<&str> = GROUPS
+            .iter()
+            .flat_map(|(_, names)| names.iter().copied())
+            .collect();
         let known: Vec<&str> = command.get_subcommands().map(Command::get_name).collect();
-        assert!(known.iter().all(|name| grouped.contains(name)), "{grouped:?} lacks one of {known:?}");
+        assert!(
+            known.iter().all(|name| grouped.contains(name)),
+            "{grouped:?} lacks one of {known:?}"
+        );
         // The other commands are in the build with the network.
-        assert_eq!(grouped.len() == known.len(), cfg!(feature = "network"), "{grouped:?} and {known:?}");
+        assert_eq!(
+            grouped.len() == known.len(),
+            cfg!(feature = "network"),
+            "{grouped:?} and {known:?}"
+        );
         for one in command.get_subcommands() {
-            let examples = one.get_after_help().map(ToString::to_string).unwrap_or_default();
+            let examples = one
+                .get_after_help()
+                .map(ToString::to_string)
+                .unwrap_or_default();
             let example = format!("squall {}", one.get_name());
             assert!(
                 examples.starts_with("Examples:") && examples.contains(&example),
@@ -199,28 +274,49 @@ mod tests {
 
     /// All options with a value, each after its commands.
     fn options(command: &Command, before: &[String]) -> Vec<Vec<String>> {
-        let own = command.get_arguments().filter(|arg| arg.get_action().takes_values());
-        let own = own.filter_map(|arg| Some([before, &[format!("--{}", arg.get_long()?)]].concat()));
+        let own = command
+            .get_arguments()
+            .filter(|arg| arg.get_action().takes_values());
+        let own =
+            own.filter_map(|arg| Some([before, &[format!("--{}", arg.get_long()?)]].concat()));
         let below = command.get_subcommands();
-        let below = below.flat_map(|one| options(one, &[before, &[one.get_name().to_owned()]].concat()));
+        let below =
+            below.flat_map(|one| options(one, &[before, &[one.get_name().to_owned()]].concat()));
         own.chain(below).collect()
     }
 
     #[test]
     fn every_option_names_the_values_that_it_allows() {
-        const RAW: [&str; 7] =
-            ["invalid digit", "number too", "zero for non", "float literal", "empty string", "socket", "tip:"];
+        const RAW: [&str; 7] = [
+            "invalid digit",
+            "number too",
+            "zero for non",
+            "float literal",
+            "empty string",
+            "socket",
+            "tip:",
+        ];
         let all = number::with_negative_numbers(command());
         let options = options(&all, &[]);
         assert!(options.len() > 100, "{}", options.len());
         for option in options {
             for value in ["-1", "abc", "1e999", "99999999999999999999999", "1.5.", ""] {
-                let line = ["squall".to_owned()].into_iter().chain(option.clone()).chain([value.to_owned()]);
-                let Err(error) = all.clone().try_get_matches_from(line) else { continue };
+                let line = ["squall".to_owned()]
+                    .into_iter()
+                    .chain(option.clone())
+                    .chain([value.to_owned()]);
+                let Err(error) = all.clone().try_get_matches_from(line) else {
+                    continue;
+                };
                 let text = error.to_string();
                 let is_explained = error.kind() != ErrorKind::ValueValidation
-                    || ["expected", "allowed", "there is no"].iter().any(|words| text.contains(words));
-                assert!(is_explained && !RAW.iter().any(|raw| text.contains(raw)), "{option:?} {value:?}: {text}");
+                    || ["expected", "allowed", "there is no"]
+                        .iter()
+                        .any(|words| text.contains(words));
+                assert!(
+                    is_explained && !RAW.iter().any(|raw| text.contains(raw)),
+                    "{option:?} {value:?}: {text}"
+                );
             }
         }
     }

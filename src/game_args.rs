@@ -24,8 +24,8 @@ pub(crate) struct GameArgs {
     /// Field to use instead of the game's: a file or a name
     #[arg(long, value_name = "FIELD", value_parser = scenario_files::file_of(Kind::FIELD))]
     field: Option<PathBuf>,
-    /// Strategy of all blue boats, instead of those in the game: a file, or a name, which is looked up first in
-    /// the strategies folder next to the game's folder
+    /// Strategy of all blue boats, instead of those in the game: a file, or a name, which is looked
+    /// up first in the strategies folder next to the game's folder
     #[arg(long, value_name = "STRATEGY")]
     blue: Option<String>,
     /// Strategy of all red boats, as for --blue
@@ -37,8 +37,8 @@ pub(crate) struct GameArgs {
     /// Exchanges the teams' strategies
     #[arg(long)]
     pub(crate) exchange_strategies: bool,
-    /// Overrides a value in the scenario files, for example sea.wind.speed_m_s=12, boat.gps.noise_m=2 or
-    /// link.delay_s=1; repeatable
+    /// Overrides a value in the scenario files, for example sea.wind.speed_m_s=12,
+    /// boat.gps.noise_m=2 or link.delay_s=1; repeatable
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = Setting::parse)]
     settings: Vec<Setting>,
     /// Simulates all external boats, as a rehearsal
@@ -72,25 +72,43 @@ impl GameArgs {
 
     /// Checks that the result file can be written.
     pub(crate) fn check_result_file(&self) -> Result<()> {
-        self.json.as_ref().map_or(Ok(()), |path| output_file::check(path, "the result"))
+        self.json
+            .as_ref()
+            .map_or(Ok(()), |path| output_file::check(path, "the result"))
     }
 
     /// Writes the game's result to a file, if requested.
     pub(crate) fn write_result(&self, report: &Report) -> Result<()> {
-        self.json.as_ref().map_or(Ok(()), |path| output_file::write_json(path, "the result", &result_of(report)?))
+        self.json.as_ref().map_or(Ok(()), |path| {
+            output_file::write_json(path, "the result", &result_of(report)?)
+        })
     }
 
     /// Writes the results of several games to a file, if requested.
     pub(crate) fn write_results(&self, reports: &[Report], sum: &serde_json::Value) -> Result<()> {
-        let Some(path) = &self.json else { return Ok(()) };
+        let Some(path) = &self.json else {
+            return Ok(());
+        };
         let games = reports.iter().map(result_of).collect::<Result<Vec<_>>>()?;
-        output_file::write_json(path, "the results", &serde_json::json!({ "games": games, "sum": sum }))
+        output_file::write_json(
+            path,
+            "the results",
+            &serde_json::json!({ "games": games, "sum": sum }),
+        )
     }
 
     /// Says so if a rehearsal differs from the game in nothing.
     pub(crate) fn remark_on_rehearsal(&self) -> Result<()> {
-        let overrides = Overrides { simulate_all: false, ..self.overrides()? };
-        if self.rehearse && scenario::load_with(&self.scenario, &overrides)?.externals().next().is_none() {
+        let overrides = Overrides {
+            simulate_all: false,
+            ..self.overrides()?
+        };
+        if self.rehearse
+            && scenario::load_with(&self.scenario, &overrides)?
+                .externals()
+                .next()
+                .is_none()
+        {
             screen::remark("--rehearse has no effect: this game has no real boats");
         }
         Ok(())
@@ -100,7 +118,10 @@ impl GameArgs {
     pub(crate) fn overrides(&self) -> Result<Overrides> {
         let mut settings = self.settings.clone();
         if let Some(field) = &self.field {
-            let field = format!("game.field={}", serde_json::Value::from(field.display().to_string()));
+            let field = format!(
+                "game.field={}",
+                serde_json::Value::from(field.display().to_string())
+            );
             settings.push(Setting::parse(&field).map_err(anyhow::Error::msg)?);
         }
         let mut overrides = Overrides {
@@ -111,19 +132,27 @@ impl GameArgs {
             ..Overrides::default()
         };
         let beside = self.scenario.parent().unwrap_or(Path::new(""));
-        let folder = beside.parent().unwrap_or(Path::new("..")).join(Kind::STRATEGY.folder());
+        let folder = beside
+            .parent()
+            .unwrap_or(Path::new(".."))
+            .join(Kind::STRATEGY.folder());
         let named = [("blue", &self.blue), ("red", &self.red)];
-        let named =
-            named.into_iter().filter_map(|(team, file)| Some((format!("--{team} <STRATEGY>"), team, file.as_deref()?)));
+        let named = named.into_iter().filter_map(|(team, file)| {
+            Some((format!("--{team} <STRATEGY>"), team, file.as_deref()?))
+        });
         let of_teams = self.strategy.iter().map(|(team, file)| {
             let option = "--strategy <TEAM=FILE>".to_owned();
             (option, team.as_str(), file.as_str())
         });
         for (option, team, file) in named.chain(of_teams) {
             let path = scenario_files::find_beside(file, Kind::STRATEGY, Some(&folder));
-            let path = path.map_err(|e: Error| UsageError(format!("invalid value '{file}' for '{option}': {e}")))?;
+            let path = path.map_err(|e: Error| {
+                UsageError(format!("invalid value '{file}' for '{option}': {e}"))
+            })?;
             if overrides.strategies.insert(team.to_owned(), path).is_some() {
-                bail!(UsageError(format!("the strategy of team {team} is given twice, expected one")));
+                bail!(UsageError(format!(
+                    "the strategy of team {team} is given twice, expected one"
+                )));
             }
         }
         Ok(overrides)
@@ -147,7 +176,9 @@ pub(crate) fn speed(text: &str) -> Result<f64, String> {
 /// Parses a team and its file.
 fn team_and_file(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {
-        Some((team, file)) if !team.is_empty() && !file.is_empty() => Ok((team.to_owned(), file.to_owned())),
+        Some((team, file)) if !team.is_empty() && !file.is_empty() => {
+            Ok((team.to_owned(), file.to_owned()))
+        }
         _ => Err("expected TEAM=FILE".to_owned()),
     }
 }

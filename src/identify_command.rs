@@ -17,15 +17,17 @@ use trial::identify::{self, Fit, Log, Setting, Step};
 pub(crate) struct Args {
     /// Boat from which the fit starts: a file, or the name of a boat in scenarios/boats
     boat: String,
-    /// Recorded data, as CSV. Columns: t_s, commands as for `squall trial --orders`, heading_deg, surge_m_s,
-    /// yaw_rate_deg_s and, if available, sway_m_s, x_m and y_m
+    /// Recorded data, as CSV. Columns: t_s, commands as for `squall trial --orders`, heading_deg,
+    /// surge_m_s, yaw_rate_deg_s and, if available, sway_m_s, x_m and y_m
     #[arg(long, value_name = "FILE", value_parser = existing)]
     log: PathBuf,
-    /// Parameters to fit, separated by commas [default: surge_linear, surge_quadratic, sway_linear, yaw_linear,
-    /// yaw_quadratic, yaw_lift, port_gain, starboard_gain and lag, if the boat has them]
+    /// Parameters to fit, separated by commas [default: surge_linear, surge_quadratic, sway_linear,
+    /// yaw_linear, yaw_quadratic, yaw_lift, port_gain, starboard_gain and lag, if the boat has
+    /// them]
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     fit: Vec<String>,
-    /// Length of a segment, s: the simulation restarts from the recorded data at the beginning of each one
+    /// Length of a segment, s: the simulation restarts from the recorded data at the beginning of
+    /// each one
     #[arg(long, value_name = "S", default_value_t = 20.0, value_parser = within(1.0, 3600.0, "s"))]
     segment_s: f64,
     /// Writes the fitted boat to this file [default: BOAT_identified.toml in the current folder]
@@ -42,10 +44,19 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let (boat, path, drawn) = water_args::boat(&args.boat, args.water.seed)?;
     if let Some(first) = drawn.first() {
         let key = first.parameter.trim_start_matches("boat/");
-        bail!("{}: {key} is randomised, but a fit needs fixed values; use the boat's base", path.display());
+        bail!(
+            "{}: {key} is randomised, but a fit needs fixed values; use the boat's base",
+            path.display()
+        );
     }
-    let out = args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}_identified.toml", boat.name)));
-    if out.canonicalize().is_ok_and(|out| path.canonicalize().is_ok_and(|path| path == out)) {
+    let out = args
+        .out
+        .clone()
+        .unwrap_or_else(|| PathBuf::from(format!("{}_identified.toml", boat.name)));
+    if out
+        .canonicalize()
+        .is_ok_and(|out| path.canonicalize().is_ok_and(|path| path == out))
+    {
         bail!(UsageError(format!(
             "--out {} is the boat from which the fit starts; choose another file",
             out.display()
@@ -62,8 +73,12 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let named = args.log.display().to_string();
     let progress = RefCell::new(Progress::without_end("steps"));
     let tell = |step: Step| {
-        let left = step.rms.map_or(String::new(), |rms| format!(", residual {rms:.3} standard deviations"));
-        progress.borrow_mut().add_with(|| format!("search {} of {}{left}", step.search, step.searches));
+        let left = step.rms.map_or(String::new(), |rms| {
+            format!(", residual {rms:.3} standard deviations")
+        });
+        progress
+            .borrow_mut()
+            .add_with(|| format!("search {} of {}{left}", step.search, step.searches));
     };
     let fit = identify::fit(&boat, &log, &setting, &parameters, &tell);
     progress.borrow().end();
@@ -91,8 +106,14 @@ fn base_of(out: &Path, base: &Path) -> String {
 }
 
 fn table(boat: &str, log: &str, fit: &Fit) -> String {
-    let mut text = format!("{boat} fitted to {log}: {} values in {} segments\n", fit.measured, fit.segments);
-    text.push_str(&format!("  {:<18}{:>12}{:>12}   {:<12}{}\n", "", "before", "after", "± 95 %", "key"));
+    let mut text = format!(
+        "{boat} fitted to {log}: {} values in {} segments\n",
+        fit.measured, fit.segments
+    );
+    text.push_str(&format!(
+        "  {:<18}{:>12}{:>12}   {:<12}{}\n",
+        "", "before", "after", "± 95 %", "key"
+    ));
     for estimate in &fit.estimates {
         text.push_str(&format!(
             "  {:<18}{:>12.4}{:>12.4} ± {:<12.4}{}.{}\n",

@@ -23,7 +23,8 @@ pub(crate) fn play(
 ) -> Result<Report> {
     let scenario = scenario.of_seed(seed)?;
     let start = clock::now();
-    let mut recorder = file.map(|file| GameRecorder::in_process(file, &scenario.name, env!("SQUALL_COMMIT")));
+    let mut recorder =
+        file.map(|file| GameRecorder::in_process(file, &scenario.name, env!("SQUALL_COMMIT")));
     let mut written = EventCursor::default();
     let watch = |contest: &mut Contest| {
         if let Some(recorder) = &mut recorder {

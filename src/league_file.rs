@@ -28,9 +28,16 @@ impl LeagueFile {
         output_file::make_folder(folder)?;
         let path = folder.join(RESULTS);
         let what = || format!("cannot open the league {}", path.display());
-        let mut file = OpenOptions::new().read(true).append(true).create(true).open(&path).with_context(what)?;
+        let mut file = OpenOptions::new()
+            .read(true)
+            .append(true)
+            .create(true)
+            .open(&path)
+            .with_context(what)?;
         match file.try_lock() {
-            Err(TryLockError::WouldBlock) => bail!("another tournament is writing to {}", path.display()),
+            Err(TryLockError::WouldBlock) => {
+                bail!("another tournament is writing to {}", path.display())
+            }
             Err(TryLockError::Error(error)) => return Err(error).with_context(what),
             Ok(()) => {}
         }
@@ -40,7 +47,10 @@ impl LeagueFile {
         }
         let bytes = metadata.len();
         if bytes > TABLE_BYTES_MAX {
-            bail!("{} has {bytes} bytes, expected at most {TABLE_BYTES_MAX}", path.display());
+            bail!(
+                "{} has {bytes} bytes, expected at most {TABLE_BYTES_MAX}",
+                path.display()
+            );
         }
         let mut text = String::new();
         file.read_to_string(&mut text).with_context(what)?;
@@ -48,13 +58,22 @@ impl LeagueFile {
         let whole = text.rfind('\n').map_or(0, |end| end + 1);
         file.set_len(whole as u64).with_context(what)?;
         file.seek(SeekFrom::End(0)).with_context(what)?;
-        Ok(LeagueFile { folder: folder.to_owned(), path, file, league, problem: None })
+        Ok(LeagueFile {
+            folder: folder.to_owned(),
+            path,
+            file,
+            league,
+            problem: None,
+        })
     }
 
     /// Appends a game; `end` reports write errors.
     pub(crate) fn add(&mut self, plan: &Plan, pairings: &[String], record: &Record) {
         if self.problem.is_none() {
-            self.problem = self.file.write_all(League::line(plan, pairings, record).as_bytes()).err();
+            self.problem = self
+                .file
+                .write_all(League::line(plan, pairings, record).as_bytes())
+                .err();
         }
     }
 
@@ -65,7 +84,9 @@ impl LeagueFile {
     /// Returns the first write error, if any.
     pub(crate) fn end(self) -> Result<()> {
         match self.problem {
-            Some(error) => Err(error).with_context(|| format!("cannot write to {}", self.path.display())),
+            Some(error) => {
+                Err(error).with_context(|| format!("cannot write to {}", self.path.display()))
+            }
             None => Ok(()),
         }
     }

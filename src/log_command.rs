@@ -22,8 +22,8 @@ mod quality;
 #[derive(clap::Args)]
 #[command(after_help = AFTER_HELP)]
 pub(crate) struct Args {
-    /// Recording to analyse: a file, or a part of a name that `squall runs` lists [default: the newest in runs]. Two with
-    /// --compare, any number with --quality
+    /// Recording to analyse: a file, or a part of a name that `squall runs` lists [default: the
+    /// newest in runs]. Two with --compare, any number with --quality
     #[arg(value_name = "RECORDING", value_parser = recording_file::named)]
     files: Vec<PathBuf>,
     /// Prints only the events
@@ -38,11 +38,12 @@ pub(crate) struct Args {
     /// Writes the CSV to this file instead of standard output
     #[arg(long, value_name = "FILE", requires = "csv")]
     out: Option<PathBuf>,
-    /// Plots tracks, score, and each boat's speed, heading and navigation as SVG and PNG files in this folder
+    /// Plots tracks, score, and each boat's speed, heading and navigation as SVG and PNG files in
+    /// this folder
     #[arg(long, value_name = "DIR", conflicts_with = "compare")]
     plot: Option<PathBuf>,
-    /// Writes MOOS logs for the shoreside and every boat to this folder; if the name ends in .alog, writes only the
-    /// shoreside log, to this file
+    /// Writes MOOS logs for the shoreside and every boat to this folder; if the name ends in .alog,
+    /// writes only the shoreside log, to this file
     #[arg(long, value_name = "DIR", conflicts_with = "compare")]
     alog: Option<PathBuf>,
     /// Writes an animation of the game to this GIF file
@@ -53,7 +54,8 @@ pub(crate) struct Args {
     /// Compares two recordings, for example a game on the water and its simulation
     #[arg(long, conflicts_with = "events")]
     compare: bool,
-    /// Reports the quality of play in these recordings: chatter, standing still, edges, contacts, orbits
+    /// Reports the quality of play in these recordings: chatter, standing still, edges, contacts,
+    /// orbits
     #[arg(long, conflicts_with_all = ["events", "csv", "plot", "alog", "gif", "compare"])]
     quality: bool,
     /// With --compare: maximum time between matching events, s
@@ -75,8 +77,15 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         [a, b] if args.compare => compare(args, [a, b])?,
         [file] if !args.compare => look_at(args, file)?,
         files => {
-            let wanted = if args.compare { "two with --compare" } else { "one, or several with --quality" };
-            anyhow::bail!(UsageError(format!("recordings given: {}, expected {wanted}", files.len())))
+            let wanted = if args.compare {
+                "two with --compare"
+            } else {
+                "one, or several with --quality"
+            };
+            anyhow::bail!(UsageError(format!(
+                "recordings given: {}, expected {wanted}",
+                files.len()
+            )))
         }
     }
     Ok(ExitCode::SUCCESS)
@@ -84,19 +93,32 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 
 fn look_at(args: &Args, file: &Path) -> Result<()> {
     let bag = recording_file::open_any(file, "read")?;
-    let wants_page = [&args.plot, &args.alog, &args.gif].iter().all(|file| file.is_none()) && args.csv.is_none();
+    let wants_page = [&args.plot, &args.alog, &args.gif]
+        .iter()
+        .all(|file| file.is_none())
+        && args.csv.is_none();
     if bag.kind == Kind::Gateway {
         if let Some(topic) = &args.csv {
             return csv(args, file, (&bag, None), topic);
         }
         let asks_for_more = args.events || args.json.is_some() || !wants_page;
-        anyhow::ensure!(!asks_for_more, "{} is the recording of a gateway, which supports only --csv", file.display());
+        anyhow::ensure!(
+            !asks_for_more,
+            "{} is the recording of a gateway, which supports only --csv",
+            file.display()
+        );
         screen::print(&page::gateway(&bag));
         return Ok(());
     }
-    let recording = Recording::of_bag(bag).with_context(|| format!("cannot read {}", file.display()))?;
+    let recording =
+        Recording::of_bag(bag).with_context(|| format!("cannot read {}", file.display()))?;
     if let Some(topic) = &args.csv {
-        csv(args, file, (recording.bag(), Some(recording.scenario())), topic)?;
+        csv(
+            args,
+            file,
+            (recording.bag(), Some(recording.scenario())),
+            topic,
+        )?;
     }
     let mut remarks = vec![];
     if wants_page || args.events || args.json.is_some() {
@@ -109,11 +131,18 @@ fn look_at(args: &Args, file: &Path) -> Result<()> {
         let series = GameSeries::of(&recording);
         remarks.extend(series.damaged.remark().into_iter().chain(series.remark()));
         let files = plot::write(dir, recording.header(), &series)?;
-        screen::remark(&format!("wrote {files} plots to {}, each as SVG and PNG", dir.display()));
+        screen::remark(&format!(
+            "wrote {files} plots to {}, each as SVG and PNG",
+            dir.display()
+        ));
     }
     if let Some(path) = &args.alog {
         let (files, damaged) = export::alog(&recording, path)?;
-        screen::remark(&format!("wrote {files} MOOS log{} to {}", if files == 1 { "" } else { "s" }, path.display()));
+        screen::remark(&format!(
+            "wrote {files} MOOS log{} to {}",
+            if files == 1 { "" } else { "s" },
+            path.display()
+        ));
         remarks.extend(damaged.remark());
     }
     if let Some(path) = &args.gif {
@@ -123,7 +152,10 @@ fn look_at(args: &Args, file: &Path) -> Result<()> {
     }
     // Every pass over the file finds the same damage.
     let mut told = BTreeSet::new();
-    remarks.iter().filter(|remark| told.insert(*remark)).for_each(|remark| screen::remark(remark));
+    remarks
+        .iter()
+        .filter(|remark| told.insert(*remark))
+        .for_each(|remark| screen::remark(remark));
     Ok(())
 }
 
@@ -145,12 +177,18 @@ fn summary(args: &Args, recording: &Recording, wants_page: bool) -> Result<Damag
 fn csv(args: &Args, file: &Path, source: (&Bag, Option<&Scenario>), topic: &str) -> Result<()> {
     let damaged = export::csv(source, topic, args.out.as_deref())
         .with_context(|| format!("cannot export {} as CSV", file.display()))?;
-    damaged.remark().iter().for_each(|remark| screen::remark(remark));
+    damaged
+        .remark()
+        .iter()
+        .for_each(|remark| screen::remark(remark));
     Ok(())
 }
 
 fn compare(args: &Args, [a, b]: [&Path; 2]) -> Result<()> {
-    let recordings = [recording_file::open(a, "read")?, recording_file::open(b, "read")?];
+    let recordings = [
+        recording_file::open(a, "read")?,
+        recording_file::open(b, "read")?,
+    ];
     let series = recordings.each_ref().map(GameSeries::of);
     for (file, series) in [a, b].iter().zip(&series) {
         if let Some(remark) = series.damaged.remark() {

@@ -35,7 +35,9 @@ mod water_args;
 
 use anyhow::Result;
 use clap::{ColorChoice, FromArgMatches, Parser, Subcommand};
-use command_line::{clock, explain, output_file, program, recording_file, scenario_files, stop, style};
+use command_line::{
+    clock, explain, output_file, program, recording_file, scenario_files, stop, style,
+};
 use std::process::ExitCode;
 
 /// The version, and the commit that it was built from.
@@ -67,7 +69,8 @@ enum Command {
     /// Verifies that a rerun reproduces a recorded game.
     #[command(after_help = "Examples:\n  squall replay --check")]
     Replay(replay_command::Args),
-    /// Plays every strategy against every other over many seeds, and ranks them with confidence intervals.
+    /// Plays every strategy against every other over many seeds, and ranks them with confidence
+    /// intervals.
     #[command(
         after_help = "Examples:\n  squall tournament paper_2023 --games 20\n  squall tournament strategy_4 strategy_3 --games 40\n  squall tournament simple --json report.json --quality\n  squall tournament simple --league league"
     )]
@@ -89,7 +92,9 @@ enum Command {
     )]
     Log(log_command::Args),
     /// Describes and plots a sea and its effects on a boat.
-    #[command(after_help = "Examples:\n  squall sea gale\n  squall sea gale --boat heron --plot gale.svg")]
+    #[command(
+        after_help = "Examples:\n  squall sea gale\n  squall sea gale --boat heron --plot gale.svg"
+    )]
     Sea(sea_command::Args),
     /// Drives one boat through recorded commands or a standard manoeuvre.
     #[command(after_help = "Examples:\n  squall trial surveyor_m1_8 --manoeuvre turning_circle")]
@@ -98,7 +103,9 @@ enum Command {
     #[command(after_help = "Examples:\n  squall identify --help")]
     Identify(identify_command::Args),
     /// Explains a strategy file: its modes and their behaviours.
-    #[command(after_help = "Examples:\n  squall strategy strategy_4\n  squall strategy pav01 --dot")]
+    #[command(
+        after_help = "Examples:\n  squall strategy strategy_4\n  squall strategy pav01 --dot"
+    )]
     Strategy(strategy_command::Args),
     /// Describes a trained policy, and explains a decision that it made in a recorded game.
     #[command(after_help = "Examples:\n  squall policy options")]
@@ -116,7 +123,9 @@ enum Command {
     #[command(after_help = "Examples:\n  squall copy strategy_4 my_team\n  squall copy seas/gale")]
     Copy(new_command::CopyArgs),
     /// Creates a scenario file from a commented template.
-    #[command(after_help = "Examples:\n  squall new strategy mine\n  squall new sweep how_much_wind")]
+    #[command(
+        after_help = "Examples:\n  squall new strategy mine\n  squall new sweep how_much_wind"
+    )]
     New(new_command::NewArgs),
     /// Prints a shell completion script.
     #[command(

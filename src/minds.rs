@@ -29,19 +29,33 @@ struct Team {
 impl Minds {
     pub(crate) fn new(recording: Arc<Recording>) -> Minds {
         let scenario = recording.scenario();
-        let teams = (0..scenario.teams.len()).map(|team| Team::new(&recording, TeamId(team as u8))).collect();
-        let proposals = (0..scenario.vehicles.len()).map(VehicleId::at).filter_map(|vehicle| {
-            let topic = format!("policy/{}", scenario.vehicles[vehicle.index()].name);
-            let messages = recording.bag().on(&topic);
-            let proposals: Vec<_> = messages.filter_map(|message| Some((message.at, message.read().ok()?))).collect();
-            (!proposals.is_empty()).then_some((vehicle, proposals))
-        });
-        Minds { teams, proposals: proposals.collect(), recording: Arc::clone(&recording) }
+        let teams = (0..scenario.teams.len())
+            .map(|team| Team::new(&recording, TeamId(team as u8)))
+            .collect();
+        let proposals = (0..scenario.vehicles.len())
+            .map(VehicleId::at)
+            .filter_map(|vehicle| {
+                let topic = format!("policy/{}", scenario.vehicles[vehicle.index()].name);
+                let messages = recording.bag().on(&topic);
+                let proposals: Vec<_> = messages
+                    .filter_map(|message| Some((message.at, message.read().ok()?)))
+                    .collect();
+                (!proposals.is_empty()).then_some((vehicle, proposals))
+            });
+        Minds {
+            teams,
+            proposals: proposals.collect(),
+            recording: Arc::clone(&recording),
+        }
     }
 
-    /// The helm report, with the utilities of all functions, and the order of the vehicle's mind when
-    /// it repeats this decision, if it can.
-    pub(crate) fn report_of(&mut self, vehicle: VehicleId, decision: u64) -> Option<(HelmReport, Order)> {
+    /// The helm report, with the utilities of all functions, and the order of the vehicle's mind
+    /// when it repeats this decision, if it can.
+    pub(crate) fn report_of(
+        &mut self,
+        vehicle: VehicleId,
+        decision: u64,
+    ) -> Option<(HelmReport, Order)> {
         let order = self.decide(vehicle, decision, true)?;
         Some((self.report(vehicle)?, order))
     }
@@ -54,7 +68,12 @@ impl Minds {
 
     /// The order of the vehicle's mind when it repeats this decision, if it can. Its report has the
     /// utilities of all functions if they are `shown`, which takes most of the time.
-    pub(crate) fn decide(&mut self, vehicle: VehicleId, decision: u64, shown: bool) -> Option<Order> {
+    pub(crate) fn decide(
+        &mut self,
+        vehicle: VehicleId,
+        decision: u64,
+        shown: bool,
+    ) -> Option<Order> {
         let index = self.recording.scenario().team_of(vehicle).index();
         if self.teams[index].runner.decided() > Some(decision) {
             // Minds cannot go backwards: start again.
@@ -63,14 +82,22 @@ impl Minds {
         let Team { runner, pictures } = &mut self.teams[index];
         // If a teammate has already caused this decision, there is nothing to advance.
         let next = runner.decided().map_or(0, |last| last + 1);
-        for (seq, place) in pictures.range(next..).take_while(|(seq, _)| **seq <= decision) {
+        for (seq, place) in pictures
+            .range(next..)
+            .take_while(|(seq, _)| **seq <= decision)
+        {
             let picture: Picture = self.recording.bag().message(*place).read().ok()?;
             let now = picture.stamp.valid_ns;
             for proposals in self.proposals.values() {
                 let until = proposals.partition_point(|(at, _)| *at <= now);
-                proposals[..until].last().iter().for_each(|(_, proposal)| runner.propose(proposal, picture.stamp));
+                proposals[..until]
+                    .last()
+                    .iter()
+                    .for_each(|(_, proposal)| runner.propose(proposal, picture.stamp));
             }
-            runner.minds_mut().for_each(|(_, mind)| mind.show(shown && *seq == decision));
+            runner
+                .minds_mut()
+                .for_each(|(_, mind)| mind.show(shown && *seq == decision));
             runner.decide(picture.stamp, |_| Some(&picture));
         }
         let is_decided = runner.decided() == Some(decision);
@@ -82,7 +109,9 @@ impl Minds {
 impl Team {
     fn new(recording: &Recording, team: TeamId) -> Team {
         let scenario: &Scenario = recording.scenario();
-        let mates = (0..scenario.vehicles.len()).map(VehicleId::at).filter(|v| scenario.team_of(*v) == team);
+        let mates = (0..scenario.vehicles.len())
+            .map(VehicleId::at)
+            .filter(|v| scenario.team_of(*v) == team);
         let topic = picture(&scenario.teams[team.index()].name);
         let decision = |place: usize| {
             let picture: Picture = recording.bag().message(place).read().ok()?;
@@ -90,7 +119,11 @@ impl Team {
         };
         Team {
             runner: MindRunner::new(mates.map(|vehicle| (vehicle, mind_of(scenario, vehicle)))),
-            pictures: recording.bag().places(&topic).filter_map(decision).collect(),
+            pictures: recording
+                .bag()
+                .places(&topic)
+                .filter_map(decision)
+                .collect(),
         }
     }
 }

@@ -55,7 +55,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     screen::print(&about(&name, bytes.len(), &network, spec));
     if let (Some(game), Some(vehicle), Some(at_s)) = (&args.game, &args.vehicle, args.at) {
         let model = model.map_err(anyhow::Error::msg);
-        let model = model.with_context(|| format!("{name} does not declare its inputs and actions"))?;
+        let model =
+            model.with_context(|| format!("{name} does not declare its inputs and actions"))?;
         screen::print(&explained(&model, game, vehicle, at_s, args.inputs)?);
     }
     Ok(ExitCode::SUCCESS)
@@ -64,15 +65,32 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 /// The description of a model.
 fn about(name: &str, bytes: usize, network: &Network, spec: Result<PolicySpec, String>) -> String {
     let ports = |ports: &[onnx::Port]| {
-        let ports: Vec<String> = ports.iter().map(|port| format!("{} ({})", port.name, port.size)).collect();
+        let ports: Vec<String> = ports
+            .iter()
+            .map(|port| format!("{} ({})", port.name, port.size))
+            .collect();
         ports.join(", ")
     };
-    let mut text = format!("{name}: {:.0} kB, digest {:032x}\n", bytes as f64 / 1000.0, network.digest());
+    let mut text = format!(
+        "{name}: {:.0} kB, digest {:032x}\n",
+        bytes as f64 / 1000.0,
+        network.digest()
+    );
     let mut line = |what: &str, value: String| {
         let _ = writeln!(text, "  {what:<12} {value}");
     };
-    line("network", format!("{} -> {}", ports(network.inputs()), ports(network.outputs())));
-    line("evaluation", format!("{} us", significant(evaluation_us(network.clone()))));
+    line(
+        "network",
+        format!(
+            "{} -> {}",
+            ports(network.inputs()),
+            ports(network.outputs())
+        ),
+    );
+    line(
+        "evaluation",
+        format!("{} us", significant(evaluation_us(network.clone()))),
+    );
     let mut said = vec![];
     match spec {
         Ok(spec) => {
@@ -81,12 +99,19 @@ fn about(name: &str, bytes: usize, network: &Network, spec: Result<PolicySpec, S
             line("decision", format!("every {} s", spec.period_s));
             said.extend(spec.metadata().map(|(key, _)| key));
         }
-        Err(why) => line("policy", format!("not declared in the file, so the strategy must declare it ({why})")),
+        Err(why) => line(
+            "policy",
+            format!("not declared in the file, so the strategy must declare it ({why})"),
+        ),
     }
     for warning in network.warnings() {
         line("warning", warning.clone());
     }
-    for (key, value) in network.metadata().iter().filter(|(key, _)| !said.contains(key)) {
+    for (key, value) in network
+        .metadata()
+        .iter()
+        .filter(|(key, _)| !said.contains(key))
+    {
         line(key.strip_prefix(OWN).unwrap_or(key), value.clone());
     }
     text
@@ -110,7 +135,11 @@ fn evaluation_us(mut network: Network) -> f64 {
 fn observation_text(space: ObservationSpace) -> String {
     match space {
         ObservationSpace::Pyquaticus => format!("pyquaticus, version {}", space.version()),
-        ObservationSpace::Squall { mates, enemies, frames } => format!(
+        ObservationSpace::Squall {
+            mates,
+            enemies,
+            frames,
+        } => format!(
             "squall, version {}: {} numbers (mates {mates}, enemies {enemies}, frames {frames})",
             space.version(),
             space.size(0, 0)
@@ -120,34 +149,62 @@ fn observation_text(space: ObservationSpace) -> String {
 
 fn action_text(space: ActionSpace) -> String {
     match (space, space.count()) {
-        (ActionSpace::Pyquaticus, Some(count)) => format!("pyquaticus: one of {count} turns and speeds"),
+        (ActionSpace::Pyquaticus, Some(count)) => {
+            format!("pyquaticus: one of {count} turns and speeds")
+        }
         (ActionSpace::Options, _) => "options: a value of a strategy's variable".to_owned(),
         _ => "continuous: a turn and a speed".to_owned(),
     }
 }
 
 /// The model's choice at a moment of a recorded game, and the inputs that it depends on.
-fn explained(model: &PolicyModel, game: &Path, vehicle: &str, at_s: f64, inputs: usize) -> Result<String> {
+fn explained(
+    model: &PolicyModel,
+    game: &Path,
+    vehicle: &str,
+    at_s: f64,
+    inputs: usize,
+) -> Result<String> {
     let recording = Arc::new(recording_file::open(game, "read")?);
     let scenario = recording.scenario();
     let of = scenario.vehicle_named(vehicle)?;
     // The cast saturates: a time out of range becomes a decision that does not exist.
     let decision = (at_s / scenario.decision().as_s() + 1e-9).floor() as u64;
-    let found = Minds::new(Arc::clone(&recording)).report_of(of, decision).filter(|_| at_s >= 0.0);
+    let found = Minds::new(Arc::clone(&recording))
+        .report_of(of, decision)
+        .filter(|_| at_s >= 0.0);
     let Some((report, _)) = found else {
-        bail!("{} contains no decision by {vehicle} at {at_s} s", game.display());
+        bail!(
+            "{} contains no decision by {vehicle} at {at_s} s",
+            game.display()
+        );
     };
-    let Some(policy) = report.policies.iter().find(|policy| !policy.observed.is_empty()) else {
-        bail!("{vehicle} uses no policy in {}: its strategy is {}", game.display(), report.program);
+    let Some(policy) = report
+        .policies
+        .iter()
+        .find(|policy| !policy.observed.is_empty())
+    else {
+        bail!(
+            "{vehicle} uses no policy in {}: its strategy is {}",
+            game.display(),
+            report.program
+        );
     };
     if policy.observed.len() != model.input_size() {
         let found = policy.observed.len();
         let expected = model.input_size();
-        bail!("the policy of {vehicle} has {found} inputs, expected {expected}, as {} has", model.name);
+        bail!(
+            "the policy of {vehicle} has {found} inputs, expected {expected}, as {} has",
+            model.name
+        );
     }
     let (mates, enemies) = scenario.sides_of(of);
     let names = model.spec.observation.names(mates, enemies);
-    let mut text = format!("\n{vehicle} at {:.1} s, mode {}", report.at.as_s(), report.mode);
+    let mut text = format!(
+        "\n{vehicle} at {:.1} s, mode {}",
+        report.at.as_s(),
+        report.mode
+    );
     let _ = writeln!(text, "; its helm: {}", helm_text::decision(&report));
     text += &choices(model, &policy.observed, &names, inputs);
     Ok(text)
@@ -173,12 +230,31 @@ fn choices(model: &PolicyModel, observed: &[f32], names: &[String], inputs: usiz
         .collect();
     rows.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
     rows.truncate(inputs);
-    let what = if best.is_some() { "the probability of the first action" } else { "turn and speed" };
-    let _ = writeln!(text, "\n  {what} is {}; with one input set to 0:\n", chosen.text(best));
-    let width = rows.iter().map(|row| names[row.0].len()).max().unwrap_or(0).max("input".len());
+    let what = if best.is_some() {
+        "the probability of the first action"
+    } else {
+        "turn and speed"
+    };
+    let _ = writeln!(
+        text,
+        "\n  {what} is {}; with one input set to 0:\n",
+        chosen.text(best)
+    );
+    let width = rows
+        .iter()
+        .map(|row| names[row.0].len())
+        .max()
+        .unwrap_or(0)
+        .max("input".len());
     let _ = writeln!(text, "  {:width$}  {:>7}  {:>14}", "input", "value", "then");
     for (i, _, without) in &rows {
-        let _ = writeln!(text, "  {:width$}  {:>7.3}  {:>14}", names[*i], observed[*i], without.text(best));
+        let _ = writeln!(
+            text,
+            "  {:width$}  {:>7.3}  {:>14}",
+            names[*i],
+            observed[*i],
+            without.text(best)
+        );
     }
     text
 }
@@ -195,27 +271,45 @@ fn choice(model: &PolicyModel, observed: &[f32]) -> Choice {
     network.evaluate(observed);
     let output = network.output(model.output());
     let is_discrete = model.actions() == Some(output.len());
-    Choice { numbers: if is_discrete { action::probabilities(output) } else { output.to_vec() }, is_discrete }
+    Choice {
+        numbers: if is_discrete {
+            action::probabilities(output)
+        } else {
+            output.to_vec()
+        },
+        is_discrete,
+    }
 }
 
 impl Choice {
     /// The discrete actions in order of decreasing probability.
     fn likeliest(&self) -> Vec<usize> {
-        let mut actions: Vec<usize> = (0..self.numbers.len()).filter(|_| self.is_discrete).collect();
+        let mut actions: Vec<usize> = (0..self.numbers.len())
+            .filter(|_| self.is_discrete)
+            .collect();
         actions.sort_by(|a, b| self.numbers[*b].total_cmp(&self.numbers[*a]));
         actions
     }
 
     /// The difference from another choice.
     fn distance(&self, other: &Choice) -> f32 {
-        self.numbers.iter().zip(&other.numbers).map(|(a, b)| (a - b).abs()).sum()
+        self.numbers
+            .iter()
+            .zip(&other.numbers)
+            .map(|(a, b)| (a - b).abs())
+            .sum()
     }
 
     /// The probability of one action, or all values.
     fn text(&self, action: Option<usize>) -> String {
         match action {
             Some(action) => format!("{:.1} %", 100.0 * self.numbers[action]),
-            None => self.numbers.iter().map(|number| format!("{number:.2}")).collect::<Vec<_>>().join(", "),
+            None => self
+                .numbers
+                .iter()
+                .map(|number| format!("{number:.2}"))
+                .collect::<Vec<_>>()
+                .join(", "),
         }
     }
 }

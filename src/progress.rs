@@ -22,7 +22,10 @@ const TURN_EVERY: Duration = Duration::from_millis(200);
 /// Tells the user that an odd number of games per point or pairing is rounded up.
 pub(crate) fn tell_rounded(games: u32, each: &str) {
     if !games.is_multiple_of(2) {
-        screen::remark(&format!("{games} games per {each} become {}: half of them are played on each side", games + 1));
+        screen::remark(&format!(
+            "{games} games per {each} become {}: half of them are played on each side",
+            games + 1
+        ));
     }
 }
 
@@ -38,9 +41,16 @@ impl Progress {
 
     /// Progress of this many items, none done yet.
     pub(crate) fn of(count: u64, noun: &'static str) -> Progress {
-        let style = format!("{{wide_bar}} {{human_pos}}/{{human_len}} {noun}  {{per_sec}}  {{eta}} left");
-        let style = ProgressStyle::with_template(&style).expect("the template is sound").progress_chars("=> ");
-        Progress { bar: ProgressBar::new(count).with_style(style), noun, told: clock::now() }
+        let style =
+            format!("{{wide_bar}} {{human_pos}}/{{human_len}} {noun}  {{per_sec}}  {{eta}} left");
+        let style = ProgressStyle::with_template(&style)
+            .expect("the template is sound")
+            .progress_chars("=> ");
+        Progress {
+            bar: ProgressBar::new(count).with_style(style),
+            noun,
+            told: clock::now(),
+        }
     }
 
     /// Progress of an unknown number of items.
@@ -49,7 +59,11 @@ impl Progress {
         let style = ProgressStyle::with_template(&style).expect("the template is sound");
         let bar = ProgressBar::new_spinner().with_style(style);
         bar.enable_steady_tick(TURN_EVERY);
-        Progress { bar, noun, told: clock::now() }
+        Progress {
+            bar,
+            noun,
+            told: clock::now(),
+        }
     }
 
     /// Sets the number of items done in an earlier run.
@@ -87,8 +101,15 @@ impl Progress {
             self.told = clock::now();
             let done = self.bar.position();
             let noun = self.noun;
-            let of = self.bar.length().map_or(String::new(), |count| format!(" of {count}"));
-            let line = format!("{done}{of} {noun}, {} {noun}/s  {}", significant(self.rate()), words());
+            let of = self
+                .bar
+                .length()
+                .map_or(String::new(), |count| format!(" of {count}"));
+            let line = format!(
+                "{done}{of} {noun}, {} {noun}/s  {}",
+                significant(self.rate()),
+                words()
+            );
             screen::remark(line.trim_end());
         }
     }
@@ -109,9 +130,16 @@ impl Progress {
         let rate = self.rate();
         let wall_s = self.bar.elapsed().as_secs_f64();
         self.end();
-        let threads = if jobs == 1 { "1 thread".to_owned() } else { format!("{jobs} threads") };
+        let threads = if jobs == 1 {
+            "1 thread".to_owned()
+        } else {
+            format!("{jobs} threads")
+        };
         let wall_s = significant(wall_s);
-        screen::remark(&format!("{played} games in {wall_s} s on {threads}: {} games/s", significant(rate)));
+        screen::remark(&format!(
+            "{played} games in {wall_s} s on {threads}: {} games/s",
+            significant(rate)
+        ));
         rate
     }
 }

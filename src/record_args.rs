@@ -24,6 +24,8 @@ impl RecordArgs {
         }
         output_file::make_folder(&self.record).context("cannot record")?;
         let file = NewFile::create_numbered(&self.record, &recording::stem(&scenario.name, seed));
-        Ok(Some(file.with_context(|| format!("cannot record to {}", self.record.display()))?))
+        Ok(Some(file.with_context(|| {
+            format!("cannot record to {}", self.record.display())
+        })?))
     }
 }

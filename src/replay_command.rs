@@ -11,10 +11,12 @@ mod check;
 
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Recording to replay: a file, or a part of a name that `squall runs` lists [default: the newest in runs]
+    /// Recording to replay: a file, or a part of a name that `squall runs` lists [default: the
+    /// newest in runs]
     #[arg(value_name = "RECORDING", value_parser = recording_file::named)]
     pub(crate) file: Option<PathBuf>,
-    /// Reruns the game from its recorded inputs, without minds, and reports whether the result is identical
+    /// Reruns the game from its recorded inputs, without minds, and reports whether the result is
+    /// identical
     #[arg(long)]
     pub(crate) check: bool,
 }
@@ -23,13 +25,21 @@ pub(crate) struct Args {
 pub(crate) fn check(file: Option<&Path>) -> Result<ExitCode> {
     let file = &recording_file::or_newest(file)?;
     let recording = open(file)?;
-    let frames = recording.bag().messages().filter(|message| message.topic == FRAME).count();
+    let frames = recording
+        .bag()
+        .messages()
+        .filter(|message| message.topic == FRAME)
+        .count();
     let mut progress = Progress::of(frames as u64, "frames");
     let verdict = check::check(&recording, || progress.add());
     progress.end();
     let verdict = verdict.with_context(|| format!("cannot rerun {}", file.display()))?;
     screen::print(&verdict.text);
-    Ok(if verdict.is_same { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    Ok(if verdict.is_same {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    })
 }
 
 pub(crate) fn open(file: &Path) -> Result<Recording> {

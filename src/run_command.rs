@@ -35,7 +35,11 @@ pub(crate) struct Args {
 }
 
 /// The command that shows a recorded game; in a build without the page, the one that analyses it.
-const LOOK: &str = if cfg!(feature = "network") { "squall replay" } else { "squall log" };
+const LOOK: &str = if cfg!(feature = "network") {
+    "squall replay"
+} else {
+    "squall log"
+};
 
 /// The stop flag and the screen.
 pub(crate) type Shell<'a> = (&'a AtomicBool, &'a mut Screen);
@@ -79,16 +83,24 @@ fn play_when_saved(args: &Args, player: &mut dyn Player) -> Result<ExitCode> {
         // Take the stamps before playing, so that a change saved during the game counts.
         let read = files.list().into_iter().map(|(path, _)| path);
         let watched = WatchedFiles::new(read.chain([args.play.file().to_owned()]));
-        if let Err(error) = scenario.and_then(|scenario| play_once(args, player, &scenario, &stop)) {
+        if let Err(error) = scenario.and_then(|scenario| play_once(args, player, &scenario, &stop))
+        {
             screen::complain(&explain::error(&error));
         }
         screen::remark("waiting for changes to the game's files (Ctrl-C to stop)");
-        let Some(path) = watched.wait(&stop) else { return Ok(stop::interrupted()) };
+        let Some(path) = watched.wait(&stop) else {
+            return Ok(stop::interrupted());
+        };
         screen::remark(&format!("{} has changed", path.display()));
     }
 }
 
-fn play_once(args: &Args, player: &mut dyn Player, scenario: &Scenario, stop: &AtomicBool) -> Result<ExitCode> {
+fn play_once(
+    args: &Args,
+    player: &mut dyn Player,
+    scenario: &Scenario,
+    stop: &AtomicBool,
+) -> Result<ExitCode> {
     player.check(scenario)?;
     args.play.check_result_file()?;
     let mut screen = Screen::new(Names::of(scenario));
@@ -96,14 +108,27 @@ fn play_once(args: &Args, player: &mut dyn Player, scenario: &Scenario, stop: &A
         return both_sides(args, player, scenario, (stop, &mut screen));
     }
     let (file, report) = play(args, player, scenario, (stop, &mut screen))?;
-    let Some(report) = report else { return Ok(stop::interrupted()) };
-    let unwritten = args.play.write_result(&report).err().map(|error| command_line::explain::line(&error));
-    let problems: Vec<String> = unwritten.into_iter().chain(report.run.recording_problem.clone()).collect();
+    let Some(report) = report else {
+        return Ok(stop::interrupted());
+    };
+    let unwritten = args
+        .play
+        .write_result(&report)
+        .err()
+        .map(|error| command_line::explain::line(&error));
+    let problems: Vec<String> = unwritten
+        .into_iter()
+        .chain(report.run.recording_problem.clone())
+        .collect();
     player.end(file.as_deref(), &problems, (stop, &mut screen));
     if !problems.is_empty() {
         bail!(problems.join("; "));
     }
-    Ok(if report.run.cut_short { stop::interrupted() } else { ExitCode::SUCCESS })
+    Ok(if report.run.cut_short {
+        stop::interrupted()
+    } else {
+        ExitCode::SUCCESS
+    })
 }
 
 /// Plays the game and records it if requested.
@@ -116,21 +141,38 @@ fn play(
     let file = args.record.file(scenario, args.play.seed(scenario))?;
     let path = file.as_ref().map(|file| file.path().to_owned());
     let report = player.play(&args.play, scenario, file, (stop, &mut *screen))?;
-    let has_advantage = report.as_ref().is_some_and(|report| report.outcome.ends_differ);
+    let has_advantage = report
+        .as_ref()
+        .is_some_and(|report| report.outcome.ends_differ);
     if has_advantage && !args.both_sides && !both_sides::are_equal(scenario) {
         screen.line("to give both strategies both ends, add --both-sides");
     }
     let file = path.filter(|path| path.exists());
     if let Some(file) = &file {
-        let is_whole = report.as_ref().is_some_and(|report| report.run.recording_problem.is_none());
-        let recorded = if is_whole { "recorded" } else { "recorded in part" };
-        screen.line(&format!("{recorded}; show it with: {} {}", LOOK, file.display()));
+        let is_whole = report
+            .as_ref()
+            .is_some_and(|report| report.run.recording_problem.is_none());
+        let recorded = if is_whole {
+            "recorded"
+        } else {
+            "recorded in part"
+        };
+        screen.line(&format!(
+            "{recorded}; show it with: {} {}",
+            LOOK,
+            file.display()
+        ));
     }
     Ok((file, report))
 }
 
 /// Plays the game as it is and with swapped strategies.
-fn both_sides(args: &Args, player: &mut dyn Player, scenario: &Scenario, (stop, screen): Shell) -> Result<ExitCode> {
+fn both_sides(
+    args: &Args,
+    player: &mut dyn Player,
+    scenario: &Scenario,
+    (stop, screen): Shell,
+) -> Result<ExitCode> {
     let mut exchanged_args = args.clone();
     exchanged_args.play.exchange_strategies = true;
     let exchanged = exchanged_args.play.load()?;
@@ -138,13 +180,22 @@ fn both_sides(args: &Args, player: &mut dyn Player, scenario: &Scenario, (stop, 
     let mut reports = vec![];
     for (args, scenario) in [(args, scenario), (&exchanged_args, &exchanged)] {
         let (_, report) = play(args, player, scenario, (stop, &mut *screen))?;
-        let Some(report) = report.filter(|report| !report.run.cut_short) else { return Ok(stop::interrupted()) };
+        let Some(report) = report.filter(|report| !report.run.cut_short) else {
+            return Ok(stop::interrupted());
+        };
         reports.push(report);
     }
     screen.line(&sides.text(&reports));
     args.play.write_results(&reports, &sides.sum(&reports))?;
-    let problems: Vec<String> = reports.into_iter().filter_map(|report| report.run.recording_problem).collect();
-    if problems.is_empty() { Ok(ExitCode::SUCCESS) } else { bail!(problems.join("; ")) }
+    let problems: Vec<String> = reports
+        .into_iter()
+        .filter_map(|report| report.run.recording_problem)
+        .collect();
+    if problems.is_empty() {
+        Ok(ExitCode::SUCCESS)
+    } else {
+        bail!(problems.join("; "))
+    }
 }
 
 impl Player for InProcess {

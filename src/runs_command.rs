@@ -26,19 +26,35 @@ pub(crate) fn run(args: &Args) -> ExitCode {
     let mut rows = vec![["name", "when (UTC)", "length", "score", "strategies"].map(str::to_owned)];
     rows.extend(runs.iter().take(args.count).map(|path| {
         let unreadable = |error: anyhow::Error| {
-            [recording_file::stem(path), String::new(), String::new(), String::new(), explain::line(&error)]
+            [
+                recording_file::stem(path),
+                String::new(),
+                String::new(),
+                String::new(),
+                explain::line(&error),
+            ]
         };
         row(path).unwrap_or_else(unreadable)
     }));
-    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+    let width = |column: usize| {
+        rows.iter()
+            .map(|row| row[column].chars().count())
+            .max()
+            .unwrap_or(0)
+    };
     let [name_width, when_width, length_width, score_width] = [0, 1, 2, 3].map(width);
     for [name, when, length, score, who] in &rows {
-        let line =
-            format!("{name:name_width$}  {when:when_width$}  {length:>length_width$}  {score:>score_width$}  {who}");
+        let line = format!(
+            "{name:name_width$}  {when:when_width$}  {length:>length_width$}  {score:>score_width$}  {who}"
+        );
         screen::print(&(screen::cut(line.trim_end()) + "\n"));
     }
     if runs.len() > args.count {
-        screen::print(&format!("{} older games: list them with --count {}\n", runs.len() - args.count, runs.len()));
+        screen::print(&format!(
+            "{} older games: list them with --count {}\n",
+            runs.len() - args.count,
+            runs.len()
+        ));
     }
     ExitCode::SUCCESS
 }
@@ -48,19 +64,40 @@ fn row(path: &Path) -> Result<Row> {
     let scenario = recording.scenario();
     let ending = recording.ending().map(|ending| &ending.outcome);
     let points = |outcome: &Outcome| -> Vec<String> {
-        scenario.teams.iter().map(|team| outcome.score.teams.get(&team.name).unwrap_or(&0).to_string()).collect()
+        scenario
+            .teams
+            .iter()
+            .map(|team| {
+                outcome
+                    .score
+                    .teams
+                    .get(&team.name)
+                    .unwrap_or(&0)
+                    .to_string()
+            })
+            .collect()
     };
     let strategy = |team: usize| {
-        let boats = scenario.vehicles.iter().filter(|vehicle| vehicle.team.index() == team);
-        let mut names: Vec<&str> = boats.map(|boat| scenario.strategies[boat.strategy].name.as_str()).collect();
+        let boats = scenario
+            .vehicles
+            .iter()
+            .filter(|vehicle| vehicle.team.index() == team);
+        let mut names: Vec<&str> = boats
+            .map(|boat| scenario.strategies[boat.strategy].name.as_str())
+            .collect();
         names.dedup();
         names.join("+")
     };
     Ok([
         recording_file::stem(path),
         utc::text(recording.header().began_utc_ns)[5..16].to_owned(),
-        ending.map_or("cut short".to_owned(), |outcome| format!("{:.0} s", outcome.duration_s)),
+        ending.map_or("cut short".to_owned(), |outcome| {
+            format!("{:.0} s", outcome.duration_s)
+        }),
         ending.map_or_else(String::new, |outcome| points(outcome).join(" : ")),
-        (0..scenario.teams.len()).map(strategy).collect::<Vec<_>>().join(" : "),
+        (0..scenario.teams.len())
+            .map(strategy)
+            .collect::<Vec<_>>()
+            .join(" : "),
     ])
 }

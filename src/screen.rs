@@ -23,7 +23,12 @@ const PRINT_EVERY_S: f64 = 60.0;
 impl Screen {
     /// The screen of this process for a game with these names.
     pub(crate) fn new(names: Names) -> Screen {
-        Screen { live: std::io::stdout().is_terminal(), status: String::new(), names, last_s: 0.0 }
+        Screen {
+            live: std::io::stdout().is_terminal(),
+            status: String::new(),
+            names,
+            last_s: 0.0,
+        }
     }
 
     pub(crate) fn show(&mut self, message: &ProgressMessage) {
@@ -39,7 +44,9 @@ impl Screen {
                 None => self.line("every boat has an agent"),
             },
             ProgressMessage::Started => {}
-            ProgressMessage::Event(event) => self.line(&format!("{:>7.1} s  {}", event.at_s, event.sentence())),
+            ProgressMessage::Event(event) => {
+                self.line(&format!("{:>7.1} s  {}", event.at_s, event.sentence()))
+            }
             ProgressMessage::Progress(progress) => self.progress(progress),
             ProgressMessage::Done(report) => {
                 self.clear();
@@ -50,10 +57,18 @@ impl Screen {
     }
 
     fn progress(&mut self, progress: &Progress) {
-        let score: Vec<String> = progress.score.iter().map(|(team, points)| format!("{team} {points}")).collect();
+        let score: Vec<String> = progress
+            .score
+            .iter()
+            .map(|(team, points)| format!("{team} {points}"))
+            .collect();
         let share = (progress.now_s / progress.end_s).clamp(0.0, 1.0);
         let full = (share * 24.0).round() as usize;
-        let refused = if progress.refused > 0 { format!("  {} refused", progress.refused) } else { String::new() };
+        let refused = if progress.refused > 0 {
+            format!("  {} refused", progress.refused)
+        } else {
+            String::new()
+        };
         let text = format!(
             "{:>7.1} s  [{}{}] {:.0} s  {}  {}x{refused}",
             progress.now_s,
@@ -104,16 +119,29 @@ impl Drop for Screen {
 
 /// A line, cut to the width of the terminal; whole if there is no terminal.
 pub(crate) fn cut(line: &str) -> String {
-    let width = if std::io::stdout().is_terminal() { columns().saturating_sub(1) } else { usize::MAX };
+    let width = if std::io::stdout().is_terminal() {
+        columns().saturating_sub(1)
+    } else {
+        usize::MAX
+    };
     match line.char_indices().nth(width) {
-        Some(_) => line.chars().take(width.saturating_sub(1)).chain(['…']).collect(),
+        Some(_) => line
+            .chars()
+            .take(width.saturating_sub(1))
+            .chain(['…'])
+            .collect(),
         None => line.to_owned(),
     }
 }
 
-/// Words in lines that fit the terminal, all but the first indented; one line if there is no terminal.
+/// Words in lines that fit the terminal, all but the first indented; one line if there is no
+/// terminal.
 pub(crate) fn wrapped(words: &str) -> String {
-    let width = if std::io::stdout().is_terminal() { columns() } else { usize::MAX };
+    let width = if std::io::stdout().is_terminal() {
+        columns()
+    } else {
+        usize::MAX
+    };
     let mut lines = vec![String::new()];
     for word in words.split(' ') {
         let last = lines.last_mut().expect("there is a line");
@@ -130,11 +158,20 @@ pub(crate) fn wrapped(words: &str) -> String {
 /// The agents and gateways that a game waits for, if any.
 fn waiting(agents: &[String], gateways: &[String]) -> Option<String> {
     const SHOWN: usize = 6;
-    let parts = [("agents", agents), ("gateways", gateways)].into_iter().filter(|(_, names)| !names.is_empty());
+    let parts = [("agents", agents), ("gateways", gateways)]
+        .into_iter()
+        .filter(|(_, names)| !names.is_empty());
     let parts = parts.map(|(of, names)| {
         let more = names.len().saturating_sub(SHOWN);
-        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-        format!("the {of} of {}{more}", names[..names.len().min(SHOWN)].join(", "))
+        let more = if more > 0 {
+            format!(" and {more} more")
+        } else {
+            String::new()
+        };
+        format!(
+            "the {of} of {}{more}",
+            names[..names.len().min(SHOWN)].join(", ")
+        )
     });
     let parts: Vec<String> = parts.collect();
     (!parts.is_empty()).then(|| format!("waiting for {}", parts.join(" and ")))
@@ -142,6 +179,8 @@ fn waiting(agents: &[String], gateways: &[String]) -> Option<String> {
 
 /// The width of the terminal, columns; a common width if there is no terminal.
 pub(crate) fn columns() -> usize {
-    terminal_size::terminal_size()
-        .map_or(experiment::tournament::WIDTH, |(terminal_size::Width(columns), _)| usize::from(columns))
+    terminal_size::terminal_size().map_or(
+        experiment::tournament::WIDTH,
+        |(terminal_size::Width(columns), _)| usize::from(columns),
+    )
 }

@@ -25,7 +25,8 @@ pub(crate) struct Args {
     /// Random seed for waves, gusts, eddies and the randomised values of sea and boat
     #[arg(long, default_value_t = 1, value_parser = whole::<u64>(0, u64::MAX))]
     seed: u64,
-    /// Plots spectrum, surface, wind and the boat's drift to this SVG file [default: SEA.svg in the current folder]
+    /// Plots spectrum, surface, wind and the boat's drift to this SVG file [default: SEA.svg in the
+    /// current folder]
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
 }
@@ -41,9 +42,18 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let drifted = drifted(&boat, &sea, tick, args.seed)?;
     screen::print(&told(&sea, &boat, &summary, &drifted));
 
-    let file = args.plot.clone().unwrap_or_else(|| PathBuf::from(format!("{}.svg", sea.name)));
+    let file = args
+        .plot
+        .clone()
+        .unwrap_or_else(|| PathBuf::from(format!("{}.svg", sea.name)));
     let title = format!("{}: {}, seed {}", sea.name, boat.name, args.seed);
-    let model = SeaModel::new(&sea, std::slice::from_ref(&boat), &field, tick, &args.seed.into());
+    let model = SeaModel::new(
+        &sea,
+        std::slice::from_ref(&boat),
+        &field,
+        tick,
+        &args.seed.into(),
+    );
     plot::sea::write(&file, title, &sea, &model, &drifted)?;
     screen::print(&format!("plot: {}\n", file.display()));
     Ok(ExitCode::SUCCESS)
@@ -71,20 +81,35 @@ type Line = (&'static str, String);
 
 /// The summary as text.
 fn told(sea: &Sea, boat: &Boat, summary: &Summary, drifted: &[Sample]) -> String {
-    let depth = sea.depth_m.map_or("deep".to_owned(), |depth_m| format!("{depth_m} m deep"));
-    let mut lines = vec![("water", format!("{} kg/m³, {depth}", sea.water_density_kg_m3))];
+    let depth = sea
+        .depth_m
+        .map_or("deep".to_owned(), |depth_m| format!("{depth_m} m deep"));
+    let mut lines = vec![(
+        "water",
+        format!("{} kg/m³, {depth}", sea.water_density_kg_m3),
+    )];
     match &summary.waves {
         None => lines.push(("waves", "none".to_owned())),
         Some(waves) => lines.extend(waves_told(waves)),
     }
-    lines.push(("current at the datum", flow(summary.current_m_s, "none at the start", " at the start")));
+    lines.push((
+        "current at the datum",
+        flow(summary.current_m_s, "none at the start", " at the start"),
+    ));
     match &summary.wind {
         None => lines.push(("wind", "none".to_owned())),
         Some(wind) => lines.extend(wind_told(wind)),
     }
     lines.extend(drift_told(drifted, boat));
-    let text = lines.iter().map(|(what, value)| format!("  {what:<24}{value}\n"));
-    format!("{} for the boat {}\n{}", sea.name, boat.name, text.collect::<String>())
+    let text = lines
+        .iter()
+        .map(|(what, value)| format!("  {what:<24}{value}\n"));
+    format!(
+        "{} for the boat {}\n{}",
+        sea.name,
+        boat.name,
+        text.collect::<String>()
+    )
 }
 
 fn waves_told(waves: &WaveSummary) -> [Line; 8] {
@@ -93,34 +118,77 @@ fn waves_told(waves: &WaveSummary) -> [Line; 8] {
     [
         ("significant wave height", format!("{:.2} m", waves.hs_m)),
         ("peak period", format!("{:.2} s", waves.tp_s)),
-        ("wavelength at the peak", format!("{:.1} m", waves.wavelength_m)),
-        ("slope, rms", format!("{:.1}°", waves.slope_rms_rad.to_degrees())),
-        ("orbital velocity, rms", format!("{:.2} m/s at the surface", waves.orbital_rms_m_s)),
-        ("  on the hull", format!("{head:.2} m/s from ahead, {beam:.2} m/s from abeam")),
-        ("Stokes drift", format!("{:.3} m/s over the draught", waves.stokes_m_s)),
-        ("mean drift force", format!("{from_ahead:.1} N from ahead, {from_abeam:.1} N from abeam")),
+        (
+            "wavelength at the peak",
+            format!("{:.1} m", waves.wavelength_m),
+        ),
+        (
+            "slope, rms",
+            format!("{:.1}°", waves.slope_rms_rad.to_degrees()),
+        ),
+        (
+            "orbital velocity, rms",
+            format!("{:.2} m/s at the surface", waves.orbital_rms_m_s),
+        ),
+        (
+            "  on the hull",
+            format!("{head:.2} m/s from ahead, {beam:.2} m/s from abeam"),
+        ),
+        (
+            "Stokes drift",
+            format!("{:.3} m/s over the draught", waves.stokes_m_s),
+        ),
+        (
+            "mean drift force",
+            format!("{from_ahead:.1} N from ahead, {from_abeam:.1} N from abeam"),
+        ),
     ]
 }
 
 fn wind_told(wind: &WindSummary) -> [Line; 4] {
     let [high, low] = wind.mean_m_s;
     let [from_ahead, from_abeam] = wind.force_newton;
-    let share_pct = if low > 0.0 { 100.0 * wind.drift_m_s / low } else { 0.0 };
+    let share_pct = if low > 0.0 {
+        100.0 * wind.drift_m_s / low
+    } else {
+        0.0
+    };
     [
-        ("mean wind", format!("{high:.1} m/s at 10 m, {low:.1} m/s at the boat")),
+        (
+            "mean wind",
+            format!("{high:.1} m/s at 10 m, {low:.1} m/s at the boat"),
+        ),
         ("gusts, rms", format!("{:.1} m/s", wind.gust_m_s)),
-        ("force of the mean wind", format!("{from_ahead:.1} N from ahead, {from_abeam:.1} N from abeam")),
-        ("wind drift, beam on", format!("{:.2} m/s, {share_pct:.1} % of the wind", wind.drift_m_s)),
+        (
+            "force of the mean wind",
+            format!("{from_ahead:.1} N from ahead, {from_abeam:.1} N from abeam"),
+        ),
+        (
+            "wind drift, beam on",
+            format!("{:.2} m/s, {share_pct:.1} % of the wind", wind.drift_m_s),
+        ),
     ]
 }
 
 /// The drift of the boat: its speed over the second half, its distance over the whole time.
 fn drift_told(drifted: &[Sample], boat: &Boat) -> Vec<Line> {
-    let (Some(drift), Some(last)) = (Drift::of(drifted), drifted.last()) else { return vec![] };
+    let (Some(drift), Some(last)) = (Drift::of(drifted), drifted.last()) else {
+        return vec![];
+    };
     let heading_deg = whole_deg(drift.heading_rad);
     let mut lines = vec![
-        ("free boat, simulated", flow(drift.velocity_m_s, "stays", &format!(", heading {heading_deg}°"))),
-        ("  from its start", format!("{:.1} m in {:.0} s", last.at.length(), last.t_s)),
+        (
+            "free boat, simulated",
+            flow(
+                drift.velocity_m_s,
+                "stays",
+                &format!(", heading {heading_deg}°"),
+            ),
+        ),
+        (
+            "  from its start",
+            format!("{:.1} m in {:.0} s", last.at.length(), last.t_s),
+        ),
     ];
     if matches!(boat.drive, Drive::Kinematic(_)) {
         lines.push(("", "only the current moves a kinematic boat".to_owned()));
@@ -134,7 +202,10 @@ fn flow(velocity_m_s: Ned, none: &str, more: &str) -> String {
     if speed_m_s < 0.005 {
         return none.to_owned();
     }
-    format!("{speed_m_s:.2} m/s towards {}°{more}", whole_deg(Ned::default().bearing_rad(velocity_m_s)))
+    format!(
+        "{speed_m_s:.2} m/s towards {}°{more}",
+        whole_deg(Ned::default().bearing_rad(velocity_m_s))
+    )
 }
 
 /// A bearing in whole degrees, 0 to 359.

@@ -25,7 +25,10 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         screen::print(&scenario::reference());
         return Ok(ExitCode::SUCCESS);
     }
-    let file = args.file.as_ref().ok_or_else(|| anyhow!("expected a strategy"))?;
+    let file = args
+        .file
+        .as_ref()
+        .ok_or_else(|| anyhow!("expected a strategy"))?;
     match scenario::load_file::<scenario::strategy::Strategy>(file) {
         Ok(strategy) if args.dot => screen::print(&graph(&strategy)),
         Ok(strategy) => screen::print(&tables(&strategy)),
@@ -42,8 +45,18 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 fn tables(strategy: &Strategy) -> String {
     let mut text = format!("strategy {}{}\n", strategy.name, dash(&strategy.about));
     for (i, role) in strategy.roles.iter().enumerate() {
-        let first = strategy.roles.iter().position(|other| other == role).unwrap_or(i);
-        let _ = write!(text, "\nrole {}: {}{}\n", i + 1, role.name, dash(&role.about));
+        let first = strategy
+            .roles
+            .iter()
+            .position(|other| other == role)
+            .unwrap_or(i);
+        let _ = write!(
+            text,
+            "\nrole {}: {}{}\n",
+            i + 1,
+            role.name,
+            dash(&role.about)
+        );
         if first < i {
             let _ = writeln!(text, "  as role {}", first + 1);
         } else {
@@ -54,7 +67,11 @@ fn tables(strategy: &Strategy) -> String {
 }
 
 fn dash(about: &str) -> String {
-    if about.is_empty() { String::new() } else { format!(" - {about}") }
+    if about.is_empty() {
+        String::new()
+    } else {
+        format!(" - {about}")
+    }
 }
 
 fn program(text: &mut String, program: &Program) {
@@ -64,29 +81,50 @@ fn program(text: &mut String, program: &Program) {
     text.push_str("\n  modes\n");
     for mode in 0..program.modes.len() {
         let depth = depth(program, mode);
-        let _ = writeln!(text, "  {}{} {}", "  ".repeat(depth + 1), program.modes[mode].name, condition(program, mode));
+        let _ = writeln!(
+            text,
+            "  {}{} {}",
+            "  ".repeat(depth + 1),
+            program.modes[mode].name,
+            condition(program, mode)
+        );
     }
     let leaves: Vec<usize> = program.leaves().collect();
     for leaf in leaves {
         let _ = write!(text, "\n  in {}\n", program.path(leaf));
-        let rows: Vec<[String; 4]> =
-            program.behaviours.iter().filter(|behaviour| behaviour.modes[leaf]).map(|b| row(program, b)).collect();
+        let rows: Vec<[String; 4]> = program
+            .behaviours
+            .iter()
+            .filter(|behaviour| behaviour.modes[leaf])
+            .map(|b| row(program, b))
+            .collect();
         if rows.is_empty() {
             text.push_str("    nothing runs\n");
         }
-        let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+        let width = |column: usize| {
+            rows.iter()
+                .map(|row| row[column].chars().count())
+                .max()
+                .unwrap_or(0)
+        };
         let name = width(0);
         let kind = width(1);
         let weight = width(2);
         for row in &rows {
-            let line = format!("    {:name$}  {:kind$}  {:weight$}  {}", row[0], row[1], row[2], row[3]);
+            let line = format!(
+                "    {:name$}  {:kind$}  {:weight$}  {}",
+                row[0], row[1], row[2], row[3]
+            );
             let _ = writeln!(text, "{}", line.trim_end());
         }
     }
 }
 
 fn depth(program: &Program, mode: usize) -> usize {
-    std::iter::successors(program.modes[mode].parent, |parent| program.modes[*parent].parent).count()
+    std::iter::successors(program.modes[mode].parent, |parent| {
+        program.modes[*parent].parent
+    })
+    .count()
 }
 
 /// The condition that selects a mode among its siblings.
@@ -107,10 +145,18 @@ fn row(program: &Program, behaviour: &Behaviour) -> [String; 4] {
         notes.push(format!("when {}", program.condition_text(when)));
     }
     if let Some(duration_s) = &behaviour.duration_s {
-        notes.push(format!("for {} s", program.number_text(&duration_s.expression)));
+        notes.push(format!(
+            "for {} s",
+            program.number_text(&duration_s.expression)
+        ));
     }
     let weight = program.number_text(&behaviour.weight.expression);
-    [behaviour.name.clone(), behaviour.task.kind().to_owned(), weight, notes.join(", ")]
+    [
+        behaviour.name.clone(),
+        behaviour.task.kind().to_owned(),
+        weight,
+        notes.join(", "),
+    ]
 }
 
 /// A Graphviz graph: a box for each mode, its condition on the edge to it, and the behaviours of
@@ -121,13 +167,31 @@ fn graph(strategy: &Strategy) -> String {
         if strategy.roles[..i].contains(role) {
             continue;
         }
-        let _ = writeln!(text, "  subgraph cluster_{i} {{\n    label={};", quoted(&role.name));
-        let _ = writeln!(text, "    r{i} [label={}, shape=ellipse];", quoted(&role.name));
+        let _ = writeln!(
+            text,
+            "  subgraph cluster_{i} {{\n    label={};",
+            quoted(&role.name)
+        );
+        let _ = writeln!(
+            text,
+            "    r{i} [label={}, shape=ellipse];",
+            quoted(&role.name)
+        );
         for (mode, about) in role.modes.iter().enumerate() {
-            let label = if role.is_leaf(mode) { leaf_label(role, mode) } else { about.name.clone() };
+            let label = if role.is_leaf(mode) {
+                leaf_label(role, mode)
+            } else {
+                about.name.clone()
+            };
             let _ = writeln!(text, "    r{i}m{mode} [label={}];", quoted(&label));
-            let from = about.parent.map_or_else(|| format!("r{i}"), |parent| format!("r{i}m{parent}"));
-            let _ = writeln!(text, "    {from} -> r{i}m{mode} [label={}];", quoted(&condition(role, mode)));
+            let from = about
+                .parent
+                .map_or_else(|| format!("r{i}"), |parent| format!("r{i}m{parent}"));
+            let _ = writeln!(
+                text,
+                "    {from} -> r{i}m{mode} [label={}];",
+                quoted(&condition(role, mode))
+            );
         }
         text.push_str("  }\n");
     }
@@ -138,9 +202,17 @@ fn graph(strategy: &Strategy) -> String {
 /// A leaf's name, with its possible behaviours below.
 fn leaf_label(program: &Program, leaf: usize) -> String {
     let mut label = program.modes[leaf].name.clone();
-    for behaviour in program.behaviours.iter().filter(|behaviour| behaviour.modes[leaf]) {
+    for behaviour in program
+        .behaviours
+        .iter()
+        .filter(|behaviour| behaviour.modes[leaf])
+    {
         let [name, kind, weight, notes] = row(program, behaviour);
-        let notes = if notes.is_empty() { notes } else { format!(", {notes}") };
+        let notes = if notes.is_empty() {
+            notes
+        } else {
+            format!(", {notes}")
+        };
         let _ = write!(label, "\n{name}: {kind} {weight}{notes}");
     }
     label
@@ -148,5 +220,10 @@ fn leaf_label(program: &Program, leaf: usize) -> String {
 
 /// A text, quoted for Graphviz.
 fn quoted(text: &str) -> String {
-    format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\"").replace('\n', "\\n"))
+    format!(
+        "\"{}\"",
+        text.replace('\\', "\\\\")
+            .replace('"', "\\\"")
+            .replace('\n', "\\n")
+    )
 }

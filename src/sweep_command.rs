@@ -26,19 +26,21 @@ pub(crate) struct Args {
     /// Folder for the tables and the report [default: runs/sweep/NAME]
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
-    /// Resumes the sweep in the output folder; the results are the same as without interruption. With --until or
-    /// --find, reuses the games of earlier searches
+    /// Resumes the sweep in the output folder; the results are the same as without interruption.
+    /// With --until or --find, reuses the games of earlier searches
     #[arg(long)]
     resume: bool,
-    /// Instead of playing all points, searches an axis for the value at which this condition begins to hold, for
-    /// example "strategy_5.win_share < 0.5"; plays at most the games of one point at each value
+    /// Instead of playing all points, searches an axis for the value at which this condition begins
+    /// to hold, for example "strategy_5.win_share < 0.5"; plays at most the games of one point at
+    /// each value
     #[arg(long, value_name = "CONDITION", conflicts_with = "find")]
     until: Option<String>,
     /// With --until: key of the axis to search [default: the only numeric axis]
     #[arg(long, value_name = "KEY", requires = "until")]
     along: Option<String>,
-    /// Plays games sampled evenly from the space of the axes, and lists those that meet this condition, for example
-    /// "strategy_5.contacts > 0"; `collision` and `out_of_bounds` apply to the first entry
+    /// Plays games sampled evenly from the space of the axes, and lists those that meet this
+    /// condition, for example "strategy_5.contacts > 0"; `collision` and `out_of_bounds` apply to
+    /// the first entry
     #[arg(long, value_name = "CONDITION")]
     find: Option<String>,
     /// With --find: number of games to play
@@ -48,7 +50,10 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let plan = planned(args)?;
-    let folder = args.out.clone().unwrap_or_else(|| PathBuf::from("runs/sweep").join(&plan.sweep().name));
+    let folder = args
+        .out
+        .clone()
+        .unwrap_or_else(|| PathBuf::from("runs/sweep").join(&plan.sweep().name));
     output_file::make_folder(&folder)?;
     if let Some(condition) = &args.until {
         return until(args, &plan, condition, &folder);
@@ -56,12 +61,23 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     if let Some(condition) = &args.find {
         return find(args, &plan, condition, &folder);
     }
-    let mut study = if args.resume { Study::resume(&folder, &plan)? } else { Study::begin(&folder, &plan)? };
+    let mut study = if args.resume {
+        Study::resume(&folder, &plan)?
+    } else {
+        Study::begin(&folder, &plan)?
+    };
     let points = plan.points().len();
     let per_point = plan.games_per_point();
-    screen::remark(&format!("{points} points with {per_point} games each; tables and report in {}", folder.display()));
+    screen::remark(&format!(
+        "{points} points with {per_point} games each; tables and report in {}",
+        folder.display()
+    ));
     if study.done() > 0 {
-        screen::remark(&format!("{} of {} games already played", study.done(), plan.games()));
+        screen::remark(&format!(
+            "{} of {} games already played",
+            study.done(),
+            plan.games()
+        ));
     }
     let stop = stop::on_ctrl_c()?;
     let mut progress = Progress::of_games((plan.games() - study.done()) as u64);
@@ -73,15 +89,28 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     });
     progress.end_of_games(jobs.get());
     // Games played before the disk was full are kept, and the sweep can be resumed.
-    played.with_context(|| format!("{} of {} games are saved; continue with --resume", study.done(), plan.games()))?;
+    played.with_context(|| {
+        format!(
+            "{} of {} games are saved; continue with --resume",
+            study.done(),
+            plan.games()
+        )
+    })?;
     let report = study.report(&plan)?;
     screen::print(&sweep::text(&report));
-    screen::print(&format!("\nreport with curves: {}\n", folder.join("report.html").display()));
+    screen::print(&format!(
+        "\nreport with curves: {}\n",
+        folder.join("report.html").display()
+    ));
     if study.done() < plan.games() {
         screen::remark("stopped; continue with --resume");
         return Ok(stop::interrupted());
     }
-    Ok(if report.failures.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    Ok(if report.failures.is_empty() {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    })
 }
 
 /// Searches for the breaking point on one axis.
@@ -90,14 +119,25 @@ fn until(args: &Args, plan: &Plan, text: &str, folder: &Path) -> Result<ExitCode
     let stop = stop::on_ctrl_c()?;
     let mut journal = journal(args, folder, plan)?;
     let jobs = args.jobs.threads(plan.games_per_point());
-    let result = sweep::breaking_point(plan, &condition, args.along.as_deref(), &mut journal, (jobs, &stop), |tried| {
-        let half = tried.mean.half_width().map_or("?".to_owned(), significant);
-        let verdict = tried.holds.map_or("is undecided", |holds| if holds { "holds" } else { "does not hold" });
-        let value = tried.value;
-        let games = tried.games;
-        let mean = significant(tried.mean.mean);
-        screen::remark(&format!("at {value:.4}: {mean} ± {half} in {games} games, {condition} {verdict}"));
-    });
+    let result = sweep::breaking_point(
+        plan,
+        &condition,
+        args.along.as_deref(),
+        &mut journal,
+        (jobs, &stop),
+        |tried| {
+            let half = tried.mean.half_width().map_or("?".to_owned(), significant);
+            let verdict = tried.holds.map_or("is undecided", |holds| {
+                if holds { "holds" } else { "does not hold" }
+            });
+            let value = tried.value;
+            let games = tried.games;
+            let mean = significant(tried.mean.mean);
+            screen::remark(&format!(
+                "at {value:.4}: {mean} ± {half} in {games} games, {condition} {verdict}"
+            ));
+        },
+    );
     let point = match result {
         Err(SearchError::Stopped) => return Ok(stopped(&journal)),
         other => other?,
@@ -109,8 +149,12 @@ fn until(args: &Args, plan: &Plan, text: &str, folder: &Path) -> Result<ExitCode
     let condition = &point.condition;
     screen::print(&match (point.low, point.high) {
         (Some(low), Some(high)) => {
-            let at = point.at.map_or(String::new(), |at| format!(", about {at:.4}"));
-            format!("{entry}: {condition} begins to hold between {axis} = {low:.4} and {high:.4} (95 %){at}\n")
+            let at = point
+                .at
+                .map_or(String::new(), |at| format!(", about {at:.4}"));
+            format!(
+                "{entry}: {condition} begins to hold between {axis} = {low:.4} and {high:.4} (95 %){at}\n"
+            )
         }
         (Some(_), None) => {
             format!(
@@ -126,7 +170,10 @@ fn until(args: &Args, plan: &Plan, text: &str, folder: &Path) -> Result<ExitCode
             format!("{entry}: {condition} is undecided everywhere on {axis}; increase --games\n")
         }
     });
-    screen::print(&format!("all tested values, with commands: {}\n", path.display()));
+    screen::print(&format!(
+        "all tested values, with commands: {}\n",
+        path.display()
+    ));
     Ok(ExitCode::SUCCESS)
 }
 
@@ -146,9 +193,16 @@ fn find(args: &Args, plan: &Plan, text: &str, folder: &Path) -> Result<ExitCode>
     let mut journal = journal(args, folder, plan)?;
     let games = args.search_games as usize;
     let jobs = args.jobs.threads(games);
-    let found = sweep::find(plan, &condition, games, &mut journal, (jobs, &stop), |games, failures| {
-        screen::remark(&format!("{failures} of {games} games with {condition}"));
-    });
+    let found = sweep::find(
+        plan,
+        &condition,
+        games,
+        &mut journal,
+        (jobs, &stop),
+        |games, failures| {
+            screen::remark(&format!("{failures} of {games} games with {condition}"));
+        },
+    );
     let found = match found {
         Err(SearchError::Stopped) => return Ok(stopped(&journal)),
         other => other?,
@@ -156,13 +210,20 @@ fn find(args: &Args, plan: &Plan, text: &str, folder: &Path) -> Result<ExitCode>
     let path = folder.join("find.json");
     output_file::write_json(&path, "what was found", &found)?;
     screen::print(&sweep::found_text(&found));
-    screen::print(&format!("\nall results, with more commands: {}\n", path.display()));
+    screen::print(&format!(
+        "\nall results, with more commands: {}\n",
+        path.display()
+    ));
     Ok(ExitCode::SUCCESS)
 }
 
 /// The journal of earlier searches over this sweep in its folder.
 fn journal(args: &Args, folder: &Path, plan: &Plan) -> Result<Journal> {
-    let journal = if args.resume { Journal::resume(folder, plan)? } else { Journal::begin(folder, plan)? };
+    let journal = if args.resume {
+        Journal::resume(folder, plan)?
+    } else {
+        Journal::begin(folder, plan)?
+    };
     if journal.games() > 0 {
         screen::remark(&format!("{} games already played", journal.games()));
     }
@@ -170,7 +231,10 @@ fn journal(args: &Args, folder: &Path, plan: &Plan) -> Result<Journal> {
 }
 
 fn stopped(journal: &Journal) -> ExitCode {
-    screen::remark(&format!("stopped; {} games are saved; continue with --resume", journal.games()));
+    screen::remark(&format!(
+        "stopped; {} games are saved; continue with --resume",
+        journal.games()
+    ));
     stop::interrupted()
 }
 
@@ -179,5 +243,10 @@ fn planned(args: &Args) -> Result<Plan> {
     let file = load_file::<Sweep>(&args.sweep).with_context(context)?;
     let games = args.games.unwrap_or(file.games);
     tell_rounded(games, "point");
-    Plan::new(&Sweep { games, seed: args.seed.unwrap_or(file.seed), ..file }).with_context(context)
+    Plan::new(&Sweep {
+        games,
+        seed: args.seed.unwrap_or(file.seed),
+        ..file
+    })
+    .with_context(context)
 }

@@ -10,7 +10,9 @@ use analysis::quality::{GameQuality, MindState, Quality};
 use anyhow::{Context, Result, ensure};
 use command_line::explain::UsageError;
 use command_line::number::whole;
-use experiment::tournament::{self, Entrant, Observer, Plan, Record, Report, Tournament, play, play_observed};
+use experiment::tournament::{
+    self, Entrant, Observer, Plan, Record, Report, Tournament, play, play_observed,
+};
 use rules::event::EventCursor;
 use scenario::{Kind, Scenario, load_file};
 use serde::Serialize;
@@ -37,15 +39,15 @@ pub(crate) struct Args {
     seed: Option<u64>,
     #[command(flatten)]
     jobs: JobsArgs,
-    /// Writes the full report to this file as JSON, with all settings for replaying its games; `squall view FILE`
-    /// shows it
+    /// Writes the full report to this file as JSON, with all settings for replaying its games;
+    /// `squall view FILE` shows it
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
     /// Writes one line per entry to this file as CSV
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Keeps the results in this folder and plays only the missing games, so that you can add entries or resume a
-    /// stopped tournament; `squall view FOLDER` shows it
+    /// Keeps the results in this folder and plays only the missing games, so that you can add
+    /// entries or resume a stopped tournament; `squall view FOLDER` shows it
     #[arg(long, value_name = "FOLDER", conflicts_with = "quality")]
     league: Option<PathBuf>,
     /// Also reports the quality of play: chatter, standing still, edges, contacts, orbits
@@ -70,14 +72,25 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     }
     let stop = stop::on_ctrl_c()?;
     let mut league = args.league.as_deref().map(LeagueFile::open).transpose()?;
-    let Played { records, quality, rate } = play_all(args, &plan, &stop, league.as_mut());
+    let Played {
+        records,
+        quality,
+        rate,
+    } = play_all(args, &plan, &stop, league.as_mut());
 
     let mut report = Report::new(&plan, &records);
     report.commit = env!("SQUALL_COMMIT").to_owned();
     report.rate = Some(rate);
     let of_league = league.as_ref().map(LeagueFile::report);
     for path in args.json.iter().chain(&of_league) {
-        output_file::write_json(path, "the report", &Whole { report: &report, quality: quality.as_ref() })?;
+        output_file::write_json(
+            path,
+            "the report",
+            &Whole {
+                report: &report,
+                quality: quality.as_ref(),
+            },
+        )?;
     }
     if let Some(path) = &args.csv {
         output_file::write(path, "the report", tournament::csv(&report))?;
@@ -88,11 +101,13 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     }
     // Print the results even if the disk is full.
     league.map_or(Ok(()), LeagueFile::end)?;
-    Ok(match (report.games_unplayed > 0, report.failures.is_empty()) {
-        (true, _) => stop::interrupted(),
-        (false, true) => ExitCode::SUCCESS,
-        (false, false) => ExitCode::FAILURE,
-    })
+    Ok(
+        match (report.games_unplayed > 0, report.failures.is_empty()) {
+            (true, _) => stop::interrupted(),
+            (false, true) => ExitCode::SUCCESS,
+            (false, false) => ExitCode::FAILURE,
+        },
+    )
 }
 
 /// The games played, and their rate.
@@ -104,18 +119,31 @@ struct Played {
 }
 
 /// Plays the games of a plan; with a league, only those that it does not contain.
-fn play_all(args: &Args, plan: &Plan, stop: &AtomicBool, mut league: Option<&mut LeagueFile>) -> Played {
+fn play_all(
+    args: &Args,
+    plan: &Plan,
+    stop: &AtomicBool,
+    mut league: Option<&mut LeagueFile>,
+) -> Played {
     let all = || (0..plan.games()).collect::<Vec<usize>>();
     let pairings = plan.pairings();
-    let (mut records, games) =
-        league.as_ref().map_or_else(|| (vec![], all()), |file| file.league.split(plan, &pairings));
+    let (mut records, games) = league.as_ref().map_or_else(
+        || (vec![], all()),
+        |file| file.league.split(plan, &pairings),
+    );
     if league.is_some() {
-        screen::remark(&format!("{} of {} games already played", records.len(), plan.games()));
+        screen::remark(&format!(
+            "{} of {} games already played",
+            records.len(),
+            plan.games()
+        ));
     }
     let jobs = args.jobs.threads(games.len());
     let mut progress = Progress::of_games(games.len() as u64);
     let take = |record: Record| {
-        league.iter_mut().for_each(|file| file.add(plan, &pairings, &record));
+        league
+            .iter_mut()
+            .for_each(|file| file.add(plan, &pairings, &record));
         progress.add();
         records.push(record);
     };
@@ -125,7 +153,11 @@ fn play_all(args: &Args, plan: &Plan, stop: &AtomicBool, mut league: Option<&mut
         play(plan, &games, jobs, stop, take);
         None
     };
-    Played { records, quality, rate: progress.end_of_games(jobs.get()) }
+    Played {
+        records,
+        quality,
+        rate: progress.end_of_games(jobs.get()),
+    }
 }
 
 /// Plays games of a plan and judges how sensibly the boats behave.
@@ -137,15 +169,24 @@ fn play_judged(
 ) -> Quality {
     let observer = Observer {
         begin: |scenario: &Scenario| (GameQuality::new(scenario), EventCursor::default()),
-        see: |(quality, cursor): &mut (GameQuality, EventCursor), contest: &Contest, runner: &MindRunner| {
-            let minds: Vec<_> = runner.minds().map(|(_, mind)| mind.report().map(MindState::from)).collect();
+        see: |(quality, cursor): &mut (GameQuality, EventCursor),
+              contest: &Contest,
+              runner: &MindRunner| {
+            let minds: Vec<_> = runner
+                .minds()
+                .map(|(_, mind)| mind.report().map(MindState::from))
+                .collect();
             let orders = runner.orders().map(|(_, order)| order);
-            quality.add(&Step::of_frame(contest.scenario(), &contest.frame(cursor), orders), &minds);
+            quality.add(
+                &Step::of_frame(contest.scenario(), &contest.frame(cursor), orders),
+                &minds,
+            );
         },
     };
     let mut sum = Quality::default();
     play_observed(plan, games, threads, &observer, |record, seen| {
-        seen.into_iter().for_each(|(quality, _)| sum.merge(&quality.end()));
+        seen.into_iter()
+            .for_each(|(quality, _)| sum.merge(&quality.end()));
         take(record);
     });
     sum
@@ -154,16 +195,25 @@ fn play_judged(
 fn planned(args: &Args) -> Result<Plan> {
     let file = match &args.entries[..] {
         [name] => {
-            ensure!(args.game.is_none(), "--game requires strategies; a tournament file names its game");
-            let path = scenario_files::find(name, Kind::of::<Tournament>()).map_err(UsageError::of)?;
-            load_file::<Tournament>(&path).with_context(|| format!("cannot play the tournament {}", path.display()))?
+            ensure!(
+                args.game.is_none(),
+                "--game requires strategies; a tournament file names its game"
+            );
+            let path =
+                scenario_files::find(name, Kind::of::<Tournament>()).map_err(UsageError::of)?;
+            load_file::<Tournament>(&path)
+                .with_context(|| format!("cannot play the tournament {}", path.display()))?
         }
         strategies => between(strategies, args.game.as_deref())?,
     };
     let games = args.games.unwrap_or(file.games);
     tell_rounded(games, "pairing");
     let name = file.name.clone();
-    let plan = Plan::new(&Tournament { games, seed: args.seed.unwrap_or(file.seed), ..file });
+    let plan = Plan::new(&Tournament {
+        games,
+        seed: args.seed.unwrap_or(file.seed),
+        ..file
+    });
     plan.with_context(|| format!("cannot play the tournament {name}"))
 }
 
@@ -171,12 +221,30 @@ fn planned(args: &Args) -> Result<Plan> {
 fn between(strategies: &[String], game: Option<&Path>) -> Result<Tournament> {
     let entrant = |word: &String| {
         let strategy = scenario_files::find(word, Kind::STRATEGY).map_err(UsageError::of)?;
-        Ok(Entrant { name: recording_file::stem(&strategy), strategy })
+        Ok(Entrant {
+            name: recording_file::stem(&strategy),
+            strategy,
+        })
     };
     let entries = strategies.iter().map(entrant).collect::<Result<Vec<_>>>()?;
     let names: BTreeSet<&str> = entries.iter().map(|entry| entry.name.as_str()).collect();
-    ensure!(names.len() == entries.len(), "a strategy is given twice, expected different names of strategies");
+    ensure!(
+        names.len() == entries.len(),
+        "a strategy is given twice, expected different names of strategies"
+    );
     let name = Vec::from_iter(names).join("_");
-    let game = game.map_or_else(|| scenario_files::find("surveyor_2v2", Kind::GAME), |path| Ok(path.to_owned()))?;
-    Ok(Tournament { name, game, sea: None, games: 200, seed: 1, self_play: false, challenger: None, entries })
+    let game = game.map_or_else(
+        || scenario_files::find("surveyor_2v2", Kind::GAME),
+        |path| Ok(path.to_owned()),
+    )?;
+    Ok(Tournament {
+        name,
+        game,
+        sea: None,
+        games: 200,
+        seed: 1,
+        self_play: false,
+        challenger: None,
+        entries,
+    })
 }

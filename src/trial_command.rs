@@ -21,19 +21,19 @@ use trial::{Engine, Manoeuvre, Orders, Plan, Sample, Sheet, Start, TrialBoat};
 pub(crate) struct Args {
     /// Boat: a file, or the name of a boat in scenarios/boats
     boat: String,
-    /// Replays the commands in this CSV file. Columns: t_s, and either port and starboard (both in _rad_s, _pct or
-    /// _newton), or thrust_pct and rudder_pct, or speed_m_s and heading_deg
+    /// Replays the commands in this CSV file. Columns: t_s, and either port and starboard (both in
+    /// _rad_s, _pct or _newton), or thrust_pct and rudder_pct, or speed_m_s and heading_deg
     #[arg(long, value_name = "FILE", value_parser = existing)]
     orders: Option<PathBuf>,
     /// Standard manoeuvre to perform
     #[arg(long, value_name = "NAME", value_parser = manoeuvre_name())]
     manoeuvre: Option<Manoeuvre>,
-    /// Writes the track, sampled every 0.1 s, to this CSV file; required with --orders [default: BOAT_MANOEUVRE.csv in the
-    /// current folder]
+    /// Writes the track, sampled every 0.1 s, to this CSV file; required with --orders [default:
+    /// BOAT_MANOEUVRE.csv in the current folder]
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Plots the track and time series to this SVG file [default: BOAT_MANOEUVRE.svg in the current folder, or none
-    /// with --orders]
+    /// Plots the track and time series to this SVG file [default: BOAT_MANOEUVRE.svg in the current
+    /// folder, or none with --orders]
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
     /// Adds the commands to the track, in columns that `squall identify` and --orders can read
@@ -46,7 +46,8 @@ pub(crate) struct Args {
     /// Physics tick, s [default: 0.05, or 0.1 for a kinematic boat]
     #[arg(long, value_name = "S", value_parser = tick)]
     tick_s: Option<f64>,
-    /// Duration of the trial, s [default: until the last command, or as long as the manoeuvre takes]
+    /// Duration of the trial, s [default: until the last command, or as long as the manoeuvre
+    /// takes]
     #[arg(long, value_name = "S", value_parser = within(0.1, trial::LONGEST_S, "s"))]
     duration_s: Option<f64>,
     #[command(flatten)]
@@ -64,18 +65,20 @@ pub(crate) struct ManoeuvreArgs {
     /// Turns to port, or begins a zigzag to port, instead of starboard
     #[arg(long, conflicts_with = "orders")]
     to_port: bool,
-    /// For a zigzag: heading change at which the boat reverses its turn, degrees (10 for 10/10, 20 for 20/20)
+    /// For a zigzag: heading change at which the boat reverses its turn, degrees (10 for 10/10, 20
+    /// for 20/20)
     #[arg(long, value_name = "DEG", default_value_t = 10.0, value_parser = within(1.0, 90.0, "degrees"), conflicts_with = "orders")]
     angle_deg: f64,
-    /// For a zigzag: rudder angle, or each thruster's offset from the mean thrust, per cent of full [default: the
-    /// value of --angle-deg]
+    /// For a zigzag: rudder angle, or each thruster's offset from the mean thrust, per cent of full
+    /// [default: the value of --angle-deg]
     #[arg(long, value_name = "PCT", value_parser = within(1.0, 100.0, "per cent"), conflicts_with = "orders")]
     differential_pct: Option<f64>,
 }
 
 /// Parses the name of a manoeuvre.
 fn manoeuvre_name() -> impl TypedValueParser<Value = Manoeuvre> {
-    PossibleValuesParser::new(Manoeuvre::NAMES).map(|name| name.parse().expect("no other name gets here"))
+    PossibleValuesParser::new(Manoeuvre::NAMES)
+        .map(|name| name.parse().expect("no other name gets here"))
 }
 
 #[derive(clap::Args)]
@@ -92,7 +95,8 @@ pub(crate) struct StartArgs {
     /// Yaw rate at the start, clockwise, degrees per second
     #[arg(long, value_name = "DEG_S", default_value_t = 0.0, value_parser = degrees, allow_negative_numbers = true)]
     start_yaw_rate_deg_s: f64,
-    /// Thrust of a kinematic boat at the start, per cent [default: the thrust that maintains its speed]
+    /// Thrust of a kinematic boat at the start, per cent [default: the thrust that maintains its
+    /// speed]
     #[arg(long, value_name = "PCT", value_parser = within(-100.0, 100.0, "per cent"), allow_negative_numbers = true)]
     start_thrust_pct: Option<f64>,
 }
@@ -144,7 +148,12 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     }
 }
 
-fn manoeuvre(args: &Args, named: Manoeuvre, boat: &Boat, trial_boat: &mut TrialBoat) -> Result<ExitCode> {
+fn manoeuvre(
+    args: &Args,
+    named: Manoeuvre,
+    boat: &Boat,
+    trial_boat: &mut TrialBoat,
+) -> Result<ExitCode> {
     let how = &args.manoeuvring;
     let plan = Plan {
         manoeuvre: named,
@@ -158,23 +167,40 @@ fn manoeuvre(args: &Args, named: Manoeuvre, boat: &Boat, trial_boat: &mut TrialB
     };
     let sailed = trial::sail(boat, trial_boat, &plan)?;
     let file = |given: &Option<PathBuf>, ending: &str| {
-        given.clone().unwrap_or_else(|| PathBuf::from(format!("{}_{}.{ending}", boat.name, named.name())))
+        given
+            .clone()
+            .unwrap_or_else(|| PathBuf::from(format!("{}_{}.{ending}", boat.name, named.name())))
     };
     let csv = file(&args.csv, "csv");
     let plot = file(&args.plot, "svg");
     write_track(&csv, &sailed.samples, args.with_orders)?;
     let title = format!("{}: {}", boat.name, named.name().replace('_', " "));
     plot::write(&plot, &title, &sailed.samples)?;
-    screen::print(&format!("{title}\n{}", table(&trial::measures(&plan, &sailed))));
-    screen::print(&format!("track: {}, plot: {}\n", csv.display(), plot.display()));
+    screen::print(&format!(
+        "{title}\n{}",
+        table(&trial::measures(&plan, &sailed))
+    ));
+    screen::print(&format!(
+        "track: {}, plot: {}\n",
+        csv.display(),
+        plot.display()
+    ));
     Ok(ExitCode::SUCCESS)
 }
 
 /// The results, one per line.
 fn table(measures: &[trial::Measure]) -> String {
     let line = |measure: &trial::Measure| {
-        let value = if measure.value.is_finite() { format!("{:.2}", measure.value) } else { "not reached".to_owned() };
-        let unit = if measure.value.is_finite() { measure.unit } else { "" };
+        let value = if measure.value.is_finite() {
+            format!("{:.2}", measure.value)
+        } else {
+            "not reached".to_owned()
+        };
+        let unit = if measure.value.is_finite() {
+            measure.unit
+        } else {
+            ""
+        };
         format!("  {:<32}{value:>12} {unit}\n", measure.name)
     };
     measures.iter().map(line).collect()
@@ -184,13 +210,23 @@ fn replay(args: &Args, path: &Path, boat: &Boat, trial_boat: &mut TrialBoat) -> 
     let orders = Orders::of_sheet(&read_sheet(path)?, &Engine::new(boat))?;
     let duration = args.duration_s.map_or(orders.end(), SimTime::from_s);
     if duration < trial::ROW {
-        bail!("{}: all commands have the same time; set the duration of the trial with --duration-s", path.display());
+        bail!(
+            "{}: all commands have the same time; set the duration of the trial with --duration-s",
+            path.display()
+        );
     }
     let samples = trial::replay(trial_boat, &orders, duration)?;
-    let csv = args.csv.as_deref().ok_or_else(|| UsageError("--orders requires --csv FILE for the track".to_owned()))?;
+    let csv = args
+        .csv
+        .as_deref()
+        .ok_or_else(|| UsageError("--orders requires --csv FILE for the track".to_owned()))?;
     write_track(csv, &samples, args.with_orders)?;
     if let Some(plot) = &args.plot {
-        plot::write(plot, &format!("{}: {}", boat.name, path.display()), &samples)?;
+        plot::write(
+            plot,
+            &format!("{}: {}", boat.name, path.display()),
+            &samples,
+        )?;
     }
     let last = &samples[samples.len() - 1];
     screen::print(&format!(
@@ -208,7 +244,8 @@ fn replay(args: &Args, path: &Path, boat: &Boat, trial_boat: &mut TrialBoat) -> 
 
 /// A CSV file with named columns.
 pub(crate) fn read_sheet(path: &Path) -> Result<Sheet> {
-    let file = primitives::input_file::open(path).with_context(|| format!("cannot read {}", path.display()))?;
+    let file = primitives::input_file::open(path)
+        .with_context(|| format!("cannot read {}", path.display()))?;
     let sheet = Sheet::read(&path.display().to_string(), file)?;
     for note in sheet.notes() {
         screen::remark(&note.to_string());

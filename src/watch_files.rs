@@ -14,7 +14,12 @@ pub(crate) struct WatchedFiles(Vec<(PathBuf, Stamp)>);
 impl WatchedFiles {
     /// Records the present stamps of these files.
     pub(crate) fn new(paths: impl IntoIterator<Item = PathBuf>) -> WatchedFiles {
-        WatchedFiles(paths.into_iter().map(|path| (path.clone(), stamp(&path))).collect())
+        WatchedFiles(
+            paths
+                .into_iter()
+                .map(|path| (path.clone(), stamp(&path)))
+                .collect(),
+        )
     }
 
     /// Waits until one of the files changes; returns `None` if `stop` is set first.

@@ -51,16 +51,20 @@ pub(crate) fn sea(path: &Path, seed: u64) -> Result<Sea> {
 /// Loads a boat from a file, or by its name in `scenarios/boats`; returns it with its file and its
 /// randomised values.
 pub(crate) fn boat(named: &str, seed: u64) -> Result<(Boat, PathBuf, Vec<Drawn>)> {
-    let path = scenario_files::find(named, Kind::BOAT).map_err(|error| UsageError(error.to_string()))?;
+    let path =
+        scenario_files::find(named, Kind::BOAT).map_err(|error| UsageError(error.to_string()))?;
     let drawn = scenario::draw_file::<scenario::Boat>(&path, seed);
-    let (boat, drawn) = drawn.with_context(|| format!("cannot load the boat {}", path.display()))?;
+    let (boat, drawn) =
+        drawn.with_context(|| format!("cannot load the boat {}", path.display()))?;
     Ok((boat, path, drawn))
 }
 
 /// Prints the randomised values.
 pub(crate) fn tell_drawn(seed: u64, drawn: &[Drawn]) {
     for Drawn { parameter, value } in drawn {
-        screen::print(&format!("randomised by seed {seed}: {parameter} = {value}\n"));
+        screen::print(&format!(
+            "randomised by seed {seed}: {parameter} = {value}\n"
+        ));
     }
 }
 

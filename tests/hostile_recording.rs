@@ -22,7 +22,9 @@ use std::sync::Arc;
 
 /// A shipped game.
 fn shipped(game: &str) -> Scenario {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/games").join(game);
+    let file = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("scenarios/games")
+        .join(game);
     scenario::load(&file).unwrap_or_else(|e| panic!("{e}"))
 }
 
@@ -36,27 +38,69 @@ fn bytes_of_game(scenario: Scenario, decisions: Vec<Decision>) -> Vec<u8> {
         commit: "c0ffee".to_owned(),
         game: "pav01-1".to_owned(),
         began_utc_ns: 1_700_000_000_000_000_000,
-        info: GameInfo { version: primitives::VERSION.to_owned(), pace: "lockstep".to_owned(), scenario },
+        info: GameInfo {
+            version: primitives::VERSION.to_owned(),
+            pace: "lockstep".to_owned(),
+            scenario,
+        },
         water: Water { waves: vec![] },
     };
-    let message =
-        |topic: &str, schema, bytes| Entry::Message { topic: topic.to_owned(), schema, bytes, at: SimTime(1) };
-    let stamp = Stamp { version: LinkBytes::VERSION, ..Stamp::default() };
-    let link = LinkBytes { stamp, vehicle: VehicleId(0), outward: false, data: b"$GPRMC,1*00\r\n$PSE".to_vec() };
-    let failsafes = vec![FailsafeReport { at_s: 1.0, cause: "link down".to_owned() }];
-    let status = GatewayStatus { failsafes, ..GatewayStatus::default() };
-    let entries = decisions.into_iter().map(|decision| Entry::Decision(Box::new(decision))).chain([
-        message("link/blue_one", Some(LinkBytes::SCHEMA), primitives::codec::encode(&link)),
-        message("status/blue_one", None, serde_json::to_vec(&status).expect("JSON")),
-    ]);
+    let message = |topic: &str, schema, bytes| Entry::Message {
+        topic: topic.to_owned(),
+        schema,
+        bytes,
+        at: SimTime(1),
+    };
+    let stamp = Stamp {
+        version: LinkBytes::VERSION,
+        ..Stamp::default()
+    };
+    let link = LinkBytes {
+        stamp,
+        vehicle: VehicleId(0),
+        outward: false,
+        data: b"$GPRMC,1*00\r\n$PSE".to_vec(),
+    };
+    let failsafes = vec![FailsafeReport {
+        at_s: 1.0,
+        cause: "link down".to_owned(),
+    }];
+    let status = GatewayStatus {
+        failsafes,
+        ..GatewayStatus::default()
+    };
+    let entries = decisions
+        .into_iter()
+        .map(|decision| Entry::Decision(Box::new(decision)))
+        .chain([
+            message(
+                "link/blue_one",
+                Some(LinkBytes::SCHEMA),
+                primitives::codec::encode(&link),
+            ),
+            message(
+                "status/blue_one",
+                None,
+                serde_json::to_vec(&status).expect("JSON"),
+            ),
+        ]);
     let mut writer = Writer::begin(Cursor::new(Vec::new()), &header.opening()).expect("it begins");
     entries.for_each(|entry| writer.write(&entry, 1_000_000_000).expect("it is written"));
-    writer.end(Ending::default().facts()).expect("it ends").into_inner()
+    writer
+        .end(Ending::default().facts())
+        .expect("it ends")
+        .into_inner()
 }
 
 /// Numbers that a sim never sends.
 fn odd_number() -> impl Strategy<Value = f64> {
-    prop_oneof![any::<f64>(), Just(f64::NAN), Just(f64::INFINITY), Just(-1e300), 0.0..100.0_f64]
+    prop_oneof![
+        any::<f64>(),
+        Just(f64::NAN),
+        Just(f64::INFINITY),
+        Just(-1e300),
+        0.0..100.0_f64
+    ]
 }
 
 prop_compose! {
@@ -66,24 +110,41 @@ prop_compose! {
 }
 
 fn odd_event() -> impl Strategy<Value = EventRecord> {
-    (any::<u64>(), any::<i64>(), 0..30_u8, -2..12_i32, -2..12_i32)
-        .prop_map(|(tick, at, kind, subject, object)| EventRecord { tick, at_ns: SimTime(at), kind, subject, object })
+    (any::<u64>(), any::<i64>(), 0..30_u8, -2..12_i32, -2..12_i32).prop_map(
+        |(tick, at, kind, subject, object)| EventRecord {
+            tick,
+            at_ns: SimTime(at),
+            kind,
+            subject,
+            object,
+        },
+    )
 }
 
 fn odd_input() -> impl Strategy<Value = Input> {
     let vehicle = (0..9_u16).prop_map(VehicleId);
-    let ordered = (vehicle.clone(), odd_number()).prop_map(|(vehicle, heading_rad)| Input::Ordered {
-        vehicle,
-        order: Order::Steer { heading_rad, speed_m_s: heading_rad },
-        given_at: SimTime::ZERO,
-    });
-    let reported = (vehicle.clone(), odd_nav(), any::<i64>()).prop_map(|(vehicle, nav, at)| Input::Reported {
-        vehicle,
-        nav,
-        fix_at: SimTime(at),
-        valid: true,
-    });
-    prop_oneof![ordered, reported, vehicle.prop_map(Input::Held), Just(Input::Played)]
+    let ordered =
+        (vehicle.clone(), odd_number()).prop_map(|(vehicle, heading_rad)| Input::Ordered {
+            vehicle,
+            order: Order::Steer {
+                heading_rad,
+                speed_m_s: heading_rad,
+            },
+            given_at: SimTime::ZERO,
+        });
+    let reported =
+        (vehicle.clone(), odd_nav(), any::<i64>()).prop_map(|(vehicle, nav, at)| Input::Reported {
+            vehicle,
+            nav,
+            fix_at: SimTime(at),
+            valid: true,
+        });
+    prop_oneof![
+        ordered,
+        reported,
+        vehicle.prop_map(Input::Held),
+        Just(Input::Played)
+    ]
 }
 
 prop_compose! {
@@ -122,12 +183,18 @@ fn look_at_all_of(recording: Recording) -> Recorded {
     let series = GameSeries::of(&recording);
     serde_json::to_string(&Summary::of(&recording)).expect("a summary is JSON");
     for topic in table::topics(recording.bag()) {
-        match table::write(recording.bag(), Some(recording.scenario()), &topic, &mut |_| Ok(())) {
+        match table::write(
+            recording.bag(),
+            Some(recording.scenario()),
+            &topic,
+            &mut |_| Ok(()),
+        ) {
             Ok(_) | Err(TableError::Strange { .. }) => {}
             Err(e) => panic!("{topic}: {e}"),
         }
     }
-    alog::write(&recording, true, &mut |_| Ok(Box::new(std::io::sink()))).expect("writing to a sink cannot fail");
+    alog::write(&recording, true, &mut |_| Ok(Box::new(std::io::sink())))
+        .expect("writing to a sink cannot fail");
     // There may be nothing to compare.
     Comparison::of([recording.header(); 2], [&series; 2], 0.0).ok();
     let recorded = Recorded::new(Arc::new(recording), "odd.mcap".to_owned());
@@ -183,32 +250,53 @@ fn numbers(value: &Value, at: &str, found: &mut Vec<String>) {
     match value {
         Value::Number(_) => found.push(at.to_owned()),
         Value::Array(items) => {
-            items.iter().take(3).enumerate().for_each(|(i, item)| numbers(item, &format!("{at}/{i}"), found));
+            items
+                .iter()
+                .take(3)
+                .enumerate()
+                .for_each(|(i, item)| numbers(item, &format!("{at}/{i}"), found));
         }
-        Value::Object(items) => items.iter().for_each(|(key, item)| numbers(item, &format!("{at}/{key}"), found)),
+        Value::Object(items) => items
+            .iter()
+            .for_each(|(key, item)| numbers(item, &format!("{at}/{key}"), found)),
         _ => {}
     }
 }
 
 #[test]
 fn a_game_with_impossible_numbers_is_refused_or_played_again() {
-    let sound = serde_json::to_value(shipped("surveyor_2v2.toml").of_seed(1).expect("it is drawn")).expect("JSON");
+    let sound = serde_json::to_value(
+        shipped("surveyor_2v2.toml")
+            .of_seed(1)
+            .expect("it is drawn"),
+    )
+    .expect("JSON");
     let mut places = vec![];
     numbers(&sound, "", &mut places);
     assert!(places.len() > 300, "{}", places.len());
     let mut panicked = vec![];
     for place in places {
-        for number in [serde_json::json!(0), serde_json::json!(65_535), serde_json::json!(-1e300)] {
+        for number in [
+            serde_json::json!(0),
+            serde_json::json!(65_535),
+            serde_json::json!(-1e300),
+        ] {
             let mut value = sound.clone();
             *value.pointer_mut(&place).expect("it is there") = number.clone();
-            let Ok(scenario) = serde_json::from_value::<Scenario>(value) else { continue };
+            let Ok(scenario) = serde_json::from_value::<Scenario>(value) else {
+                continue;
+            };
             let bytes = bytes_of_game(scenario, vec![]);
             let done = std::panic::catch_unwind(|| {
-                let Ok(recording) = Recording::of(bytes) else { return };
+                let Ok(recording) = Recording::of(bytes) else {
+                    return;
+                };
                 let scenario = recording.scenario().clone();
                 look_at_all_of(recording);
                 // As `replay --check` does.
-                let Ok(mut contest) = Contest::new(&scenario, scenario.seed) else { return };
+                let Ok(mut contest) = Contest::new(&scenario, scenario.seed) else {
+                    return;
+                };
                 (0..3).for_each(|_| contest.give(Input::Played));
                 contest.frame(&mut EventCursor::default());
             });

@@ -18,12 +18,19 @@ fn scenes(contacts: usize) -> Vec<(Vec<(f64, Objective<'static>)>, Preference)> 
         let course_rad = stream.between(0.0, TAU);
         let waypoint = Objective::Coupled {
             course: Peak::tent(bearing_rad, PI),
-            speed: Peak { peak_width: 1.25, summit_delta: 20.0, ..Peak::tent(2.5, 1.6) },
+            speed: Peak {
+                peak_width: 1.25,
+                summit_delta: 20.0,
+                ..Peak::tent(2.5, 1.6)
+            },
             course_share: 0.5,
         };
         let mut functions = vec![(100.0, waypoint)];
         for _ in 0..contacts {
-            let mut within = |most: f64| Ned { north: stream.between(-most, most), east: stream.between(-most, most) };
+            let mut within = |most: f64| Ned {
+                north: stream.between(-most, most),
+                east: stream.between(-most, most),
+            };
             let closest = Closest {
                 offset: within(80.0),
                 velocity: within(2.0),
@@ -31,12 +38,21 @@ fn scenes(contacts: usize) -> Vec<(Vec<(f64, Objective<'static>)>, Preference)> 
                 min_m: 10.0,
                 max_m: 75.0,
                 touch_m: 0.0,
-                approach: Approach::Avoid { at_min: 25.0, leave_to: None },
+                approach: Approach::Avoid {
+                    at_min: 25.0,
+                    leave_to: None,
+                },
                 lag: None,
             };
             functions.push((300.0, Objective::Closest(closest)));
         }
-        (functions, Preference { course_rad, speed_m_s: 2.0 })
+        (
+            functions,
+            Preference {
+                course_rad,
+                speed_m_s: 2.0,
+            },
+        )
     };
     (0..SCENES).map(scene).collect()
 }
@@ -52,7 +68,9 @@ fn decide(criterion: &mut Criterion) {
                 let (functions, preference) = black_box(&scenes[next % SCENES]);
                 next += 1;
                 problem.clear();
-                functions.iter().for_each(|(weight, objective)| problem.add(*weight, objective));
+                functions
+                    .iter()
+                    .for_each(|(weight, objective)| problem.add(*weight, objective));
                 problem.solve(*preference)
             });
         });

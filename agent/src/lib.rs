@@ -34,15 +34,25 @@ use scenario::strategy::Strategy;
 
 /// The mind that the scenario's strategy assigns to this vehicle, for the scenario's seed.
 pub fn mind_of(scenario: &Scenario, vehicle: VehicleId) -> Box<dyn Mind> {
-    Box::new(HelmMind::restarting(scenario, vehicle, roles::role_of(scenario, vehicle)))
+    Box::new(HelmMind::restarting(
+        scenario,
+        vehicle,
+        roles::role_of(scenario, vehicle),
+    ))
 }
 
 /// The mind that `strategy` assigns to this vehicle, whatever the scenario's own strategy.
 pub fn mind_by(scenario: &Scenario, vehicle: VehicleId, strategy: &Strategy) -> Box<dyn Mind> {
-    Box::new(HelmMind::restarting(scenario, vehicle, roles::role_in(scenario, vehicle, strategy)))
+    Box::new(HelmMind::restarting(
+        scenario,
+        vehicle,
+        roles::role_in(scenario, vehicle, strategy),
+    ))
 }
 
 /// The minds of all vehicles, in the scenario's order.
 pub fn minds_of(scenario: &Scenario) -> Vec<Box<dyn Mind>> {
-    (0..scenario.vehicles.len()).map(|i| mind_of(scenario, VehicleId::at(i))).collect()
+    (0..scenario.vehicles.len())
+        .map(|i| mind_of(scenario, VehicleId::at(i)))
+        .collect()
 }

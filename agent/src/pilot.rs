@@ -25,8 +25,8 @@ enum Control {
     Helm(Box<HelmMind>, Option<Teacher>),
 }
 
-/// Makes a helm play in place of the policy that imitates it: actions are ignored, and the helm's own
-/// serve as a demonstration.
+/// Makes a helm play in place of the policy that imitates it: actions are ignored, and the helm's
+/// own serve as a demonstration.
 struct Teacher {
     /// The option that each mode corresponds to, by mode index.
     options: Vec<Option<usize>>,
@@ -65,8 +65,16 @@ impl Pilot {
     }
 
     /// Actions are proposals to the helm of `program`, which has a behaviour of kind `policy`.
-    pub fn helm(scenario: &Scenario, vehicle: VehicleId, program: &Program, spaces: Spaces) -> Pilot {
-        Pilot::new(Control::Helm(Box::new(HelmMind::new(scenario, vehicle, program)), None), spaces)
+    pub fn helm(
+        scenario: &Scenario,
+        vehicle: VehicleId,
+        program: &Program,
+        spaces: Spaces,
+    ) -> Pilot {
+        Pilot::new(
+            Control::Helm(Box::new(HelmMind::new(scenario, vehicle, program)), None),
+            spaces,
+        )
     }
 
     /// The strategy's program for this boat plays. [`Pilot::taught`] returns the action that a
@@ -78,14 +86,29 @@ impl Pilot {
         options: &BTreeMap<String, usize>,
         spaces: Spaces,
     ) -> Pilot {
-        let options = (0..program.modes.len()).map(|mode| options.get(&program.path(mode)).copied()).collect();
-        let teacher = Some(Teacher { options, did: None, is_observed: false });
-        Pilot::new(Control::Helm(Box::new(HelmMind::new(scenario, vehicle, program)), teacher), spaces)
+        let options = (0..program.modes.len())
+            .map(|mode| options.get(&program.path(mode)).copied())
+            .collect();
+        let teacher = Some(Teacher {
+            options,
+            did: None,
+            is_observed: false,
+        });
+        Pilot::new(
+            Control::Helm(Box::new(HelmMind::new(scenario, vehicle, program)), teacher),
+            spaces,
+        )
     }
 
     fn new(control: Control, spaces: Spaces) -> Pilot {
         let observer = Observer::new(spaces.observation, control.situation());
-        Pilot { observer, control, actions: spaces.action, set_point: SetPoint::default(), policy: None }
+        Pilot {
+            observer,
+            control,
+            actions: spaces.action,
+            set_point: SetPoint::default(),
+            policy: None,
+        }
     }
 
     /// The same pilot, with decisions made by a model.
@@ -96,7 +119,13 @@ impl Pilot {
 
     /// Evaluates the model, if any, when its decision is due.
     fn ask_model(&mut self, picture: &Picture) {
-        let Some(policy) = self.policy.as_mut().filter(|policy| policy.is_due(picture.stamp.valid_ns)) else { return };
+        let Some(policy) = self
+            .policy
+            .as_mut()
+            .filter(|policy| policy.is_due(picture.stamp.valid_ns))
+        else {
+            return;
+        };
         self.control.preview(picture);
         policy.choose_if_due(self.control.situation());
         if let Ok(chosen) = policy.chosen {
@@ -151,8 +180,13 @@ impl Teacher {
     fn see(&mut self, helm: &HelmMind, order: Order, actions: ActionSpace) {
         if std::mem::take(&mut self.is_observed) {
             self.did = match actions {
-                ActionSpace::Options => helm.mode.and_then(|mode| self.options[mode]).map(Action::Discrete),
-                ActionSpace::Pyquaticus | ActionSpace::Continuous => steered(&helm.situation, order, actions),
+                ActionSpace::Options => helm
+                    .mode
+                    .and_then(|mode| self.options[mode])
+                    .map(Action::Discrete),
+                ActionSpace::Pyquaticus | ActionSpace::Continuous => {
+                    steered(&helm.situation, order, actions)
+                }
             };
         }
     }
@@ -161,9 +195,22 @@ impl Teacher {
 /// The action that comes nearest to an order.
 fn steered(situation: &Situation, order: Order, actions: ActionSpace) -> Option<Action> {
     // A teacher's hold is not among the policy's actions, so imitation skips such a decision.
-    let Order::Steer { heading_rad, speed_m_s } = order else { return None };
-    let asked = SetPoint { course_rad: heading_rad, speed_m_s };
-    actions.nearest(asked, situation.own.nav.psi_rad, situation.model.speed_max_m_s)
+    let Order::Steer {
+        heading_rad,
+        speed_m_s,
+    } = order
+    else {
+        return None;
+    };
+    let asked = SetPoint {
+        course_rad: heading_rad,
+        speed_m_s,
+    };
+    actions.nearest(
+        asked,
+        situation.own.nav.psi_rad,
+        situation.model.speed_max_m_s,
+    )
 }
 
 impl Control {
@@ -183,19 +230,30 @@ impl Control {
     }
 
     fn helm(&self) -> Option<&HelmMind> {
-        if let Control::Helm(helm, _) = self { Some(helm) } else { None }
+        if let Control::Helm(helm, _) = self {
+            Some(helm)
+        } else {
+            None
+        }
     }
 }
 
 impl Mind for Pilot {
     fn decide(&mut self, picture: &Picture) -> Order {
         self.ask_model(picture);
-        let SetPoint { course_rad, speed_m_s } = self.set_point;
+        let SetPoint {
+            course_rad,
+            speed_m_s,
+        } = self.set_point;
         let situation = match &mut self.control {
             Control::Direct(situation) => situation,
             Control::Helm(helm, None) => {
                 // Valid until the next action, however long the period.
-                helm.propose(Proposal { at: picture.stamp.valid_ns, course_rad, speed_m_s });
+                helm.propose(Proposal {
+                    at: picture.stamp.valid_ns,
+                    course_rad,
+                    speed_m_s,
+                });
                 return helm.decide(picture);
             }
             Control::Helm(helm, Some(teacher)) => {
@@ -208,11 +266,18 @@ impl Mind for Pilot {
             return Order::Hold;
         }
         if !situation.own.tagged {
-            return Order::Steer { heading_rad: course_rad, speed_m_s };
+            return Order::Steer {
+                heading_rad: course_rad,
+                speed_m_s,
+            };
         }
-        let home = situation.locate(&Place::Mark(Mark::UntagPlace)).map_or(situation.at, |point| point.at);
-        let (heading_rad, speed_m_s) =
-            situation.motion.steer(situation.at.bearing_rad(home), situation.model.speed_max_m_s);
+        let home = situation
+            .locate(&Place::Mark(Mark::UntagPlace))
+            .map_or(situation.at, |point| point.at);
+        let (heading_rad, speed_m_s) = situation.motion.steer(
+            situation.at.bearing_rad(home),
+            situation.model.speed_max_m_s,
+        );
         situation.motion.order(heading_rad, speed_m_s)
     }
 

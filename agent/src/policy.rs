@@ -51,7 +51,13 @@ pub(crate) enum Chosen {
 impl BoardPolicy {
     pub(crate) fn new(model: PolicyModel) -> BoardPolicy {
         let network = model.network();
-        BoardPolicy { model, network, observer: None, due: None, chosen: Ok(Chosen::SetPoint(SetPoint::default())) }
+        BoardPolicy {
+            model,
+            network,
+            observer: None,
+            due: None,
+            chosen: Ok(Chosen::SetPoint(SetPoint::default())),
+        }
     }
 
     pub(crate) fn is_due(&self, now: SimTime) -> bool {
@@ -68,14 +74,20 @@ impl BoardPolicy {
         // nothing.
         let next = self.due.map_or(situation.now, |due| due) + period;
         // After a long gap, missed decisions are not made up.
-        self.due = Some(if next > situation.now { next } else { situation.now + period });
+        self.due = Some(if next > situation.now {
+            next
+        } else {
+            situation.now + period
+        });
         self.chosen = self.choose(situation);
     }
 
     fn choose(&mut self, situation: &Situation) -> Result<Chosen, PolicyFault> {
         let spec = self.model.spec;
         // Created late, because the observation size depends on the teams in the situation.
-        let observer = self.observer.get_or_insert_with(|| Observer::new(spec.observation, situation));
+        let observer = self
+            .observer
+            .get_or_insert_with(|| Observer::new(spec.observation, situation));
         let observation = observer.observe(situation);
         if observation.len() != self.model.input_size() {
             let expected = self.model.input_size();
@@ -98,7 +110,9 @@ impl BoardPolicy {
 
     /// The last observation.
     pub(crate) fn observed(&self) -> &[f32] {
-        self.observer.as_ref().map_or(&[], |observer| &observer.frames)
+        self.observer
+            .as_ref()
+            .map_or(&[], |observer| &observer.frames)
     }
 }
 
@@ -127,6 +141,8 @@ fn action_of(model: &PolicyModel, output: &[f32]) -> Result<Action, PolicyFault>
         // The index of the action.
         (Some(count), [index]) if count > 1 => Action::Discrete(*index as usize),
         (Some(_), logits) => Action::likeliest(logits),
-        (None, numbers) => Action::Continuous([0, 1].map(|i| numbers.get(i).copied().unwrap_or_default())),
+        (None, numbers) => {
+            Action::Continuous([0, 1].map(|i| numbers.get(i).copied().unwrap_or_default()))
+        }
     })
 }

@@ -12,7 +12,9 @@ use scenario::strategy::{Assignment, Program, Strategy};
 /// Every mind of a team computes the same result on its own.
 pub fn role_of(scenario: &Scenario, vehicle: VehicleId) -> &Program {
     let me = &scenario.vehicles[vehicle.index()];
-    dealt(scenario, vehicle, scenario.strategy_of(vehicle), |i| scenario.vehicles[i].strategy == me.strategy)
+    dealt(scenario, vehicle, scenario.strategy_of(vehicle), |i| {
+        scenario.vehicles[i].strategy == me.strategy
+    })
 }
 
 /// The role that `strategy` gives a vehicle that has another strategy in the scenario, as if its
@@ -28,14 +30,21 @@ fn dealt<'a>(
     follows: impl Fn(usize) -> bool,
 ) -> &'a Program {
     let team = scenario.team_of(vehicle);
-    let boats: Vec<usize> =
-        (0..scenario.vehicles.len()).filter(|i| scenario.vehicles[*i].team == team && follows(*i)).collect();
-    let mut roles: Vec<usize> = (0..strategy.roles.len()).cycle().take(boats.len()).collect();
+    let boats: Vec<usize> = (0..scenario.vehicles.len())
+        .filter(|i| scenario.vehicles[*i].team == team && follows(*i))
+        .collect();
+    let mut roles: Vec<usize> = (0..strategy.roles.len())
+        .cycle()
+        .take(boats.len())
+        .collect();
     if strategy.assignment == Assignment::Seeded {
         let team = &scenario.teams[team.index()].name;
         // A stream per team name: a second team, or other draws, do not change this deal.
         Stream::new(scenario.seed, &format!("roles/{team}")).shuffle(&mut roles);
     }
-    let place = boats.iter().position(|i| *i == vehicle.index()).expect("the vehicle follows the strategy");
+    let place = boats
+        .iter()
+        .position(|i| *i == vehicle.index())
+        .expect("the vehicle follows the strategy");
     &strategy.roles[roles[place]]
 }

@@ -27,8 +27,16 @@ pub struct MindRunner<M: Mind + ?Sized = dyn Mind> {
 impl<M: Mind + ?Sized> MindRunner<M> {
     /// A runner of these minds before their first decision.
     pub fn new(minds: impl IntoIterator<Item = (VehicleId, Box<M>)>) -> MindRunner<M> {
-        let boat = |(vehicle, mind)| Boat { vehicle, order: Order::Hold, mind };
-        MindRunner { boats: minds.into_iter().map(boat).collect(), decided: None, sent: Vec::new() }
+        let boat = |(vehicle, mind)| Boat {
+            vehicle,
+            order: Order::Hold,
+            mind,
+        };
+        MindRunner {
+            boats: minds.into_iter().map(boat).collect(),
+            decided: None,
+            sent: Vec::new(),
+        }
     }
 
     /// The minds and their boats, in the order in which they decide.
@@ -38,41 +46,71 @@ impl<M: Mind + ?Sized> MindRunner<M> {
 
     /// The minds and their boats, in the order in which they decide.
     pub fn minds_mut(&mut self) -> impl Iterator<Item = (VehicleId, &mut M)> {
-        self.boats.iter_mut().map(|boat| (boat.vehicle, &mut *boat.mind))
+        self.boats
+            .iter_mut()
+            .map(|boat| (boat.vehicle, &mut *boat.mind))
     }
 
     /// The mind of a boat, if this process runs it.
     pub fn mind(&self, vehicle: VehicleId) -> Option<&M> {
-        self.boats.iter().find(|boat| boat.vehicle == vehicle).map(|boat| &*boat.mind)
+        self.boats
+            .iter()
+            .find(|boat| boat.vehicle == vehicle)
+            .map(|boat| &*boat.mind)
     }
 
     /// The mind of a boat, if this process runs it.
     pub fn mind_mut(&mut self, vehicle: VehicleId) -> Option<&mut M> {
-        self.boats.iter_mut().find(|boat| boat.vehicle == vehicle).map(|boat| &mut *boat.mind)
+        self.boats
+            .iter_mut()
+            .find(|boat| boat.vehicle == vehicle)
+            .map(|boat| &mut *boat.mind)
     }
 
     /// Delivers messages that mates in other processes sent after the previous decision. Minds
     /// ignore messages of the other team.
     pub fn receive(&mut self, messages: &[Word]) {
         if !messages.is_empty() {
-            self.boats.iter_mut().for_each(|boat| boat.mind.receive(messages));
+            self.boats
+                .iter_mut()
+                .for_each(|boat| boat.mind.receive(messages));
         }
     }
 
     /// Delivers a policy's proposal before the decision on the picture with this stamp.
     pub fn propose(&mut self, proposal: &PolicyProposal, stamp: Stamp) {
-        let PolicyProposal { vehicle, course_rad, speed_m_s, .. } = *proposal;
+        let PolicyProposal {
+            vehicle,
+            course_rad,
+            speed_m_s,
+            ..
+        } = *proposal;
         if let Some(mind) = self.mind_mut(vehicle) {
             // A proposal cannot know more than the newest picture.
-            mind.propose(Proposal { at: proposal.stamp.valid_ns.min(stamp.valid_ns), course_rad, speed_m_s });
+            mind.propose(Proposal {
+                at: proposal.stamp.valid_ns.min(stamp.valid_ns),
+                course_rad,
+                speed_m_s,
+            });
         }
     }
 
     /// Lets every mind decide on its boat's picture, which has this stamp; a boat without a picture
     /// holds. Mates in this process receive the resulting messages at the next decision.
-    pub fn decide<'p>(&mut self, stamp: Stamp, picture_of: impl Fn(VehicleId) -> Option<&'p Picture>) {
-        for Boat { vehicle, order, mind } in &mut self.boats {
-            *order = picture_of(*vehicle).map(|picture| mind.decide(picture)).unwrap_or_default();
+    pub fn decide<'p>(
+        &mut self,
+        stamp: Stamp,
+        picture_of: impl Fn(VehicleId) -> Option<&'p Picture>,
+    ) {
+        for Boat {
+            vehicle,
+            order,
+            mind,
+        } in &mut self.boats
+        {
+            *order = picture_of(*vehicle)
+                .map(|picture| mind.decide(picture))
+                .unwrap_or_default();
         }
         self.decided = Some(stamp);
         let mut sent = std::mem::take(&mut self.sent);
@@ -103,8 +141,18 @@ impl<M: Mind + ?Sized> MindRunner<M> {
     /// on every call. `None` before the first decision.
     pub fn answer(&self, ticket: u64) -> Option<Orders> {
         // With the picture's own time and number, by which the sim identifies the answered tick.
-        let stamp = Stamp { version: Orders::VERSION, ..self.decided? };
-        Some(Orders { stamp, ticket, orders: self.orders().map(|(v, order)| VehicleOrder::new(v, order)).collect() })
+        let stamp = Stamp {
+            version: Orders::VERSION,
+            ..self.decided?
+        };
+        Some(Orders {
+            stamp,
+            ticket,
+            orders: self
+                .orders()
+                .map(|(v, order)| VehicleOrder::new(v, order))
+                .collect(),
+        })
     }
 }
 
@@ -125,14 +173,26 @@ mod tests {
     impl Mind for Adder {
         fn decide(&mut self, _picture: &Picture) -> Order {
             self.decisions += 1.0;
-            let speed_m_s = self.received + self.proposed.map_or(0.0, |proposal| proposal.speed_m_s);
-            Order::Steer { heading_rad: 0.0, speed_m_s }
+            let speed_m_s =
+                self.received + self.proposed.map_or(0.0, |proposal| proposal.speed_m_s);
+            Order::Steer {
+                heading_rad: 0.0,
+                speed_m_s,
+            }
         }
         fn send(&self, messages: &mut Vec<Word>) {
-            messages.push(Word { vehicle: self.me, key: 1, value: self.decisions });
+            messages.push(Word {
+                vehicle: self.me,
+                key: 1,
+                value: self.decisions,
+            });
         }
         fn receive(&mut self, messages: &[Word]) {
-            self.received += messages.iter().filter(|word| word.vehicle != self.me).map(|word| word.value).sum::<f64>();
+            self.received += messages
+                .iter()
+                .filter(|word| word.vehicle != self.me)
+                .map(|word| word.value)
+                .sum::<f64>();
         }
         fn propose(&mut self, proposal: Proposal) {
             self.proposed = Some(proposal);
@@ -140,7 +200,13 @@ mod tests {
     }
 
     fn speeds(runner: &MindRunner<Adder>) -> Vec<f64> {
-        let speed = |(_, order)| if let Order::Steer { speed_m_s, .. } = order { speed_m_s } else { -1.0 };
+        let speed = |(_, order)| {
+            if let Order::Steer { speed_m_s, .. } = order {
+                speed_m_s
+            } else {
+                -1.0
+            }
+        };
         runner.orders().map(speed).collect()
     }
 
@@ -148,27 +214,84 @@ mod tests {
     fn what_is_sent_after_a_decision_is_known_at_the_next_one() {
         let adder = |i| {
             let me = VehicleId(i);
-            (me, Box::new(Adder { me, decisions: 0.0, received: 0.0, proposed: None }))
+            (
+                me,
+                Box::new(Adder {
+                    me,
+                    decisions: 0.0,
+                    received: 0.0,
+                    proposed: None,
+                }),
+            )
         };
         let mut runner = MindRunner::new([adder(0), adder(4)]);
         assert!(runner.answer(7).is_none() && runner.decided().is_none());
         let picture = Picture::default();
-        let stamp = |seq| Stamp { seq, valid_ns: SimTime(10 * seq as i64), ..Stamp::default() };
+        let stamp = |seq| Stamp {
+            seq,
+            valid_ns: SimTime(10 * seq as i64),
+            ..Stamp::default()
+        };
         for (seq, want) in [(0, [0.0, 0.0]), (1, [1.0, 1.0]), (2, [3.0, 3.0])] {
             runner.decide(stamp(seq), |_| Some(&picture));
-            assert_eq!((speeds(&runner), runner.decided()), (want.to_vec(), Some(seq)));
+            assert_eq!(
+                (speeds(&runner), runner.decided()),
+                (want.to_vec(), Some(seq))
+            );
         }
-        runner.receive(&[Word { vehicle: VehicleId(9), key: 1, value: 100.0 }]);
-        let proposal = PolicyProposal { stamp: stamp(99), vehicle: VehicleId(4), course_rad: 0.0, speed_m_s: 0.5 };
+        runner.receive(&[Word {
+            vehicle: VehicleId(9),
+            key: 1,
+            value: 100.0,
+        }]);
+        let proposal = PolicyProposal {
+            stamp: stamp(99),
+            vehicle: VehicleId(4),
+            course_rad: 0.0,
+            speed_m_s: 0.5,
+        };
         runner.propose(&proposal, stamp(3));
-        runner.propose(&PolicyProposal { vehicle: VehicleId(5), ..proposal }, stamp(3));
-        runner.decide(stamp(3), |vehicle| (vehicle == VehicleId(4)).then_some(&picture));
-        assert_eq!(speeds(&runner), [-1.0, 106.5], "without a picture the boat holds");
-        let known_at = runner.mind(VehicleId(4)).and_then(|mind| mind.proposed).map(|proposal| proposal.at);
-        assert_eq!(known_at, Some(SimTime(30)), "no proposal is newer than the picture");
-        assert_eq!(runner.sent().iter().map(|word| word.value).collect::<Vec<_>>(), [3.0, 4.0]);
+        runner.propose(
+            &PolicyProposal {
+                vehicle: VehicleId(5),
+                ..proposal
+            },
+            stamp(3),
+        );
+        runner.decide(stamp(3), |vehicle| {
+            (vehicle == VehicleId(4)).then_some(&picture)
+        });
+        assert_eq!(
+            speeds(&runner),
+            [-1.0, 106.5],
+            "without a picture the boat holds"
+        );
+        let known_at = runner
+            .mind(VehicleId(4))
+            .and_then(|mind| mind.proposed)
+            .map(|proposal| proposal.at);
+        assert_eq!(
+            known_at,
+            Some(SimTime(30)),
+            "no proposal is newer than the picture"
+        );
+        assert_eq!(
+            runner
+                .sent()
+                .iter()
+                .map(|word| word.value)
+                .collect::<Vec<_>>(),
+            [3.0, 4.0]
+        );
         let answer = runner.answer(7).expect("the minds have decided");
-        assert_eq!((answer.ticket, answer.stamp.seq, answer.orders.len()), (7, 3, 2));
-        assert_eq!(runner.answer(7), Some(answer), "a second call returns the same");
+        assert_eq!(
+            (answer.ticket, answer.stamp.seq, answer.orders.len()),
+            (7, 3, 2)
+        );
+        assert_eq!(
+            runner.answer(7),
+            Some(answer),
+            "a second call returns the same"
+        );
     }
 }

@@ -16,7 +16,9 @@ use std::collections::BTreeSet;
 pub fn warnings(scenario: &Scenario) -> Vec<String> {
     let boats = (0..scenario.vehicles.len()).map(VehicleId::at);
     // Boats of one role have the same warning: listed once, in a fixed order.
-    let warnings: BTreeSet<String> = boats.flat_map(|vehicle| of_boat(scenario, vehicle)).collect();
+    let warnings: BTreeSet<String> = boats
+        .flat_map(|vehicle| of_boat(scenario, vehicle))
+        .collect();
     warnings.into_iter().collect()
 }
 
@@ -49,22 +51,37 @@ fn of_boat(scenario: &Scenario, vehicle: VehicleId) -> Vec<String> {
 }
 
 /// The points of a path if constant, whether it repeats, its speed and its capture radius.
-fn way<'a>(task: &'a Task, situation: &Situation) -> Option<(Vec<Ned>, bool, &'a Parameter, &'a Parameter)> {
+fn way<'a>(
+    task: &'a Task,
+    situation: &Situation,
+) -> Option<(Vec<Ned>, bool, &'a Parameter, &'a Parameter)> {
     match task {
         Task::Waypoint(task) => {
-            let points: Option<Vec<Ned>> = task.points.iter().map(|place| fixed(place, situation)).collect();
+            let points: Option<Vec<Ned>> = task
+                .points
+                .iter()
+                .map(|place| fixed(place, situation))
+                .collect();
             let mut points = points?;
             if task.reverse {
                 points.reverse();
             }
-            Some((points, task.repeat.constant() != Some(0.0), &task.speed_m_s, &task.capture_radius_m))
+            Some((
+                points,
+                task.repeat.constant() != Some(0.0),
+                &task.speed_m_s,
+                &task.capture_radius_m,
+            ))
         }
         Task::Loiter(task) => {
             let places = match &task.shape {
                 Shape::Corners(places) => &places[..],
                 Shape::Ellipse(ellipse) => std::slice::from_ref(&ellipse.centre),
             };
-            places.iter().all(|place| fixed(place, situation).is_some()).then_some(())?;
+            places
+                .iter()
+                .all(|place| fixed(place, situation).is_some())
+                .then_some(())?;
             let mut corners = Vec::new();
             corners_of(&task.shape, situation, &mut corners);
             Some((corners, true, &task.speed_m_s, &task.capture_radius_m))
@@ -75,8 +92,13 @@ fn way<'a>(task: &'a Task, situation: &Situation) -> Option<(Vec<Ned>, bool, &'a
 
 /// The position of a place, if it is constant throughout the game.
 fn fixed(place: &Place, situation: &Situation) -> Option<Ned> {
-    let stays = matches!(place, Place::At(_) | Place::Point(_) | Place::Mark(Mark::OwnFlag));
-    stays.then(|| situation.locate(place))?.map(|point| point.at)
+    let stays = matches!(
+        place,
+        Place::At(_) | Place::Point(_) | Place::Mark(Mark::OwnFlag)
+    );
+    stays
+        .then(|| situation.locate(place))?
+        .map(|point| point.at)
 }
 
 /// Indices of the points within the turning circle of a boat that reaches the previous point
@@ -98,7 +120,13 @@ fn beyond_reach(points: &[Ned], again: bool, circle_m: f64, capture_m: f64) -> V
         let to_centre_m = primitives::math::length(ahead_m, circle_m - aside_m);
         circle_m - to_centre_m > capture_m
     };
-    if count < 3 { Vec::new() } else { (if again { 0 } else { 2 }..count).filter(is_missed).collect() }
+    if count < 3 {
+        Vec::new()
+    } else {
+        (if again { 0 } else { 2 }..count)
+            .filter(is_missed)
+            .collect()
+    }
 }
 
 #[cfg(test)]
@@ -109,7 +137,16 @@ mod tests {
     #[test]
     fn a_point_within_the_circle_is_beyond_reach() {
         // North for 20 m, then to a point 8 m abeam: the centre of a circle of radius 8 m.
-        let to = |north: f64, east: f64| [Ned { north: -20.0, east: 0.0 }, Ned::default(), Ned { north, east }];
+        let to = |north: f64, east: f64| {
+            [
+                Ned {
+                    north: -20.0,
+                    east: 0.0,
+                },
+                Ned::default(),
+                Ned { north, east },
+            ]
+        };
         for (what, points, circle_m, capture_m, want) in [
             ("at its centre", to(0.0, 8.0), 8.0, 3.0, vec![2]),
             ("at its centre, to port", to(0.0, -8.0), 8.0, 3.0, vec![2]),
@@ -119,10 +156,15 @@ mod tests {
             ("straight on", to(20.0, 0.0), 8.0, 0.1, vec![]),
             ("straight back", to(-20.0, 0.0), 8.0, 0.1, vec![]),
         ] {
-            assert_eq!(beyond_reach(&points, false, circle_m, capture_m), want, "{what}");
+            assert_eq!(
+                beyond_reach(&points, false, circle_m, capture_m),
+                want,
+                "{what}"
+            );
         }
         // On a repeated small square every corner is out of reach.
-        let square = [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)].map(|(north, east)| Ned { north, east });
+        let square = [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)]
+            .map(|(north, east)| Ned { north, east });
         assert_eq!(beyond_reach(&square, true, 10.0, 1.0), [0, 1, 2, 3]);
         assert_eq!(beyond_reach(&square, false, 10.0, 1.0), [2, 3]);
         assert_eq!(beyond_reach(&square[..2], true, 10.0, 1.0), [0_usize; 0]);

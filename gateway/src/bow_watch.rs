@@ -17,7 +17,11 @@ pub(crate) struct BowWatch {
 impl BowWatch {
     /// The box for a boat of this length.
     pub(crate) fn new(rules: Halt, length_m: f64) -> BowWatch {
-        BowWatch { rules, half_length_m: 0.5 * length_m, blocked_at: SimTime::LONG_AGO }
+        BowWatch {
+            rules,
+            half_length_m: 0.5 * length_m,
+            blocked_at: SimTime::LONG_AGO,
+        }
     }
 
     /// Whether another boat is in the box, or was within the last `clear_s`.
@@ -34,7 +38,8 @@ impl BowWatch {
         let ahead_m = (self.rules.ahead_m * 0.5 * nav.surge_m_s).max(2.0 * self.half_length_m);
         let is_in = |other: &Ned| {
             let seen = body_from_ned(rotation, *other - nav.at());
-            (-self.half_length_m..=ahead_m).contains(&seen.ahead) && seen.starboard.abs() <= 0.5 * self.rules.width_m
+            (-self.half_length_m..=ahead_m).contains(&seen.ahead)
+                && seen.starboard.abs() <= 0.5 * self.rules.width_m
         };
         if others.iter().any(is_in) {
             self.blocked_at = now;
@@ -55,7 +60,11 @@ mod tests {
 
     #[test]
     fn the_box_about_the_bow_grows_with_speed_and_stays_shut_for_a_moment() {
-        let rules = Halt { ahead_m: 7.0, width_m: 3.0, clear_s: 1.0 };
+        let rules = Halt {
+            ahead_m: 7.0,
+            width_m: 3.0,
+            clear_s: 1.0,
+        };
         for (x_ahead, y_port, speed_m_s, blocked) in [
             (6.9, 0.0, 2.0, true),
             (7.1, 0.0, 2.0, false),
@@ -68,17 +77,33 @@ mod tests {
             let mut bow = BowWatch::new(rules, 1.8);
             let other = [Ned::from_xy(10.0 + x_ahead, 20.0 + y_port)];
             let psi_rad = 90_f64.to_radians();
-            let nav = Nav { north_m: 20.0, east_m: 10.0, psi_rad, surge_m_s: speed_m_s, ..Nav::default() };
+            let nav = Nav {
+                north_m: 20.0,
+                east_m: 10.0,
+                psi_rad,
+                surge_m_s: speed_m_s,
+                ..Nav::default()
+            };
             assert_eq!(
                 bow.is_blocked(at(0.0), &nav, &other),
                 blocked,
                 "{x_ahead} ahead, {y_port} to port at {speed_m_s} m/s"
             );
-            assert_eq!(bow.is_blocked(at(0.9), &nav, &[]), blocked, "not clear for long enough");
+            assert_eq!(
+                bow.is_blocked(at(0.9), &nav, &[]),
+                blocked,
+                "not clear for long enough"
+            );
             assert!(!bow.is_blocked(at(1.1), &nav, &[]));
         }
-        let none = Halt { ahead_m: 0.0, ..rules };
-        let nav = Nav { surge_m_s: 2.0, ..Nav::default() };
+        let none = Halt {
+            ahead_m: 0.0,
+            ..rules
+        };
+        let nav = Nav {
+            surge_m_s: 2.0,
+            ..Nav::default()
+        };
         assert!(!BowWatch::new(none, 1.8).is_blocked(at(0.0), &nav, &[Ned::default()]));
     }
 }

@@ -76,7 +76,9 @@ pub(crate) struct CompassCheck {
 impl CompassCheck {
     /// Adds the compass heading, rad, the velocity over the ground and the ordered speed ahead.
     pub(crate) fn observe(&mut self, now: SimTime, psi_rad: f64, velocity: Ned, ordered_m_s: f64) {
-        let gap_s = self.began.map_or(f64::INFINITY, |(_, last)| (now - last).as_s());
+        let gap_s = self
+            .began
+            .map_or(f64::INFINITY, |(_, last)| (now - last).as_s());
         // The sums of a piece assume steady flow: across a gap the boat may have turned.
         if gap_s > GAP_MAX_S {
             self.interrupt();
@@ -115,8 +117,10 @@ impl CompassCheck {
             return;
         }
         let first_rad = angle_rad(self.pieces[0].ahead);
-        let is_straight =
-            self.pieces.iter().all(|piece| wrap_pi(angle_rad(piece.ahead) - first_rad).abs() < STRAIGHT_RAD);
+        let is_straight = self
+            .pieces
+            .iter()
+            .all(|piece| wrap_pi(angle_rad(piece.ahead) - first_rad).abs() < STRAIGHT_RAD);
         // After a turn the boat still slides: the first 1.5 s would show as leeway that turns with
         // the heading, like an offset.
         let settled = self.pieces.iter().skip(1);
@@ -125,7 +129,11 @@ impl CompassCheck {
             (ordered, velocity) = (ordered + piece.ordered, velocity + piece.velocity);
             count + piece.count
         });
-        let run = Run { at: now, ordered: ordered.scaled(1.0 / count), velocity: velocity.scaled(1.0 / count) };
+        let run = Run {
+            at: now,
+            ordered: ordered.scaled(1.0 / count),
+            velocity: velocity.scaled(1.0 / count),
+        };
         if is_straight && run.ordered.length() >= SPEED_FROM_M_S {
             // The last piece of this run is the first of the next.
             // A piece in two runs would count twice; the last piece only serves as the lead-in
@@ -133,7 +141,12 @@ impl CompassCheck {
             self.pieces.drain(..PIECES - 1);
             self.runs.push_back(run);
         }
-        while self.runs.len() > RUNS_MAX || self.runs.front().is_some_and(|run| (now - run.at).as_s() > RUN_AGE_MAX_S) {
+        while self.runs.len() > RUNS_MAX
+            || self
+                .runs
+                .front()
+                .is_some_and(|run| (now - run.at).as_s() > RUN_AGE_MAX_S)
+        {
             self.runs.pop_front();
         }
     }
@@ -145,8 +158,12 @@ impl CompassCheck {
             return None;
         }
         let count = self.runs.len() as f64;
-        let mean =
-            |of: fn(&Run) -> Ned| self.runs.iter().fold(Ned::default(), |sum, run| sum + of(run)).scaled(1.0 / count);
+        let mean = |of: fn(&Run) -> Ned| {
+            self.runs
+                .iter()
+                .fold(Ned::default(), |sum, run| sum + of(run))
+                .scaled(1.0 / count)
+        };
         let heading = mean(|run| run.ordered.scaled(1.0 / run.ordered.length()));
         // On one heading an offset and a cross current are the same. A plain limit for the angle
         // between heading and course either misses 30 degrees or fails in a current.
@@ -172,10 +189,13 @@ impl CompassCheck {
             left.dot(left)
         });
         // Of two components each, four numbers were fitted.
-        let scatter_m_s = (rest.sum::<f64>() / (2.0 * count - 4.0)).sqrt().max(SCATTER_MIN_M_S);
+        let scatter_m_s = (rest.sum::<f64>() / (2.0 * count - 4.0))
+            .sqrt()
+            .max(SCATTER_MIN_M_S);
         // To first order the error of the angle of k is its error across, over its length.
         let sigma_rad = scatter_m_s / (spread.sqrt() * share.length());
-        (share.length() >= SHARE_MIN && sigma_rad.is_finite()).then(|| (angle_rad(share), sigma_rad))
+        (share.length() >= SHARE_MIN && sigma_rad.is_finite())
+            .then(|| (angle_rad(share), sigma_rad))
     }
 
     /// The compass offset, rad, if it is a fault.
@@ -194,12 +214,21 @@ fn angle_rad(vector: Ned) -> f64 {
 
 /// The product of two complex numbers, north real and east imaginary.
 fn times(a: Ned, b: Ned) -> Ned {
-    Ned { north: a.north * b.north - a.east * b.east, east: a.north * b.east + a.east * b.north }
+    Ned {
+        north: a.north * b.north - a.east * b.east,
+        east: a.north * b.east + a.east * b.north,
+    }
 }
 
 /// The product of the first and the conjugate of the second.
 fn over(a: Ned, b: Ned) -> Ned {
-    times(a, Ned { north: b.north, east: -b.east })
+    times(
+        a,
+        Ned {
+            north: b.north,
+            east: -b.east,
+        },
+    )
 }
 
 #[cfg(test)]
@@ -221,24 +250,46 @@ mod tests {
 
     #[test]
     fn a_compass_that_is_off_is_found_on_several_headings_whatever_the_current() {
-        for current in [Ned::default(), Ned { north: 0.8, east: -0.4 }] {
+        for current in [
+            Ned::default(),
+            Ned {
+                north: 0.8,
+                east: -0.4,
+            },
+        ] {
             for off_deg in [30.0, -30.0, 150.0] {
                 for share in [0.7, 1.1] {
-                    let off_rad = sailed(&[10.0, 100.0, 190.0], off_deg, share, current).fault_rad();
+                    let off_rad =
+                        sailed(&[10.0, 100.0, 190.0], off_deg, share, current).fault_rad();
                     assert!(
                         off_rad.is_some_and(|rad| (rad.to_degrees() - off_deg).abs() < 0.1),
                         "{off_deg} {off_rad:?}"
                     );
                 }
             }
-            assert_eq!(sailed(&[10.0, 100.0, 250.0], 5.0, 1.0, current).fault_rad(), None, "that is its deviation");
+            assert_eq!(
+                sailed(&[10.0, 100.0, 250.0], 5.0, 1.0, current).fault_rad(),
+                None,
+                "that is its deviation"
+            );
         }
     }
 
     #[test]
     fn a_current_across_is_no_fault_of_the_compass() {
-        let across = Ned { north: 0.0, east: 0.9 };
-        assert_eq!(sailed(&[0.0], 0.0, 1.0, across).fault_rad(), None, "on one heading");
-        assert_eq!(sailed(&[0.0, 90.0, 180.0], 0.0, 1.0, across).fault_rad(), None, "on several");
+        let across = Ned {
+            north: 0.0,
+            east: 0.9,
+        };
+        assert_eq!(
+            sailed(&[0.0], 0.0, 1.0, across).fault_rad(),
+            None,
+            "on one heading"
+        );
+        assert_eq!(
+            sailed(&[0.0, 90.0, 180.0], 0.0, 1.0, across).fault_rad(),
+            None,
+            "on several"
+        );
     }
 }

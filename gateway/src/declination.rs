@@ -28,7 +28,8 @@ pub enum DeclinationError {
     Position(LatLon),
 }
 
-/// Degrees from true to magnetic north at the ellipsoid's surface, east positive: true = magnetic + declination.
+/// Degrees from true to magnetic north at the ellipsoid's surface, east positive: true = magnetic +
+/// declination.
 ///
 /// # Errors
 /// [`DeclinationError`] for a date before 2025 or after 2029, or a position off the globe.
@@ -67,10 +68,16 @@ mod tests {
         for line in include_str!("declination.csv").lines().skip(1) {
             let cells: Vec<&str> = line.split(',').collect();
             let number = |i: usize| cells[i].parse::<f64>().unwrap();
-            let day: Vec<u16> = cells[2].split('-').map(|part| part.parse().unwrap()).collect();
+            let day: Vec<u16> = cells[2]
+                .split('-')
+                .map(|part| part.parse().unwrap())
+                .collect();
             let date = on(day[0], day[1] as u8, day[2] as u8);
             let got_deg = declination_deg(at(number(0), number(1)), date).unwrap();
-            assert!((got_deg - number(3)).abs() <= number(4), "{line}: {got_deg}");
+            assert!(
+                (got_deg - number(3)).abs() <= number(4),
+                "{line}: {got_deg}"
+            );
         }
     }
 
@@ -94,12 +101,21 @@ mod tests {
 
     #[test]
     fn a_position_off_the_globe_is_refused() {
-        for (lat_deg, lon_deg) in [(90.1, 0.0), (0.0, 180.1), (f64::NAN, 0.0), (0.0, f64::INFINITY)] {
+        for (lat_deg, lon_deg) in [
+            (90.1, 0.0),
+            (0.0, 180.1),
+            (f64::NAN, 0.0),
+            (0.0, f64::INFINITY),
+        ] {
             let error = declination_deg(at(lat_deg, lon_deg), on(2026, 1, 1)).unwrap_err();
             assert!(error.to_string().contains("is not on the globe"), "{error}");
         }
         for pole_deg in [-90.0, 90.0] {
-            assert!(declination_deg(at(pole_deg, 0.0), on(2026, 1, 1)).unwrap().is_finite());
+            assert!(
+                declination_deg(at(pole_deg, 0.0), on(2026, 1, 1))
+                    .unwrap()
+                    .is_finite()
+            );
         }
     }
 }

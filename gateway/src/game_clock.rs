@@ -40,7 +40,10 @@ pub(crate) enum OrderTime {
 impl GameClock {
     /// A clock without a game yet, which accepts stamps ahead of it by at most this much.
     pub(crate) fn new(ahead_max: SimTime) -> GameClock {
-        GameClock { ahead_max, joined: None }
+        GameClock {
+            ahead_max,
+            joined: None,
+        }
     }
 
     /// Notes that the boat, which asked at our own time `asked`, has joined a game whose time was
@@ -49,14 +52,20 @@ impl GameClock {
         // The answer was created after the request, so the game cannot be further ahead of our
         // clock than this. The answer's travel time is unknown, and only makes the bound safer.
         let most = SimTime(since.0.saturating_sub(asked.0));
-        self.joined = Some(Joined { since, most, seen: None });
+        self.joined = Some(Joined {
+            since,
+            most,
+            seen: None,
+        });
     }
 
     /// Checks the time of an order that arrived at `now`.
     pub(crate) fn check(&mut self, now: SimTime, order: &ExternalOrder) -> OrderTime {
         let stamp = order.stamp.valid_ns;
         let given = order.given_ns;
-        let Some(joined) = &mut self.joined else { return OrderTime::BeforeJoining };
+        let Some(joined) = &mut self.joined else {
+            return OrderTime::BeforeJoining;
+        };
         if stamp < joined.since {
             return OrderTime::BeforeJoining;
         }
@@ -65,7 +74,10 @@ impl GameClock {
         let known = joined.seen.unwrap_or(joined.most);
         // An order far in the future would count as newer than all later real ones, and silence the
         // sim until then.
-        if given > stamp || stamp >= SimTime::NEVER || difference.0.saturating_sub(known.0) > self.ahead_max.0 {
+        if given > stamp
+            || stamp >= SimTime::NEVER
+            || difference.0.saturating_sub(known.0) > self.ahead_max.0
+        {
             return OrderTime::Ahead;
         }
         // Only the largest difference is kept: a game that pauses or slows down falls behind our
@@ -82,9 +94,16 @@ mod tests {
     use primitives::VehicleId;
 
     fn order(stamp_s: f64, given_s: f64) -> ExternalOrder {
-        let stamp = Stamp { valid_ns: SimTime::from_s(stamp_s), ..Stamp::default() };
+        let stamp = Stamp {
+            valid_ns: SimTime::from_s(stamp_s),
+            ..Stamp::default()
+        };
         let order = VehicleOrder::new(VehicleId(0), Order::Hold);
-        ExternalOrder { stamp, given_ns: SimTime::from_s(given_s), order }
+        ExternalOrder {
+            stamp,
+            given_ns: SimTime::from_s(given_s),
+            order,
+        }
     }
 
     fn joined(asked_s: f64, since_s: f64) -> GameClock {
@@ -102,31 +121,64 @@ mod tests {
         let mut clock = joined(99.9, 7.0);
         let mut take = |now_s, stamp_s, given_s| check(&mut clock, now_s, stamp_s, given_s);
         for far_s in [8.2, 100.0, 1e9, 9e9, f64::MAX] {
-            assert_eq!(take(100.0, far_s, 6.9), OrderTime::Ahead, "the first, at {far_s}");
+            assert_eq!(
+                take(100.0, far_s, 6.9),
+                OrderTime::Ahead,
+                "the first, at {far_s}"
+            );
         }
         assert_eq!(take(100.0, 7.0, 6.9), OrderTime::Plausible);
         for far_s in [8.2, 100.0, 1e9, 9e9, f64::MAX] {
             assert_eq!(take(100.1, far_s, 6.9), OrderTime::Ahead, "{far_s}");
         }
-        assert_eq!(take(100.1, 7.1, 7.2), OrderTime::Ahead, "it answers a picture that there is not yet");
+        assert_eq!(
+            take(100.1, 7.1, 7.2),
+            OrderTime::Ahead,
+            "it answers a picture that there is not yet"
+        );
         // Late orders, punctual ones after them, a pause of the game, and its continuation.
-        for (now_s, stamp_s) in [(100.1, 7.1), (103.0, 7.2), (103.1, 10.1), (200.0, 10.2), (200.1, 10.3)] {
-            assert_eq!(take(now_s, stamp_s, stamp_s - 0.1), OrderTime::Plausible, "{now_s} {stamp_s}");
+        for (now_s, stamp_s) in [
+            (100.1, 7.1),
+            (103.0, 7.2),
+            (103.1, 10.1),
+            (200.0, 10.2),
+            (200.1, 10.3),
+        ] {
+            assert_eq!(
+                take(now_s, stamp_s, stamp_s - 0.1),
+                OrderTime::Plausible,
+                "{now_s} {stamp_s}"
+            );
         }
     }
 
     #[test]
     fn what_was_ordered_before_the_boat_joined_is_not_for_it() {
         let mut clock = GameClock::new(SimTime::from_s(1.0));
-        assert_eq!(check(&mut clock, 100.0, 7.0, 6.9), OrderTime::BeforeJoining, "nobody has let it in");
+        assert_eq!(
+            check(&mut clock, 100.0, 7.0, 6.9),
+            OrderTime::BeforeJoining,
+            "nobody has let it in"
+        );
         clock = joined(100.0, 7.0);
         for before_s in [6.99, 0.0, -1e300] {
-            assert_eq!(check(&mut clock, 100.1, before_s, -1e300), OrderTime::BeforeJoining, "{before_s}");
+            assert_eq!(
+                check(&mut clock, 100.1, before_s, -1e300),
+                OrderTime::BeforeJoining,
+                "{before_s}"
+            );
         }
         assert_eq!(check(&mut clock, 100.1, 7.0, 6.0), OrderTime::Plausible);
         clock.join(SimTime::from_s(200.0), SimTime::from_s(1000.0));
-        assert_eq!(check(&mut clock, 200.2, 7.1, 7.0), OrderTime::BeforeJoining, "of another game");
-        assert_eq!(check(&mut clock, 200.2, 1000.1, 1000.0), OrderTime::Plausible);
+        assert_eq!(
+            check(&mut clock, 200.2, 7.1, 7.0),
+            OrderTime::BeforeJoining,
+            "of another game"
+        );
+        assert_eq!(
+            check(&mut clock, 200.2, 1000.1, 1000.0),
+            OrderTime::Plausible
+        );
     }
 
     #[test]

@@ -1,12 +1,14 @@
 //! A field laid on the globe: metres north and east of a datum, and back to latitude and longitude.
 //!
-//! Distance and azimuth are those of the geodesic from the datum on the WGS 84 ellipsoid (Karney 2013, by
-//! geographiclib): the azimuthal equidistant map. Everything on one bearing from the datum is on one line, at its
-//! true distance.
+//! Distance and azimuth are those of the geodesic from the datum on the WGS 84 ellipsoid (Karney
+//! 2013, by geographiclib): the azimuthal equidistant map. Everything on one bearing from the datum
+//! is on one line, at its true distance.
 //!
-//! - A plane that touches the ellipsoid at the datum (ENU) is `s^3 / 6 R^2` shorter: 4 um at 1 km, 4 mm at 10 km.
-//! - MOOS's `LatLong2LocalGrid` uses a sphere with the ellipsoid's radius at that latitude, and is not this map:
-//!   200 m from a datum at 42 degrees north it is 0.4 m off. Boats that share a field must share the map.
+//! - A plane that touches the ellipsoid at the datum (ENU) is `s^3 / 6 R^2` shorter: 4 um at 1 km,
+//!   4 mm at 10 km.
+//! - MOOS's `LatLong2LocalGrid` uses a sphere with the ellipsoid's radius at that latitude, and is
+//!   not this map: 200 m from a datum at 42 degrees north it is 0.4 m off. Boats that share a field
+//!   must share the map.
 
 use geographiclib_rs::{DirectGeodesic, Geodesic, InverseGeodesic};
 use primitives::{LatLon, Ned, math};
@@ -23,7 +25,10 @@ impl LocalFrame {
     pub fn new(datum: LatLon) -> LocalFrame {
         // By geographiclib and not by a tangent plane of our own, which would do for a field
         // but be one more thing to test.
-        LocalFrame { datum, earth: Geodesic::wgs84() }
+        LocalFrame {
+            datum,
+            earth: Geodesic::wgs84(),
+        }
     }
 
     /// Metres from the datum; non-finite for a position off the globe.
@@ -31,14 +36,20 @@ impl LocalFrame {
         let LatLon { lat_deg, lon_deg } = at;
         let datum = self.datum;
         let (distance_m, azimuth_deg, _, _): (f64, f64, f64, f64) =
-            self.earth.inverse(datum.lat_deg, datum.lon_deg, lat_deg, lon_deg);
+            self.earth
+                .inverse(datum.lat_deg, datum.lon_deg, lat_deg, lon_deg);
         Ned::toward_deg(azimuth_deg).scaled(distance_m)
     }
 
     /// The position of a point of the field, longitude in -180 to 180.
     pub fn lat_lon(&self, at: Ned) -> LatLon {
         let azimuth_deg = math::atan2(at.east, at.north).to_degrees();
-        let (lat_deg, lon_deg) = self.earth.direct(self.datum.lat_deg, self.datum.lon_deg, azimuth_deg, at.length());
+        let (lat_deg, lon_deg) = self.earth.direct(
+            self.datum.lat_deg,
+            self.datum.lon_deg,
+            azimuth_deg,
+            at.length(),
+        );
         LatLon { lat_deg, lon_deg }
     }
 }
@@ -49,12 +60,16 @@ mod tests {
     use proptest::prelude::*;
 
     /// The pavilion from which MIT's missions are measured.
-    const PAVILION: LatLon = LatLon { lat_deg: 42.358436, lon_deg: -71.087448 };
+    const PAVILION: LatLon = LatLon {
+        lat_deg: 42.358436,
+        lon_deg: -71.087448,
+    };
 
     /// A tenth of the width of a hair.
     const HAIR_M: f64 = 1e-5;
 
-    /// A point in the plane that touches the ellipsoid at the datum, by way of earth-centred coordinates.
+    /// A point in the plane that touches the ellipsoid at the datum, by way of earth-centred
+    /// coordinates.
     fn tangent(datum: LatLon, at: LatLon) -> Ned {
         let equator_m = 6_378_137.0;
         let flattening = 1.0 / 298.257_223_563;
@@ -63,14 +78,21 @@ mod tests {
         let from_centre = |at: LatLon| {
             let ((sin_lat, cos_lat), (sin_lon, cos_lon)) = sin_cos(at);
             let normal_m = equator_m / (1.0 - e2 * sin_lat * sin_lat).sqrt();
-            [normal_m * cos_lat * cos_lon, normal_m * cos_lat * sin_lon, normal_m * (1.0 - e2) * sin_lat]
+            [
+                normal_m * cos_lat * cos_lon,
+                normal_m * cos_lat * sin_lon,
+                normal_m * (1.0 - e2) * sin_lat,
+            ]
         };
         let ((sin_lat, cos_lat), (sin_lon, cos_lon)) = sin_cos(datum);
         let there = from_centre(at);
         let here = from_centre(datum);
         let [x, y, z] = std::array::from_fn(|i| there[i] - here[i]);
         let north = -sin_lat * cos_lon * x - sin_lat * sin_lon * y + cos_lat * z;
-        Ned { north, east: -sin_lon * x + cos_lon * y }
+        Ned {
+            north,
+            east: -sin_lon * x + cos_lon * y,
+        }
     }
 
     /// `CMOOSGeodesy::LatLong2LocalGrid`, as boats with a MOOS back seat compute their position.
@@ -83,19 +105,38 @@ mod tests {
         let north = at.lat_deg - datum.lat_deg;
         let east = at.lon_deg - datum.lon_deg;
         let sin = |angle_deg: f64| math::sin_cos_deg(angle_deg).0;
-        Ned { north: radius_m * sin(north), east: radius_m * sin(east) * cos_lat }
+        Ned {
+            north: radius_m * sin(north),
+            east: radius_m * sin(east) * cos_lat,
+        }
     }
 
     #[test]
     fn a_point_195_m_north_east_agrees_with_enu_and_not_with_moos() {
-        let at = LatLon { lat_deg: 42.3597, lon_deg: -71.0858 };
+        let at = LatLon {
+            lat_deg: 42.3597,
+            lon_deg: -71.0858,
+        };
         let got = LocalFrame::new(PAVILION).ned(at);
-        let published = Ned { north: 140.407, east: 135.766 };
+        let published = Ned {
+            north: 140.407,
+            east: 135.766,
+        };
         assert!(got.distance(published) < 0.001, "{got:?}");
         assert!(got.distance(tangent(PAVILION, at)) < HAIR_M, "{got:?}");
         let by_moos = moos(PAVILION, at);
-        assert!(by_moos.distance(Ned { north: 140.493, east: 135.353 }) < 0.001, "{by_moos:?}");
-        assert!((got.distance(by_moos) - 0.42).abs() < 0.01, "{}", got.distance(by_moos));
+        assert!(
+            by_moos.distance(Ned {
+                north: 140.493,
+                east: 135.353
+            }) < 0.001,
+            "{by_moos:?}"
+        );
+        assert!(
+            (got.distance(by_moos) - 0.42).abs() < 0.01,
+            "{}",
+            got.distance(by_moos)
+        );
     }
 
     #[test]
@@ -106,7 +147,10 @@ mod tests {
                 let ned = Ned::toward_deg(bearing_deg).scaled(distance_m);
                 let plane = tangent(PAVILION, frame.lat_lon(ned));
                 let got_m = ned.length() - plane.length();
-                assert!((got_m - shorter_m).abs() < 0.1 * shorter_m, "{distance_m} m to {bearing_deg}: {got_m}");
+                assert!(
+                    (got_m - shorter_m).abs() < 0.1 * shorter_m,
+                    "{distance_m} m to {bearing_deg}: {got_m}"
+                );
             }
         }
     }
@@ -116,12 +160,24 @@ mod tests {
         let frame = LocalFrame::new(PAVILION);
         assert_eq!(frame.ned(PAVILION).length(), 0.0);
         let back = frame.lat_lon(Ned::default());
-        let apart_deg = (back.lat_deg - PAVILION.lat_deg).abs() + (back.lon_deg - PAVILION.lon_deg).abs();
+        let apart_deg =
+            (back.lat_deg - PAVILION.lat_deg).abs() + (back.lon_deg - PAVILION.lon_deg).abs();
         assert!(apart_deg < 1e-13, "{back:?}");
-        for (lat_deg, lon_deg) in [(f64::NAN, 0.0), (0.0, f64::NAN), (f64::INFINITY, 0.0), (0.0, f64::INFINITY)] {
-            assert!(!frame.ned(LatLon { lat_deg, lon_deg }).is_finite(), "{lat_deg}, {lon_deg}");
+        for (lat_deg, lon_deg) in [
+            (f64::NAN, 0.0),
+            (0.0, f64::NAN),
+            (f64::INFINITY, 0.0),
+            (0.0, f64::INFINITY),
+        ] {
+            assert!(
+                !frame.ned(LatLon { lat_deg, lon_deg }).is_finite(),
+                "{lat_deg}, {lon_deg}"
+            );
         }
-        let nowhere = frame.lat_lon(Ned { north: f64::NAN, east: 0.0 });
+        let nowhere = frame.lat_lon(Ned {
+            north: f64::NAN,
+            east: 0.0,
+        });
         assert!(!nowhere.lat_deg.is_finite(), "{nowhere:?}");
     }
 

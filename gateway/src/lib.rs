@@ -1,4 +1,5 @@
-//! The gateway to real boats: Surveyor NMEA both ways, links, a safety supervisor, and an emulated boat.
+//! The gateway to real boats: Surveyor NMEA both ways, links, a safety supervisor, and an emulated
+//! boat.
 //!
 //! Open [`supervisor`] first (when a boat may be driven), then [`bridge`] (how reports, orders and
 //! navigation meet), then [`protocol`] and [`nmea`]. `emulator` is the boat's end of the link, and

@@ -21,8 +21,8 @@ pub(crate) fn cell_volts(left: f64) -> f64 {
     math::interpolate(CELL_V, left)
 }
 
-/// The fraction of charge left in a cell of this voltage at rest, V; `None` if it cannot be that of a
-/// lithium cell. Under load it is too low.
+/// The fraction of charge left in a cell of this voltage at rest, V; `None` if it cannot be that of
+/// a lithium cell. Under load it is too low.
 pub(crate) fn charge_left(cell_v: f64) -> Option<f64> {
     let charge = math::interpolate(CELL_V.map(|(left, volts)| (volts, left)), cell_v);
     (2.5..=4.4).contains(&cell_v).then_some(charge)
@@ -37,8 +37,14 @@ mod tests {
         // Boats showed 24.8 V on seven cells with 15433 of 57741 left.
         assert!((charge_left(24.8 / 7.0).unwrap() - 15433.0 / 57741.0).abs() < 0.02);
         for left in [0.0, 0.07, 0.5, 0.95, 1.0] {
-            assert!((charge_left(cell_volts(left)).unwrap() - left).abs() < 1e-9, "{left}");
+            assert!(
+                (charge_left(cell_volts(left)).unwrap() - left).abs() < 1e-9,
+                "{left}"
+            );
         }
-        assert_eq!([2.0, 2.9, 4.3, 5.0].map(charge_left), [None, Some(0.0), Some(1.0), None]);
+        assert_eq!(
+            [2.0, 2.9, 4.3, 5.0].map(charge_left),
+            [None, Some(0.0), Some(1.0), None]
+        );
     }
 }

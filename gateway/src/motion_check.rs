@@ -45,20 +45,27 @@ pub(crate) struct MotionCheck {
 impl MotionCheck {
     /// Adds a position, with its reported velocity if any.
     pub(crate) fn take_fix(&mut self, now: SimTime, place: Ned, reported: Option<Ned>) {
-        while self.fixes.front().is_some_and(|(at, _)| (now - *at).as_s() > WINDOW_S) || self.fixes.len() >= FIXES_MAX {
+        while self
+            .fixes
+            .front()
+            .is_some_and(|(at, _)| (now - *at).as_s() > WINDOW_S)
+            || self.fixes.len() >= FIXES_MAX
+        {
             self.fixes.pop_front();
         }
         self.fixes.push_back((now, place));
         let measured = self.velocity_m_s();
-        let is_slow = reported
-            .zip(measured)
-            .is_some_and(|(reported, measured)| measured.length() - reported.length() > SPEED_GAP_M_S);
+        let is_slow = reported.zip(measured).is_some_and(|(reported, measured)| {
+            measured.length() - reported.length() > SPEED_GAP_M_S
+        });
         self.slow_since = is_slow.then(|| self.slow_since.unwrap_or(now));
         // A fix that steps has a course of its own, so the reported velocity takes precedence.
         self.take_course(
             now,
             reported.is_some(),
-            reported.or(measured).filter(|velocity| velocity.length() >= COURSE_FROM_M_S),
+            reported
+                .or(measured)
+                .filter(|velocity| velocity.length() >= COURSE_FROM_M_S),
         );
     }
 
@@ -66,9 +73,15 @@ impl MotionCheck {
         let course_rad = velocity.map(|velocity| math::atan2(velocity.east, velocity.north));
         // Between distant fixes a boat may have gone astern, and positions step where the reported
         // velocity does not.
-        let is_like = |at: SimTime, reported: bool| (now - at).as_s() <= COURSE_GAP_MAX_S && reported == is_reported;
-        let before = self.course.filter(|(at, reported, _)| is_like(*at, *reported));
-        if let (Some((_, turned_rad)), Some((.., before_rad)), Some(now_rad)) = (&mut self.shown, before, course_rad) {
+        let is_like = |at: SimTime, reported: bool| {
+            (now - at).as_s() <= COURSE_GAP_MAX_S && reported == is_reported
+        };
+        let before = self
+            .course
+            .filter(|(at, reported, _)| is_like(*at, *reported));
+        if let (Some((_, turned_rad)), Some((.., before_rad)), Some(now_rad)) =
+            (&mut self.shown, before, course_rad)
+        {
             // Summed with its sign: waves swing the course back and forth by more than 60 degrees
             // in total, whereas a turn leads away.
             *turned_rad += wrap_pi(now_rad - before_rad);
@@ -107,7 +120,8 @@ impl MotionCheck {
             let mut time_s = 0.0;
             let mut place = Ned::default();
             for (at, fix) in fixes {
-                (count, time_s, place) = (count + 1.0, time_s + (*at - *first).as_s(), place + *fix);
+                (count, time_s, place) =
+                    (count + 1.0, time_s + (*at - *first).as_s(), place + *fix);
             }
             (time_s / count, place.scaled(1.0 / count))
         };
@@ -118,11 +132,18 @@ impl MotionCheck {
 
     /// The present fault.
     pub(crate) fn fault(&self, now: SimTime) -> Option<NavFault> {
-        let turned = self.shown.map(|(_, turned_rad)| turned_rad.abs()).filter(|turned_rad| *turned_rad > TURN_MAX_RAD);
-        let is_slow = self.slow_since.is_some_and(|since| (now - since).as_s() > SPEED_GAP_S);
+        let turned = self
+            .shown
+            .map(|(_, turned_rad)| turned_rad.abs())
+            .filter(|turned_rad| *turned_rad > TURN_MAX_RAD);
+        let is_slow = self
+            .slow_since
+            .is_some_and(|since| (now - since).as_s() > SPEED_GAP_S);
         turned
             .map(|turned_rad| NavFault::CompassFrozen(turned_rad.to_degrees()))
-            .or_else(|| is_slow.then(|| NavFault::SpeedTooLow(self.velocity_m_s().map_or(0.0, Ned::length))))
+            .or_else(|| {
+                is_slow.then(|| NavFault::SpeedTooLow(self.velocity_m_s().map_or(0.0, Ned::length)))
+            })
     }
 }
 
@@ -153,24 +174,45 @@ mod tests {
 
     #[test]
     fn a_compass_that_shows_the_same_on_every_course_is_frozen() {
-        let is_frozen = |fault| matches!(fault, Some(NavFault::CompassFrozen(turned_deg)) if turned_deg < 64.0);
+        let is_frozen =
+            |fault| matches!(fault, Some(NavFault::CompassFrozen(turned_deg)) if turned_deg < 64.0);
         for turn_deg_s in [5.0, -5.0, 30.0] {
-            assert!(is_frozen(circle(2.6, turn_deg_s, |_| 90.0, Some)), "{turn_deg_s}");
+            assert!(
+                is_frozen(circle(2.6, turn_deg_s, |_| 90.0, Some)),
+                "{turn_deg_s}"
+            );
         }
         // A compass with a large offset that turns is not stuck, nor that of a boat that goes
         // straight or lies still.
-        assert_eq!(circle(2.6, 20.0, |course_deg| course_deg + 70.0, Some), None);
+        assert_eq!(
+            circle(2.6, 20.0, |course_deg| course_deg + 70.0, Some),
+            None
+        );
         assert_eq!(circle(2.6, 0.0, |_| 90.0, Some), None);
         assert_eq!(circle(0.3, 20.0, |_| 90.0, Some), None);
     }
 
     #[test]
     fn a_speed_that_is_less_than_that_of_the_positions_is_a_fault_and_one_that_is_more_is_none() {
-        let stuck = |speed_m_s, log: fn(Ned) -> Option<Ned>| circle(speed_m_s, 0.0, |course_deg| course_deg, log);
-        let Some(NavFault::SpeedTooLow(measured)) = stuck(2.0, |_| Some(Ned::default())) else { panic!("no fault") };
+        let stuck = |speed_m_s, log: fn(Ned) -> Option<Ned>| {
+            circle(speed_m_s, 0.0, |course_deg| course_deg, log)
+        };
+        let Some(NavFault::SpeedTooLow(measured)) = stuck(2.0, |_| Some(Ned::default())) else {
+            panic!("no fault")
+        };
         assert!((measured - 2.0).abs() < 0.01, "{measured}");
-        assert_eq!(stuck(2.0, |velocity| Some(velocity.scaled(0.5))), None, "within what fixes may step");
-        assert_eq!(stuck(0.0, |_| Some(Ned { north: 2.0, east: 0.0 })), None);
+        assert_eq!(
+            stuck(2.0, |velocity| Some(velocity.scaled(0.5))),
+            None,
+            "within what fixes may step"
+        );
+        assert_eq!(
+            stuck(0.0, |_| Some(Ned {
+                north: 2.0,
+                east: 0.0
+            })),
+            None
+        );
         assert_eq!(stuck(2.0, |_| None), None, "nothing is reported");
     }
 
@@ -182,7 +224,14 @@ mod tests {
             let ahead_m_s = if i < 50 { 1.0 } else { -1.0 };
             check.take_heading(0.5);
             if !(40..60).contains(&i) {
-                check.take_fix(now, Ned::default(), Some(Ned { north: ahead_m_s, east: 0.0 }));
+                check.take_fix(
+                    now,
+                    Ned::default(),
+                    Some(Ned {
+                        north: ahead_m_s,
+                        east: 0.0,
+                    }),
+                );
             }
             assert_eq!(check.fault(now), None, "at {now}");
         }

@@ -1,8 +1,8 @@
 //! The navigation estimate of a real boat, from its reports, with their faults.
 //!
-//! Position and velocity over the ground are those of the last good fix, heading and rate of turn those of the last
-//! attitude. Bad data is reported as a [`NavFault`], never covered up: a repeated or doubtful fix does not make the
-//! last one younger.
+//! Position and velocity over the ground are those of the last good fix, heading and rate of turn
+//! those of the last attitude. Bad data is reported as a [`NavFault`], never covered up: a repeated
+//! or doubtful fix does not make the last one younger.
 
 use crate::compass_check::CompassCheck;
 use crate::config::NavWatch;
@@ -61,7 +61,8 @@ pub(crate) struct NavEstimator {
 #[derive(Clone, Debug, Default)]
 struct Known {
     fix: Option<Fix>,
-    /// Velocity over the ground, and when it was reported; `None` if it was computed from positions.
+    /// Velocity over the ground, and when it was reported; `None` if it was computed from
+    /// positions.
     velocity: Option<(Option<SimTime>, Ned)>,
     /// Heading (true) and rate of turn.
     heading: Option<Heading>,
@@ -89,7 +90,13 @@ impl NavEstimator {
         compass_to_true_rad: f64,
         speed_max_m_s: f64,
     ) -> NavEstimator {
-        NavEstimator { frame, watch, compass_to_true_rad, speed_max_m_s, known: Known::default() }
+        NavEstimator {
+            frame,
+            watch,
+            compass_to_true_rad,
+            speed_max_m_s,
+            known: Known::default(),
+        }
     }
 
     /// A position on the field.
@@ -134,7 +141,14 @@ impl NavEstimator {
 
     /// The boat's motion, and the age of its fix, s; `None` before the first fix and heading.
     pub(crate) fn nav(&self, now: SimTime) -> Option<(Nav, f64)> {
-        let (fix, Heading { psi_rad, yaw_rate_rad_s, .. }) = (self.known.fix?, self.known.heading?);
+        let (
+            fix,
+            Heading {
+                psi_rad,
+                yaw_rate_rad_s,
+                ..
+            },
+        ) = (self.known.fix?, self.known.heading?);
         let velocity = self.velocity_m_s();
         let body: Body = body_from_ned(Rotation::from_heading(psi_rad), velocity);
         let nav = Nav {
@@ -150,7 +164,9 @@ impl NavEstimator {
 
     /// Velocity over the ground, m/s.
     pub(crate) fn velocity_m_s(&self) -> Ned {
-        self.known.velocity.map_or_else(Ned::default, |(_, velocity)| velocity)
+        self.known
+            .velocity
+            .map_or_else(Ned::default, |(_, velocity)| velocity)
     }
 
     /// Velocity over the ground, m/s, for stopping in time: the reported one, or that of the
@@ -158,27 +174,47 @@ impl NavEstimator {
     pub(crate) fn fastest_velocity_m_s(&self) -> Ned {
         let reported = self.velocity_m_s();
         let measured = self.known.motion.velocity_m_s().unwrap_or_default();
-        if measured.length() > reported.length() { measured } else { reported }
+        if measured.length() > reported.length() {
+            measured
+        } else {
+            reported
+        }
     }
 
     /// The present navigation fault.
     pub(crate) fn fault(&self, now: SimTime) -> Option<NavFault> {
-        let Some(fix) = &self.known.fix else { return Some(self.known.doubt.unwrap_or(NavFault::NoFix)) };
-        let Some(heading) = self.known.heading else { return Some(NavFault::NoHeading) };
+        let Some(fix) = &self.known.fix else {
+            return Some(self.known.doubt.unwrap_or(NavFault::NoFix));
+        };
+        let Some(heading) = self.known.heading else {
+            return Some(NavFault::NoHeading);
+        };
         let fix_age_s = (now - fix.at).as_s();
         let heading_age_s = (now - heading.at).as_s();
-        let jump = self.known.jumped.filter(|(at, _)| (now - *at).as_s() < JUMP_MEMORY_S);
-        let still_s = self.known.still_since.map_or(0.0, |since| (now - since).as_s());
+        let jump = self
+            .known
+            .jumped
+            .filter(|(at, _)| (now - *at).as_s() < JUMP_MEMORY_S);
+        let still_s = self
+            .known
+            .still_since
+            .map_or(0.0, |since| (now - since).as_s());
         self.known
             .doubt
             // In this order, because an operator sees one cause: first the receiver's own report,
             // then old data, then contradictions.
             .or(jump.map(|(_, by_m)| NavFault::Jump(by_m)))
             .or((fix_age_s > self.watch.age_max_s).then_some(NavFault::FixStale(fix_age_s)))
-            .or((heading_age_s > self.watch.age_max_s).then_some(NavFault::HeadingStale(heading_age_s)))
+            .or((heading_age_s > self.watch.age_max_s)
+                .then_some(NavFault::HeadingStale(heading_age_s)))
             .or((still_s > self.watch.frozen_s).then_some(NavFault::Frozen(still_s)))
             .or_else(|| self.known.motion.fault(now))
-            .or_else(|| self.known.compass.fault_rad().map(|off_rad| NavFault::CompassOff(off_rad.to_degrees())))
+            .or_else(|| {
+                self.known
+                    .compass
+                    .fault_rad()
+                    .map(|off_rad| NavFault::CompassOff(off_rad.to_degrees()))
+            })
     }
 
     fn take_fix(&mut self, now: SimTime, fix: &protocol::Fix) -> bool {
@@ -198,8 +234,15 @@ impl NavEstimator {
         // RMC reports neither quality nor dilution, so those of the GGA before it also apply to it.
         // Otherwise each RMC would clear a fault of the position. Either sentence alone can report
         // that there is no fix.
-        let told = self.known.told.filter(|_| fix.quality.is_none()).unwrap_or((fix.quality, fix.hdop));
-        if fix.quality.is_some_and(|quality| quality != FixQuality::NONE) {
+        let told = self
+            .known
+            .told
+            .filter(|_| fix.quality.is_none())
+            .unwrap_or((fix.quality, fix.hdop));
+        if fix
+            .quality
+            .is_some_and(|quality| quality != FixQuality::NONE)
+        {
             self.known.told = Some(told);
         }
         let (quality, hdop) = told;
@@ -248,16 +291,31 @@ impl NavEstimator {
             } else if !self.is_velocity_reported(now) && since_s > 0.05 {
                 self.known.velocity = Some((None, moved.scaled(1.0 / since_s)));
             }
-            let pushed = self.known.thrust_at.is_some_and(|at| (now - at).as_s() < THRUST_MEMORY_S);
+            let pushed = self
+                .known
+                .thrust_at
+                .is_some_and(|at| (now - at).as_s() < THRUST_MEMORY_S);
             // The same to the last digit. Without thrust a boat may well lie still.
-            self.known.still_since = (before.raw == at && pushed).then(|| self.known.still_since.unwrap_or(before.at));
+            self.known.still_since =
+                (before.raw == at && pushed).then(|| self.known.still_since.unwrap_or(before.at));
         }
         let reported = self.is_velocity_reported(now).then(|| self.velocity_m_s());
         self.known.motion.take_fix(now, place, reported);
-        self.known.fix = Some(Fix { at: now, raw: at, place });
-        let ordered = self.known.ordered.filter(|(at, _)| (now - *at).as_s() <= ORDERED_MEMORY_S);
-        if let (Some((_, ordered)), Some(heading), Some(velocity)) = (ordered, self.known.heading, reported) {
-            self.known.compass.observe(now, heading.psi_rad, velocity, ordered.ahead_m_s);
+        self.known.fix = Some(Fix {
+            at: now,
+            raw: at,
+            place,
+        });
+        let ordered = self
+            .known
+            .ordered
+            .filter(|(at, _)| (now - *at).as_s() <= ORDERED_MEMORY_S);
+        if let (Some((_, ordered)), Some(heading), Some(velocity)) =
+            (ordered, self.known.heading, reported)
+        {
+            self.known
+                .compass
+                .observe(now, heading.psi_rad, velocity, ordered.ahead_m_s);
         }
         true
     }
@@ -278,12 +336,24 @@ impl NavEstimator {
         };
         self.known.motion.take_heading(psi_rad);
         let turned_rad_s = || {
-            let Some(before) = self.known.heading else { return 0.0 };
+            let Some(before) = self.known.heading else {
+                return 0.0;
+            };
             let since_s = (now - before.at).as_s();
-            if since_s > 0.02 { wrap_pi(psi_rad - before.psi_rad) / since_s } else { before.yaw_rate_rad_s }
+            if since_s > 0.02 {
+                wrap_pi(psi_rad - before.psi_rad) / since_s
+            } else {
+                before.yaw_rate_rad_s
+            }
         };
-        let yaw_rate_rad_s = heading.yaw_rate_deg_s.map_or_else(turned_rad_s, f64::to_radians);
-        self.known.heading = Some(Heading { at: now, psi_rad, yaw_rate_rad_s });
+        let yaw_rate_rad_s = heading
+            .yaw_rate_deg_s
+            .map_or_else(turned_rad_s, f64::to_radians);
+        self.known.heading = Some(Heading {
+            at: now,
+            psi_rad,
+            yaw_rate_rad_s,
+        });
         true
     }
 }
@@ -294,21 +364,43 @@ mod tests {
 
     #[test]
     fn rmc_takes_back_nothing_that_gga_says_against_a_fix_in_either_order() {
-        let origin = LatLon { lat_deg: 42.0, lon_deg: -71.0 };
+        let origin = LatLon {
+            lat_deg: 42.0,
+            lon_deg: -71.0,
+        };
         let watch = crate::config::default_gateway().nav;
-        for (quality, hdop, is_first) in [(6, 0.9, true), (6, 0.9, false), (1, 9.0, true), (1, 9.0, false)] {
+        for (quality, hdop, is_first) in [
+            (6, 0.9, true),
+            (6, 0.9, false),
+            (1, 9.0, true),
+            (1, 9.0, false),
+        ] {
             let mut estimator = NavEstimator::new(LocalFrame::new(origin), watch, 0.0, 3.0);
             for second in 1..=3_u32 {
                 let time = Some(TimeOfDay(1000 * second));
-                let at = Some(LatLon { lat_deg: 42.0 + 1e-5 * f64::from(second), ..origin });
-                let rmc = protocol::Fix { time, at, ..protocol::Fix::default() };
-                let gga = protocol::Fix { quality: Some(FixQuality::from_gga(quality)), hdop: Some(hdop), ..rmc };
+                let at = Some(LatLon {
+                    lat_deg: 42.0 + 1e-5 * f64::from(second),
+                    ..origin
+                });
+                let rmc = protocol::Fix {
+                    time,
+                    at,
+                    ..protocol::Fix::default()
+                };
+                let gga = protocol::Fix {
+                    quality: Some(FixQuality::from_gga(quality)),
+                    hdop: Some(hdop),
+                    ..rmc
+                };
                 let now = SimTime::from_s(f64::from(second));
                 for fix in if is_first { [gga, rmc] } else { [rmc, gga] } {
                     estimator.update(now, &Report::Fix(fix));
                     let is_known = second > 1 || fix.quality.is_some();
                     let fault = estimator.known.doubt;
-                    assert!(fault.is_some() || !is_known, "{quality} {hdop} {is_first}: {fix:?}");
+                    assert!(
+                        fault.is_some() || !is_known,
+                        "{quality} {hdop} {is_first}: {fix:?}"
+                    );
                 }
             }
         }

@@ -35,9 +35,19 @@ pub(crate) struct RecordedEvent {
 /// commit.
 pub fn opening(plan: &Plan, began_utc_ns: u64, commit: &str) -> Opening {
     let plan_json = serde_json::to_string(plan).expect("a plan is JSON");
-    let facts = [("commit", commit.to_owned()), ("vehicle", plan.vehicle.clone()), ("plan", plan_json)];
+    let facts = [
+        ("commit", commit.to_owned()),
+        ("vehicle", plan.vehicle.clone()),
+        ("plan", plan_json),
+    ];
     let facts: Facts = facts.map(|(key, value)| (key.to_owned(), value)).into();
-    Opening { kind: Kind::Gateway, began_utc_ns, facts, more: vec![], teams: vec![] }
+    Opening {
+        kind: Kind::Gateway,
+        began_utc_ns,
+        facts,
+        more: vec![],
+        teams: vec![],
+    }
 }
 
 /// Turns the steps of a core into entries of its recording.
@@ -51,7 +61,11 @@ pub struct StepEncoder {
 impl StepEncoder {
     /// For the boat with this name; its number comes from the game.
     pub fn new(boat: &str) -> StepEncoder {
-        StepEncoder { link_topic: link_topic(boat), vehicle: VehicleId(0), pieces: 0 }
+        StepEncoder {
+            link_topic: link_topic(boat),
+            vehicle: VehicleId(0),
+            pieces: 0,
+        }
     }
 
     /// Sets the boat's number from now on.
@@ -61,17 +75,34 @@ impl StepEncoder {
 
     /// The entries for a step at `at` by the gateway's clock; `game_now` is the game time as last
     /// received.
-    pub fn step(&mut self, at: SimTime, game_now: SimTime, input: &Input, out: &Output) -> Vec<Entry> {
+    pub fn step(
+        &mut self,
+        at: SimTime,
+        game_now: SimTime,
+        input: &Input,
+        out: &Output,
+    ) -> Vec<Entry> {
         let mut entries = match input {
             // As CDR on a topic of its own, because link bytes make up nearly all of a recording;
             // JSON would be several times as long.
             Input::Bytes(bytes) => vec![self.link_bytes(at, game_now, false, bytes)],
-            other => vec![json(INPUT, at, &RecordedInput { input: other.clone() })],
+            other => vec![json(
+                INPUT,
+                at,
+                &RecordedInput {
+                    input: other.clone(),
+                },
+            )],
         };
         if !out.bytes.is_empty() {
             entries.push(self.link_bytes(at, game_now, true, &out.bytes));
         }
-        entries.extend(out.events.iter().cloned().map(|event| StepEncoder::event(at, event)));
+        entries.extend(
+            out.events
+                .iter()
+                .cloned()
+                .map(|event| StepEncoder::event(at, event)),
+        );
         entries
     }
 
@@ -81,15 +112,34 @@ impl StepEncoder {
     }
 
     fn link_bytes(&mut self, at: SimTime, game_now: SimTime, outward: bool, data: &[u8]) -> Entry {
-        let stamp = Stamp { valid_ns: game_now, seq: self.pieces, version: LinkBytes::VERSION };
+        let stamp = Stamp {
+            valid_ns: game_now,
+            seq: self.pieces,
+            version: LinkBytes::VERSION,
+        };
         self.pieces += 1;
-        let bytes = codec::encode(&LinkBytes { stamp, vehicle: self.vehicle, outward, data: data.to_vec() });
-        Entry::Message { topic: self.link_topic.clone(), schema: Some(LinkBytes::SCHEMA), bytes, at }
+        let bytes = codec::encode(&LinkBytes {
+            stamp,
+            vehicle: self.vehicle,
+            outward,
+            data: data.to_vec(),
+        });
+        Entry::Message {
+            topic: self.link_topic.clone(),
+            schema: Some(LinkBytes::SCHEMA),
+            bytes,
+            at,
+        }
     }
 }
 
 /// The entry for a message as JSON.
 pub(crate) fn json(topic: &str, at: SimTime, message: &impl Serialize) -> Entry {
     let bytes = serde_json::to_vec(message).expect("what a gateway records is JSON");
-    Entry::Message { topic: topic.to_owned(), schema: None, bytes, at }
+    Entry::Message {
+        topic: topic.to_owned(),
+        schema: None,
+        bytes,
+        at,
+    }
 }

@@ -62,7 +62,9 @@ fn plan_of(text: &str) -> Result<Plan, serde_json::Error> {
 
 /// Adds missing table entries.
 fn complete(table: &mut Value, defaults: &Value) {
-    let (Value::Object(table), Value::Object(defaults)) = (table, defaults) else { return };
+    let (Value::Object(table), Value::Object(defaults)) = (table, defaults) else {
+        return;
+    };
     for (key, default) in defaults {
         match table.get_mut(key) {
             Some(value) => complete(value, default),
@@ -77,9 +79,13 @@ fn complete(table: &mut Value, defaults: &Value) {
 /// [`RecordingError`] for anything except a valid recording of a gateway, complete or truncated.
 pub fn replay(bag: &Bag) -> Result<Replay, RecordingError> {
     if bag.kind != Kind::Gateway {
-        return Err(RecordingError::Kind { wanted: Kind::Gateway, found: bag.kind });
+        return Err(RecordingError::Kind {
+            wanted: Kind::Gateway,
+            found: bag.kind,
+        });
     }
-    let plan = plan_of(bag.fact("plan")).map_err(|e| RecordingError::Foreign(format!("cannot parse its plan: {e}")))?;
+    let plan = plan_of(bag.fact("plan"))
+        .map_err(|e| RecordingError::Foreign(format!("cannot parse its plan: {e}")))?;
     let steps = steps(bag, &link_topic(&plan.vehicle))?;
     let is_cut = bag.is_cut;
     let mut bridge = Bridge::new(plan.clone());
@@ -101,7 +107,10 @@ pub fn replay(bag: &Bag) -> Result<Replay, RecordingError> {
         }
         events.extend(out.events.into_iter().map(|event| (step.at, event)));
     }
-    let ends = steps.first().zip(steps.last()).map_or((SimTime::ZERO, SimTime::ZERO), |(a, b)| (a.at, b.at));
+    let ends = steps
+        .first()
+        .zip(steps.last())
+        .map_or((SimTime::ZERO, SimTime::ZERO), |(a, b)| (a.at, b.at));
     Ok(Replay {
         plan,
         inputs: steps.len() as u64,
@@ -116,19 +125,34 @@ pub fn replay(bag: &Bag) -> Result<Replay, RecordingError> {
 }
 
 fn differing(step: &RecordedStep, out: &Output) -> Option<Difference> {
-    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).replace("\r\n", " ").trim_end().to_owned();
+    let text = |bytes: &[u8]| {
+        String::from_utf8_lossy(bytes)
+            .replace("\r\n", " ")
+            .trim_end()
+            .to_owned()
+    };
     // Bytes to the boat first, then events: a difference in the events often follows from one
     // in the bytes.
     let said = |events: &[Event]| format!("{events:?}");
-    let pairs = [(text(&step.out), text(&out.bytes)), (said(&step.events), said(&out.events))];
-    let (recorded, replayed) = pairs.into_iter().find(|(recorded, replayed)| recorded != replayed)?;
-    Some(Difference { at: step.at, recorded, replayed })
+    let pairs = [
+        (text(&step.out), text(&out.bytes)),
+        (said(&step.events), said(&out.events)),
+    ];
+    let (recorded, replayed) = pairs
+        .into_iter()
+        .find(|(recorded, replayed)| recorded != replayed)?;
+    Some(Difference {
+        at: step.at,
+        recorded,
+        replayed,
+    })
 }
 
 /// The steps of the core.
 fn steps(bag: &Bag, link_topic: &str) -> Result<Vec<RecordedStep>, RecordingError> {
     let mut steps = Vec::new();
-    bag.messages().try_for_each(|message| add_step(&mut steps, link_topic, &message))?;
+    bag.messages()
+        .try_for_each(|message| add_step(&mut steps, link_topic, &message))?;
     Ok(steps)
 }
 
@@ -139,10 +163,20 @@ fn add_step(
     message: &RecordedMessage<'_>,
 ) -> Result<(), RecordingError> {
     let at = message.at;
-    let mut begin = |input: Input| steps.push(RecordedStep { at, input, out: vec![], events: vec![] });
+    let mut begin = |input: Input| {
+        steps.push(RecordedStep {
+            at,
+            input,
+            out: vec![],
+            events: vec![],
+        })
+    };
     match message.topic {
         INPUT => begin(message.read_json::<RecordedInput>()?.input),
-        EVENT => match (message.read_json::<RecordedEvent>()?.event, steps.last_mut()) {
+        EVENT => match (
+            message.read_json::<RecordedEvent>()?.event,
+            steps.last_mut(),
+        ) {
             // Only outputs of the core are compared.
             (Event::Remark(_), _) | (_, None) => {}
             (event, Some(step)) => step.events.push(event),
@@ -150,7 +184,12 @@ fn add_step(
         topic if topic == link_topic => {
             let LinkBytes { outward, data, .. } = message.read()?;
             match (outward, steps.last_mut()) {
-                (false, _) => steps.push(RecordedStep { at, input: Input::Bytes(data), out: vec![], events: vec![] }),
+                (false, _) => steps.push(RecordedStep {
+                    at,
+                    input: Input::Bytes(data),
+                    out: vec![],
+                    events: vec![],
+                }),
                 (true, Some(step)) => step.out.extend(data),
                 (true, None) => {}
             }
@@ -169,12 +208,21 @@ mod tests {
         let mut gateway = default_gateway();
         gateway.order_ttl_s = 2.5;
         gateway.control.echo_s = 4.0;
-        let plan = Plan { arms_itself: true, ..Plan::new("blue_one", gateway) };
+        let plan = Plan {
+            arms_itself: true,
+            ..Plan::new("blue_one", gateway)
+        };
         let mut told = serde_json::to_value(&plan).unwrap();
         assert_eq!(plan_of(&told.to_string()).unwrap(), plan);
         let gateway = told["gateway"].as_object_mut().unwrap();
         assert!(gateway.remove("currents").is_some() && gateway.remove("startup_words").is_some());
-        assert!(gateway["control"].as_object_mut().unwrap().remove("echo_thrust_pct").is_some());
+        assert!(
+            gateway["control"]
+                .as_object_mut()
+                .unwrap()
+                .remove("echo_thrust_pct")
+                .is_some()
+        );
         assert_eq!(plan_of(&told.to_string()).unwrap(), plan);
         told.as_object_mut().unwrap().remove("vehicle");
         assert!(plan_of(&told.to_string()).is_err_and(|e| e.to_string().contains("vehicle")));

@@ -33,7 +33,10 @@ pub enum SetPoint {
 
 impl SetPoint {
     /// Both thrusters at zero.
-    pub const ZERO: SetPoint = SetPoint::Thrust { thrust_pct: 0.0, difference_pct: 0.0 };
+    pub const ZERO: SetPoint = SetPoint::Thrust {
+        thrust_pct: 0.0,
+        difference_pct: 0.0,
+    };
 }
 
 /// The loops with their state.
@@ -83,7 +86,10 @@ impl SetPointMapper {
                 // the difference.
                 (50.0 * (port + starboard), 50.0 * (port - starboard))
             }
-            Order::Steer { heading_rad, speed_m_s } => {
+            Order::Steer {
+                heading_rad,
+                speed_m_s,
+            } => {
                 let turn_rad = wrap_pi(heading_rad - nav.psi_rad);
                 return self.steered(now, (heading_rad, turn_rad, speed_m_s), nav);
             }
@@ -97,12 +103,20 @@ impl SetPointMapper {
     }
 
     /// The set-point for a heading, which is this far clockwise from the boat's, and a speed.
-    fn steered(&mut self, now: SimTime, (heading_rad, turn_rad, speed_m_s): (f64, f64, f64), nav: &Nav) -> SetPoint {
+    fn steered(
+        &mut self,
+        now: SimTime,
+        (heading_rad, turn_rad, speed_m_s): (f64, f64, f64),
+        nav: &Nav,
+    ) -> SetPoint {
         let speed_m_s = speed_m_s.min(self.limits.speed_max_m_s);
         // The boat's own loops are not published, so this is an option rather than the default.
         if self.drive == Drive::Speed {
             let heading_deg = self.compass_deg(heading_rad);
-            return SetPoint::Speed { heading_deg, speed_m_s };
+            return SetPoint::Speed {
+                heading_deg,
+                speed_m_s,
+            };
         }
         let (thrust, difference) = self.steer(self.step_s(now), turn_rad, speed_m_s, nav);
         self.within_limits(now, thrust, difference)
@@ -111,13 +125,28 @@ impl SetPointMapper {
     /// The expected effect of an order's set-point. How a boat turns that steers by itself is not
     /// predicted.
     pub fn ordered(&self, order: Order, set_point: SetPoint) -> Ordered {
-        let heading_rad = if let Order::Steer { heading_rad, .. } = order { Some(heading_rad) } else { None };
+        let heading_rad = if let Order::Steer { heading_rad, .. } = order {
+            Some(heading_rad)
+        } else {
+            None
+        };
         match set_point {
-            SetPoint::Thrust { thrust_pct, difference_pct } => {
+            SetPoint::Thrust {
+                thrust_pct,
+                difference_pct,
+            } => {
                 let ahead_m_s = interpolate(self.loops.thrust_map.iter().copied(), thrust_pct);
-                Ordered { ahead_m_s, turn_pct: difference_pct, heading_rad }
+                Ordered {
+                    ahead_m_s,
+                    turn_pct: difference_pct,
+                    heading_rad,
+                }
             }
-            SetPoint::Speed { speed_m_s, .. } => Ordered { ahead_m_s: speed_m_s, turn_pct: 0.0, heading_rad },
+            SetPoint::Speed { speed_m_s, .. } => Ordered {
+                ahead_m_s: speed_m_s,
+                turn_pct: 0.0,
+                heading_rad,
+            },
         }
     }
 
@@ -127,21 +156,34 @@ impl SetPointMapper {
     }
 
     fn step_s(&self, now: SimTime) -> f64 {
-        self.last.map_or(0.0, |(at, ..)| (now - at).as_s().clamp(0.0, STEP_MAX_S))
+        self.last
+            .map_or(0.0, |(at, ..)| (now - at).as_s().clamp(0.0, STEP_MAX_S))
     }
 
     /// Our own loops: thrust from the map and the speed error, difference from the heading error,
     /// which takes priority.
     fn steer(&mut self, step_s: f64, turn_rad: f64, speed_m_s: f64, nav: &Nav) -> (f64, f64) {
-        let Loops { speed_pct_per_m_s, speed_integral_s, heading_pct_per_rad, turn_pct_per_rad_s, .. } = self.loops;
+        let Loops {
+            speed_pct_per_m_s,
+            speed_integral_s,
+            heading_pct_per_rad,
+            turn_pct_per_rad_s,
+            ..
+        } = self.loops;
         // P on the heading and D on the measured rate of turn, like pMarinePID on these boats.
         let difference = heading_pct_per_rad * turn_rad - turn_pct_per_rad_s * nav.yaw_rate_rad_s;
-        let difference = difference.clamp(-self.limits.difference_max_pct, self.limits.difference_max_pct);
+        let difference = difference.clamp(
+            -self.limits.difference_max_pct,
+            self.limits.difference_max_pct,
+        );
         let error_m_s = speed_m_s - nav.surge_m_s;
-        let asked = thrust_for(&self.loops.thrust_map, speed_m_s) + speed_pct_per_m_s * error_m_s + self.integral_pct;
+        let asked = thrust_for(&self.loops.thrust_map, speed_m_s)
+            + speed_pct_per_m_s * error_m_s
+            + self.integral_pct;
         // Turning takes priority: a boat that cannot turn cannot keep clear.
         let room = (100.0 - difference.abs()).min(self.limits.thrust_max_pct);
-        // Anti-windup: the integral only grows while the thrust is not at its limit, and not at rest.
+        // Anti-windup: the integral only grows while the thrust is not at its limit, and not at
+        // rest.
         if asked.abs() < room && speed_m_s > 0.0 {
             self.integral_pct += speed_pct_per_m_s * error_m_s * step_s / speed_integral_s;
         }
@@ -149,22 +191,41 @@ impl SetPointMapper {
     }
 
     fn within_limits(&mut self, now: SimTime, thrust: f64, difference: f64) -> SetPoint {
-        let Limits { thrust_max_pct, difference_max_pct, slew_pct_s, .. } = self.limits;
+        let Limits {
+            thrust_max_pct,
+            difference_max_pct,
+            slew_pct_s,
+            ..
+        } = self.limits;
         let (_, thrust_before, difference_before) = self.last.unwrap_or((now, 0.0, 0.0));
         // The first set-point may grow as in a tenth of a second.
-        let growth = slew_pct_s * if self.last.is_some() { self.step_s(now) } else { 0.1 };
-        let difference_pct =
-            slewed(difference_before, difference.clamp(-difference_max_pct, difference_max_pct), growth);
+        let growth = slew_pct_s
+            * if self.last.is_some() {
+                self.step_s(now)
+            } else {
+                0.1
+            };
+        let difference_pct = slewed(
+            difference_before,
+            difference.clamp(-difference_max_pct, difference_max_pct),
+            growth,
+        );
         let room = (100.0 - difference_pct.abs()).min(thrust_max_pct);
         let thrust_pct = slewed(thrust_before, thrust, growth).clamp(-room, room);
         self.last = Some((now, thrust_pct, difference_pct));
-        SetPoint::Thrust { thrust_pct, difference_pct }
+        SetPoint::Thrust {
+            thrust_pct,
+            difference_pct,
+        }
     }
 }
 
 /// The thrust, per cent, for a speed, m/s: the inverse of the map.
 fn thrust_for(map: &[(f64, f64)], speed_m_s: f64) -> f64 {
-    interpolate(map.iter().map(|(thrust, speed)| (*speed, *thrust)), speed_m_s)
+    interpolate(
+        map.iter().map(|(thrust, speed)| (*speed, *thrust)),
+        speed_m_s,
+    )
 }
 
 /// `to`, or as far towards it as `growth` allows; towards zero there is no limit.
@@ -182,13 +243,20 @@ mod tests {
 
     fn gateway(drive: &str) -> Gateway {
         let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/gateways");
-        let name = if drive == "speed" { "surveyor_speed.toml" } else { "surveyor.toml" };
+        let name = if drive == "speed" {
+            "surveyor_speed.toml"
+        } else {
+            "surveyor.toml"
+        };
         scenario::load_file::<crate::config::Gateway>(&folder.join(name))
             .unwrap_or_else(|problems| panic!("{problems}"))
     }
 
     fn steer(heading_deg: f64, speed_m_s: f64) -> Order {
-        Order::Steer { heading_rad: heading_deg.to_radians(), speed_m_s }
+        Order::Steer {
+            heading_rad: heading_deg.to_radians(),
+            speed_m_s,
+        }
     }
 
     fn at(seconds: f64) -> SimTime {
@@ -197,62 +265,133 @@ mod tests {
 
     /// Thrust and difference, per cent.
     fn thrust_of(set_point: SetPoint) -> (f64, f64) {
-        let SetPoint::Thrust { thrust_pct, difference_pct } = set_point else { panic!("{set_point:?}") };
+        let SetPoint::Thrust {
+            thrust_pct,
+            difference_pct,
+        } = set_point
+        else {
+            panic!("{set_point:?}")
+        };
         (thrust_pct, difference_pct)
     }
 
     #[test]
     fn half_a_turn_to_either_side_is_thrust_to_that_side() {
-        let nav = Nav { surge_m_s: 1.0, psi_rad: 1.0, ..Nav::default() };
+        let nav = Nav {
+            surge_m_s: 1.0,
+            psi_rad: 1.0,
+            ..Nav::default()
+        };
         for side in [1.0, -1.0] {
             let mut mapper = SetPointMapper::new(&gateway("thrust"), 0.0);
-            let order = Order::Turn { by_rad: side * std::f64::consts::PI, speed_m_s: 1.0 };
+            let order = Order::Turn {
+                by_rad: side * std::f64::consts::PI,
+                speed_m_s: 1.0,
+            };
             let (_, difference) = thrust_of(mapper.map(at(0.0), order, &nav));
             assert!(side * difference > 1.0, "{side}: {difference} %");
         }
         let mut mapper = SetPointMapper::new(&gateway("speed"), 0.0);
-        let set_point = mapper.map(at(0.0), Order::Turn { by_rad: 0.5, speed_m_s: 1.0 }, &nav);
-        let SetPoint::Speed { heading_deg, .. } = set_point else { panic!("{set_point:?}") };
-        assert!((heading_deg - 1.5_f64.to_degrees()).abs() < 1e-9, "{heading_deg}");
+        let set_point = mapper.map(
+            at(0.0),
+            Order::Turn {
+                by_rad: 0.5,
+                speed_m_s: 1.0,
+            },
+            &nav,
+        );
+        let SetPoint::Speed { heading_deg, .. } = set_point else {
+            panic!("{set_point:?}")
+        };
+        assert!(
+            (heading_deg - 1.5_f64.to_degrees()).abs() < 1e-9,
+            "{heading_deg}"
+        );
     }
 
     #[test]
     fn on_course_and_at_speed_the_thrust_is_that_of_the_map() {
         let mut mapper = SetPointMapper::new(&gateway("thrust"), 0.0);
-        let nav = Nav { surge_m_s: 1.5, psi_rad: 1.0, ..Nav::default() };
-        let order = Order::Steer { heading_rad: 1.0, speed_m_s: 1.5 };
-        let settings: Vec<SetPoint> = (0..20).map(|i| mapper.map(at(0.1 * f64::from(i)), order, &nav)).collect();
-        assert_eq!(settings[0], SetPoint::Thrust { thrust_pct: 10.0, difference_pct: 0.0 }, "100 % a second");
-        assert_eq!(settings[19], SetPoint::Thrust { thrust_pct: 40.0, difference_pct: 0.0 });
+        let nav = Nav {
+            surge_m_s: 1.5,
+            psi_rad: 1.0,
+            ..Nav::default()
+        };
+        let order = Order::Steer {
+            heading_rad: 1.0,
+            speed_m_s: 1.5,
+        };
+        let settings: Vec<SetPoint> = (0..20)
+            .map(|i| mapper.map(at(0.1 * f64::from(i)), order, &nav))
+            .collect();
+        assert_eq!(
+            settings[0],
+            SetPoint::Thrust {
+                thrust_pct: 10.0,
+                difference_pct: 0.0
+            },
+            "100 % a second"
+        );
+        assert_eq!(
+            settings[19],
+            SetPoint::Thrust {
+                thrust_pct: 40.0,
+                difference_pct: 0.0
+            }
+        );
     }
 
     #[test]
     fn the_boat_turns_to_the_near_side_and_steering_comes_before_speed() {
-        for (psi_deg, heading_deg, sign) in [(350.0, 10.0, 1.0), (10.0, 350.0, -1.0), (90.0, 200.0, 1.0)] {
+        for (psi_deg, heading_deg, sign) in
+            [(350.0, 10.0, 1.0), (10.0, 350.0, -1.0), (90.0, 200.0, 1.0)]
+        {
             let mut mapper = SetPointMapper::new(&gateway("thrust"), 0.0);
-            let nav = Nav { psi_rad: f64::to_radians(psi_deg), ..Nav::default() };
+            let nav = Nav {
+                psi_rad: f64::to_radians(psi_deg),
+                ..Nav::default()
+            };
             let mut last = (0.0, 0.0);
             for i in 0..40 {
                 last = thrust_of(mapper.map(at(0.1 * f64::from(i)), steer(heading_deg, 3.0), &nav));
-                assert!(f64::abs(last.0) + f64::abs(last.1) <= 100.0 + 1e-9 && last.0 <= 70.0, "{last:?}");
+                assert!(
+                    f64::abs(last.0) + f64::abs(last.1) <= 100.0 + 1e-9 && last.0 <= 70.0,
+                    "{last:?}"
+                );
             }
-            assert!(last.1 * sign >= 18.0 - 1e-9, "{psi_deg} to {heading_deg}: {last:?}");
+            assert!(
+                last.1 * sign >= 18.0 - 1e-9,
+                "{psi_deg} to {heading_deg}: {last:?}"
+            );
         }
     }
 
     #[test]
     fn growth_is_limited_and_zero_comes_at_once() {
         let mut mapper = SetPointMapper::new(&gateway("thrust"), 0.0);
-        let full = Order::Thrust { port: 1.0, starboard: 1.0 };
+        let full = Order::Thrust {
+            port: 1.0,
+            starboard: 1.0,
+        };
         let mut before = 0.0;
         for i in 0..12 {
-            let (thrust_pct, _) = thrust_of(mapper.map(at(0.05 * f64::from(i)), full, &Nav::default()));
-            assert!(thrust_pct - before <= 10.0 + 1e-9, "{before} to {thrust_pct}");
+            let (thrust_pct, _) =
+                thrust_of(mapper.map(at(0.05 * f64::from(i)), full, &Nav::default()));
+            assert!(
+                thrust_pct - before <= 10.0 + 1e-9,
+                "{before} to {thrust_pct}"
+            );
             before = thrust_pct;
         }
         assert!(before > 50.0);
-        assert_eq!(mapper.map(at(0.6), Order::Hold, &Nav::default()), SetPoint::ZERO);
-        let astern = Order::Thrust { port: -1.0, starboard: -1.0 };
+        assert_eq!(
+            mapper.map(at(0.6), Order::Hold, &Nav::default()),
+            SetPoint::ZERO
+        );
+        let astern = Order::Thrust {
+            port: -1.0,
+            starboard: -1.0,
+        };
         let (thrust_pct, _) = thrust_of(mapper.map(at(0.65), astern, &Nav::default()));
         assert!((-5.0 - 1e-9..0.0).contains(&thrust_pct), "{thrust_pct}");
     }
@@ -261,7 +400,11 @@ mod tests {
     fn the_boats_own_loops_get_a_heading_of_its_own_compass() {
         let east_deg: f64 = -12.5;
         let mut mapper = SetPointMapper::new(&gateway("speed"), east_deg.to_radians());
-        let SetPoint::Speed { heading_deg, speed_m_s } = mapper.map(at(0.0), steer(90.0, 9.0), &Nav::default()) else {
+        let SetPoint::Speed {
+            heading_deg,
+            speed_m_s,
+        } = mapper.map(at(0.0), steer(90.0, 9.0), &Nav::default())
+        else {
             panic!("speed")
         };
         // Magnetic north is west of true: the compass shows more.
@@ -271,13 +414,25 @@ mod tests {
 
     #[test]
     fn a_speed_between_two_of_the_map_takes_thrust_between() {
-        for (speed, want) in
-            [(0.0, 0.0), (0.5, 10.0), (1.25, 30.0), (3.0, 100.0), (4.0, 100.0), (-2.0, -100.0), (-3.0, -100.0)]
-        {
-            assert!((thrust_for(&SURVEYOR_THRUST_MAP, speed) - want).abs() < 1e-9, "{speed}");
+        for (speed, want) in [
+            (0.0, 0.0),
+            (0.5, 10.0),
+            (1.25, 30.0),
+            (3.0, 100.0),
+            (4.0, 100.0),
+            (-2.0, -100.0),
+            (-3.0, -100.0),
+        ] {
+            assert!(
+                (thrust_for(&SURVEYOR_THRUST_MAP, speed) - want).abs() < 1e-9,
+                "{speed}"
+            );
         }
         for thrust in [-100.0, -50.0, 0.0, 10.0, 65.0, 100.0] {
-            let there_and_back = thrust_for(&SURVEYOR_THRUST_MAP, interpolate(SURVEYOR_THRUST_MAP, thrust));
+            let there_and_back = thrust_for(
+                &SURVEYOR_THRUST_MAP,
+                interpolate(SURVEYOR_THRUST_MAP, thrust),
+            );
             assert!((there_and_back - thrust).abs() < 1e-9, "{thrust}");
         }
     }

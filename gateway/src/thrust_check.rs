@@ -21,7 +21,9 @@ pub struct Ordered {
 pub enum ThrustFault {
     /// Its heading does not respond to the thrust difference: its rate of turn in degrees/s at half
     /// of the full difference.
-    #[error("the thrusters: its heading does not respond to differential thrust: {0:.0} degrees/s at half difference")]
+    #[error(
+        "the thrusters: its heading does not respond to differential thrust: {0:.0} degrees/s at half difference"
+    )]
     NoTurn(f64),
     /// Its speed ahead, m/s, after 40 s under thrust, is too low.
     #[error("the thrusters: it makes no way under thrust: {0:.1} m/s ahead in {WAY_S} s")]
@@ -124,7 +126,8 @@ impl Turn {
         let [mean_x, mean_y, xx, xy, yy] = std::array::from_fn(|i| self.sums[i + 1] / count);
         let spread = xx - mean_x * mean_x;
         let slope = (xy - mean_x * mean_y) / spread;
-        let rest = (yy - mean_y * mean_y - slope * slope * spread).max(TURN_SCATTER_MIN_RAD_S * TURN_SCATTER_MIN_RAD_S);
+        let rest = (yy - mean_y * mean_y - slope * slope * spread)
+            .max(TURN_SCATTER_MIN_RAD_S * TURN_SCATTER_MIN_RAD_S);
         let sigma = (rest * PIECES_ALIKE / (spread * count)).sqrt();
         (count >= PIECES_MIN && sigma.is_finite()).then_some((slope, sigma))
     }
@@ -168,15 +171,27 @@ impl ThrustCheck {
     /// Notes the present command and the boat's motion: heading, rad, and speed ahead over the
     /// ground, m/s.
     pub(crate) fn observe(&mut self, now: SimTime, ordered: Ordered, nav: &Nav) {
-        let Nav { psi_rad, surge_m_s: ahead_m_s, .. } = *nav;
-        let before = self.last.replace((now, psi_rad)).filter(|(at, _)| (now - *at).as_s() <= GAP_MAX_S);
+        let Nav {
+            psi_rad,
+            surge_m_s: ahead_m_s,
+            ..
+        } = *nav;
+        let before = self
+            .last
+            .replace((now, psi_rad))
+            .filter(|(at, _)| (now - *at).as_s() <= GAP_MAX_S);
         let Some((before, before_rad)) = before else {
             // The boat's motion during a gap is unknown.
-            *self = ThrustCheck { last: self.last, ..ThrustCheck::default() };
+            *self = ThrustCheck {
+                last: self.last,
+                ..ThrustCheck::default()
+            };
             return;
         };
         let turned_rad = wrap_pi(psi_rad - before_rad);
-        let known = self.turn.observe(0.01 * ordered.turn_pct, (now - before).as_s(), turned_rad);
+        let known = self
+            .turn
+            .observe(0.01 * ordered.turn_pct, (now - before).as_s(), turned_rad);
         if let Some((slope, sigma)) = known
             // No plain limit such as "full difference for 8 s and no turn": in a gale, a simulated
             // Surveyor was held this way, or turned the other way, for 15 s 28 times in two hours
@@ -192,16 +207,28 @@ impl ThrustCheck {
     /// Detects a boat that goes astern instead of ahead, or holds a heading other than the ordered
     /// one.
     fn take_against(&mut self, step_s: f64, ordered: Ordered, nav: &Nav, turned_rad: f64) {
-        let Nav { surge_m_s, sway_m_s, psi_rad, .. } = *nav;
+        let Nav {
+            surge_m_s,
+            sway_m_s,
+            psi_rad,
+            ..
+        } = *nav;
         self.turn_rad_s += (turned_rad - step_s * self.turn_rad_s) / step_s.max(TURN_LAG_S);
         let unrest = self.sway.observe(step_s, sway_m_s);
-        let heading_rad = ordered.heading_rad.filter(|_| ordered.ahead_m_s >= AGAINST_FROM_M_S);
+        let heading_rad = ordered
+            .heading_rad
+            .filter(|_| ordered.ahead_m_s >= AGAINST_FROM_M_S);
         // Along the bow: a boat that turns around moves against its ordered heading, but never
         // astern.
         let astern_m = self.astern_m - (surge_m_s + ASTERN_DRIFT_M_S) * step_s;
-        self.astern_m = if ordered.ahead_m_s < AGAINST_FROM_M_S { 0.0 } else { astern_m.max(0.0) };
-        let is_held =
-            |(held_rad, _): &(f64, f64)| heading_rad.is_some_and(|now| wrap_pi(now - held_rad).abs() < ASTRAY_RAD);
+        self.astern_m = if ordered.ahead_m_s < AGAINST_FROM_M_S {
+            0.0
+        } else {
+            astern_m.max(0.0)
+        };
+        let is_held = |(held_rad, _): &(f64, f64)| {
+            heading_rad.is_some_and(|now| wrap_pi(now - held_rad).abs() < ASTRAY_RAD)
+        };
         let before = self.astray.filter(is_held);
         let off_rad = heading_rad.map_or(0.0, |heading_rad| wrap_pi(heading_rad - psi_rad));
         let growth = match math::length(surge_m_s, sway_m_s) {
@@ -216,7 +243,9 @@ impl ThrustCheck {
             *astray_s = (*astray_s + growth * step_s).max(0.0);
             *astray_s
         });
-        if self.astern_m > ASTERN_M + ASTERN_UNREST_M * unrest || astray_s > ASTRAY_S + ASTRAY_UNREST_S * unrest {
+        if self.astern_m > ASTERN_M + ASTERN_UNREST_M * unrest
+            || astray_s > ASTRAY_S + ASTRAY_UNREST_S * unrest
+        {
             let course_rad = psi_rad + math::atan2(sway_m_s, surge_m_s);
             let course_off_rad = wrap_pi(course_rad - ordered.heading_rad.unwrap_or(psi_rad)).abs();
             self.fault = Some(ThrustFault::Against(course_off_rad.to_degrees()));
@@ -228,7 +257,12 @@ impl ThrustCheck {
             self.way = None;
             return;
         }
-        let held = self.way.get_or_insert(Way { since: now, count: 0.0, ordered: 0.0, seen: 0.0 });
+        let held = self.way.get_or_insert(Way {
+            since: now,
+            count: 0.0,
+            ordered: 0.0,
+            seen: 0.0,
+        });
         held.count += 1.0;
         held.ordered += ordered_m_s;
         held.seen += ahead_m_s;
@@ -244,7 +278,10 @@ impl ThrustCheck {
 
     /// The order that the boat does not follow, while it is driven.
     pub(crate) fn fault(&self, now: SimTime) -> Option<ThrustFault> {
-        self.fault.filter(|_| self.last.is_some_and(|(at, _)| (now - at).as_s() <= GAP_MAX_S))
+        self.fault.filter(|_| {
+            self.last
+                .is_some_and(|(at, _)| (now - at).as_s() <= GAP_MAX_S)
+        })
     }
 }
 
@@ -253,7 +290,11 @@ mod tests {
     use super::*;
 
     fn nav(psi_rad: f64, surge_m_s: f64) -> Nav {
-        Nav { psi_rad, surge_m_s, ..Nav::default() }
+        Nav {
+            psi_rad,
+            surge_m_s,
+            ..Nav::default()
+        }
     }
 
     /// When a fault occurs, s, and which one, for this order and this motion of the boat.
@@ -268,13 +309,23 @@ mod tests {
             let time_s = 0.1 * f64::from(i);
             psi_deg += 0.1 * turn_deg_s(time_s);
             let psi_rad = wrap_pi(f64::to_radians(psi_deg));
-            check.observe(SimTime::from_s(time_s), ordered(time_s), &nav(psi_rad, ahead_m_s));
-            check.fault(SimTime::from_s(time_s)).map(|fault| (time_s, fault))
+            check.observe(
+                SimTime::from_s(time_s),
+                ordered(time_s),
+                &nav(psi_rad, ahead_m_s),
+            );
+            check
+                .fault(SimTime::from_s(time_s))
+                .map(|fault| (time_s, fault))
         })
     }
 
     fn held(ahead_m_s: f64, turn_pct: f64) -> impl Fn(f64) -> Ordered {
-        move |_| Ordered { ahead_m_s, turn_pct, heading_rad: None }
+        move |_| Ordered {
+            ahead_m_s,
+            turn_pct,
+            heading_rad: None,
+        }
     }
 
     /// To one side and the other, five seconds each.
@@ -286,20 +337,45 @@ mod tests {
     fn a_heading_that_does_not_follow_the_thrust_difference_is_found_in_its_time() {
         for (turn_deg_s, words) in [(0.0, "held by the wind"), (5.0, "turned by it")] {
             let (after_s, fault) = first_fault(weaving, |_| turn_deg_s, 0.5).expect(words);
-            assert!(after_s < 60.0 && matches!(fault, ThrustFault::NoTurn(_)), "{words}: {after_s} {fault}");
+            assert!(
+                after_s < 60.0 && matches!(fault, ThrustFault::NoTurn(_)),
+                "{words}: {after_s} {fault}"
+            );
         }
         let thwart = |time_s: f64| -0.2 * weaving(time_s).turn_pct;
-        assert!(first_fault(weaving, thwart, 0.5).is_some(), "the thrusters are exchanged");
-        assert_eq!(first_fault(weaving, |time_s| 0.5 * weaving(time_s).turn_pct, 0.5), None, "it turns");
-        assert_eq!(first_fault(held(0.5, 40.0), |_| -3.0, 0.5), None, "one order alone shows nothing in the wind");
+        assert!(
+            first_fault(weaving, thwart, 0.5).is_some(),
+            "the thrusters are exchanged"
+        );
+        assert_eq!(
+            first_fault(weaving, |time_s| 0.5 * weaving(time_s).turn_pct, 0.5),
+            None,
+            "it turns"
+        );
+        assert_eq!(
+            first_fault(held(0.5, 40.0), |_| -3.0, 0.5),
+            None,
+            "one order alone shows nothing in the wind"
+        );
     }
 
     #[test]
     fn a_boat_that_makes_no_way_under_thrust_is_found_in_its_time() {
         let (after_s, fault) = first_fault(held(2.0, 0.0), |_| 0.0, 0.1).expect("it lies still");
-        assert!((after_s - WAY_S).abs() < 0.3 && matches!(fault, ThrustFault::NoWay(_)), "{after_s} {fault}");
-        assert_eq!(first_fault(held(2.0, 0.0), |_| 0.0, 0.5), None, "slow, against the wind");
-        assert_eq!(first_fault(held(0.8, 0.0), |_| 0.0, 0.0), None, "too little to tell");
+        assert!(
+            (after_s - WAY_S).abs() < 0.3 && matches!(fault, ThrustFault::NoWay(_)),
+            "{after_s} {fault}"
+        );
+        assert_eq!(
+            first_fault(held(2.0, 0.0), |_| 0.0, 0.5),
+            None,
+            "slow, against the wind"
+        );
+        assert_eq!(
+            first_fault(held(0.8, 0.0), |_| 0.0, 0.0),
+            None,
+            "too little to tell"
+        );
     }
 
     /// When a fault occurs, s, for a boat that is ordered to this heading at 2 m/s, with this
@@ -310,8 +386,19 @@ mod tests {
         (0..300).map(|i| 0.1 * f64::from(i)).find(|time_s| {
             let (psi_deg, ahead_m_s) = motion(*time_s);
             let nav = nav(wrap_pi(psi_deg.to_radians()), ahead_m_s);
-            check.observe(SimTime::from_s(*time_s), Ordered { ahead_m_s: 2.0, turn_pct: 0.0, heading_rad }, &nav);
-            matches!(check.fault(SimTime::from_s(*time_s)), Some(ThrustFault::Against(_)))
+            check.observe(
+                SimTime::from_s(*time_s),
+                Ordered {
+                    ahead_m_s: 2.0,
+                    turn_pct: 0.0,
+                    heading_rad,
+                },
+                &nav,
+            );
+            matches!(
+                check.fault(SimTime::from_s(*time_s)),
+                Some(ThrustFault::Against(_))
+            )
         })
     }
 
@@ -319,26 +406,47 @@ mod tests {
     fn a_boat_that_moves_against_its_orders_is_found_in_its_time() {
         let taken_up = |time_s: f64| (0.5 * time_s).min(2.0);
         for (what, motion) in [
-            ("astern", &(|time_s| (180.0, -taken_up(time_s))) as &dyn Fn(f64) -> (f64, f64)),
+            (
+                "astern",
+                &(|time_s| (180.0, -taken_up(time_s))) as &dyn Fn(f64) -> (f64, f64),
+            ),
             ("the wrong way", &|time_s| (0.0, taken_up(time_s))),
             ("the wrong way, and slow", &|_| (30.0, 0.6)),
-            ("astern, as it turns", &|time_s| (20.0 * f64::min(time_s, 9.0), -2.0)),
+            ("astern, as it turns", &|time_s| {
+                (20.0 * f64::min(time_s, 9.0), -2.0)
+            }),
         ] {
             let after_s = against(180.0, motion);
-            assert!(after_s.is_some_and(|after_s| after_s < 10.0), "{what}: {after_s:?}");
+            assert!(
+                after_s.is_some_and(|after_s| after_s < 10.0),
+                "{what}: {after_s:?}"
+            );
         }
         let across_s = against(180.0, |_| (130.0, 1.5));
-        assert!(across_s.is_some_and(|after_s| after_s < 20.0), "50 degrees off: {across_s:?}");
+        assert!(
+            across_s.is_some_and(|after_s| after_s < 20.0),
+            "50 degrees off: {across_s:?}"
+        );
         for (what, motion) in [
-            ("a turn about, slow", &(|time_s| (10.0 * f64::min(time_s, 18.0), 2.0)) as &dyn Fn(f64) -> (f64, f64)),
-            ("it went astern before", &|time_s| (180.0, -2.0 + time_s.min(4.0))),
+            (
+                "a turn about, slow",
+                &(|time_s| (10.0 * f64::min(time_s, 18.0), 2.0)) as &dyn Fn(f64) -> (f64, f64),
+            ),
+            ("it went astern before", &|time_s| {
+                (180.0, -2.0 + time_s.min(4.0))
+            }),
             ("a current astern", &|_| (180.0, -0.4)),
-            ("waves", &|time_s| (180.0, 0.2 + 2.0 * math::sin_cos(time_s).0)),
+            ("waves", &|time_s| {
+                (180.0, 0.2 + 2.0 * math::sin_cos(time_s).0)
+            }),
             ("some degrees off", &|_| (160.0, 2.0)),
         ] {
             assert_eq!(against(180.0, motion), None, "{what}");
         }
-        assert!(first_fault(held(2.0, 0.0), |_| 10.0, -1.5).is_some_and(|(after_s, _)| after_s < 10.0), "by thrust");
+        assert!(
+            first_fault(held(2.0, 0.0), |_| 10.0, -1.5).is_some_and(|(after_s, _)| after_s < 10.0),
+            "by thrust"
+        );
     }
 
     #[test]

@@ -34,8 +34,14 @@ impl Arguments {
     pub(crate) fn setup(self) -> PyResult<RawSetup> {
         let observation = match self.observation.as_str() {
             "pyquaticus" => RawObservation::Space(ObservationSpace::Pyquaticus),
-            "squall" => RawObservation::Squall { frames: self.frames },
-            other => return Err(refused(format!("observation is {other:?}, expected \"squall\" or \"pyquaticus\""))),
+            "squall" => RawObservation::Squall {
+                frames: self.frames,
+            },
+            other => {
+                return Err(refused(format!(
+                    "observation is {other:?}, expected \"squall\" or \"pyquaticus\""
+                )));
+            }
         };
         let action = match self.action.as_str() {
             "pyquaticus" => ActionSpace::Pyquaticus,
@@ -60,7 +66,11 @@ impl Arguments {
             opponents: self.opponents,
             rewards: self.rewards,
             discount: self.discount,
-            critic: if self.state { CriticInput::Truth } else { CriticInput::Observation },
+            critic: if self.state {
+                CriticInput::Truth
+            } else {
+                CriticInput::Observation
+            },
         })
     }
 }
@@ -74,22 +84,38 @@ pub(crate) fn refused(error: impl Display) -> PyErr {
 pub(crate) type PackedParts = (String, Vec<(PathBuf, Vec<u8>)>, String);
 
 /// Converts a packed plan for Python.
-pub(crate) fn parts_of(Packed { spec, files, digest }: Packed) -> PackedParts {
+pub(crate) fn parts_of(
+    Packed {
+        spec,
+        files,
+        digest,
+    }: Packed,
+) -> PackedParts {
     (spec, files, digest)
 }
 
 /// Converts a packed plan from Python.
 pub(crate) fn packed_of((spec, files, digest): PackedParts) -> Packed {
-    Packed { spec, files, digest }
+    Packed {
+        spec,
+        files,
+        digest,
+    }
 }
 
 /// Checks overrides of the number of games and the first seed.
-pub(crate) fn games_and_seed(games: Option<u32>, seed: Option<u64>) -> PyResult<(Option<u32>, Option<u64>)> {
+pub(crate) fn games_and_seed(
+    games: Option<u32>,
+    seed: Option<u64>,
+) -> PyResult<(Option<u32>, Option<u64>)> {
     if let Some(games) = games.filter(|games| !(2..=1_000_000).contains(games)) {
         return Err(refused(format!("games is {games}, expected 2 to 1000000")));
     }
     if let Some(seed) = seed.filter(|seed| i64::try_from(*seed).is_err()) {
-        return Err(refused(format!("seed is {seed}, expected 0 to {}", i64::MAX)));
+        return Err(refused(format!(
+            "seed is {seed}, expected 0 to {}",
+            i64::MAX
+        )));
     }
     Ok((games, seed))
 }
@@ -101,8 +127,11 @@ pub(crate) fn stretch(
     threads: usize,
 ) -> PyResult<(Range<usize>, NonZeroUsize)> {
     if begin > end || end > games {
-        return Err(PyIndexError::new_err(format!("games {begin} to {end}, expected from 0 to {games} and in order")));
+        return Err(PyIndexError::new_err(format!(
+            "games {begin} to {end}, expected from 0 to {games} and in order"
+        )));
     }
-    let threads = NonZeroUsize::new(threads).ok_or_else(|| refused("threads is 0, expected at least 1"))?;
+    let threads =
+        NonZeroUsize::new(threads).ok_or_else(|| refused("threads is 0, expected at least 1"))?;
     Ok((begin..end, experiment::threads(Some(threads), end - begin)))
 }

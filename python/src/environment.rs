@@ -1,11 +1,14 @@
-//! Parallel games for Python: steps without the interpreter's lock, into numpy arrays that stay the same.
+//! Parallel games for Python: steps without the interpreter's lock, into numpy arrays that stay the
+//! same.
 
 use crate::arguments::{Arguments, refused};
 use crate::{scene, standing};
 use learn::environment::{
     Action, Games, RecordingLog, RecordingNames, Recordings, Rows, Setup, check_recording_folder,
 };
-use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
+use numpy::{
+    PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods,
+};
 use pyo3::exceptions::{PyIndexError, PyRuntimeWarning};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -54,7 +57,11 @@ impl Arrays {
     }
 
     /// Lets `work` write without the interpreter's lock.
-    fn write<T: Send>(&self, py: Python<'_>, work: impl FnOnce(Rows<'_>) -> T + Send) -> PyResult<T> {
+    fn write<T: Send>(
+        &self,
+        py: Python<'_>,
+        work: impl FnOnce(Rows<'_>) -> T + Send,
+    ) -> PyResult<T> {
         let mut observations = self.observations.bind(py).try_readwrite()?;
         let mut final_observations = self.final_observations.bind(py).try_readwrite()?;
         let mut rewards = self.rewards.bind(py).try_readwrite()?;
@@ -80,7 +87,12 @@ impl Arrays {
         let per_game = games.rows().1;
         for one in games.finished() {
             let rows = one.game * per_game..(one.game + 1) * per_game;
-            (if one.cut_off { &mut truncated[rows] } else { &mut terminated[rows] }).fill(true);
+            (if one.cut_off {
+                &mut truncated[rows]
+            } else {
+                &mut terminated[rows]
+            })
+            .fill(true);
         }
         Ok(())
     }
@@ -102,7 +114,10 @@ impl Arrays {
         }
         let final_states = final_states.as_slice_mut()?;
         for one in games.finished() {
-            write(&mut final_states[one.game * numbers..(one.game + 1) * numbers], games.truth(one.game).1);
+            write(
+                &mut final_states[one.game * numbers..(one.game + 1) * numbers],
+                games.truth(one.game).1,
+            );
         }
         Ok(())
     }
@@ -128,30 +143,54 @@ impl VectorEnvironment {
         let setup = setup.setup()?;
         let recordings = Arc::<RecordingLog>::default();
         if let Some((folder, _)) = &record {
-            let wrong =
-                |error: std::io::Error| format!("record is {folder:?}, expected a folder for recordings: {error}");
-            check_recording_folder(folder).map_err(wrong).map_err(refused)?;
+            let wrong = |error: std::io::Error| {
+                format!("record is {folder:?}, expected a folder for recordings: {error}")
+            };
+            check_recording_folder(folder)
+                .map_err(wrong)
+                .map_err(refused)?;
         }
         let watches = record.map(|(folder, every)| {
-            let recorded = Recordings { folder, names: RecordingNames::ByTime, every, commit: "unknown".to_owned() };
+            let recorded = Recordings {
+                folder,
+                names: RecordingNames::ByTime,
+                every,
+                commit: "unknown".to_owned(),
+            };
             recorded.watches(Arc::clone(&recordings))
         });
-        let begin = || setup.check().and_then(|setup| Games::new(setup, games, threads, seed, watches));
+        let begin = || {
+            setup
+                .check()
+                .and_then(|setup| Games::new(setup, games, threads, seed, watches))
+        };
         let games = py.detach(begin).map_err(refused)?;
         let arrays = Arrays::new(py, games.rows().0, games.setup());
-        let mut environment = VectorEnvironment { games: Mutex::new(games), actions: Vec::new(), arrays, recordings };
+        let mut environment = VectorEnvironment {
+            games: Mutex::new(games),
+            actions: Vec::new(),
+            arrays,
+            recordings,
+        };
         environment.show(py)?;
         Ok(environment)
     }
 
     fn step(&mut self, py: Python<'_>, actions: &Bound<'_, PyAny>) -> PyResult<()> {
-        let VectorEnvironment { games, actions: read, arrays, .. } = self;
+        let VectorEnvironment {
+            games,
+            actions: read,
+            arrays,
+            ..
+        } = self;
         let games = games.get_mut().unwrap_or_else(PoisonError::into_inner);
         match games.setup().actions() {
             Some(count) => read_discrete(actions, games.rows().0, count, read)?,
             None => read_continuous(actions, games.rows().0, read)?,
         }
-        arrays.write(py, |rows| games.step(read, rows))?.map_err(refused)?;
+        arrays
+            .write(py, |rows| games.step(read, rows))?
+            .map_err(refused)?;
         arrays.end(py, games)?;
         self.warn(py)
     }
@@ -168,7 +207,8 @@ impl VectorEnvironment {
         let games = self.games.get_mut().unwrap_or_else(PoisonError::into_inner);
         for (game, seed) in chosen {
             check_index(games, game)?;
-            py.detach(|| games.restart_game(game, seed)).map_err(refused)?;
+            py.detach(|| games.restart_game(game, seed))
+                .map_err(refused)?;
         }
         self.show(py)?;
         self.warn(py)
@@ -214,7 +254,11 @@ impl VectorEnvironment {
         let games = self.games();
         let setup = games.setup();
         let space = setup.spaces.action;
-        let words = || setup.actions().map(|count| (0..count).map(|action| space.words(action)).collect());
+        let words = || {
+            setup
+                .actions()
+                .map(|count| (0..count).map(|action| space.words(action)).collect())
+        };
         setup.options().map(<[String]>::to_vec).or_else(words)
     }
 
@@ -226,12 +270,24 @@ impl VectorEnvironment {
 
     #[getter]
     fn boat_names(&self) -> Vec<String> {
-        self.games().setup().scenario.vehicles.iter().map(|vehicle| vehicle.name.clone()).collect()
+        self.games()
+            .setup()
+            .scenario
+            .vehicles
+            .iter()
+            .map(|vehicle| vehicle.name.clone())
+            .collect()
     }
 
     #[getter]
     fn team_names(&self) -> Vec<String> {
-        self.games().setup().scenario.teams.iter().map(|team| team.name.clone()).collect()
+        self.games()
+            .setup()
+            .scenario
+            .teams
+            .iter()
+            .map(|team| team.name.clone())
+            .collect()
     }
 
     fn boats(&self, game: usize) -> PyResult<Vec<Option<usize>>> {
@@ -239,7 +295,9 @@ impl VectorEnvironment {
         check_index(&games, game)?;
         let boats = games.boats(game);
         let rows = 0..games.rows().1;
-        Ok(rows.map(|row| boats.get(row).map(|vehicle| vehicle.index())).collect())
+        Ok(rows
+            .map(|row| boats.get(row).map(|vehicle| vehicle.index()))
+            .collect())
     }
 
     fn standing<'py>(&self, py: Python<'py>, game: usize) -> PyResult<Bound<'py, PyDict>> {
@@ -250,7 +308,9 @@ impl VectorEnvironment {
 
     fn finished<'py>(&self, py: Python<'py>) -> PyResult<Vec<(usize, bool, Bound<'py, PyDict>)>> {
         let games = self.games();
-        let one = |one: &learn::environment::Finished| Ok((one.game, one.cut_off, standing::dict(py, &one.standing)?));
+        let one = |one: &learn::environment::Finished| {
+            Ok((one.game, one.cut_off, standing::dict(py, &one.standing)?))
+        };
         games.finished().iter().map(one).collect()
     }
 
@@ -334,35 +394,61 @@ fn check_index(games: &Games, game: usize) -> PyResult<()> {
     if game < count {
         return Ok(());
     }
-    Err(PyIndexError::new_err(format!("game is {game}, expected 0 to {}", count - 1)))
+    Err(PyIndexError::new_err(format!(
+        "game is {game}, expected 0 to {}",
+        count - 1
+    )))
 }
 
 /// Reads one index per row.
-fn read_discrete(actions: &Bound<'_, PyAny>, rows: usize, count: usize, into: &mut Vec<Action>) -> PyResult<()> {
-    let actions: PyReadonlyArray1<'_, i64> =
-        actions.extract().map_err(|_| refused(format!("actions must be an int64 array with the shape ({rows},)")))?;
+fn read_discrete(
+    actions: &Bound<'_, PyAny>,
+    rows: usize,
+    count: usize,
+    into: &mut Vec<Action>,
+) -> PyResult<()> {
+    let actions: PyReadonlyArray1<'_, i64> = actions.extract().map_err(|_| {
+        refused(format!(
+            "actions must be an int64 array with the shape ({rows},)"
+        ))
+    })?;
     check_rows(actions.shape(), &[rows])?;
     into.clear();
     for (row, action) in actions.as_array().iter().enumerate() {
-        let action = usize::try_from(*action).ok().filter(|action| *action < count);
-        let wrong =
-            || refused(format!("the action in row {row} is {}, expected 0 to {}", actions.as_array()[row], count - 1));
+        let action = usize::try_from(*action)
+            .ok()
+            .filter(|action| *action < count);
+        let wrong = || {
+            refused(format!(
+                "the action in row {row} is {}, expected 0 to {}",
+                actions.as_array()[row],
+                count - 1
+            ))
+        };
         into.push(Action::Discrete(action.ok_or_else(wrong)?));
     }
     Ok(())
 }
 
 /// Reads two numbers per row.
-fn read_continuous(actions: &Bound<'_, PyAny>, rows: usize, into: &mut Vec<Action>) -> PyResult<()> {
-    let actions: PyReadonlyArray2<'_, f32> = actions
-        .extract()
-        .map_err(|_| refused(format!("actions must be a float32 array with the shape ({rows}, 2)")))?;
+fn read_continuous(
+    actions: &Bound<'_, PyAny>,
+    rows: usize,
+    into: &mut Vec<Action>,
+) -> PyResult<()> {
+    let actions: PyReadonlyArray2<'_, f32> = actions.extract().map_err(|_| {
+        refused(format!(
+            "actions must be a float32 array with the shape ({rows}, 2)"
+        ))
+    })?;
     check_rows(actions.shape(), &[rows, 2])?;
     into.clear();
     for (row, action) in actions.as_array().outer_iter().enumerate() {
         let action = [action[0], action[1]];
         if !action.iter().all(|number| number.is_finite()) {
-            return Err(refused(format!("the action in row {row} is {action:?}, expected two finite numbers")));
+            return Err(refused(format!(
+                "the action in row {row} is {action:?}, expected two finite numbers"
+            )));
         }
         into.push(Action::Continuous(action));
     }
@@ -373,5 +459,7 @@ fn check_rows(shape: &[usize], expected: &[usize]) -> PyResult<()> {
     if shape == expected {
         return Ok(());
     }
-    Err(refused(format!("actions have the shape {shape:?}, expected {expected:?}")))
+    Err(refused(format!(
+        "actions have the shape {shape:?}, expected {expected:?}"
+    )))
 }

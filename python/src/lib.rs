@@ -1,4 +1,5 @@
-//! The native module of the Python package `squall`: games as environments with shared arrays, sweeps and tournaments.
+//! The native module of the Python package `squall`: games as environments with shared arrays,
+//! sweeps and tournaments.
 
 mod arguments;
 mod environment;

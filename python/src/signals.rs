@@ -8,8 +8,8 @@ use std::time::Duration;
 /// Interval at which Python checks for Ctrl-C.
 const EVERY: Duration = Duration::from_millis(100);
 
-/// Runs work on another thread, while this one lets Python handle signals. A handler that raises sets the
-/// flag, which ends the work.
+/// Runs work on another thread, while this one lets Python handle signals. A handler that raises
+/// sets the flag, which ends the work.
 ///
 /// # Errors
 /// The exception that the signal handler raises, such as `KeyboardInterrupt`.
@@ -25,9 +25,12 @@ pub(crate) fn heeded<T: Send>(work: impl FnOnce(&AtomicBool) -> T + Send) -> PyR
                 Ok(done) => return Ok(done),
                 Err(RecvTimeoutError::Timeout) => {
                     // Otherwise the scope would wait for work whose result is not needed.
-                    Python::attach(|py| py.check_signals()).inspect_err(|_| stop.store(true, Ordering::Relaxed))?;
+                    Python::attach(|py| py.check_signals())
+                        .inspect_err(|_| stop.store(true, Ordering::Relaxed))?;
                 }
-                Err(RecvTimeoutError::Disconnected) => unreachable!("the work panicked, and the scope with it"),
+                Err(RecvTimeoutError::Disconnected) => {
+                    unreachable!("the work panicked, and the scope with it")
+                }
             }
         }
     })

@@ -11,7 +11,12 @@ pub(crate) fn dict<'py>(py: Python<'py>, standing: &Standing) -> PyResult<Bound<
     dict.set_item("team", standing.side.learner.index())?;
     dict.set_item("opponent", standing.side.opponent)?;
     dict.set_item("steps", standing.steps)?;
-    for ((score, counts), prefix) in standing.score.into_iter().zip(standing.counts).zip(["", "enemy_"]) {
+    for ((score, counts), prefix) in standing
+        .score
+        .into_iter()
+        .zip(standing.counts)
+        .zip(["", "enemy_"])
+    {
         let numbers = [
             ("score", score),
             ("grabs", counts.grabs),

@@ -1,4 +1,5 @@
-//! A sweep for Python: its plan, ranges of games played in this process, and the folder with the results.
+//! A sweep for Python: its plan, ranges of games played in this process, and the folder with the
+//! results.
 
 use crate::arguments::{PackedParts, games_and_seed, packed_of, parts_of, refused, stretch};
 use crate::signals;
@@ -21,11 +22,20 @@ pub(crate) struct SweepPlan(Arc<Plan>);
 impl SweepPlan {
     #[staticmethod]
     #[pyo3(signature = (path, games=None, seed=None))]
-    fn open(py: Python<'_>, path: PathBuf, games: Option<u32>, seed: Option<u64>) -> PyResult<SweepPlan> {
+    fn open(
+        py: Python<'_>,
+        path: PathBuf,
+        games: Option<u32>,
+        seed: Option<u64>,
+    ) -> PyResult<SweepPlan> {
         let (games, seed) = games_and_seed(games, seed)?;
         let plan = py.detach(|| {
             let file = load_file::<Sweep>(&path)?;
-            Plan::new(&Sweep { games: games.unwrap_or(file.games), seed: seed.unwrap_or(file.seed), ..file })
+            Plan::new(&Sweep {
+                games: games.unwrap_or(file.games),
+                seed: seed.unwrap_or(file.seed),
+                ..file
+            })
         });
         plan.map(|plan| SweepPlan(Arc::new(plan))).map_err(refused)
     }
@@ -66,7 +76,13 @@ impl SweepPlan {
     }
 
     #[pyo3(signature = (begin, end, threads=1))]
-    fn lines(&self, py: Python<'_>, begin: usize, end: usize, threads: usize) -> PyResult<Vec<(String, String)>> {
+    fn lines(
+        &self,
+        py: Python<'_>,
+        begin: usize,
+        end: usize,
+        threads: usize,
+    ) -> PyResult<Vec<(String, String)>> {
         let (games, threads) = stretch((begin, end), self.0.games(), threads)?;
         py.detach(|| played(&self.0, games, threads))
     }
@@ -83,12 +99,19 @@ impl SweepPlan {
 impl SweepPlan {
     fn kept(&self, study: Result<Study, StudyError>) -> PyResult<SweepStudy> {
         let study = study.map_err(failed)?;
-        Ok(SweepStudy { plan: Arc::clone(&self.0), study: Mutex::new(study) })
+        Ok(SweepStudy {
+            plan: Arc::clone(&self.0),
+            study: Mutex::new(study),
+        })
     }
 }
 
 /// Plays games on other threads, while this one lets Python handle signals.
-fn played(plan: &Plan, games: Range<usize>, threads: NonZeroUsize) -> PyResult<Vec<(String, String)>> {
+fn played(
+    plan: &Plan,
+    games: Range<usize>,
+    threads: NonZeroUsize,
+) -> PyResult<Vec<(String, String)>> {
     signals::heeded(|stop| {
         let mut lines = Vec::with_capacity(games.len());
         let Ok(()) = sweep::play(plan, (games.start, games.end), threads, stop, |played| {
@@ -110,21 +133,33 @@ pub(crate) struct SweepStudy {
 impl SweepStudy {
     #[getter]
     fn done(&self) -> usize {
-        self.study.lock().unwrap_or_else(PoisonError::into_inner).done()
+        self.study
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .done()
     }
 
     fn add(&self, index: usize, game_line: &str, boat_lines: &str) -> PyResult<()> {
         let mut study = self.study.lock().unwrap_or_else(PoisonError::into_inner);
         if index != study.done() {
-            return Err(PyIndexError::new_err(format!("game is {index}, expected the next one, {}", study.done())));
+            return Err(PyIndexError::new_err(format!(
+                "game is {index}, expected the next one, {}",
+                study.done()
+            )));
         }
-        study.add_lines(index, game_line, boat_lines).map_err(failed)
+        study
+            .add_lines(index, game_line, boat_lines)
+            .map_err(failed)
     }
 
     fn report(&self, py: Python<'_>) -> PyResult<(String, usize)> {
         py.detach(|| {
-            let report =
-                self.study.lock().unwrap_or_else(PoisonError::into_inner).report(&self.plan).map_err(failed)?;
+            let report = self
+                .study
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner)
+                .report(&self.plan)
+                .map_err(failed)?;
             Ok((sweep::text(&report), report.failures.len()))
         })
     }
@@ -134,6 +169,8 @@ impl SweepStudy {
 fn failed(error: StudyError) -> PyErr {
     match error {
         StudyError::Io { .. } | StudyError::Table { .. } => PyOSError::new_err(error.to_string()),
-        StudyError::Exists { .. } | StudyError::Missing { .. } | StudyError::Other { .. } => refused(error),
+        StudyError::Exists { .. } | StudyError::Missing { .. } | StudyError::Other { .. } => {
+            refused(error)
+        }
     }
 }

@@ -20,19 +20,30 @@ pub(crate) struct TournamentPlan(Arc<Plan>);
 impl TournamentPlan {
     #[staticmethod]
     #[pyo3(signature = (path, games=None, seed=None))]
-    fn open(py: Python<'_>, path: PathBuf, games: Option<u32>, seed: Option<u64>) -> PyResult<TournamentPlan> {
+    fn open(
+        py: Python<'_>,
+        path: PathBuf,
+        games: Option<u32>,
+        seed: Option<u64>,
+    ) -> PyResult<TournamentPlan> {
         let (games, seed) = games_and_seed(games, seed)?;
         let plan = py.detach(|| {
             let file = load_file::<Tournament>(&path)?;
-            Plan::new(&Tournament { games: games.unwrap_or(file.games), seed: seed.unwrap_or(file.seed), ..file })
+            Plan::new(&Tournament {
+                games: games.unwrap_or(file.games),
+                seed: seed.unwrap_or(file.seed),
+                ..file
+            })
         });
-        plan.map(|plan| TournamentPlan(Arc::new(plan))).map_err(refused)
+        plan.map(|plan| TournamentPlan(Arc::new(plan)))
+            .map_err(refused)
     }
 
     #[staticmethod]
     fn unpack(py: Python<'_>, packed: PackedParts) -> PyResult<TournamentPlan> {
         let plan = py.detach(|| Plan::unpack(packed_of(packed)));
-        plan.map(|plan| TournamentPlan(Arc::new(plan))).map_err(refused)
+        plan.map(|plan| TournamentPlan(Arc::new(plan)))
+            .map_err(refused)
     }
 
     fn pack(&self) -> PackedParts {
@@ -55,21 +66,44 @@ impl TournamentPlan {
     }
 
     #[pyo3(signature = (begin, end, threads=1))]
-    fn records(&self, py: Python<'_>, begin: usize, end: usize, threads: usize) -> PyResult<Vec<String>> {
+    fn records(
+        &self,
+        py: Python<'_>,
+        begin: usize,
+        end: usize,
+        threads: usize,
+    ) -> PyResult<Vec<String>> {
         let (games, threads) = stretch((begin, end), self.0.games(), threads)?;
         py.detach(|| played(&self.0, games, threads))
     }
 
-    fn report(&self, py: Python<'_>, records: Vec<String>) -> PyResult<(String, String, String, usize)> {
+    fn report(
+        &self,
+        py: Python<'_>,
+        records: Vec<String>,
+    ) -> PyResult<(String, String, String, usize)> {
         py.detach(|| {
-            let records = records.iter().map(|record| serde_json::from_str(record)).collect::<Result<Vec<Record>, _>>();
-            let records = records.map_err(|error| refused(format!("a record cannot be read: {error}")))?;
-            if (0..records.len()).any(|i| i >= self.0.games() || records[i].of != self.0.match_at(i).0) {
-                return Err(PyIndexError::new_err("the records are not the tournament's first games, in their order"));
+            let records = records
+                .iter()
+                .map(|record| serde_json::from_str(record))
+                .collect::<Result<Vec<Record>, _>>();
+            let records =
+                records.map_err(|error| refused(format!("a record cannot be read: {error}")))?;
+            if (0..records.len())
+                .any(|i| i >= self.0.games() || records[i].of != self.0.match_at(i).0)
+            {
+                return Err(PyIndexError::new_err(
+                    "the records are not the tournament's first games, in their order",
+                ));
             }
             let report = Report::new(&self.0, &records);
             let json = serde_json::to_string_pretty(&report).expect("the report can be encoded");
-            Ok((text(&report, WIDTH), json + "\n", csv(&report), report.failures.len()))
+            Ok((
+                text(&report, WIDTH),
+                json + "\n",
+                csv(&report),
+                report.failures.len(),
+            ))
         })
     }
 }

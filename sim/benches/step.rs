@@ -1,6 +1,10 @@
 //! `World::step` in calm water with two, twenty and five hundred boats per side, and in a rough sea
 //! with all effects of sea and sensors.
-#![allow(clippy::print_stdout, clippy::disallowed_methods, reason = "a benchmark reads the clock and prints")]
+#![allow(
+    clippy::print_stdout,
+    clippy::disallowed_methods,
+    reason = "a benchmark reads the clock and prints"
+)]
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use messages::Order;
@@ -9,7 +13,9 @@ use sim::{State, World};
 use std::path::Path;
 
 fn shipped(game: &str) -> Scenario {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games").join(game);
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../scenarios/games")
+        .join(game);
     scenario::load(&path).unwrap_or_else(|e| panic!("{e}"))
 }
 
@@ -17,7 +23,12 @@ fn shipped(game: &str) -> Scenario {
 fn circling(world: &World, tick: u64) -> Vec<Order> {
     let count = world.state().boats.len();
     let heading_rad = |i: usize| (tick as f64 * 0.02 + i as f64) % 6.0 - 3.0;
-    (0..count).map(|i| Order::Steer { heading_rad: heading_rad(i), speed_m_s: 2.0 }).collect()
+    (0..count)
+        .map(|i| Order::Steer {
+            heading_rad: heading_rad(i),
+            speed_m_s: 2.0,
+        })
+        .collect()
 }
 
 /// Ticks between two readings of the sensors, as in games.
@@ -43,9 +54,11 @@ fn sail(world: &mut World, start: &State, orders: &mut Vec<Order>) -> usize {
 
 fn step(c: &mut Criterion) {
     let mut group = c.benchmark_group("world_step");
-    for (name, game) in
-        [("2v2", "pav01_vs_pav01.toml"), ("20v20", "swarm_20v20.toml"), ("500v500", "swarm_500v500.toml")]
-    {
+    for (name, game) in [
+        ("2v2", "pav01_vs_pav01.toml"),
+        ("20v20", "swarm_20v20.toml"),
+        ("500v500", "swarm_500v500.toml"),
+    ] {
         let mut world = World::of_game(&shipped(game), 1).unwrap_or_else(|e| panic!("{e}"));
         let start = world.state().clone();
         let mut orders = circling(&world, 0);
@@ -58,7 +71,9 @@ fn step(c: &mut Criterion) {
 /// In a fresh breeze with 64 wave components, gusts, a current and all sensors; then with flawed
 /// thrusters and a battery as well.
 fn rough(c: &mut Criterion) {
-    let afloat = shipped("pav01_afloat.toml").of_seed(1).unwrap_or_else(|e| panic!("{e}"));
+    let afloat = shipped("pav01_afloat.toml")
+        .of_seed(1)
+        .unwrap_or_else(|e| panic!("{e}"));
     let mut group = c.benchmark_group("world_step_rough");
     for (name, game, flawed) in [
         ("2v2", "pav01_vs_pav01.toml", false),
@@ -68,7 +83,10 @@ fn rough(c: &mut Criterion) {
     ] {
         let mut scenario = shipped(game);
         scenario.sea = afloat.sea.clone();
-        scenario.sea.current.mean_m_s = primitives::Ned { north: 0.1, east: 0.2 };
+        scenario.sea.current.mean_m_s = primitives::Ned {
+            north: 0.1,
+            east: 0.2,
+        };
         scenario.boats[0].sensors = afloat.boats[0].sensors.clone();
         if flawed {
             scenario.boats[0] = afloat.boats[0].clone();
@@ -96,7 +114,10 @@ fn rough(c: &mut Criterion) {
         }
         let per_tick_s = spent.as_secs_f64() / ticks as f64;
         let boat_seconds = boats as f64 * 0.05 / per_tick_s;
-        println!("{name}: {boat_seconds:.0} boat-seconds per CPU-second, {:.0} times real time", 0.05 / per_tick_s);
+        println!(
+            "{name}: {boat_seconds:.0} boat-seconds per CPU-second, {:.0} times real time",
+            0.05 / per_tick_s
+        );
     }
     group.finish();
 }

@@ -11,13 +11,24 @@ use std::path::Path;
 
 fn waves(components: u32) -> Waves {
     let spreading = Spreading::CosineSquared;
-    Waves { hs_m: 0.5, tp_s: 3.0, gamma: 3.3, from_rad: 0.6, spreading, components, drift_factor: 1.0 }
+    Waves {
+        hs_m: 0.5,
+        tp_s: 3.0,
+        gamma: 3.3,
+        from_rad: 0.6,
+        spreading,
+        components,
+        drift_factor: 1.0,
+    }
 }
 
 /// Poses all over a field, on all headings, as of a fleet.
 fn poses() -> Vec<Pose> {
     let pose = |i: u32| Pose {
-        at: Ned { north: f64::from(i * 37 % 160), east: f64::from(i * 53 % 80) },
+        at: Ned {
+            north: f64::from(i * 37 % 160),
+            east: f64::from(i * 53 % 80),
+        },
         psi_rad: f64::from(i) * 1.7 - 300.0,
     };
     (0..256).map(pose).collect()
@@ -33,7 +44,10 @@ fn one_boat(c: &mut Criterion) {
         let field = WaveField::new(&waves(components), None, 1);
         let hull = HullWaves::new(&field, boat, 1000.0);
         let response = WaveResponse::new(&field, boat);
-        let velocity_m_s = Ned { north: 1.0, east: 0.5 };
+        let velocity_m_s = Ned {
+            north: 1.0,
+            east: 0.5,
+        };
         let mut i = 0;
         let mut next = || {
             i = (i + 1) % poses.len();
@@ -63,17 +77,37 @@ fn one_boat(c: &mut Criterion) {
         let hull = HullWaves::new(&field, boat, 1000.0);
         let response = WaveResponse::new(&field, boat);
         let mut i = 0;
-        group.bench_function(BenchmarkId::new("hull_and_response_64", format!("{set:?}")), |b| {
-            b.iter(|| {
-                i = (i + 1) % poses.len();
-                let pose = black_box(poses[i]);
-                let time_s = black_box(3000.0 + 0.05 * i as f64);
-                (hull.at(pose, time_s), response.at(pose, Ned { north: 1.0, east: 0.5 }, 0.1, time_s))
-            });
-        });
+        group.bench_function(
+            BenchmarkId::new("hull_and_response_64", format!("{set:?}")),
+            |b| {
+                b.iter(|| {
+                    i = (i + 1) % poses.len();
+                    let pose = black_box(poses[i]);
+                    let time_s = black_box(3000.0 + 0.05 * i as f64);
+                    (
+                        hull.at(pose, time_s),
+                        response.at(
+                            pose,
+                            Ned {
+                                north: 1.0,
+                                east: 0.5,
+                            },
+                            0.1,
+                            time_s,
+                        ),
+                    )
+                });
+            },
+        );
     }
     group.bench_function("start_64", |b| {
-        b.iter(|| HullWaves::new(&WaveField::new(black_box(&waves(64)), None, 1), boat, 1000.0));
+        b.iter(|| {
+            HullWaves::new(
+                &WaveField::new(black_box(&waves(64)), None, 1),
+                boat,
+                1000.0,
+            )
+        });
     });
     group.finish();
 }

@@ -39,7 +39,9 @@ pub fn afloat(scenario: &Scenario, seed: u64, names: &[String]) -> Result<Scenar
     for (vehicle, pose) in water.vehicles.iter_mut().zip(poses) {
         (vehicle.start_position, vehicle.source) = (StartPosition::At(pose), Source::Simulated);
     }
-    water.vehicles.retain(|vehicle| names.contains(&vehicle.name));
+    water
+        .vehicles
+        .retain(|vehicle| names.contains(&vehicle.name));
     water.name = format!("{}_afloat", scenario.name);
     // The game's own link already delays the agents' messages; they must not be delayed twice.
     water.link = None;
@@ -72,29 +74,53 @@ mod tests {
     use std::path::Path;
 
     fn game(name: &str) -> Scenario {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../scenarios/games/{name}.toml"));
+        let path =
+            Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../scenarios/games/{name}.toml"));
         scenario::load(&path).unwrap_or_else(|problems| panic!("{problems}"))
     }
 
     #[test]
     fn boats_start_where_the_game_has_them_and_sail_alike() {
-        let whole = Scenario { rules: without_consequences(&game("pav01_afloat").rules), ..game("pav01_afloat") };
+        let whole = Scenario {
+            rules: without_consequences(&game("pav01_afloat").rules),
+            ..game("pav01_afloat")
+        };
         let names = ["blue_one".to_owned(), "red_one".to_owned()];
-        let mut alone = Contest::new(&afloat(&whole, 7, &names).unwrap_or_else(|e| panic!("{e}")), 7)
-            .unwrap_or_else(|e| panic!("{e}"));
-        let mut all = Contest::new(&Scenario { link: None, ..whole.of_seed(7).unwrap_or_else(|e| panic!("{e}")) }, 7)
-            .unwrap_or_else(|e| panic!("{e}"));
+        let mut alone = Contest::new(
+            &afloat(&whole, 7, &names).unwrap_or_else(|e| panic!("{e}")),
+            7,
+        )
+        .unwrap_or_else(|e| panic!("{e}"));
+        let mut all = Contest::new(
+            &Scenario {
+                link: None,
+                ..whole.of_seed(7).unwrap_or_else(|e| panic!("{e}"))
+            },
+            7,
+        )
+        .unwrap_or_else(|e| panic!("{e}"));
         for contest in [&mut alone, &mut all] {
-            let blue = contest.scenario().vehicle_by_name("blue_one").expect("the boat is in the game");
+            let blue = contest
+                .scenario()
+                .vehicle_by_name("blue_one")
+                .expect("the boat is in the game");
             for _ in 0..100 {
-                let east = Order::Steer { heading_rad: 1.0, speed_m_s: 1.5 };
-                contest.order(blue, east, contest.now()).expect("the order is valid");
+                let east = Order::Steer {
+                    heading_rad: 1.0,
+                    speed_m_s: 1.5,
+                };
+                contest
+                    .order(blue, east, contest.now())
+                    .expect("the order is valid");
                 contest.advance();
             }
         }
         for name in &names {
             let pose = |contest: &Contest| {
-                let vehicle = contest.scenario().vehicle_by_name(name).expect("the boat is in the game");
+                let vehicle = contest
+                    .scenario()
+                    .vehicle_by_name(name)
+                    .expect("the boat is in the game");
                 contest.world().state().boats[vehicle.index()].pose
             };
             assert_eq!(pose(&alone), pose(&all), "{name}");
@@ -103,7 +129,13 @@ mod tests {
 
     #[test]
     fn a_boat_that_is_not_in_the_game_is_refused() {
-        let error = afloat(&game("mixed_2v2"), 1, &["green_one".to_owned()]).expect_err("the boat is not in the game");
-        assert!(error.to_string().contains("\"green_one\"; there are blue_one, blue_two, red_one, red_two"), "{error}");
+        let error = afloat(&game("mixed_2v2"), 1, &["green_one".to_owned()])
+            .expect_err("the boat is not in the game");
+        assert!(
+            error
+                .to_string()
+                .contains("\"green_one\"; there are blue_one, blue_two, red_one, red_two"),
+            "{error}"
+        );
     }
 }

@@ -58,7 +58,9 @@ impl AutopilotModel {
         let error_m_s = wanted_m_s - nu.surge;
         // Feed-forward first: the loop only corrects errors in the calibrated resistance, so a new
         // order need not wait for the integral.
-        let surge = hull.surge_resistance_newton(wanted_m_s) + self.surge_per_m_s * error_m_s + *integral_newton;
+        let surge = hull.surge_resistance_newton(wanted_m_s)
+            + self.surge_per_m_s * error_m_s
+            + *integral_newton;
         let yaw = self.yaw_per_rad * turn_rad - self.yaw_per_rad_s * nu.yaw;
 
         // Yaw first; surge gets the rest of the range.
@@ -71,6 +73,9 @@ impl AutopilotModel {
         if each == 0.5 * surge {
             *integral_newton += self.surge_integral * error_m_s;
         }
-        [thruster.setting(each + difference), thruster.setting(each - difference)]
+        [
+            thruster.setting(each + difference),
+            thruster.setting(each - difference),
+        ]
     }
 }

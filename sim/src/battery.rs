@@ -50,8 +50,13 @@ impl BatteryModel {
 mod tests {
     use super::*;
 
-    const BATTERY: Battery =
-        Battery { capacity_joule: 36_000.0, charge: 0.8, full_power_watt: 720.0, hotel_power_watt: 36.0, sag: 0.15 };
+    const BATTERY: Battery = Battery {
+        capacity_joule: 36_000.0,
+        charge: 0.8,
+        full_power_watt: 720.0,
+        hotel_power_watt: 36.0,
+        sag: 0.15,
+    };
 
     fn charge_after(shares: [f64; 2], seconds: u32) -> f64 {
         let model = BatteryModel::new(&BATTERY, 0.05);

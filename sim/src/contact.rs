@@ -16,8 +16,8 @@ use primitives::math;
 use primitives::near::Pair;
 use rapier2d_f64::parry::query;
 use rapier2d_f64::prelude::{
-    ColliderBuilder, Group, InteractionGroups, InteractionTestMode, MassProperties, PhysicsWorld, Pose,
-    RigidBodyBuilder, RigidBodyHandle, Rot2, SharedShape, Vector,
+    ColliderBuilder, Group, InteractionGroups, InteractionTestMode, MassProperties, PhysicsWorld,
+    Pose, RigidBodyBuilder, RigidBodyHandle, Rot2, SharedShape, Vector,
 };
 use rules::field::{Field, Obstacle, Walls};
 
@@ -135,11 +135,19 @@ impl ContactModel {
             // more round than square.
             let radius = 0.5 * beam_m.min(length_m);
             let capsule = SharedShape::capsule_x(0.5 * length_m - radius, radius);
-            HullShape { capsule, half_length_m: 0.5 * length_m }
+            HullShape {
+                capsule,
+                half_length_m: 0.5 * length_m,
+            }
         };
         let mut fixed: Vec<Fixed> = field.plan.obstacles.iter().map(fixed_obstacle).collect();
         if field.plan.walls == Walls::AllRound {
-            let inward = [field.along, field.across.scaled(-1.0), field.along.scaled(-1.0), field.across];
+            let inward = [
+                field.along,
+                field.across.scaled(-1.0),
+                field.along.scaled(-1.0),
+                field.across,
+            ];
             for (i, inward) in inward.into_iter().enumerate() {
                 fixed.push(wall(field.corners[i], field.corners[(i + 1) % 4], inward));
             }
@@ -149,7 +157,14 @@ impl ContactModel {
         let look_ahead_m = CLOSING_MAX_M_S * dt_s;
         let hulls = hulls.map(hull).collect();
         let close_m = look_ahead_m + SPARE_M;
-        ContactModel { hulls, fixed, hulls_are_solid, dt_s, look_ahead_m, close_m }
+        ContactModel {
+            hulls,
+            fixed,
+            hulls_are_solid,
+            dt_s,
+            look_ahead_m,
+            close_m,
+        }
     }
 
     /// Passes hulls closer than `close_m` to rapier, possibly more than necessary. The results must
@@ -161,7 +176,12 @@ impl ContactModel {
 
     /// The largest distance at which two boats may touch in the next tick, m.
     pub fn reach_m(&self) -> f64 {
-        2.0 * self.hulls.iter().map(|hull| hull.half_length_m).fold(0.0, f64::max) + self.close_m
+        2.0 * self
+            .hulls
+            .iter()
+            .map(|hull| hull.half_length_m)
+            .fold(0.0, f64::max)
+            + self.close_m
     }
 
     /// Resolves all contacts of a tick. `near` are the pairs that were within
@@ -173,7 +193,11 @@ impl ContactModel {
         }
         // In vehicle order, each boat once, with the direction of its nearest neighbour: other
         // boats passed to rapier must not matter.
-        touches.sort_by(|a, b| a.boat.cmp(&b.boat).then(a.distance_m.total_cmp(&b.distance_m)));
+        touches.sort_by(|a, b| {
+            a.boat
+                .cmp(&b.boat)
+                .then(a.distance_m.total_cmp(&b.distance_m))
+        });
         touches.dedup_by_key(|touch| touch.boat);
         self.hand_to_rapier(models, displacements, &touches);
     }
@@ -186,30 +210,52 @@ impl ContactModel {
             let b = usize::from(pair.b);
             let kind_a = displacements[a].kind;
             let kind_b = displacements[b].kind;
-            let reach_m = self.hulls[kind_a].half_length_m + self.hulls[kind_b].half_length_m + self.close_m;
+            let reach_m =
+                self.hulls[kind_a].half_length_m + self.hulls[kind_b].half_length_m + self.close_m;
             if pair.distance_squared > reach_m * reach_m {
                 continue;
             }
             let shape_a = &self.hulls[kind_a].capsule;
             let shape_b = &self.hulls[kind_b].capsule;
-            if let Some((distance_m, normal)) =
-                self.close(&displacements[a], shape_a, displacements[b].start(), shape_b)
-            {
+            if let Some((distance_m, normal)) = self.close(
+                &displacements[a],
+                shape_a,
+                displacements[b].start(),
+                shape_b,
+            ) {
                 // Only the axis counts, not its sign: the mass along a line is the same both ways.
-                touches.push(Touch { boat: a, distance_m, normal });
-                touches.push(Touch { boat: b, distance_m, normal });
+                touches.push(Touch {
+                    boat: a,
+                    distance_m,
+                    normal,
+                });
+                touches.push(Touch {
+                    boat: b,
+                    distance_m,
+                    normal,
+                });
             }
         }
         if self.fixed.is_empty() {
             return touches;
         }
         for (boat, displacement) in displacements.iter().enumerate() {
-            let HullShape { capsule, half_length_m } = &self.hulls[displacement.kind];
-            let beside =
-                self.fixed.iter().filter(|fixed| fixed.is_beside(displacement.from.at, half_length_m + self.close_m));
+            let HullShape {
+                capsule,
+                half_length_m,
+            } = &self.hulls[displacement.kind];
+            let beside = self.fixed.iter().filter(|fixed| {
+                fixed.is_beside(displacement.from.at, half_length_m + self.close_m)
+            });
             for fixed in beside {
-                if let Some((distance_m, normal)) = self.close(displacement, capsule, fixed.pose, &fixed.shape) {
-                    touches.push(Touch { boat, distance_m, normal });
+                if let Some((distance_m, normal)) =
+                    self.close(displacement, capsule, fixed.pose, &fixed.shape)
+                {
+                    touches.push(Touch {
+                        boat,
+                        distance_m,
+                        normal,
+                    });
                 }
             }
         }
@@ -224,24 +270,46 @@ impl ContactModel {
         other_pose: Pose,
         other: &SharedShape,
     ) -> Option<(f64, Vector)> {
-        let found = query::contact(&displacement.start(), &**hull, &other_pose, &**other, self.close_m);
-        found.ok().flatten().map(|contact| (contact.dist, contact.normal1))
+        let found = query::contact(
+            &displacement.start(),
+            &**hull,
+            &other_pose,
+            &**other,
+            self.close_m,
+        );
+        found
+            .ok()
+            .flatten()
+            .map(|contact| (contact.dist, contact.normal1))
     }
 
-    fn hand_to_rapier(&self, models: &[HullModel], displacements: &mut [Displacement], touches: &[Touch]) {
+    fn hand_to_rapier(
+        &self,
+        models: &[HullModel],
+        displacements: &mut [Displacement],
+        touches: &[Touch],
+    ) {
         // Rebuilding the world loses warm starting, which only boats that pile up would need.
         let mut world = PhysicsWorld::new();
         world.gravity = Vector::ZERO;
         world.integration_parameters.dt = self.dt_s;
         world.integration_parameters.normalized_prediction_distance = self.look_ahead_m;
         for fixed in &self.fixed {
-            let reach_m = |displacement: &Displacement| self.hulls[displacement.kind].half_length_m + self.close_m;
-            if touches.iter().any(|t| fixed.is_beside(displacements[t.boat].from.at, reach_m(&displacements[t.boat]))) {
+            let reach_m = |displacement: &Displacement| {
+                self.hulls[displacement.kind].half_length_m + self.close_m
+            };
+            if touches.iter().any(|t| {
+                fixed.is_beside(
+                    displacements[t.boat].from.at,
+                    reach_m(&displacements[t.boat]),
+                )
+            }) {
                 let collider = ColliderBuilder::new(fixed.shape.clone()).position(fixed.pose);
                 world.insert_collider(collider.friction(FRICTION).restitution(RESTITUTION), None);
             }
         }
-        let enter = |touch: &Touch| self.enter(&mut world, models, touch, &displacements[touch.boat]);
+        let enter =
+            |touch: &Touch| self.enter(&mut world, models, touch, &displacements[touch.boat]);
         let entries: Vec<Entry> = touches.iter().map(enter).collect();
         world.step();
         for entry in &entries {
@@ -252,7 +320,11 @@ impl ContactModel {
 
     /// The collision groups of hulls: fixed shapes and, if solid, other hulls.
     fn met_by_hulls(&self) -> InteractionGroups {
-        let met = if self.hulls_are_solid { Group::ALL } else { Group::ALL - HULLS };
+        let met = if self.hulls_are_solid {
+            Group::ALL
+        } else {
+            Group::ALL - HULLS
+        };
         InteractionGroups::new(HULLS, met, InteractionTestMode::And)
     }
 
@@ -268,7 +340,13 @@ impl ContactModel {
         let moved = displacement.to.at - displacement.from.at;
         let velocity = vector(moved) / self.dt_s;
         let spin_rad_s = wrap_pi(displacement.to.psi_rad - displacement.from.psi_rad) / self.dt_s;
-        let normal = frame::body_from_ned(displacement.rotation, Ned { north: touch.normal.x, east: touch.normal.y });
+        let normal = frame::body_from_ned(
+            displacement.rotation,
+            Ned {
+                north: touch.normal.x,
+                east: touch.normal.y,
+            },
+        );
         // Rapier has one mass for all directions. It gets the mass with which the hull responds to
         // a push along this contact's normal, 1 / (n_u²/m_u + n_v²/m_v).
         let mass_kg = model.mass_along_kg(normal.ahead, normal.starboard);
@@ -293,7 +371,13 @@ impl ContactModel {
             .restitution(RESTITUTION)
             .collision_groups(self.met_by_hulls());
         let (body, _) = world.insert(body, collider);
-        Entry { boat: touch.boat, body, mass_kg, velocity, spin_rad_s }
+        Entry {
+            boat: touch.boat,
+            body,
+            mass_kg,
+            velocity,
+            spin_rad_s,
+        }
     }
 }
 
@@ -317,7 +401,13 @@ fn vector(ned: Ned) -> Vector {
 }
 
 fn pose(at: Ned, rotation: Rotation) -> Pose {
-    Pose::from_parts(vector(at), Rot2 { re: rotation.cos, im: rotation.sin })
+    Pose::from_parts(
+        vector(at),
+        Rot2 {
+            re: rotation.cos,
+            im: rotation.sin,
+        },
+    )
 }
 
 fn fixed_obstacle(obstacle: &Obstacle) -> Fixed {
@@ -332,9 +422,15 @@ fn fixed_obstacle(obstacle: &Obstacle) -> Fixed {
             let first = corners[0];
             let count = corners.len() as u32;
             let sides = (0..count).map(|i| [i, (i + 1) % count]).collect();
-            let radius_m = corners.iter().map(|corner| corner.distance(first)).fold(0.0, f64::max);
+            let radius_m = corners
+                .iter()
+                .map(|corner| corner.distance(first))
+                .fold(0.0, f64::max);
             Fixed {
-                shape: SharedShape::polyline(corners.iter().map(|corner| vector(*corner)).collect(), Some(sides)),
+                shape: SharedShape::polyline(
+                    corners.iter().map(|corner| vector(*corner)).collect(),
+                    Some(sides),
+                ),
                 pose: Pose::IDENTITY,
                 bounds: Bounds::Circle(first, radius_m),
             }
@@ -349,7 +445,13 @@ fn wall(from: Ned, to: Ned, inward: Ned) -> Fixed {
     let middle = from + (to - from).scaled(0.5);
     Fixed {
         shape: SharedShape::cuboid(half_thickness_m, 0.5 * from.distance(to) + WALL_M),
-        pose: pose(middle - inward.scaled(half_thickness_m), Rotation { sin: inward.east, cos: inward.north }),
+        pose: pose(
+            middle - inward.scaled(half_thickness_m),
+            Rotation {
+                sin: inward.east,
+                cos: inward.north,
+            },
+        ),
         bounds: Bounds::Behind(from, inward),
     }
 }
@@ -362,21 +464,37 @@ fn wall(from: Ned, to: Ned, inward: Ned) -> Fixed {
 fn leave(world: &PhysicsWorld, entry: &Entry, model: &HullModel, displacement: &mut Displacement) {
     let body = &world.bodies[entry.body];
     let mut colliders = body.colliders().iter();
-    let touched =
-        colliders.any(|c| world.narrow_phase.contact_pairs_with(*c).any(|pair| pair.has_any_active_contact()));
+    let touched = colliders.any(|c| {
+        world
+            .narrow_phase
+            .contact_pairs_with(*c)
+            .any(|pair| pair.has_any_active_contact())
+    });
     // A boat without contact keeps our own motion to the last bit, not rapier's integration of it.
     if !touched || displacement.role != ContactRole::Dynamic {
         return;
     }
     let at = body.translation();
     let rotation = body.rotation();
-    displacement.to.at = Ned { north: at.x, east: at.y };
+    displacement.to.at = Ned {
+        north: at.x,
+        east: at.y,
+    };
     displacement.to.psi_rad = math::atan2(rotation.im, rotation.re);
     // Not rapier's sine and cosine, because a snapshot contains only the angle.
     displacement.rotation_to = displacement.to.rotation();
     let impulse = (body.linvel() - entry.velocity) * entry.mass_kg;
-    let impulse = frame::body_from_ned(displacement.rotation, Ned { north: impulse.x, east: impulse.y });
+    let impulse = frame::body_from_ned(
+        displacement.rotation,
+        Ned {
+            north: impulse.x,
+            east: impulse.y,
+        },
+    );
     let twist = (body.angvel() - entry.spin_rad_s) * model.m_yaw;
-    displacement.velocity_change =
-        model.velocity_change(Planar { surge: impulse.ahead, sway: impulse.starboard, yaw: twist });
+    displacement.velocity_change = model.velocity_change(Planar {
+        surge: impulse.ahead,
+        sway: impulse.starboard,
+        yaw: twist,
+    });
 }

@@ -37,7 +37,9 @@ pub enum BadReport {
     #[error("the vehicle is simulated: only real boats report")]
     Simulated,
     /// A number is outside its plausible range.
-    #[error("a number is non-finite or implausible (limits: position 1000 km, speed 30 m/s, yaw rate 2π rad/s)")]
+    #[error(
+        "a number is non-finite or implausible (limits: position 1000 km, speed 30 m/s, yaw rate 2π rad/s)"
+    )]
     BadNumber,
 }
 
@@ -73,19 +75,34 @@ impl Track {
     pub(crate) fn estimate(&self, now: SimTime) -> Option<(Pose, Planar)> {
         let Fix { nav, at } = self.fix?;
         let since = now - at;
-        let nu = Planar { surge: nav.surge_m_s, sway: nav.sway_m_s, yaw: nav.yaw_rate_rad_s };
+        let nu = Planar {
+            surge: nav.surge_m_s,
+            sway: nav.sway_m_s,
+            yaw: nav.yaw_rate_rad_s,
+        };
         // A fix may be later than the world's tick; this extrapolates back a little. After a second
         // the boat is assumed to rest where it is.
         let span = since.clamp(SimTime::ZERO - DEAD_RECKONING_MAX, DEAD_RECKONING_MAX);
         let pose = dead_reckoned(nav.pose(), nu, span.as_s());
-        Some((pose, if since < DEAD_RECKONING_MAX { nu } else { Planar::default() }))
+        Some((
+            pose,
+            if since < DEAD_RECKONING_MAX {
+                nu
+            } else {
+                Planar::default()
+            },
+        ))
     }
 
     /// The event that the boat is lost or back, once each.
     pub(crate) fn event(&mut self, vehicle: VehicleId, now: SimTime) -> Option<Event> {
         let is_lost = self.is_lost(now);
         let was_lost = std::mem::replace(&mut self.reported_lost, is_lost);
-        (is_lost != was_lost).then_some(if is_lost { Event::NavLost(vehicle) } else { Event::NavBack(vehicle) })
+        (is_lost != was_lost).then_some(if is_lost {
+            Event::NavLost(vehicle)
+        } else {
+            Event::NavBack(vehicle)
+        })
     }
 
     /// Replaces the world's estimate with the boat's own fix.
@@ -109,7 +126,10 @@ pub(crate) fn dead_reckoned(from: Pose, nu: Planar, span_s: f64) -> Pose {
         math::sin_cos(half_turn_rad).0 / half_turn_rad
     };
     let velocity = nu.in_ned(Rotation::from_heading(from.psi_rad + half_turn_rad));
-    Pose { at: from.at + velocity.scaled(chord * span_s), psi_rad: wrap_pi(from.psi_rad + 2.0 * half_turn_rad) }
+    Pose {
+        at: from.at + velocity.scaled(chord * span_s),
+        psi_rad: wrap_pi(from.psi_rad + 2.0 * half_turn_rad),
+    }
 }
 
 /// The navigation with its heading within ±π, if all numbers are plausible.
@@ -122,7 +142,14 @@ pub(crate) fn sound(nav: Nav) -> Result<Nav, BadReport> {
         && nav.psi_rad.abs() <= 1e3
         && nav.speed_m_s() <= ABSURD_M_S
         && nav.yaw_rate_rad_s.abs() <= ABSURD_RAD_S;
-    if is_sound { Ok(Nav { psi_rad: wrap_pi(nav.psi_rad), ..nav }) } else { Err(BadReport::BadNumber) }
+    if is_sound {
+        Ok(Nav {
+            psi_rad: wrap_pi(nav.psi_rad),
+            ..nav
+        })
+    } else {
+        Err(BadReport::BadNumber)
+    }
 }
 
 #[cfg(test)]
@@ -132,17 +159,33 @@ mod tests {
 
     #[test]
     fn a_boat_that_goes_on_turning_sails_round_a_circle() {
-        let from = Pose { at: Ned { north: 3.0, east: -4.0 }, psi_rad: 0.7 };
-        let nu = Planar { surge: 2.0, sway: -0.5, yaw: 0.4 };
+        let from = Pose {
+            at: Ned {
+                north: 3.0,
+                east: -4.0,
+            },
+            psi_rad: 0.7,
+        };
+        let nu = Planar {
+            surge: 2.0,
+            sway: -0.5,
+            yaw: 0.4,
+        };
         let once_round_s = std::f64::consts::TAU / nu.yaw;
         let back = dead_reckoned(from, nu, once_round_s);
-        assert!(back.at.distance(from.at) < 1e-9 && (back.psi_rad - from.psi_rad).abs() < 1e-9, "{back:?}");
+        assert!(
+            back.at.distance(from.at) < 1e-9 && (back.psi_rad - from.psi_rad).abs() < 1e-9,
+            "{back:?}"
+        );
         // Many steps reach the same place as one, and backward steps return.
         for yaw in [0.4, 0.0, 1e-6, -3.0] {
             let nu = Planar { yaw, ..nu };
             let stepped = (0..20).fold(from, |pose, _| dead_reckoned(pose, nu, 0.05));
             let at_once = dead_reckoned(from, nu, 1.0);
-            assert!(stepped.at.distance(at_once.at) < 1e-9, "{stepped:?} {at_once:?}");
+            assert!(
+                stepped.at.distance(at_once.at) < 1e-9,
+                "{stepped:?} {at_once:?}"
+            );
             assert!(wrap_pi(stepped.psi_rad - at_once.psi_rad).abs() < 1e-9);
             assert!(dead_reckoned(at_once, nu, -1.0).at.distance(from.at) < 1e-9);
         }
@@ -150,17 +193,52 @@ mod tests {
 
     #[test]
     fn numbers_that_no_boat_has_are_refused() {
-        let good = Nav { north_m: 5.0, psi_rad: 7.0, surge_m_s: -1.0, ..Nav::default() };
-        assert_eq!(sound(good), Ok(Nav { psi_rad: wrap_pi(7.0), ..good }));
+        let good = Nav {
+            north_m: 5.0,
+            psi_rad: 7.0,
+            surge_m_s: -1.0,
+            ..Nav::default()
+        };
+        assert_eq!(
+            sound(good),
+            Ok(Nav {
+                psi_rad: wrap_pi(7.0),
+                ..good
+            })
+        );
         for bad in [
-            Nav { north_m: f64::NAN, ..good },
-            Nav { east_m: f64::INFINITY, ..good },
-            Nav { east_m: -1.1e6, ..good },
-            Nav { psi_rad: f64::NAN, ..good },
-            Nav { psi_rad: 1e4, ..good },
-            Nav { surge_m_s: 40.0, ..good },
-            Nav { sway_m_s: f64::NAN, ..good },
-            Nav { yaw_rate_rad_s: -7.0, ..good },
+            Nav {
+                north_m: f64::NAN,
+                ..good
+            },
+            Nav {
+                east_m: f64::INFINITY,
+                ..good
+            },
+            Nav {
+                east_m: -1.1e6,
+                ..good
+            },
+            Nav {
+                psi_rad: f64::NAN,
+                ..good
+            },
+            Nav {
+                psi_rad: 1e4,
+                ..good
+            },
+            Nav {
+                surge_m_s: 40.0,
+                ..good
+            },
+            Nav {
+                sway_m_s: f64::NAN,
+                ..good
+            },
+            Nav {
+                yaw_rate_rad_s: -7.0,
+                ..good
+            },
         ] {
             assert_eq!(sound(bad), Err(BadReport::BadNumber), "{bad:?}");
         }

@@ -35,7 +35,11 @@ impl FlawModel {
     /// The model of `flaws` for ticks of `dt_s`; `None` if there are none.
     pub(crate) fn new(flaws: &Flaws, dt_s: f64) -> Option<FlawModel> {
         // The watchdog is not part of the thrusters: it acts where orders arrive.
-        if (Flaws { watchdog_s: None, ..flaws.clone() }) == Flaws::default() {
+        if (Flaws {
+            watchdog_s: None,
+            ..flaws.clone()
+        }) == Flaws::default()
+        {
             // Perfect thrusters have no model, so that the common case costs nothing.
             return None;
         }
@@ -45,7 +49,10 @@ impl FlawModel {
             gain: [gain(flaws.gain.0), gain(flaws.gain.1)],
             bias_newton_m: flaws.bias_newton_m,
             latency_ticks: (flaws.latency_s / dt_s).round() as usize,
-            battery: flaws.battery.as_ref().map(|battery| BatteryModel::new(battery, dt_s)),
+            battery: flaws
+                .battery
+                .as_ref()
+                .map(|battery| BatteryModel::new(battery, dt_s)),
             ventilation: flaws.ventilation,
         })
     }
@@ -68,8 +75,13 @@ impl FlawModel {
     /// above the propellers.
     #[inline]
     pub(crate) fn thrust_factors(&self, state: &FlawState, water_above_m: [f64; 2]) -> [f64; 2] {
-        let battery = self.battery.map_or(1.0, |battery| battery.thrust_factor(state.charge));
-        let wet = |above_m: f64| self.ventilation.map_or(1.0, |ventilation| wetness(ventilation, above_m));
+        let battery = self
+            .battery
+            .map_or(1.0, |battery| battery.thrust_factor(state.charge));
+        let wet = |above_m: f64| {
+            self.ventilation
+                .map_or(1.0, |ventilation| wetness(ventilation, above_m))
+        };
         water_above_m.map(|above_m| battery * wet(above_m))
     }
 }
@@ -77,7 +89,9 @@ impl FlawModel {
 impl FlawState {
     /// Replaces all settings in transit to one thruster.
     pub(crate) fn replace_under_way(&mut self, side: usize, setting: f64) {
-        self.under_way.iter_mut().for_each(|settings| settings[side] = setting);
+        self.under_way
+            .iter_mut()
+            .for_each(|settings| settings[side] = setting);
     }
 
     /// Sends `settings`. Returns those that arrive.
@@ -105,27 +119,64 @@ mod tests {
     #[test]
     fn perfect_thrusters_have_no_flaw_model_and_a_watchdog_makes_none() {
         assert!(FlawModel::new(&Flaws::default(), 0.05).is_none());
-        assert!(FlawModel::new(&Flaws { watchdog_s: Some(1.0), ..Flaws::default() }, 0.05).is_none());
-        assert!(FlawModel::new(&Flaws { latency_s: 0.1, ..Flaws::default() }, 0.05).is_some());
+        assert!(
+            FlawModel::new(
+                &Flaws {
+                    watchdog_s: Some(1.0),
+                    ..Flaws::default()
+                },
+                0.05
+            )
+            .is_none()
+        );
+        assert!(
+            FlawModel::new(
+                &Flaws {
+                    latency_s: 0.1,
+                    ..Flaws::default()
+                },
+                0.05
+            )
+            .is_some()
+        );
     }
 
     #[test]
     fn a_propeller_loses_thrust_below_half_its_depth_of_water() {
         let ventilation = Ventilation { depth_m: 0.2 };
-        for (above_m, want) in [(0.5, 1.0), (0.2, 1.0), (0.1, 1.0), (0.05, 0.5), (0.02, 0.2), (0.0, 0.0), (-0.3, 0.0)] {
+        for (above_m, want) in [
+            (0.5, 1.0),
+            (0.2, 1.0),
+            (0.1, 1.0),
+            (0.05, 0.5),
+            (0.02, 0.2),
+            (0.0, 0.0),
+            (-0.3, 0.0),
+        ] {
             let got = wetness(ventilation, above_m);
-            assert!((got - want).abs() < 1e-15, "{above_m} m: {got}, want {want}");
+            assert!(
+                (got - want).abs() < 1e-15,
+                "{above_m} m: {got}, want {want}"
+            );
         }
     }
 
     #[test]
     fn settings_arrive_after_as_many_ticks_as_the_latency_has() {
         for (latency_s, ticks) in [(0.0, 0), (0.05, 1), (0.15, 3), (0.14, 3), (1.0, 20)] {
-            let flaws = Flaws { latency_s, saturation: 0.9, ..Flaws::default() };
+            let flaws = Flaws {
+                latency_s,
+                saturation: 0.9,
+                ..Flaws::default()
+            };
             let mut state = FlawModel::new(&flaws, 0.05).unwrap().start();
             for tick in 0..50 {
                 let arrived = state.pass([f64::from(tick) + 1.0, 0.0])[0];
-                assert_eq!(arrived, f64::from((tick + 1 - ticks).max(0)), "{latency_s} s, tick {tick}");
+                assert_eq!(
+                    arrived,
+                    f64::from((tick + 1 - ticks).max(0)),
+                    "{latency_s} s, tick {tick}"
+                );
             }
         }
     }

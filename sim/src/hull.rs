@@ -41,7 +41,13 @@ impl Planar {
     /// Surge and sway velocity in the field's frame, for a boat with this rotation.
     #[inline]
     pub fn in_ned(self, rotation: Rotation) -> Ned {
-        ned_from_body(rotation, Body { ahead: self.surge, starboard: self.sway })
+        ned_from_body(
+            rotation,
+            Body {
+                ahead: self.surge,
+                starboard: self.sway,
+            },
+        )
     }
 }
 
@@ -90,12 +96,16 @@ impl HullModel {
             // spins on its own from 1.2 m/s on. Scaling the moment alone would create energy. The
             // factor therefore modifies A22 everywhere in the Coriolis terms, which stay
             // skew-symmetric.
-            munk_sway: hull.added_surge_kg + hull.munk_factor * (hull.added_sway_kg - hull.added_surge_kg),
+            munk_sway: hull.added_surge_kg
+                + hull.munk_factor * (hull.added_sway_kg - hull.added_surge_kg),
             inverse_surge: 1.0 / m_surge,
             inverse_sway: m_yaw / determinant,
             inverse_cross: -m_cross / determinant,
             inverse_yaw: m_sway / determinant,
-            crossflow: 0.5 * water_density_kg_m3 * hull.crossflow_coefficient * hull.crossflow_draught_m,
+            crossflow: 0.5
+                * water_density_kg_m3
+                * hull.crossflow_coefficient
+                * hull.crossflow_draught_m,
             hull: hull.clone(),
         }
     }
@@ -122,8 +132,13 @@ impl HullModel {
 
     /// Kinetic energy of hull and added mass, J.
     pub fn energy_joule(&self, nu_r: Planar) -> f64 {
-        let Planar { surge: u, sway: v, yaw: r } = nu_r;
-        0.5 * (self.m_surge * u * u + self.m_sway * v * v + self.m_yaw * r * r) + self.m_cross * v * r
+        let Planar {
+            surge: u,
+            sway: v,
+            yaw: r,
+        } = nu_r;
+        0.5 * (self.m_surge * u * u + self.m_sway * v * v + self.m_yaw * r * r)
+            + self.m_cross * v * r
     }
 
     /// The effective mass for a push along a unit vector in body axes (`ahead`, `starboard`), kg.

@@ -76,7 +76,8 @@ impl Loop {
         // As in PIDEngine, the first step has no derivative kick.
         let rate = self.error.map_or(0.0, |before| (error - before) / dt_s);
         self.error = Some(error);
-        self.integral = (self.integral + gains.i * error * dt_s).clamp(-gains.i_limit, gains.i_limit);
+        self.integral =
+            (self.integral + gains.i * error * dt_s).clamp(-gains.i_limit, gains.i_limit);
         (gains.p * error + gains.d * rate + self.integral).clamp(-limit, limit)
     }
 }
@@ -84,13 +85,19 @@ impl Loop {
 impl KinematicState {
     /// A boat at rest with this heading.
     pub fn at_rest(psi_rad: f64) -> KinematicState {
-        KinematicState { heading_deg: wrap_180(psi_rad.to_degrees()), ..KinematicState::default() }
+        KinematicState {
+            heading_deg: wrap_180(psi_rad.to_degrees()),
+            ..KinematicState::default()
+        }
     }
 
     /// A boat in steady state with this heading, speed (m/s) and thrust (per cent), without
     /// remaining errors of its loops.
     pub fn under_way(psi_rad: f64, speed_m_s: f64, thrust: f64) -> KinematicState {
-        let settled = Loop { error: Some(0.0), integral: 0.0 };
+        let settled = Loop {
+            error: Some(0.0),
+            integral: 0.0,
+        };
         KinematicState {
             speed_m_s,
             thrust,
@@ -108,8 +115,14 @@ impl KinematicState {
     /// Removes the velocity along the unit vector `out`, in both directions, and turns to the
     /// remaining velocity. A head-on boat has none left; it turns to starboard.
     pub fn slide_across(&mut self, out: Ned) {
-        let along = Ned { north: -out.east, east: out.north };
-        let way_m_s = Rotation::from_heading(self.psi_rad()).ahead().scaled(self.speed_m_s).dot(along);
+        let along = Ned {
+            north: -out.east,
+            east: out.north,
+        };
+        let way_m_s = Rotation::from_heading(self.psi_rad())
+            .ahead()
+            .scaled(self.speed_m_s)
+            .dot(along);
         let ahead = along.scaled(if way_m_s > 0.0 { 1.0 } else { -1.0 });
         self.divert(math::atan2(ahead.east, ahead.north), way_m_s.abs());
     }
@@ -135,7 +148,13 @@ impl KinematicModel {
     /// The thrust for this speed straight ahead, per cent: the inverse of the thrust map, clamped
     /// at its ends.
     pub fn thrust_for_speed(&self, speed_m_s: f64) -> f64 {
-        math::interpolate(self.boat.thrust_map.iter().map(|(thrust, speed_m_s)| (*speed_m_s, *thrust)), speed_m_s)
+        math::interpolate(
+            self.boat
+                .thrust_map
+                .iter()
+                .map(|(thrust, speed_m_s)| (*speed_m_s, *thrust)),
+            speed_m_s,
+        )
     }
 
     /// Advances a boat by `dt_s`, with the current `drift_m_s`.
@@ -143,7 +162,13 @@ impl KinematicModel {
     /// The loops steer a course. For an order of two thrusts (shares of full), thrust and rudder
     /// are half their sum and half their difference, and the loops rest. Hold means speed 0 on the
     /// present heading.
-    pub fn step(&self, state: &mut KinematicState, command: Order, drift_m_s: Ned, dt_s: f64) -> KinematicMotion {
+    pub fn step(
+        &self,
+        state: &mut KinematicState,
+        command: Order,
+        drift_m_s: Ned,
+        dt_s: f64,
+    ) -> KinematicMotion {
         self.control(state, command, dt_s);
         let v_next_m_s = self.next_speed(state, dt_s);
         let turn_deg = self.turn_deg(state, v_next_m_s, dt_s);
@@ -154,7 +179,10 @@ impl KinematicModel {
         // negative speed.
         state.speed_m_s = v_mean_m_s.clamp(0.0, self.boat.speed_max_m_s);
         state.heading_deg = heading_deg;
-        KinematicMotion { travel_m: (way + drift_m_s).scaled(dt_s), turn_rad: turn_deg.to_radians() }
+        KinematicMotion {
+            travel_m: (way + drift_m_s).scaled(dt_s),
+            turn_rad: turn_deg.to_radians(),
+        }
     }
 
     /// Sets thrust and rudder (pMarinePID).
@@ -166,10 +194,16 @@ impl KinematicModel {
                 state.rudder = (0.5 * FULL * (port - starboard)).clamp(-FULL, FULL);
                 return;
             }
-            Order::Steer { heading_rad, speed_m_s } => {
-                (speed_m_s.min(boat.speed_max_m_s), wrap_180(heading_rad.to_degrees() - state.heading_deg))
+            Order::Steer {
+                heading_rad,
+                speed_m_s,
+            } => (
+                speed_m_s.min(boat.speed_max_m_s),
+                wrap_180(heading_rad.to_degrees() - state.heading_deg),
+            ),
+            Order::Turn { by_rad, speed_m_s } => {
+                (speed_m_s.min(boat.speed_max_m_s), by_rad.to_degrees())
             }
-            Order::Turn { by_rad, speed_m_s } => (speed_m_s.min(boat.speed_max_m_s), by_rad.to_degrees()),
             Order::Hold => (0.0, 0.0),
         };
         // pMarinePID has both: a map from speed to thrust, and a loop that changes the previous
@@ -178,13 +212,22 @@ impl KinematicModel {
             wanted_m_s * boat.speed_factor
         } else {
             let error_m_s = wanted_m_s - state.speed_m_s;
-            state.thrust + state.speed_loop.answer(boat.speed_pid, error_m_s, boat.thrust_max, dt_s)
+            state.thrust
+                + state
+                    .speed_loop
+                    .answer(boat.speed_pid, error_m_s, boat.thrust_max, dt_s)
         };
         // The reference clips at zero, so a point boat never goes astern to brake.
-        state.thrust = if thrust < THRUST_MIN { 0.0 } else { thrust.min(boat.thrust_max) };
+        state.thrust = if thrust < THRUST_MIN {
+            0.0
+        } else {
+            thrust.min(boat.thrust_max)
+        };
         // Without thrust the heading loop does not run and keeps its state.
         state.rudder = if state.thrust > 0.0 {
-            state.heading_loop.answer(boat.heading_pid, error_deg, self.rudder_max, dt_s)
+            state
+                .heading_loop
+                .answer(boat.heading_pid, error_deg, self.rudder_max, dt_s)
         } else {
             0.0
         };
@@ -193,8 +236,15 @@ impl KinematicModel {
     /// The speed from thrust and rudder, within the acceleration limits (uSimMarine).
     fn next_speed(&self, state: &KinematicState, dt_s: f64) -> f64 {
         let boat = &self.boat;
-        let raw_m_s = self.speed_of_thrust.at(state.thrust) * (1.0 - boat.turn_loss * state.rudder.abs() / FULL);
-        let limit = |rate_m_s2: f64| if rate_m_s2 > 0.0 { rate_m_s2 * dt_s } else { f64::INFINITY };
+        let raw_m_s = self.speed_of_thrust.at(state.thrust)
+            * (1.0 - boat.turn_loss * state.rudder.abs() / FULL);
+        let limit = |rate_m_s2: f64| {
+            if rate_m_s2 > 0.0 {
+                rate_m_s2 * dt_s
+            } else {
+                f64::INFINITY
+            }
+        };
         let least = state.speed_m_s - limit(boat.deceleration_max_m_s2);
         let most = state.speed_m_s + limit(boat.acceleration_max_m_s2);
         // Not `clamp`, which panics on NaN; a later check handles NaN.
@@ -236,7 +286,12 @@ mod tests {
 
     /// A boat with simple numbers: thrust in per cent is speed in cm/s, without limits or losses.
     fn plain() -> Kinematic {
-        let none = Pid { p: 0.0, i: 0.0, d: 0.0, i_limit: 0.0 };
+        let none = Pid {
+            p: 0.0,
+            i: 0.0,
+            d: 0.0,
+            i_limit: 0.0,
+        };
         Kinematic {
             speed_max_m_s: 1.0,
             thrust_map: vec![(-100.0, -1.0), (100.0, 1.0)],
@@ -258,7 +313,10 @@ mod tests {
     }
 
     fn ahead(speed_m_s: f64) -> Order {
-        Order::Steer { heading_rad: 0.0, speed_m_s }
+        Order::Steer {
+            heading_rad: 0.0,
+            speed_m_s,
+        }
     }
 
     #[test]
@@ -270,9 +328,15 @@ mod tests {
 
     #[test]
     fn drift_carries_it_along_and_nothing_else() {
-        let drift = Ned { north: 0.3, east: -0.2 };
+        let drift = Ned {
+            north: 0.3,
+            east: -0.2,
+        };
         let model = KinematicModel::new(&plain());
-        let command = Order::Steer { heading_rad: 1.0, speed_m_s: 0.8 };
+        let command = Order::Steer {
+            heading_rad: 1.0,
+            speed_m_s: 0.8,
+        };
         let mut still = KinematicState::default();
         let mut adrift = KinematicState::default();
         for _ in 0..50 {
@@ -285,22 +349,53 @@ mod tests {
 
     #[test]
     fn without_thrust_there_is_no_rudder_and_without_way_no_turn() {
-        let mut state = KinematicState { speed_m_s: 1.0, ..KinematicState::default() };
-        step(&plain(), &mut state, Order::Steer { heading_rad: 1.0, speed_m_s: 0.0 });
+        let mut state = KinematicState {
+            speed_m_s: 1.0,
+            ..KinematicState::default()
+        };
+        step(
+            &plain(),
+            &mut state,
+            Order::Steer {
+                heading_rad: 1.0,
+                speed_m_s: 0.0,
+            },
+        );
         assert_eq!((state.thrust, state.rudder), (0.0, 0.0));
         let mut state = KinematicState::default();
-        let motion = step(&plain(), &mut state, Order::Thrust { port: 1.0, starboard: -1.0 });
+        let motion = step(
+            &plain(),
+            &mut state,
+            Order::Thrust {
+                port: 1.0,
+                starboard: -1.0,
+            },
+        );
         assert_eq!((motion.turn_rad, state.rudder), (0.0, 100.0));
     }
 
     #[test]
     fn astern_the_rudder_turns_the_other_way_and_no_way_is_kept() {
         let mut state = KinematicState::default();
-        let motion = step(&plain(), &mut state, Order::Thrust { port: -0.5, starboard: -1.0 });
+        let motion = step(
+            &plain(),
+            &mut state,
+            Order::Thrust {
+                port: -0.5,
+                starboard: -1.0,
+            },
+        );
         assert_eq!((state.thrust, state.rudder), (-75.0, 25.0));
         let want_deg: f64 = -25.0 * 0.1 * 0.1 * 1.5;
-        assert!((motion.turn_rad - want_deg.to_radians()).abs() < 1e-15, "{}", motion.turn_rad);
-        assert!(motion.travel_m.north < 0.0 && state.speed_m_s == 0.0, "{motion:?}");
+        assert!(
+            (motion.turn_rad - want_deg.to_radians()).abs() < 1e-15,
+            "{}",
+            motion.turn_rad
+        );
+        assert!(
+            motion.travel_m.north < 0.0 && state.speed_m_s == 0.0,
+            "{motion:?}"
+        );
     }
 
     #[test]
@@ -312,7 +407,10 @@ mod tests {
             step(&boat, &mut state, Order::Hold);
         }
         let turned = primitives::angle::wrap_pi(state.psi_rad() - 3.135);
-        assert!((turned - 0.02).abs() < 1e-12 && state.psi_rad() < 0.0, "{turned}");
+        assert!(
+            (turned - 0.02).abs() < 1e-12 && state.psi_rad() < 0.0,
+            "{turned}"
+        );
     }
 
     #[test]
@@ -333,9 +431,22 @@ mod tests {
     #[test]
     fn the_thrust_for_a_speed_is_the_map_backwards() {
         let mut boat = plain();
-        boat.thrust_map = vec![(-100.0, -2.0), (0.0, 0.0), (40.0, 1.0), (80.0, 3.0), (100.0, 3.0)];
+        boat.thrust_map = vec![
+            (-100.0, -2.0),
+            (0.0, 0.0),
+            (40.0, 1.0),
+            (80.0, 3.0),
+            (100.0, 3.0),
+        ];
         let model = KinematicModel::new(&boat);
-        for (speed_m_s, want) in [(-9.0, -100.0), (-1.0, -50.0), (0.0, 0.0), (0.5, 20.0), (2.0, 60.0), (9.0, 100.0)] {
+        for (speed_m_s, want) in [
+            (-9.0, -100.0),
+            (-1.0, -50.0),
+            (0.0, 0.0),
+            (0.5, 20.0),
+            (2.0, 60.0),
+            (9.0, 100.0),
+        ] {
             assert_eq!(model.thrust_for_speed(speed_m_s), want, "{speed_m_s}");
         }
     }
@@ -343,18 +454,32 @@ mod tests {
     #[test]
     fn a_boat_under_way_feels_the_derivative_of_its_first_error() {
         let mut boat = plain();
-        boat.heading_pid = Pid { d: 0.1, ..boat.heading_pid };
-        let turn = Order::Steer { heading_rad: 0.2, speed_m_s: 1.0 };
+        boat.heading_pid = Pid {
+            d: 0.1,
+            ..boat.heading_pid
+        };
+        let turn = Order::Steer {
+            heading_rad: 0.2,
+            speed_m_s: 1.0,
+        };
         let mut rested = KinematicState::at_rest(0.0);
         let mut sailing = KinematicState::under_way(0.0, 1.0, 100.0);
         step(&boat, &mut rested, turn);
         step(&boat, &mut sailing, turn);
-        assert!((sailing.rudder - 2.0 * rested.rudder).abs() < 1e-9, "{} and {}", sailing.rudder, rested.rudder);
+        assert!(
+            (sailing.rudder - 2.0 * rested.rudder).abs() < 1e-9,
+            "{} and {}",
+            sailing.rudder,
+            rested.rudder
+        );
     }
 
     #[test]
     fn bad_numbers_come_out_as_bad_numbers() {
-        let mut state = KinematicState { heading_deg: f64::NAN, ..KinematicState::default() };
+        let mut state = KinematicState {
+            heading_deg: f64::NAN,
+            ..KinematicState::default()
+        };
         for _ in 0..3 {
             step(&plain(), &mut state, ahead(1.0));
             assert!(state.psi_rad().is_nan());

@@ -99,7 +99,11 @@ pub(crate) fn where_at_most<const N: usize>(
 ) -> Lanes<f64, N> {
     let mut chosen = second;
     for i in 0..N {
-        chosen.0[i] = if a.0[i] <= b.0[i] { first.0[i] } else { second.0[i] };
+        chosen.0[i] = if a.0[i] <= b.0[i] {
+            first.0[i]
+        } else {
+            second.0[i]
+        };
     }
     chosen
 }

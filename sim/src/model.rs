@@ -65,9 +65,13 @@ enum Drive {
 impl Drive {
     fn new(boat: &scenario::Boat, hull: &HullModel, dt_s: f64) -> Drive {
         match &boat.drive {
-            boat::Drive::Thrusters { thruster, autopilot } => {
-                Drive::Thrusters(ThrusterModel::new(thruster, dt_s), AutopilotModel::new(autopilot, hull, dt_s))
-            }
+            boat::Drive::Thrusters {
+                thruster,
+                autopilot,
+            } => Drive::Thrusters(
+                ThrusterModel::new(thruster, dt_s),
+                AutopilotModel::new(autopilot, hull, dt_s),
+            ),
             boat::Drive::Kinematic(kinematic) => Drive::Point(KinematicModel::new(kinematic)),
         }
     }
@@ -77,30 +81,63 @@ impl Model {
     pub(crate) fn new(plan: &WorldPlan<'_>) -> Model {
         let dt_s = plan.tick.as_s();
         let density = plan.sea.water_density_kg_m3;
-        let hulls: Vec<HullModel> = plan.kinds.iter().map(|boat| HullModel::new(&boat.hull, density)).collect();
+        let hulls: Vec<HullModel> = plan
+            .kinds
+            .iter()
+            .map(|boat| HullModel::new(&boat.hull, density))
+            .collect();
         let shapes = plan.kinds.iter().map(|boat| (boat.length_m, boat.beam_m));
-        let drives: Vec<Drive> =
-            plan.kinds.iter().zip(&hulls).map(|(boat, hull)| Drive::new(boat, hull, dt_s)).collect();
+        let drives: Vec<Drive> = plan
+            .kinds
+            .iter()
+            .zip(&hulls)
+            .map(|(boat, hull)| Drive::new(boat, hull, dt_s))
+            .collect();
         // A real boat has no point-boat state, whatever its file says: its gateway reports its
         // position.
-        let points = plan.vehicles.iter().map(|v| !v.is_external && matches!(drives[v.kind], Drive::Point(_)));
+        let points = plan
+            .vehicles
+            .iter()
+            .map(|v| !v.is_external && matches!(drives[v.kind], Drive::Point(_)));
         let sensors = |kind: usize| &plan.kinds[kind].sensors;
         // Boats without sensors keep no readings, which large fleets of perfect boats would carry
         // for nothing.
-        let is_sensed = plan.vehicles.iter().map(|v| !v.is_external && *sensors(v.kind) != Sensors::default());
-        let sensed = numbered(is_sensed).into_iter().zip(&plan.vehicles).map(|(place, vehicle)| {
-            let sensors = sensors(vehicle.kind);
-            let faults = &vehicle.faults;
-            let model = || SensorModel::new(sensors, plan.sensor_period, &plan.seeds, vehicle.name, faults);
-            place.map(|place| (place, model()))
-        });
+        let is_sensed = plan
+            .vehicles
+            .iter()
+            .map(|v| !v.is_external && *sensors(v.kind) != Sensors::default());
+        let sensed = numbered(is_sensed)
+            .into_iter()
+            .zip(&plan.vehicles)
+            .map(|(place, vehicle)| {
+                let sensors = sensors(vehicle.kind);
+                let faults = &vehicle.faults;
+                let model = || {
+                    SensorModel::new(
+                        sensors,
+                        plan.sensor_period,
+                        &plan.seeds,
+                        vehicle.name,
+                        faults,
+                    )
+                };
+                place.map(|place| (place, model()))
+            });
         Model {
             tick: plan.tick,
             dt_s,
             points: numbered(points),
-            external: plan.vehicles.iter().map(|vehicle| vehicle.is_external).collect(),
+            external: plan
+                .vehicles
+                .iter()
+                .map(|vehicle| vehicle.is_external)
+                .collect(),
             sensed: sensed.collect(),
-            thruster_faults: plan.vehicles.iter().map(|vehicle| thruster_faults(&vehicle.faults)).collect(),
+            thruster_faults: plan
+                .vehicles
+                .iter()
+                .map(|vehicle| thruster_faults(&vehicle.faults))
+                .collect(),
             fleet: Fleet::new(plan.vehicles.iter().map(|vehicle| &hulls[vehicle.kind])),
             sea: SeaModel::new(plan.sea, plan.kinds, plan.field, plan.tick, &plan.seeds),
             contact: ContactModel::new(shapes, plan.field, plan.boats_are_solid, dt_s),
@@ -123,18 +160,30 @@ impl Model {
     pub(crate) fn points_at_start(&self, boats: &[BoatState]) -> Vec<KinematicState> {
         let is_point = |(i, _): &(usize, &BoatState)| self.points[*i].is_some();
         let points = boats.iter().enumerate().filter(is_point);
-        points.map(|(_, boat)| KinematicState::at_rest(boat.pose.psi_rad)).collect()
+        points
+            .map(|(_, boat)| KinematicState::at_rest(boat.pose.psi_rad))
+            .collect()
     }
 
     /// Initial state and reading of the sensors, before the first measurement.
     pub(crate) fn senses_at_start(&self) -> Vec<(SensorState, Reading)> {
-        self.sensed.iter().flatten().map(|_| (SensorState::default(), Reading::default())).collect()
+        self.sensed
+            .iter()
+            .flatten()
+            .map(|_| (SensorState::default(), Reading::default()))
+            .collect()
     }
 
     /// Compass error of a vehicle, rad.
     #[inline]
-    pub(crate) fn heading_error_rad(&self, vehicle: usize, senses: &[(SensorState, Reading)]) -> f64 {
-        self.sensed[vehicle].as_ref().map_or(0.0, |(place, _)| senses[*place].0.heading_error_rad())
+    pub(crate) fn heading_error_rad(
+        &self,
+        vehicle: usize,
+        senses: &[(SensorState, Reading)],
+    ) -> f64 {
+        self.sensed[vehicle]
+            .as_ref()
+            .map_or(0.0, |(place, _)| senses[*place].0.heading_error_rad())
     }
 
     /// Whether a vehicle is a real boat, which the simulation never moves.
@@ -156,7 +205,10 @@ impl Model {
     #[inline]
     pub(crate) fn failing(&self, vehicle: usize, now: SimTime) -> [Option<Failing>; 2] {
         let mut failing = [None; 2];
-        for span in self.thruster_faults[vehicle].iter().filter(|span| span.is_on(now)) {
+        for span in self.thruster_faults[vehicle]
+            .iter()
+            .filter(|span| span.is_on(now))
+        {
             match span.kind {
                 FaultKind::PortLost => failing[0] = Some(Failing::Lost),
                 FaultKind::StarboardLost => failing[1] = Some(Failing::Lost),
@@ -190,19 +242,39 @@ impl Model {
             return (Forcing::default(), Ned::default());
         }
         let hull = &self.hulls[kind];
-        let mut settings = settings(boat, heading_error_rad, (hull, thruster, autopilot), command);
+        let mut settings = settings(
+            boat,
+            heading_error_rad,
+            (hull, thruster, autopilot),
+            command,
+        );
         for (side, shaft) in [&boat.port, &boat.starboard].into_iter().enumerate() {
             // The front seat does not know the fault and steers as if both thrusters worked: that
             // is the purpose of the fault.
-            let Some(failing) = failing[side] else { continue };
-            settings[side] = if failing == Failing::Lost { 0.0 } else { shaft.command };
+            let Some(failing) = failing[side] else {
+                continue;
+            };
+            settings[side] = if failing == Failing::Lost {
+                0.0
+            } else {
+                shaft.command
+            };
             // Settings in transit are replaced as well.
             flaws.replace_under_way(side, settings[side]);
         }
         let from_sea = sea.forcing(kind, hull, boat.pose, rotation, boat.nu);
-        let still_m = thruster.ventilation().map_or(0.0, |ventilation| ventilation.depth_m);
-        let water_above_m = from_sea.submergence_change_m.map(|change_m| still_m + change_m);
-        let thrust = thruster.drive([&mut boat.port, &mut boat.starboard], flaws, settings, water_above_m);
+        let still_m = thruster
+            .ventilation()
+            .map_or(0.0, |ventilation| ventilation.depth_m);
+        let water_above_m = from_sea
+            .submergence_change_m
+            .map(|change_m| still_m + change_m);
+        let thrust = thruster.drive(
+            [&mut boat.port, &mut boat.starboard],
+            flaws,
+            settings,
+            water_above_m,
+        );
         let forcing = Forcing {
             nu_r: through_water(boat.nu, rotation, from_sea.current_m_s, -1.0),
             tau: thrust.map(|thrust| thrust.plus(1.0, from_sea.force)),
@@ -212,8 +284,8 @@ impl Model {
         (forcing, from_sea.current_m_s)
     }
 
-    /// A hull's pose after a tick without contact, with the rotation of its heading, and its velocity
-    /// over the ground.
+    /// A hull's pose after a tick without contact, with the rotation of its heading, and its
+    /// velocity over the ground.
     #[inline]
     pub(crate) fn hull_moved(
         &self,
@@ -233,8 +305,15 @@ impl Model {
         let middle = motion.nu_r_half.in_ned(rotation_half);
         let end = motion.nu_r.in_ned(rotation_to);
         let mean_m_s = (start + middle.scaled(4.0) + end).scaled(1.0 / 6.0) + current_m_s;
-        let to = Pose { at: from.at + mean_m_s.scaled(self.dt_s), psi_rad };
-        (to, rotation_to, through_water(motion.nu_r, rotation_to, current_m_s, 1.0))
+        let to = Pose {
+            at: from.at + mean_m_s.scaled(self.dt_s),
+            psi_rad,
+        };
+        (
+            to,
+            rotation_to,
+            through_water(motion.nu_r, rotation_to, current_m_s, 1.0),
+        )
     }
 
     /// The same for a point boat.
@@ -246,10 +325,21 @@ impl Model {
         drift_m_s: Ned,
     ) -> (Pose, Rotation, Planar) {
         let motion = point.step(state, command, drift_m_s, self.dt_s);
-        let to = Pose { at: from.at + motion.travel_m, psi_rad: state.psi_rad() };
+        let to = Pose {
+            at: from.at + motion.travel_m,
+            psi_rad: state.psi_rad(),
+        };
         let rotation_to = to.rotation();
-        let nu = Planar { surge: state.speed_m_s, sway: 0.0, yaw: motion.turn_rad / self.dt_s };
-        (to, rotation_to, through_water(nu, rotation_to, drift_m_s, 1.0))
+        let nu = Planar {
+            surge: state.speed_m_s,
+            sway: 0.0,
+            yaw: motion.turn_rad / self.dt_s,
+        };
+        (
+            to,
+            rotation_to,
+            through_water(nu, rotation_to, drift_m_s, 1.0),
+        )
     }
 
     /// A boat's role in contact.
@@ -262,7 +352,13 @@ impl Model {
         }
     }
 
-    pub(crate) fn truth(&self, vehicle: usize, boat: &BoatState, rotation: Rotation, sea: &SeaNow<'_>) -> Truth {
+    pub(crate) fn truth(
+        &self,
+        vehicle: usize,
+        boat: &BoatState,
+        rotation: Rotation,
+        sea: &SeaNow<'_>,
+    ) -> Truth {
         let kind = self.kinds[vehicle];
         let thrust_share = match &self.drives[kind] {
             Drive::Thrusters(thruster, ..) => {
@@ -272,7 +368,9 @@ impl Model {
         };
         // A real boat's attitude is unknown, and a point boat has none.
         let attitude = match self.drives[kind] {
-            Drive::Thrusters(..) if !self.external[vehicle] => sea.attitude(kind, boat.pose, rotation, boat.nu),
+            Drive::Thrusters(..) if !self.external[vehicle] => {
+                sea.attitude(kind, boat.pose, rotation, boat.nu)
+            }
             _ => Attitude::default(),
         };
         Truth {
@@ -302,7 +400,11 @@ fn thruster_faults(faults: &[FaultSpan]) -> Vec<FaultSpan> {
         use FaultKind::{PortLost, PortStuck, StarboardLost, StarboardStuck};
         matches!(kind, PortLost | PortStuck | StarboardLost | StarboardStuck)
     };
-    faults.iter().filter(|span| is_of_thrusters(span.kind)).copied().collect()
+    faults
+        .iter()
+        .filter(|span| is_of_thrusters(span.kind))
+        .copied()
+        .collect()
 }
 
 /// The settings for a command of the port and starboard thrusters.
@@ -313,14 +415,28 @@ fn settings(
     command: Order,
 ) -> [f64; 2] {
     match command {
-        Order::Steer { heading_rad, speed_m_s } => {
+        Order::Steer {
+            heading_rad,
+            speed_m_s,
+        } => {
             let turn_rad = wrap_pi(heading_rad - (boat.pose.psi_rad + heading_error_rad));
-            autopilot.steer((hull, thruster), boat.nu, (turn_rad, speed_m_s), &mut boat.speed_integral_newton)
+            autopilot.steer(
+                (hull, thruster),
+                boat.nu,
+                (turn_rad, speed_m_s),
+                &mut boat.speed_integral_newton,
+            )
         }
-        Order::Turn { by_rad, speed_m_s } => {
-            autopilot.steer((hull, thruster), boat.nu, (by_rad, speed_m_s), &mut boat.speed_integral_newton)
-        }
-        Order::Thrust { port, starboard } => [thruster.setting_of_share(port), thruster.setting_of_share(starboard)],
+        Order::Turn { by_rad, speed_m_s } => autopilot.steer(
+            (hull, thruster),
+            boat.nu,
+            (by_rad, speed_m_s),
+            &mut boat.speed_integral_newton,
+        ),
+        Order::Thrust { port, starboard } => [
+            thruster.setting_of_share(port),
+            thruster.setting_of_share(starboard),
+        ],
         Order::Hold => [0.0, 0.0],
     }
 }
@@ -334,17 +450,28 @@ fn small_rotation(by_rad: f64) -> Rotation {
         return Rotation::from_heading(by_rad);
     }
     Rotation {
-        sin: by_rad * (1.0 - square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0 * (1.0 - square / 72.0)))),
-        cos: 1.0 - square / 2.0 * (1.0 - square / 12.0 * (1.0 - square / 30.0 * (1.0 - square / 56.0))),
+        sin: by_rad
+            * (1.0
+                - square / 6.0
+                    * (1.0 - square / 20.0 * (1.0 - square / 42.0 * (1.0 - square / 72.0)))),
+        cos: 1.0
+            - square / 2.0 * (1.0 - square / 12.0 * (1.0 - square / 30.0 * (1.0 - square / 56.0))),
     }
 }
 
-/// `nu` plus `sign` times the current in body axes: −1 converts velocity over the ground to velocity
-/// through the water, 1 converts back.
+/// `nu` plus `sign` times the current in body axes: −1 converts velocity over the ground to
+/// velocity through the water, 1 converts back.
 #[inline]
 fn through_water(nu: Planar, rotation: Rotation, current_m_s: Ned, sign: f64) -> Planar {
     let current = frame::body_from_ned(rotation, current_m_s);
-    nu.plus(sign, Planar { surge: current.ahead, sway: current.starboard, yaw: 0.0 })
+    nu.plus(
+        sign,
+        Planar {
+            surge: current.ahead,
+            sway: current.starboard,
+            yaw: 0.0,
+        },
+    )
 }
 
 #[cfg(test)]
@@ -358,7 +485,10 @@ mod tests {
             let by_rad = f64::from(i) * 0.0007;
             let want = Rotation::from_heading(psi_rad + by_rad);
             let got = Rotation::from_heading(psi_rad).turned(small_rotation(by_rad));
-            assert!((want.sin - got.sin).abs() < 2e-15 && (want.cos - got.cos).abs() < 2e-15, "{i}: {want:?} {got:?}");
+            assert!(
+                (want.sin - got.sin).abs() < 2e-15 && (want.cos - got.cos).abs() < 2e-15,
+                "{i}: {want:?} {got:?}"
+            );
         }
     }
 }

@@ -61,10 +61,21 @@ impl Fleet {
     pub fn new<'a>(hulls: impl IntoIterator<Item = &'a HullModel>) -> Fleet {
         let hulls: Vec<&HullModel> = hulls.into_iter().collect();
         let left = hulls.len() % MANY;
-        let (rows, last) = if left > FEW { (&hulls[..], None) } else { (&hulls[..hulls.len() - left], Some(left)) };
-        let last = last.filter(|left| *left > 0).map(|left| Row::new(&hulls[hulls.len() - left..]));
+        let (rows, last) = if left > FEW {
+            (&hulls[..], None)
+        } else {
+            (&hulls[..hulls.len() - left], Some(left))
+        };
+        let last = last
+            .filter(|left| *left > 0)
+            .map(|left| Row::new(&hulls[hulls.len() - left..]));
         let rows = rows.chunks(MANY).map(Row::new).collect();
-        Fleet { count: hulls.len(), rows, last, instructions: Instructions::best() }
+        Fleet {
+            count: hulls.len(),
+            rows,
+            last,
+            instructions: Instructions::best(),
+        }
     }
 
     /// Uses these instructions. The choice affects only the speed.
@@ -81,7 +92,13 @@ impl Fleet {
     ///
     /// # Panics
     /// If the number of forcings differs from the number of boats.
-    pub fn advance(&self, forcings: &[Forcing], dt_s: f64, is_uniform: bool, motions: &mut Vec<Motion>) {
+    pub fn advance(
+        &self,
+        forcings: &[Forcing],
+        dt_s: f64,
+        is_uniform: bool,
+        motions: &mut Vec<Motion>,
+    ) {
         assert_eq!(forcings.len(), self.count, "one forcing per boat");
         motions.clear();
         motions.resize(self.count, Motion::default());
@@ -91,7 +108,13 @@ impl Fleet {
         }
         if let Some(row) = &self.last {
             let first = MANY * self.rows.len();
-            self.advance_row(row, &forcings[first..], dt_s, is_uniform, &mut motions[first..]);
+            self.advance_row(
+                row,
+                &forcings[first..],
+                dt_s,
+                is_uniform,
+                &mut motions[first..],
+            );
         }
     }
 
@@ -106,9 +129,17 @@ impl Fleet {
         let forcings = Forcings::gather(forcings);
         // Two compiled versions: a branch inside would keep the loop from using vector registers.
         let moved = if is_uniform {
-            self.instructions.run(Advance::<N, true> { row, forcings: &forcings, dt_s })
+            self.instructions.run(Advance::<N, true> {
+                row,
+                forcings: &forcings,
+                dt_s,
+            })
         } else {
-            self.instructions.run(Advance::<N, false> { row, forcings: &forcings, dt_s })
+            self.instructions.run(Advance::<N, false> {
+                row,
+                forcings: &forcings,
+                dt_s,
+            })
         };
         for (i, motion) in motions.iter_mut().enumerate() {
             *motion = moved.lane(i);
@@ -141,7 +172,11 @@ pub(crate) fn cross_flow_newton(hull: &HullModel, drift_m_s: f64) -> f64 {
 }
 
 impl<const N: usize> Planars<N> {
-    const ZERO: Planars<N> = Planars { surge: Lanes([0.0; N]), sway: Lanes([0.0; N]), yaw: Lanes([0.0; N]) };
+    const ZERO: Planars<N> = Planars {
+        surge: Lanes([0.0; N]),
+        sway: Lanes([0.0; N]),
+        yaw: Lanes([0.0; N]),
+    };
 
     #[inline(always)]
     fn gather(each: impl Fn(usize) -> Planar) -> Planars<N> {
@@ -155,13 +190,24 @@ impl<const N: usize> Planars<N> {
 
     #[inline(always)]
     fn lane(&self, i: usize) -> Planar {
-        Planar { surge: self.surge.0[i], sway: self.sway.0[i], yaw: self.yaw.0[i] }
+        Planar {
+            surge: self.surge.0[i],
+            sway: self.sway.0[i],
+            yaw: self.yaw.0[i],
+        }
     }
 
     /// Applies `f` to each component of the parts.
     #[inline(always)]
-    fn zip<const M: usize>(parts: [Planars<N>; M], f: impl Fn([Lanes<f64, N>; M]) -> Lanes<f64, N>) -> Planars<N> {
-        Planars { surge: f(parts.map(|p| p.surge)), sway: f(parts.map(|p| p.sway)), yaw: f(parts.map(|p| p.yaw)) }
+    fn zip<const M: usize>(
+        parts: [Planars<N>; M],
+        f: impl Fn([Lanes<f64, N>; M]) -> Lanes<f64, N>,
+    ) -> Planars<N> {
+        Planars {
+            surge: f(parts.map(|p| p.surge)),
+            sway: f(parts.map(|p| p.sway)),
+            yaw: f(parts.map(|p| p.yaw)),
+        }
     }
 
     /// `self + step * rate`.
@@ -223,7 +269,9 @@ struct Row<const N: usize> {
 impl<const N: usize> Row<N> {
     /// Packs one to `N` hulls; fills the remaining lanes.
     fn new(hulls: &[&HullModel]) -> Row<N> {
-        let each = |f: fn(&HullModel) -> f64| Lanes(std::array::from_fn(|i| f(hulls[i.min(hulls.len() - 1)])));
+        let each = |f: fn(&HullModel) -> f64| {
+            Lanes(std::array::from_fn(|i| f(hulls[i.min(hulls.len() - 1)])))
+        };
         Row {
             m_surge: each(|m| m.m_surge),
             m_cross: each(|m| m.m_cross),
@@ -248,23 +296,40 @@ impl<const N: usize> Row<N> {
     /// The acceleration under `tau` at the velocity `nu_r`. Resistance acts on the velocity
     /// relative to the oscillating water, `nu_r - water`.
     #[inline(always)]
-    fn acceleration<const UNIFORM: bool>(&self, nu_r: Planars<N>, tau: Planars<N>, water: Planars<N>) -> Planars<N> {
+    fn acceleration<const UNIFORM: bool>(
+        &self,
+        nu_r: Planars<N>,
+        tau: Planars<N>,
+        water: Planars<N>,
+    ) -> Planars<N> {
         // M nu_r' + C(nu_r) nu_r + D(nu_r) nu_r = tau (Fossen 2021, ch. 6), row by row. A current
         // constant in time and space has no term relative to the water; it only changes the
         // position.
-        let Planars { surge: u, sway: v, yaw: r } = nu_r;
+        let Planars {
+            surge: u,
+            sway: v,
+            yaw: r,
+        } = nu_r;
         // Waves move the water past the hull: their velocity is in the resistance here, their
         // acceleration in `tau`. A force from the surface slope as well would count them twice.
-        let past = if UNIFORM { nu_r } else { Planars::zip([nu_r, water], |[boat, water]| boat - water) };
+        let past = if UNIFORM {
+            nu_r
+        } else {
+            Planars::zip([nu_r, water], |[boat, water]| boat - water)
+        };
         let (y_cross, n_cross) = self.crossflow(past.sway, past.yaw);
         let speed = past.surge.abs();
         let x = tau.surge + self.m_munk * v * r + self.m_cross * r * r
             - (self.surge_linear + self.surge_quadratic * speed) * past.surge;
-        let y = tau.sway - self.m_surge * u * r - (self.sway_linear + self.sway_lift * speed) * past.sway - y_cross;
+        let y = tau.sway
+            - self.m_surge * u * r
+            - (self.sway_linear + self.sway_lift * speed) * past.sway
+            - y_cross;
         let n = tau.yaw
             - self.m_cross * u * r
             - self.munk * u * v
-            - (self.yaw_linear + self.yaw_quadratic * past.yaw.abs() + self.yaw_lift * speed) * past.yaw
+            - (self.yaw_linear + self.yaw_quadratic * past.yaw.abs() + self.yaw_lift * speed)
+                * past.yaw
             - n_cross;
         Planars {
             surge: self.inverse_surge * x,
@@ -307,12 +372,21 @@ impl<const N: usize> Row<N> {
     #[inline(always)]
     fn advance<const UNIFORM: bool>(&self, forcings: &Forcings<N>, dt_s: f64) -> Motions<N> {
         let number = Lanes::<f64, N>::splat;
-        let Forcings { nu_r: start, tau, water, water_rate } = *forcings;
+        let Forcings {
+            nu_r: start,
+            tau,
+            water,
+            water_rate,
+        } = *forcings;
         let half = 0.5 * dt_s;
         let water = if UNIFORM {
             [Planars::ZERO; 3]
         } else {
-            [water.stepped(-half, water_rate), water, water.stepped(half, water_rate)]
+            [
+                water.stepped(-half, water_rate),
+                water,
+                water.stepped(half, water_rate),
+            ]
         };
         // One fourth-order step of 50 ms is close enough to a reference at 20 ms for strict tests;
         // Euler would need much shorter ticks. The thrust at the three times is known in advance,
@@ -327,12 +401,19 @@ impl<const N: usize> Row<N> {
         });
         // Cubic through both ends and their slopes; k4 is the slope at the end to third order.
         let eighth = number(dt_s / 8.0);
-        let middle =
-            Planars::zip([start, end, k1, k4], |[a, b, at_a, at_b]| number(0.5) * (a + b) + eighth * (at_a - at_b));
+        let middle = Planars::zip([start, end, k1, k4], |[a, b, at_a, at_b]| {
+            number(0.5) * (a + b) + eighth * (at_a - at_b)
+        });
         // Integrals of the cubic yaw rate: Simpson over the whole tick, and its first half exactly.
         let turn = number(sixth) * (start.yaw + number(4.0) * middle.yaw + end.yaw);
-        let turn_half = number(dt_s / 24.0) * (number(5.0) * start.yaw + number(8.0) * middle.yaw - end.yaw);
-        Motions { nu_r: end, nu_r_half: middle, turn_half_rad: turn_half, turn_rad: turn }
+        let turn_half =
+            number(dt_s / 24.0) * (number(5.0) * start.yaw + number(8.0) * middle.yaw - end.yaw);
+        Motions {
+            nu_r: end,
+            nu_r_half: middle,
+            turn_half_rad: turn_half,
+            turn_rad: turn,
+        }
     }
 }
 
@@ -349,7 +430,10 @@ mod tests {
     }
 
     fn adrift(nu_r: Planar) -> Forcing {
-        Forcing { nu_r, ..Forcing::default() }
+        Forcing {
+            nu_r,
+            ..Forcing::default()
+        }
     }
 
     fn advance(model: &HullModel, forcing: &Forcing, dt_s: f64) -> Planar {
@@ -371,11 +455,24 @@ mod tests {
         let kinds: [usize; 21] = std::array::from_fn(|i| i * i % 3 % 2);
         let forcing = |i: usize| {
             let x = i as f64;
-            let push = |n: f64| Planar { surge: 40.0 + n * x, sway: n, yaw: 5.0 - n * x };
-            let nu_r = Planar { surge: x, sway: 0.3 - 0.2 * x, yaw: 0.4 * x - 0.5 };
+            let push = |n: f64| Planar {
+                surge: 40.0 + n * x,
+                sway: n,
+                yaw: 5.0 - n * x,
+            };
+            let nu_r = Planar {
+                surge: x,
+                sway: 0.3 - 0.2 * x,
+                yaw: 0.4 * x - 0.5,
+            };
             let water = push(0.01);
             let water_rate = push(0.1);
-            Forcing { nu_r, tau: [0.0, 1.0, 2.0].map(push), water, water_rate }
+            Forcing {
+                nu_r,
+                tau: [0.0, 1.0, 2.0].map(push),
+                water,
+                water_rate,
+            }
         };
         let forcings: Vec<Forcing> = (0..kinds.len()).map(forcing).collect();
         let mut motions = Vec::new();
@@ -397,9 +494,16 @@ mod tests {
     fn the_closed_form_of_the_cross_flow_agrees_with_many_strips() {
         let model = model();
         let half = 1.05;
-        for (v, r) in
-            [(0.5, 0.1), (-0.5, 0.1), (0.1, 1.0), (-0.1, 1.0), (0.0, -0.7), (0.3, 0.0), (0.3, -0.285), (0.0, 0.0)]
-        {
+        for (v, r) in [
+            (0.5, 0.1),
+            (-0.5, 0.1),
+            (0.1, 1.0),
+            (-0.1, 1.0),
+            (0.0, -0.7),
+            (0.3, 0.0),
+            (0.3, -0.285),
+            (0.0, 0.0),
+        ] {
             let n = 20_000;
             let dx = 2.0 * half / f64::from(n);
             let mut sway = 0.0;
@@ -412,8 +516,16 @@ mod tests {
             }
             let (got_sway, got_yaw) = crossflow(&model, v, r);
             let scale = model.crossflow;
-            assert!((got_sway - scale * sway).abs() < 1e-5 * scale, "v {v} r {r}: {got_sway} {}", scale * sway);
-            assert!((got_yaw - scale * yaw).abs() < 1e-5 * scale, "v {v} r {r}: {got_yaw} {}", scale * yaw);
+            assert!(
+                (got_sway - scale * sway).abs() < 1e-5 * scale,
+                "v {v} r {r}: {got_sway} {}",
+                scale * sway
+            );
+            assert!(
+                (got_yaw - scale * yaw).abs() < 1e-5 * scale,
+                "v {v} r {r}: {got_yaw} {}",
+                scale * yaw
+            );
         }
     }
 
@@ -422,12 +534,20 @@ mod tests {
         for munk_factor in [0.0, 0.5, 1.0] {
             let mut hull = model().hull;
             hull.munk_factor = munk_factor;
-            for zero in [&mut hull.surge_linear_kg_s, &mut hull.sway_linear_kg_s, &mut hull.yaw_linear_kg_m2_s] {
+            for zero in [
+                &mut hull.surge_linear_kg_s,
+                &mut hull.sway_linear_kg_s,
+                &mut hull.yaw_linear_kg_m2_s,
+            ] {
                 *zero = 0.0;
             }
             (hull.yaw_quadratic_kg_m2, hull.crossflow_coefficient) = (0.0, 0.0);
             let model = HullModel::new(&hull, 1025.0);
-            let mut nu = Planar { surge: 1.5, sway: -0.4, yaw: 0.6 };
+            let mut nu = Planar {
+                surge: 1.5,
+                sway: -0.4,
+                yaw: 0.6,
+            };
             let before = model.energy_joule(nu);
             for _ in 0..2000 {
                 nu = advance(&model, &adrift(nu), 0.005);

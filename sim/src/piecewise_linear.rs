@@ -32,18 +32,38 @@ impl PiecewiseLinear {
         let piece = |ends: &[(f64, f64)]| {
             let a = ends[0];
             let b = ends[1];
-            Piece { at: a, slope: (b.1 - a.1) / (b.0 - a.0), end: b.0 }
+            Piece {
+                at: a,
+                slope: (b.1 - a.1) / (b.0 - a.0),
+                end: b.0,
+            }
         };
         let pieces: Vec<Piece> = points.windows(2).map(piece).collect();
         let first = points[0];
         let last = points[points.len() - 1];
         let width = last.0 - first.0;
-        let narrowest = pieces.iter().map(|piece| piece.end - piece.at.0).fold(width, f64::min);
+        let narrowest = pieces
+            .iter()
+            .map(|piece| piece.end - piece.at.0)
+            .fold(width, f64::min);
         // As fine as the narrowest piece, so that a cell contains at most one border.
         let cells = ((width / narrowest).ceil() as usize).clamp(1, CELLS_MAX);
-        let piece_at = |x: f64| pieces[..pieces.len() - 1].iter().take_while(|piece| piece.end <= x).count();
-        let index = (0..cells).map(|cell| piece_at(first.0 + width * cell as f64 / cells as f64) as u16).collect();
-        PiecewiseLinear { pieces, index, per_x: cells as f64 / width, first, last }
+        let piece_at = |x: f64| {
+            pieces[..pieces.len() - 1]
+                .iter()
+                .take_while(|piece| piece.end <= x)
+                .count()
+        };
+        let index = (0..cells)
+            .map(|cell| piece_at(first.0 + width * cell as f64 / cells as f64) as u16)
+            .collect();
+        PiecewiseLinear {
+            pieces,
+            index,
+            per_x: cells as f64 / width,
+            first,
+            last,
+        }
     }
 
     /// The value at `x`.

@@ -86,7 +86,12 @@ pub struct Reporter {
 
 impl Reporter {
     /// Reports the events since the last call, then progress.
-    pub fn progress(&mut self, contest: &Contest, (rate, refused): (f64, u64), tell: &mut dyn FnMut(ProgressMessage)) {
+    pub fn progress(
+        &mut self,
+        contest: &Contest,
+        (rate, refused): (f64, u64),
+        tell: &mut dyn FnMut(ProgressMessage),
+    ) {
         let scenario = contest.scenario();
         // Events first: the line that reports a score appears before the score changes.
         let news = self.reported.read(contest.events()).iter();

@@ -76,14 +76,24 @@ enum Direction {
 fn send<T>(under_way: &mut VecDeque<Sent<T>>, sent: Sent<T>, most: usize) {
     // This message overtakes those that would arrive later, as with a sender that keeps only its
     // newest message: an older one that arrives later would be worthless.
-    while under_way.pop_back_if(|earlier| earlier.arrival >= sent.arrival).is_some() {}
-    assert!(under_way.len() < most, "one message per decision, within the longest transit time");
+    while under_way
+        .pop_back_if(|earlier| earlier.arrival >= sent.arrival)
+        .is_some()
+    {}
+    assert!(
+        under_way.len() < most,
+        "one message per decision, within the longest transit time"
+    );
     under_way.push_back(sent);
 }
 
 /// The newest message that has arrived by `now`, if any. Calls `each` with the decision of every
 /// arrived message.
-fn receive<T>(under_way: &mut VecDeque<Sent<T>>, now: SimTime, mut each: impl FnMut(u64)) -> Option<T> {
+fn receive<T>(
+    under_way: &mut VecDeque<Sent<T>>,
+    now: SimTime,
+    mut each: impl FnMut(u64),
+) -> Option<T> {
     let mut newest = None;
     while let Some(sent) = under_way.pop_front_if(|sent| sent.arrival <= now) {
         each(sent.decision);
@@ -98,7 +108,11 @@ impl Radio {
         let link = scenario.link.clone()?;
         let seeds = scenario.seeds();
         let noise = |name: &str| seeds.noise(&format!("link/{name}"));
-        Some(Radio::over(link, scenario.decision(), scenario.vehicles.iter().map(|vehicle| noise(&vehicle.name))))
+        Some(Radio::over(
+            link,
+            scenario.decision(),
+            scenario.vehicles.iter().map(|vehicle| noise(&vehicle.name)),
+        ))
     }
 
     fn over(link: Link, decision: SimTime, noises: impl Iterator<Item = TimedNoise>) -> Radio {
@@ -111,9 +125,21 @@ impl Radio {
             reports: VecDeque::with_capacity(usual),
         };
         let noises: Vec<TimedNoise> = noises.collect();
-        let state = RadioState { decision: 0, lines: noises.iter().map(line).collect() };
+        let state = RadioState {
+            decision: 0,
+            lines: noises.iter().map(line).collect(),
+        };
         let most = decisions(link.delay_s + MOST_JITTERS * link.jitter_s);
-        Radio { model: RadioModel { bursts: bursts(&link, decision), noises, decision, most, link }, state }
+        Radio {
+            model: RadioModel {
+                bursts: bursts(&link, decision),
+                noises,
+                decision,
+                most,
+                link,
+            },
+            state,
+        }
     }
 
     /// Opens the next decision: each link may change between good and bad.
@@ -124,7 +150,9 @@ impl Radio {
         for (line, noise) in state.lines.iter_mut().zip(&model.noises) {
             // The Gilbert-Elliott model: radio losses come in bursts, for which independent losses
             // do not prepare agents.
-            line.is_bad = model.bursts.next(line.is_bad, noise.at(now).unit(DRAWS * state.decision));
+            line.is_bad = model
+                .bursts
+                .next(line.is_bad, noise.at(now).unit(DRAWS * state.decision));
         }
     }
 
@@ -148,37 +176,69 @@ impl Radio {
     /// Sends a boat's report from `at`, once per decision.
     pub(crate) fn send_report(&mut self, vehicle: usize, report: OwnBoat, at: Ned, now: SimTime) {
         if let Some(sent) = self.sent(vehicle, Direction::In, report, at, now) {
-            send(&mut self.state.lines[vehicle].reports, sent, self.model.most);
+            send(
+                &mut self.state.lines[vehicle].reports,
+                sent,
+                self.model.most,
+            );
         }
     }
 
     /// A boat's newest report that has arrived by `now`, if any. Calls `each` with the decision of
     /// every arrived report.
-    pub(crate) fn report(&mut self, vehicle: usize, now: SimTime, each: impl FnMut(u64)) -> Option<OwnBoat> {
+    pub(crate) fn report(
+        &mut self,
+        vehicle: usize,
+        now: SimTime,
+        each: impl FnMut(u64),
+    ) -> Option<OwnBoat> {
         receive(&mut self.state.lines[vehicle].reports, now, each)
     }
 
     /// The decision of the oldest report in transit, or the open decision.
     pub(crate) fn oldest_report(&self) -> u64 {
         let oldest = |line: &Line| line.reports.front().map(|sent| sent.decision);
-        self.state.lines.iter().filter_map(oldest).min().unwrap_or(self.state.decision)
+        self.state
+            .lines
+            .iter()
+            .filter_map(oldest)
+            .min()
+            .unwrap_or(self.state.decision)
     }
 
     /// Sends a message of the open decision unless it is lost.
-    fn sent<T>(&self, vehicle: usize, way: Direction, message: T, at: Ned, now: SimTime) -> Option<Sent<T>> {
+    fn sent<T>(
+        &self,
+        vehicle: usize,
+        way: Direction,
+        message: T,
+        at: Ned,
+        now: SimTime,
+    ) -> Option<Sent<T>> {
         let decision = self.state.decision;
         let link = &self.model.link;
         let noise = self.model.noises[vehicle].at(now);
         let draw = DRAWS * decision + way as u64;
-        let share = if self.state.lines[vehicle].is_bad { link.loss.bad } else { link.loss.good };
-        let is_out_of_range = link.range_m.is_some_and(|range_m| at.distance(link.station) > range_m);
+        let share = if self.state.lines[vehicle].is_bad {
+            link.loss.bad
+        } else {
+            link.loss.good
+        };
+        let is_out_of_range = link
+            .range_m
+            .is_some_and(|range_m| at.distance(link.station) > range_m);
         // Looked up by vehicle and decision instead of drawn in sequence, so that other boats'
         // messages shift no numbers.
         if is_out_of_range || noise.unit(draw) < share {
             return None;
         }
-        let arrival = now + SimTime::from_s(link.delay_s + link.jitter_s * noise.exponential(draw + 1));
-        Some(Sent { decision, arrival, message })
+        let arrival =
+            now + SimTime::from_s(link.delay_s + link.jitter_s * noise.exponential(draw + 1));
+        Some(Sent {
+            decision,
+            arrival,
+            message,
+        })
     }
 }
 
@@ -201,20 +261,38 @@ mod tests {
     const TENTH: SimTime = SimTime(100_000_000);
 
     fn radio(link: Link) -> Radio {
-        Radio::over(link, TENTH, std::iter::once(Seeds::from(3).noise("link/test")))
+        Radio::over(
+            link,
+            TENTH,
+            std::iter::once(Seeds::from(3).noise("link/test")),
+        )
     }
 
     fn link() -> Link {
-        Link { delay_s: 0.0, jitter_s: 0.0, loss: Loss::default(), range_m: None, station: Ned::default() }
+        Link {
+            delay_s: 0.0,
+            jitter_s: 0.0,
+            loss: Loss::default(),
+            range_m: None,
+            station: Ned::default(),
+        }
     }
 
     fn course(speed_m_s: f64) -> Order {
-        Order::Steer { heading_rad: 0.0, speed_m_s }
+        Order::Steer {
+            heading_rad: 0.0,
+            speed_m_s,
+        }
     }
 
     #[test]
     fn losses_come_in_bursts_of_the_stated_share_and_length() {
-        let loss = Loss { good: 0.01, bad: 0.6, good_time_s: 8.0, bad_time_s: 2.0 };
+        let loss = Loss {
+            good: 0.01,
+            bad: 0.6,
+            good_time_s: 8.0,
+            bad_time_s: 2.0,
+        };
         let mut radio = radio(Link { loss, ..link() });
         let n = 400_000_i64;
         let mut lost = [0.0; 2];
@@ -223,7 +301,9 @@ mod tests {
         let mut was_bad = false;
         for k in 0..n {
             for (lost, way) in lost.iter_mut().zip([Direction::Out, Direction::In]) {
-                *lost += f64::from(u8::from(radio.sent(0, way, (), Ned::default(), TENTH * k).is_none()));
+                *lost += f64::from(u8::from(
+                    radio.sent(0, way, (), Ned::default(), TENTH * k).is_none(),
+                ));
             }
             let is_bad = radio.state.lines[0].is_bad;
             bad += f64::from(u8::from(is_bad));
@@ -236,15 +316,27 @@ mod tests {
         // tenth / (1 - stay).
         assert!((bad / n - 0.2).abs() < 0.01, "{}", bad / n);
         for lost in lost {
-            assert!((lost / n - (0.8 * 0.01 + 0.2 * 0.6)).abs() < 0.005, "{}", lost / n);
+            assert!(
+                (lost / n - (0.8 * 0.01 + 0.2 * 0.6)).abs() < 0.005,
+                "{}",
+                lost / n
+            );
         }
         let leave = (1.0 - math::exp(-0.1 * (0.125 + 0.5))) * 0.8;
-        assert!((bad / turns / (1.0 / leave) - 1.0).abs() < 0.05, "{} {}", bad / turns, 1.0 / leave);
+        assert!(
+            (bad / turns / (1.0 / leave) - 1.0).abs() < 0.05,
+            "{} {}",
+            bad / turns,
+            1.0 / leave
+        );
     }
 
     #[test]
     fn an_order_that_is_overtaken_never_arrives() {
-        let mut radio = radio(Link { jitter_s: 0.5, ..link() });
+        let mut radio = radio(Link {
+            jitter_s: 0.5,
+            ..link()
+        });
         let mut last = -1.0;
         let mut overtaken = 0;
         for k in 0..2_000_i64 {
@@ -262,13 +354,20 @@ mod tests {
 
     #[test]
     fn orders_of_one_decision_share_their_fate_and_the_last_one_counts() {
-        let loss = Loss { good: 0.5, ..Loss::default() };
+        let loss = Loss {
+            good: 0.5,
+            ..Loss::default()
+        };
         let mut radio = radio(Link { loss, ..link() });
         let mut lost = 0;
         for k in 0..1_000_i64 {
-            (0..3).for_each(|n| radio.send_order(0, course(f64::from(n)), Ned::default(), TENTH * k));
+            (0..3)
+                .for_each(|n| radio.send_order(0, course(f64::from(n)), Ned::default(), TENTH * k));
             let arrived = radio.order(0, TENTH * k);
-            assert!(arrived.is_none() || arrived == Some(course(2.0)), "{arrived:?}");
+            assert!(
+                arrived.is_none() || arrived == Some(course(2.0)),
+                "{arrived:?}"
+            );
             lost += u32::from(arrived.is_none());
             radio.open_next();
         }
@@ -278,6 +377,9 @@ mod tests {
     #[test]
     fn the_longest_jitter_that_can_be_drawn_is_within_what_queues_are_made_for() {
         let longest = -libm::log(f64::EPSILON * 0.5);
-        assert!(longest < MOST_JITTERS && longest > MOST_JITTERS - 1.0, "{longest}");
+        assert!(
+            longest < MOST_JITTERS && longest > MOST_JITTERS - 1.0,
+            "{longest}"
+        );
     }
 }

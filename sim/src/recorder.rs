@@ -34,13 +34,23 @@ impl GameRecorder {
     pub fn on_network(file: NewFile, game: &str, pace: &str, commit: &str) -> GameRecorder {
         let path = file.path().to_owned();
         let [game, pace, commit] = [game, pace, commit].map(str::to_owned);
-        GameRecorder { path, game, pace, commit, stage: Stage::Waiting(file), pictures_are_sent: true }
+        GameRecorder {
+            path,
+            game,
+            pace,
+            commit,
+            stage: Stage::Waiting(file),
+            pictures_are_sent: true,
+        }
     }
 
     /// A recorder to a new file, for a game in this process.
     pub fn in_process(file: NewFile, game: &str, commit: &str) -> GameRecorder {
         let recorder = GameRecorder::on_network(file, game, "in process", commit);
-        GameRecorder { pictures_are_sent: false, ..recorder }
+        GameRecorder {
+            pictures_are_sent: false,
+            ..recorder
+        }
     }
 
     /// Records a decision: its frame, and the contest's inputs since the previous one.
@@ -48,13 +58,23 @@ impl GameRecorder {
         contest.keep_inputs();
         self.begin(contest);
         let inputs = contest.take_inputs();
-        let Stage::Recording(recorder) = &self.stage else { return };
+        let Stage::Recording(recorder) = &self.stage else {
+            return;
+        };
         // Over the network pictures are recorded as sent; in one process they are never encoded.
         let shows = !self.pictures_are_sent && inputs.contains(&Input::Pictured);
-        let pictures = if shows { contest.last_pictures().to_vec() } else { vec![] };
+        let pictures = if shows {
+            contest.last_pictures().to_vec()
+        } else {
+            vec![]
+        };
         // Passed on unencoded: another thread encodes and writes, so that the disk never delays a
         // game.
-        recorder.record(Entry::Decision(Box::new(Decision { frame, pictures, inputs })));
+        recorder.record(Entry::Decision(Box::new(Decision {
+            frame,
+            pictures,
+            inputs,
+        })));
     }
 
     /// Records a network message.
@@ -66,8 +86,11 @@ impl GameRecorder {
 
     /// The state of the recording.
     pub fn state(&self) -> RecordingState {
-        let unwritten =
-            |failed| RecordingState { file: self.path.display().to_string(), failed, ..RecordingState::default() };
+        let unwritten = |failed| RecordingState {
+            file: self.path.display().to_string(),
+            failed,
+            ..RecordingState::default()
+        };
         match &self.stage {
             Stage::Waiting(_) => unwritten(None),
             Stage::Recording(recorder) => recorder.state(),
@@ -79,8 +102,16 @@ impl GameRecorder {
     pub fn end(self, report: &Report) -> RecordingState {
         let state = self.state();
         let run = serde_json::to_value(&report.run).expect("a run is JSON");
-        let ending = Ending { outcome: report.outcome.clone(), run, dropped: 0 };
-        if let Stage::Recording(recorder) = self.stage { recorder.end(ending.facts()) } else { state }
+        let ending = Ending {
+            outcome: report.outcome.clone(),
+            run,
+            dropped: 0,
+        };
+        if let Stage::Recording(recorder) = self.stage {
+            recorder.end(ending.facts())
+        } else {
+            state
+        }
     }
 
     /// Starts the recording at the first decision.
@@ -96,11 +127,16 @@ impl GameRecorder {
         let water = contest.world().sea().water();
         let commit = self.commit.clone();
         let game = self.game.clone();
-        let header = Header { commit, game, began_utc_ns: utc::now_ns(), info, water };
+        let header = Header {
+            commit,
+            game,
+            began_utc_ns: utc::now_ns(),
+            info,
+            water,
+        };
         self.stage = match std::mem::replace(&mut self.stage, Stage::Failed(String::new())) {
-            Stage::Waiting(file) => {
-                Recorder::begin(file, &header.opening()).map_or_else(|e| Stage::Failed(e.to_string()), Stage::Recording)
-            }
+            Stage::Waiting(file) => Recorder::begin(file, &header.opening())
+                .map_or_else(|e| Stage::Failed(e.to_string()), Stage::Recording),
             later => later,
         };
     }

@@ -63,14 +63,23 @@ impl Sightings {
                 known: vec![vec![None; scenario.vehicles.len()]; scenario.teams.len()],
             },
             spare: vec![],
-            noises: scenario.vehicles.iter().map(|vehicle| noise(&vehicle.name)).collect(),
+            noises: scenario
+                .vehicles
+                .iter()
+                .map(|vehicle| noise(&vehicle.name))
+                .collect(),
             sharing,
         })
     }
 
     /// Records every boat's true state at a decision. Reports of decisions before `oldest` can no
     /// longer arrive.
-    pub(crate) fn record_truth(&mut self, decision: u64, oldest: u64, boats: impl Iterator<Item = Contact>) {
+    pub(crate) fn record_truth(
+        &mut self,
+        decision: u64,
+        oldest: u64,
+        boats: impl Iterator<Item = Contact>,
+    ) {
         let oldest = oldest.saturating_sub(self.late);
         while let Some(past) = self.state.past.pop_front_if(|past| past.decision < oldest) {
             self.spare.push(past.boats);
@@ -79,14 +88,26 @@ impl Sightings {
         let mut now = self.spare.pop().unwrap_or_default();
         now.clear();
         now.extend(boats);
-        self.state.past.push_back(Truths { decision, boats: now });
+        self.state.past.push_back(Truths {
+            decision,
+            boats: now,
+        });
     }
 
     /// Applies the report that `seer` sent at `decision`: its team learns what `seer` had seen.
     pub(crate) fn show_sightings(&mut self, seer: usize, decision: u64) {
-        let Sightings { sharing, late, noises, decision: length, state: SightingState { past, known }, .. } = self;
+        let Sightings {
+            sharing,
+            late,
+            noises,
+            decision: length,
+            state: SightingState { past, known },
+            ..
+        } = self;
         let seen_at = decision.checked_sub(*late);
-        let Some(place) = seen_at.and_then(|at| past.binary_search_by_key(&at, |past| past.decision).ok()) else {
+        let Some(place) =
+            seen_at.and_then(|at| past.binary_search_by_key(&at, |past| past.decision).ok())
+        else {
             return;
         };
         let boats = &past[place].boats;
@@ -95,7 +116,11 @@ impl Sightings {
         let known = &mut known[own.team.index()];
         // By team, not by seer: two boats that see the same one do not average out its noise.
         let draw = 4 * (decision * teams + own.team.index() as u64);
-        for (seen, known) in boats.iter().zip(known).filter(|(seen, _)| seen.team != own.team) {
+        for (seen, known) in boats
+            .iter()
+            .zip(known)
+            .filter(|(seen, _)| seen.team != own.team)
+        {
             // Another boat may already have reported the same or a later sighting.
             let is_news = known.is_none_or(|known| known.seen_ns < seen.seen_ns);
             let noise = noises[seen.vehicle.index()].at(*length * decision as i64);
@@ -107,18 +132,30 @@ impl Sightings {
 
     /// A team's knowledge of a vehicle at `now`.
     pub(crate) fn of(&self, team: usize, vehicle: usize, now: SimTime) -> Option<Contact> {
-        let remembered = |contact: &Contact| now.as_s() - contact.seen_ns.as_s() <= self.sharing.memory_s;
+        let remembered =
+            |contact: &Contact| now.as_s() - contact.seen_ns.as_s() <= self.sharing.memory_s;
         self.state.known[team][vehicle].filter(remembered)
     }
 }
 
 /// Whether one boat sees another.
 fn sees(sharing: &Sharing, own: &Contact, other: &Contact) -> bool {
-    let at = |contact: &Contact| Ned { north: contact.north_m, east: contact.east_m };
-    let is_near = sharing.range_m.is_none_or(|range_m| at(own).distance(at(other)) <= range_m);
-    let pose = Pose { at: at(own), psi_rad: own.psi_rad };
+    let at = |contact: &Contact| Ned {
+        north: contact.north_m,
+        east: contact.east_m,
+    };
+    let is_near = sharing
+        .range_m
+        .is_none_or(|range_m| at(own).distance(at(other)) <= range_m);
+    let pose = Pose {
+        at: at(own),
+        psi_rad: own.psi_rad,
+    };
     let off_bow_rad = || wrap_pi(pose.at.bearing_rad(at(other)) - pose.psi_rad).abs();
-    is_near && sharing.view_rad.is_none_or(|view_rad| off_bow_rad() <= 0.5 * view_rad)
+    is_near
+        && sharing
+            .view_rad
+            .is_none_or(|view_rad| off_bow_rad() <= 0.5 * view_rad)
 }
 
 fn blurred(sharing: &Sharing, seen: Contact, noise: Noise, draw: u64) -> Contact {

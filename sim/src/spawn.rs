@@ -12,7 +12,9 @@ const TRIES: u32 = 10_000;
 
 /// A spawn area is full.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("no free start position for {vehicle} after {TRIES} tries: enlarge its spawn area or lower gap_m")]
+#[error(
+    "no free start position for {vehicle} after {TRIES} tries: enlarge its spawn area or lower gap_m"
+)]
 pub struct SpawnError {
     /// The vehicle that does not fit.
     pub vehicle: String,
@@ -46,10 +48,16 @@ pub fn start_positions(scenario: &Scenario, seed: u64) -> Result<Vec<Pose>, Spaw
         }
     }
     for (i, vehicle) in scenario.vehicles.iter().enumerate() {
-        if let StartPosition::Somewhere { along_m, across_m, gap_m } = vehicle.start_position {
+        if let StartPosition::Somewhere {
+            along_m,
+            across_m,
+            gap_m,
+        } = vehicle.start_position
+        {
             let free = |at: Ned| {
                 let apart = |other: &(usize, Pose)| other.1.at.distance(at) >= gap_m;
-                let clear = |obstacle: &Obstacle| !obstacle.contains(at) && obstacle.distance(at) >= gap_m;
+                let clear =
+                    |obstacle: &Obstacle| !obstacle.contains(at) && obstacle.distance(at) >= gap_m;
                 taken.iter().all(apart) && scenario.field.plan.obstacles.iter().all(clear)
             };
             let mut draw = || {
@@ -60,7 +68,9 @@ pub fn start_positions(scenario: &Scenario, seed: u64) -> Result<Vec<Pose>, Spaw
             // Drawn by rejection, not placed on a grid: every free place is equally likely, and a
             // full field is an error.
             let at = (0..TRIES).map(|_| draw()).find(|at| free(*at));
-            let at = at.ok_or_else(|| SpawnError { vehicle: vehicle.name.clone() })?;
+            let at = at.ok_or_else(|| SpawnError {
+                vehicle: vehicle.name.clone(),
+            })?;
             let psi_rad = wrap_pi(scenario.field.facing_deg(vehicle.team).to_radians());
             taken.push((i, Pose { at, psi_rad }));
         }

@@ -36,10 +36,7 @@ pub struct ThrusterModel {
 #[derive(Clone, Debug)]
 enum Curve {
     /// `k n |n|`.
-    Propeller {
-        k_ahead: f64,
-        k_astern: f64,
-    },
+    Propeller { k_ahead: f64, k_astern: f64 },
     Table {
         newton: PiecewiseLinear,
         setting: PiecewiseLinear,
@@ -61,17 +58,35 @@ impl ThrusterModel {
     /// The model of `thruster` for ticks of `dt_s`.
     pub fn new(thruster: &Thruster, dt_s: f64) -> ThrusterModel {
         let (curve, ahead, astern) = match &thruster.curve {
-            ThrustCurve::Propeller(Propeller { k_ahead, k_astern, n_max_rad_s, n_min_rad_s }) => {
-                (Curve::Propeller { k_ahead: *k_ahead, k_astern: *k_astern }, *n_max_rad_s, *n_min_rad_s)
-            }
+            ThrustCurve::Propeller(Propeller {
+                k_ahead,
+                k_astern,
+                n_max_rad_s,
+                n_min_rad_s,
+            }) => (
+                Curve::Propeller {
+                    k_ahead: *k_ahead,
+                    k_astern: *k_astern,
+                },
+                *n_max_rad_s,
+                *n_min_rad_s,
+            ),
             ThrustCurve::Table { points } => {
                 let turned: Vec<(f64, f64)> = points.iter().map(|p| (p.1, p.0)).collect();
-                let curve =
-                    Curve::Table { newton: PiecewiseLinear::new(points), setting: PiecewiseLinear::new(&turned) };
+                let curve = Curve::Table {
+                    newton: PiecewiseLinear::new(points),
+                    setting: PiecewiseLinear::new(&turned),
+                };
                 (curve, points[points.len() - 1].0, -points[0].0)
             }
         };
-        let left = |time_s: f64| if thruster.lag_s > 0.0 { math::exp(-time_s / thruster.lag_s) } else { 0.0 };
+        let left = |time_s: f64| {
+            if thruster.lag_s > 0.0 {
+                math::exp(-time_s / thruster.lag_s)
+            } else {
+                0.0
+            }
+        };
         let mut model = ThrusterModel {
             curve,
             arm_m: thruster.arm_m,
@@ -91,7 +106,10 @@ impl ThrusterModel {
 
     /// Initial flaw state of a pair of these thrusters, for [`ThrusterModel::drive`].
     pub fn start(&self) -> FlawState {
-        self.flaws.as_ref().map(|flaws| flaws.start()).unwrap_or_default()
+        self.flaws
+            .as_ref()
+            .map(|flaws| flaws.start())
+            .unwrap_or_default()
     }
 
     /// The thrusters' ventilation, if any.
@@ -190,7 +208,8 @@ impl ThrusterModel {
         }
         let mut on_hull = self.on_hull(given[0], given[1]);
         for (i, force) in on_hull.iter_mut().enumerate() {
-            force.yaw += flaws.bias_newton_m * 0.5 * (self.share(given[0][i]) + self.share(given[1][i]));
+            force.yaw +=
+                flaws.bias_newton_m * 0.5 * (self.share(given[0][i]) + self.share(given[1][i]));
         }
         on_hull
     }
@@ -198,7 +217,12 @@ impl ThrusterModel {
     /// The magnitude of a thrust as a share of full ahead or astern.
     #[inline]
     fn share(&self, newton: f64) -> f64 {
-        newton / if newton < 0.0 { self.newton_min } else { self.newton_max }
+        newton
+            / if newton < 0.0 {
+                self.newton_min
+            } else {
+                self.newton_max
+            }
     }
 
     /// Advances a shaft by one tick towards `wanted`, without flaws. Returns the thrust at the
@@ -209,7 +233,11 @@ impl ThrusterModel {
         // propellers have inertia.
         let change = (wanted - shaft.command).clamp(-self.slew, self.slew);
         shaft.command += change;
-        let target = if shaft.command.abs() < self.deadband { 0.0 } else { shaft.command };
+        let target = if shaft.command.abs() < self.deadband {
+            0.0
+        } else {
+            shaft.command
+        };
         let from = shaft.newton;
         let difference = shaft.setting - target;
         // A first-order lag has an exact solution, so the thrust half-way and at the end needs no
@@ -227,17 +255,31 @@ mod tests {
     use scenario::boat::{Battery, Flaws};
 
     fn thruster(curve: ThrustCurve) -> Thruster {
-        Thruster { arm_m: 0.4, curve, lag_s: 0.2, slew_per_s: 1.0, deadband: 0.05, flaws: Flaws::default() }
+        Thruster {
+            arm_m: 0.4,
+            curve,
+            lag_s: 0.2,
+            slew_per_s: 1.0,
+            deadband: 0.05,
+            flaws: Flaws::default(),
+        }
     }
 
     fn propeller() -> Thruster {
         let n_max_rad_s = 100.0;
         let n_min_rad_s = 90.0;
-        thruster(ThrustCurve::Propeller(Propeller { k_ahead: 0.011, k_astern: 0.006, n_max_rad_s, n_min_rad_s }))
+        thruster(ThrustCurve::Propeller(Propeller {
+            k_ahead: 0.011,
+            k_astern: 0.006,
+            n_max_rad_s,
+            n_min_rad_s,
+        }))
     }
 
     fn table() -> Thruster {
-        thruster(ThrustCurve::Table { points: vec![(-1.0, -30.0), (0.0, 0.0), (0.5, 20.0), (1.0, 60.0)] })
+        thruster(ThrustCurve::Table {
+            points: vec![(-1.0, -30.0), (0.0, 0.0), (0.5, 20.0), (1.0, 60.0)],
+        })
     }
 
     #[test]
@@ -263,14 +305,22 @@ mod tests {
             model.respond(&mut shaft, 1.0);
         });
         // One time constant: 1 − 1/e of the way.
-        assert!((shaft.setting - 0.632_120_558_828_557_7).abs() < 1e-12, "{}", shaft.setting);
+        assert!(
+            (shaft.setting - 0.632_120_558_828_557_7).abs() < 1e-12,
+            "{}",
+            shaft.setting
+        );
 
         let model = ThrusterModel::new(&table(), 0.05);
         let mut shaft = Shaft::default();
         (0..10).for_each(|_| {
             model.respond(&mut shaft, 1.0);
         });
-        assert!((shaft.command - 0.5).abs() < 1e-12, "half a second at 1 per second: {}", shaft.command);
+        assert!(
+            (shaft.command - 0.5).abs() < 1e-12,
+            "half a second at 1 per second: {}",
+            shaft.command
+        );
     }
 
     #[test]
@@ -295,9 +345,15 @@ mod tests {
         for tick in 0..400_u32 {
             let share = |step: u32| f64::from((tick / 7 * step) % 41) / 20.0 - 1.0;
             let settings = if tick % 3 == 0 {
-                [model.setting(70.0 * share(5)), model.setting(-40.0 * share(11))]
+                [
+                    model.setting(70.0 * share(5)),
+                    model.setting(-40.0 * share(11)),
+                ]
             } else {
-                [model.setting_of_share(share(7)), model.setting_of_share(share(3))]
+                [
+                    model.setting_of_share(share(7)),
+                    model.setting_of_share(share(3)),
+                ]
             };
             for force in model.drive([&mut port, &mut starboard], &mut state, settings, [0.0; 2]) {
                 last = (force.surge, force.yaw);
@@ -311,8 +367,16 @@ mod tests {
     #[test]
     fn without_flaws_every_bit_is_as_it_was_before_there_were_any() {
         // Recorded before thrusters had flaws.
-        let propeller_was = (7_544_133_322_723_756_280, 13.121_373_992_948_243, -4.875_639_398_475_489_5);
-        let table_was = (3_658_721_781_925_709_332, 15.826_061_272_148_417, -4.523_535_130_683_975_5);
+        let propeller_was = (
+            7_544_133_322_723_756_280,
+            13.121_373_992_948_243,
+            -4.875_639_398_475_489_5,
+        );
+        let table_was = (
+            3_658_721_781_925_709_332,
+            15.826_061_272_148_417,
+            -4.523_535_130_683_975_5,
+        );
         assert_eq!(voyage(&propeller()), propeller_was);
         assert_eq!(voyage(&table()), table_was);
     }
@@ -338,7 +402,11 @@ mod tests {
     /// Two thrusts as a force on the hull of `table()`.
     fn pair(port_newton: f64, starboard_newton: f64, more_newton_m: f64) -> Planar {
         let yaw = 0.4 * (port_newton - starboard_newton) + more_newton_m;
-        Planar { surge: port_newton + starboard_newton, sway: 0.0, yaw }
+        Planar {
+            surge: port_newton + starboard_newton,
+            sway: 0.0,
+            yaw,
+        }
     }
 
     #[test]
@@ -346,26 +414,97 @@ mod tests {
         let perfect = Flaws::default;
         // Full ahead is 60 N, full astern -30 N, half ahead 20 N.
         for (what, flaws, shares, want) in [
-            ("saturation ahead", Flaws { saturation: 0.5, ..perfect() }, [1.0, 0.3], pair(20.0, 12.0, 0.0)),
-            ("saturation astern", Flaws { saturation: 0.5, ..perfect() }, [-1.0, -0.3], pair(-15.0, -9.0, 0.0)),
-            ("gain", Flaws { gain: (0.9, 1.1), ..perfect() }, [1.0, 0.5], pair(54.0, 22.0, 0.0)),
-            ("reverse", Flaws { reverse_efficiency: 0.4, ..perfect() }, [-1.0, 0.5], pair(-12.0, 20.0, 0.0)),
+            (
+                "saturation ahead",
+                Flaws {
+                    saturation: 0.5,
+                    ..perfect()
+                },
+                [1.0, 0.3],
+                pair(20.0, 12.0, 0.0),
+            ),
+            (
+                "saturation astern",
+                Flaws {
+                    saturation: 0.5,
+                    ..perfect()
+                },
+                [-1.0, -0.3],
+                pair(-15.0, -9.0, 0.0),
+            ),
+            (
+                "gain",
+                Flaws {
+                    gain: (0.9, 1.1),
+                    ..perfect()
+                },
+                [1.0, 0.5],
+                pair(54.0, 22.0, 0.0),
+            ),
+            (
+                "reverse",
+                Flaws {
+                    reverse_efficiency: 0.4,
+                    ..perfect()
+                },
+                [-1.0, 0.5],
+                pair(-12.0, 20.0, 0.0),
+            ),
             (
                 "gain and reverse",
-                Flaws { gain: (0.5, 1.0), reverse_efficiency: 0.4, ..perfect() },
+                Flaws {
+                    gain: (0.5, 1.0),
+                    reverse_efficiency: 0.4,
+                    ..perfect()
+                },
                 [-1.0, -1.0],
                 pair(-6.0, -12.0, 0.0),
             ),
-            ("bias", Flaws { bias_newton_m: 3.0, ..perfect() }, [1.0, 1.0], pair(60.0, 60.0, 3.0)),
-            ("bias of one", Flaws { bias_newton_m: 3.0, ..perfect() }, [0.5, 0.0], pair(20.0, 0.0, 0.5)),
-            ("bias spinning", Flaws { bias_newton_m: 3.0, ..perfect() }, [1.0, -1.0], pair(60.0, -30.0, 3.0)),
+            (
+                "bias",
+                Flaws {
+                    bias_newton_m: 3.0,
+                    ..perfect()
+                },
+                [1.0, 1.0],
+                pair(60.0, 60.0, 3.0),
+            ),
+            (
+                "bias of one",
+                Flaws {
+                    bias_newton_m: 3.0,
+                    ..perfect()
+                },
+                [0.5, 0.0],
+                pair(20.0, 0.0, 0.5),
+            ),
+            (
+                "bias spinning",
+                Flaws {
+                    bias_newton_m: 3.0,
+                    ..perfect()
+                },
+                [1.0, -1.0],
+                pair(60.0, -30.0, 3.0),
+            ),
             (
                 "ventilation of port",
-                Flaws { ventilation: Some(Ventilation { depth_m: 0.2 }), ..perfect() },
+                Flaws {
+                    ventilation: Some(Ventilation { depth_m: 0.2 }),
+                    ..perfect()
+                },
                 [1.0, 1.0],
                 pair(30.0, 60.0, 0.0),
             ),
-            ("latency, after arrival", Flaws { latency_s: 0.15, ..perfect() }, [1.0, 0.5], pair(60.0, 20.0, 0.0)),
+            (
+                "latency, after arrival",
+                Flaws {
+                    latency_s: 0.15,
+                    ..perfect()
+                },
+                [1.0, 0.5],
+                pair(60.0, 20.0, 0.0),
+            ),
         ] {
             let got = settled(flaws, shares);
             let off = (got.surge - want.surge).abs() + (got.yaw - want.yaw).abs();
@@ -376,23 +515,40 @@ mod tests {
     #[test]
     fn a_late_command_does_the_same_later() {
         let (prompt, mut no_flaws, mut prompt_shafts) = flawed(Flaws::default());
-        let (late, mut state, mut late_shafts) = flawed(Flaws { latency_s: 0.15, ..Flaws::default() });
-        let wanted = |tick: i32| [(f64::from(tick) * 0.1).clamp(-1.0, 1.0), (1.0 - f64::from(tick) * 0.03).max(-1.0)];
+        let (late, mut state, mut late_shafts) = flawed(Flaws {
+            latency_s: 0.15,
+            ..Flaws::default()
+        });
+        let wanted = |tick: i32| {
+            [
+                (f64::from(tick) * 0.1).clamp(-1.0, 1.0),
+                (1.0 - f64::from(tick) * 0.03).max(-1.0),
+            ]
+        };
         let mut forces = Vec::new();
         for tick in 0..100 {
             let [port, starboard] = &mut prompt_shafts;
             forces.push(prompt.drive([port, starboard], &mut no_flaws, wanted(tick), [0.0; 2]));
             let [port, starboard] = &mut late_shafts;
             let got = late.drive([port, starboard], &mut state, wanted(tick), [0.0; 2]);
-            let want = if tick < 3 { [Planar::default(); 3] } else { forces[tick as usize - 3] };
+            let want = if tick < 3 {
+                [Planar::default(); 3]
+            } else {
+                forces[tick as usize - 3]
+            };
             assert_eq!(got, want, "tick {tick}");
         }
     }
 
     #[test]
     fn a_battery_sags_by_the_energy_it_has_given() {
-        let battery =
-            Battery { capacity_joule: 90_000.0, charge: 0.9, full_power_watt: 600.0, hotel_power_watt: 30.0, sag: 0.2 };
+        let battery = Battery {
+            capacity_joule: 90_000.0,
+            charge: 0.9,
+            full_power_watt: 600.0,
+            hotel_power_watt: 30.0,
+            sag: 0.2,
+        };
         let mut quick = table();
         (quick.lag_s, quick.slew_per_s) = (0.0, 1e9);
         quick.flaws.battery = Some(battery);
@@ -407,22 +563,42 @@ mod tests {
             sag = 1.0 - 0.2 * (1.0 - charge);
             let both = sag * sag.sqrt() * (1.0 + 1.0 / 27_f64.sqrt());
             charge -= 0.05 * (30.0 + 600.0 * 0.5 * both) / 90_000.0;
-            last = model.drive([&mut port, &mut starboard], &mut state, [-1.0, 0.5], [0.0; 2])[2];
+            last = model.drive(
+                [&mut port, &mut starboard],
+                &mut state,
+                [-1.0, 0.5],
+                [0.0; 2],
+            )[2];
         }
-        assert!((state.charge - charge).abs() < 1e-12, "{} {charge}", state.charge);
+        assert!(
+            (state.charge - charge).abs() < 1e-12,
+            "{} {charge}",
+            state.charge
+        );
         assert!((0.55..0.75).contains(&charge), "{charge}");
-        assert!((last.surge - sag * -10.0).abs() < 1e-9, "{last:?}, sag {sag}");
+        assert!(
+            (last.surge - sag * -10.0).abs() < 1e-9,
+            "{last:?}, sag {sag}"
+        );
         assert_eq!(port.newton + starboard.newton, last.surge);
     }
 
     #[test]
     fn the_front_seat_knows_nothing_of_flaws() {
         let perfect = ThrusterModel::new(&table(), 0.05);
-        let flaws = Flaws { saturation: 0.5, gain: (0.5, 0.5), reverse_efficiency: 0.3, ..Flaws::default() };
+        let flaws = Flaws {
+            saturation: 0.5,
+            gain: (0.5, 0.5),
+            reverse_efficiency: 0.3,
+            ..Flaws::default()
+        };
         let (flawed, ..) = flawed(flaws);
         for newton in [-40.0, -20.0, 0.0, 15.0, 59.0, 80.0] {
             assert_eq!(flawed.setting(newton), perfect.setting(newton));
         }
-        assert_eq!((flawed.newton_max, flawed.newton_min), (perfect.newton_max, perfect.newton_min));
+        assert_eq!(
+            (flawed.newton_max, flawed.newton_min),
+            (perfect.newton_max, perfect.newton_min)
+        );
     }
 }

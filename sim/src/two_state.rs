@@ -16,18 +16,29 @@ pub(crate) struct TwoStateChain {
 
 impl TwoStateChain {
     /// A chain that is never on.
-    pub(crate) const OFF: TwoStateChain = TwoStateChain { turns_on: 0.0, turns_off: 1.0 };
+    pub(crate) const OFF: TwoStateChain = TwoStateChain {
+        turns_on: 0.0,
+        turns_off: 1.0,
+    };
 
     /// A chain with these rates, 1/s, sampled every `period`.
     pub(crate) fn new(on_per_s: f64, off_per_s: f64, period: SimTime) -> TwoStateChain {
         // In continuous time, so that a receiver's period changes only the sampling, not the
         // failure rate.
         let either = -libm::expm1(-(on_per_s + off_per_s) * period.as_s()) / (on_per_s + off_per_s);
-        TwoStateChain { turns_on: on_per_s * either, turns_off: off_per_s * either }
+        TwoStateChain {
+            turns_on: on_per_s * either,
+            turns_off: off_per_s * either,
+        }
     }
 
     /// Whether it is on at the next sample, given a uniform number between 0 and 1.
     pub(crate) fn next(self, on: bool, uniform: f64) -> bool {
-        uniform < if on { 1.0 - self.turns_off } else { self.turns_on }
+        uniform
+            < if on {
+                1.0 - self.turns_off
+            } else {
+                self.turns_on
+            }
     }
 }

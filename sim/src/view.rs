@@ -21,7 +21,11 @@ pub(crate) struct Scene<'a> {
 
 impl Scene<'_> {
     fn stamp<M: Message>(&self) -> Stamp {
-        Stamp { valid_ns: self.world.state().now, seq: self.decision, version: M::VERSION }
+        Stamp {
+            valid_ns: self.world.state().now,
+            seq: self.decision,
+            version: M::VERSION,
+        }
     }
 
     fn nav(&self, i: usize) -> Nav {
@@ -37,14 +41,18 @@ impl Scene<'_> {
     }
 
     fn flags(&self) -> impl Iterator<Item = FlagView> {
-        self.standing.flags.iter().map(|flag| FlagView { carrier: flag.carrier.map_or(-1, |v| i32::from(v.0)) })
+        self.standing.flags.iter().map(|flag| FlagView {
+            carrier: flag.carrier.map_or(-1, |v| i32::from(v.0)),
+        })
     }
 
     /// The true state of world and referee, with these events.
     pub(crate) fn frame(&self, events: &[Logged]) -> Frame {
         Frame {
             stamp: self.stamp::<Frame>(),
-            vehicles: (0..self.scenario.vehicles.len()).map(|i| self.truth(i)).collect(),
+            vehicles: (0..self.scenario.vehicles.len())
+                .map(|i| self.truth(i))
+                .collect(),
             sea: self.sea(),
             flags: self.flags().collect(),
             score: self.standing.score.clone(),
@@ -117,8 +125,12 @@ impl Scene<'_> {
         picture.flags.extend(self.flags());
         picture.score.clone_from(&self.standing.score);
         picture.events.clear();
-        let concerns = events.iter().filter(|logged| concerns(self.scenario, team, logged.event));
-        picture.events.extend(concerns.map(|logged| messages::EventRecord::from(*logged)));
+        let concerns = events
+            .iter()
+            .filter(|logged| concerns(self.scenario, team, logged.event));
+        picture
+            .events
+            .extend(concerns.map(|logged| messages::EventRecord::from(*logged)));
         picture.over = self.standing.over;
     }
 
@@ -130,7 +142,11 @@ impl Scene<'_> {
             // Sensor readings, even for the boat's own team: agents never see the true state unless
             // the boat's file omits sensors.
             Some(reading) => (reading.nav, reading.fix_at, reading.imu),
-            None => (self.nav(i), self.world.state().now, ImuReading::of(&self.world.truth(vehicle))),
+            None => (
+                self.nav(i),
+                self.world.state().now,
+                ImuReading::of(&self.world.truth(vehicle)),
+            ),
         };
         OwnBoat {
             vehicle,
@@ -170,7 +186,12 @@ impl Scene<'_> {
 fn concerns(scenario: &Scenario, team: TeamId, event: Event) -> bool {
     let ours = |vehicle: VehicleId| scenario.vehicles[vehicle.index()].team == team;
     // On real water, a team would not learn of events without its boats or its flag.
-    let is_own_flag = event.flag().is_some_and(|flag| scenario.field.flags[flag.index()].team == team);
-    let is_own_boat = [event.vehicle(), event.other()].into_iter().flatten().any(ours);
+    let is_own_flag = event
+        .flag()
+        .is_some_and(|flag| scenario.field.flags[flag.index()].team == team);
+    let is_own_boat = [event.vehicle(), event.other()]
+        .into_iter()
+        .flatten()
+        .any(ours);
     is_own_flag || is_own_boat || matches!(event, Event::Ended { .. })
 }

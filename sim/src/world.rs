@@ -95,7 +95,10 @@ impl World {
     /// The world of this plan at its start.
     pub fn new(plan: &WorldPlan<'_>) -> World {
         let model = Model::new(plan);
-        let boats = plan.vehicles.iter().map(|vehicle| BoatState { pose: vehicle.start, ..BoatState::default() });
+        let boats = plan.vehicles.iter().map(|vehicle| BoatState {
+            pose: vehicle.start,
+            ..BoatState::default()
+        });
         let mut state = State {
             tick: 0,
             now: SimTime::ZERO,
@@ -105,7 +108,11 @@ impl World {
             senses: model.senses_at_start(),
         };
         state.points = model.points_at_start(&state.boats);
-        let mut world = World { model, state, work: Work::default() };
+        let mut world = World {
+            model,
+            state,
+            work: Work::default(),
+        };
         world.refresh();
         // Minds decide before the first tick, from sensor readings at rest.
         world.read_sensors();
@@ -123,15 +130,26 @@ impl World {
         let starts = spawn::start_positions(&scenario, seed)?;
         let seeds = scenario.seeds();
         let faults = |i: usize, name: &str| {
-            fault_spans(&scenario.faults, (VehicleId::at(i), name), &seeds, scenario.rules.time_limit)
+            fault_spans(
+                &scenario.faults,
+                (VehicleId::at(i), name),
+                &seeds,
+                scenario.rules.time_limit,
+            )
         };
-        let vehicles = scenario.vehicles.iter().zip(starts).enumerate().map(|(i, (vehicle, start))| VehiclePlan {
-            faults: faults(i, &vehicle.name),
-            name: &vehicle.name,
-            kind: vehicle.boat,
-            start,
-            is_external: vehicle.source == Source::External,
-        });
+        let vehicles =
+            scenario
+                .vehicles
+                .iter()
+                .zip(starts)
+                .enumerate()
+                .map(|(i, (vehicle, start))| VehiclePlan {
+                    faults: faults(i, &vehicle.name),
+                    name: &vehicle.name,
+                    kind: vehicle.boat,
+                    start,
+                    is_external: vehicle.source == Source::External,
+                });
         Ok(World::new(&WorldPlan {
             tick: scenario.tick,
             sea: &scenario.sea,
@@ -152,7 +170,11 @@ impl World {
     /// # Panics
     /// If the number of commands differs from the number of vehicles.
     pub fn step(&mut self, commands: &[Order]) -> &[VehicleId] {
-        assert_eq!(commands.len(), self.state.boats.len(), "one command per vehicle");
+        assert_eq!(
+            commands.len(),
+            self.state.boats.len(),
+            "one command per vehicle"
+        );
         self.work.quarantined.clear();
         // Wind and current are processes in time: their values for this tick are computed once for
         // all boats.
@@ -160,7 +182,11 @@ impl World {
         self.drive(commands);
         // All boats move first without contact, and then those that touch are corrected, so that
         // the order of the list gives no advantage.
-        self.model.contact.resolve(&self.model.hulls, &mut self.work.displacements, &self.work.pairs);
+        self.model.contact.resolve(
+            &self.model.hulls,
+            &mut self.work.displacements,
+            &self.work.pairs,
+        );
         self.settle();
         self.state.tick += 1;
         self.state.now = self.state.now + self.model.tick;
@@ -176,7 +202,9 @@ impl World {
         }
         let sea = model.sea.at_time(state.now);
         for (i, boat) in state.boats.iter().enumerate() {
-            let Some((place, sensors)) = &model.sensed[i] else { continue };
+            let Some((place, sensors)) = &model.sensed[i] else {
+                continue;
+            };
             let truth = model.truth(i, boat, work.rotations[i], &sea);
             let (memory, reading) = &mut state.senses[*place];
             *reading = sensors.read(memory, &truth, state.now);
@@ -190,8 +218,15 @@ impl World {
     pub fn set_back(&mut self, circle: impl Fn(VehicleId, Ned) -> Option<(Ned, f64)>) {
         let World { model, state, work } = self;
         let mut moved = false;
-        for (i, boat) in state.boats.iter_mut().enumerate().filter(|(i, _)| !model.is_external(*i)) {
-            let Some((centre, radius_m)) = circle(VehicleId::at(i), boat.pose.at) else { continue };
+        for (i, boat) in state
+            .boats
+            .iter_mut()
+            .enumerate()
+            .filter(|(i, _)| !model.is_external(*i))
+        {
+            let Some((centre, radius_m)) = circle(VehicleId::at(i), boat.pose.at) else {
+                continue;
+            };
             let from_centre = boat.pose.at - centre;
             let distance_m = from_centre.length();
             // At the exact centre there is no direction for the set-back.
@@ -200,13 +235,23 @@ impl World {
             }
             moved = true;
             if let Some((place, _)) = model.point(i) {
-                let came_from = work.displacements.get(i).map_or(boat.pose.at, |displacement| displacement.from.at);
+                let came_from = work
+                    .displacements
+                    .get(i)
+                    .map_or(boat.pose.at, |displacement| displacement.from.at);
                 // As in Pyquaticus: back to the point of entry, turned along the circle, with the
                 // tangential part of its velocity.
-                boat.pose.at = way_back((came_from, boat.pose.at), centre, radius_m + POINT_BOAT_SPARE_M);
+                boat.pose.at = way_back(
+                    (came_from, boat.pose.at),
+                    centre,
+                    radius_m + POINT_BOAT_SPARE_M,
+                );
                 let point = &mut state.points[place];
-                let drift = boat.nu.in_ned(work.rotations[i]) - work.rotations[i].ahead().scaled(point.speed_m_s);
-                point.slide_across((boat.pose.at - centre).scaled(1.0 / boat.pose.at.distance(centre)));
+                let drift = boat.nu.in_ned(work.rotations[i])
+                    - work.rotations[i].ahead().scaled(point.speed_m_s);
+                point.slide_across(
+                    (boat.pose.at - centre).scaled(1.0 / boat.pose.at.distance(centre)),
+                );
                 boat.pose.psi_rad = point.psi_rad();
                 work.rotations[i] = boat.pose.rotation();
                 let drift = frame::body_from_ned(work.rotations[i], drift);
@@ -216,7 +261,8 @@ impl World {
             let out = from_centre.scaled(1.0 / distance_m);
             boat.pose.at = centre + out.scaled(radius_m);
             let out_in_body = frame::body_from_ned(work.rotations[i], out);
-            let inward_m_s = (out_in_body.ahead * boat.nu.surge + out_in_body.starboard * boat.nu.sway).min(0.0);
+            let inward_m_s =
+                (out_in_body.ahead * boat.nu.surge + out_in_body.starboard * boat.nu.sway).min(0.0);
             // A hull keeps its heading and loses its inward velocity, as at a soft wall.
             boat.nu.surge -= inward_m_s * out_in_body.ahead;
             boat.nu.sway -= inward_m_s * out_in_body.starboard;
@@ -236,7 +282,11 @@ impl World {
     /// # Panics
     /// If the number of boats differs.
     pub fn set_state(&mut self, state: State) {
-        assert_eq!(state.boats.len(), self.state.boats.len(), "the state has another number of boats");
+        assert_eq!(
+            state.boats.len(),
+            self.state.boats.len(),
+            "the state has another number of boats"
+        );
         self.state = state;
         self.refresh();
     }
@@ -255,7 +305,11 @@ impl World {
     /// A vehicle's motion in the last tick.
     pub fn leg(&self, vehicle: VehicleId) -> Leg {
         let to = self.state.boats[vehicle.index()].pose.at;
-        let from = self.work.displacements.get(vehicle.index()).map_or(to, |displacement| displacement.from.at);
+        let from = self
+            .work
+            .displacements
+            .get(vehicle.index())
+            .map_or(to, |displacement| displacement.from.at);
         Leg { from, to }
     }
 
@@ -272,14 +326,17 @@ impl World {
 
     /// A vehicle's sensor readings; `None` if all its sensors are perfect.
     pub fn reading(&self, vehicle: VehicleId) -> Option<&Reading> {
-        let place = self.model.sensed[vehicle.index()].as_ref().map(|(place, _)| *place)?;
+        let place = self.model.sensed[vehicle.index()]
+            .as_ref()
+            .map(|(place, _)| *place)?;
         Some(&self.state.senses[place].1)
     }
 
     /// The true state of a vehicle, as far as sensors measure it.
     pub fn truth(&self, vehicle: VehicleId) -> Truth {
         let i = vehicle.index();
-        self.model.truth(i, &self.state.boats[i], self.work.rotations[i], &self.sea())
+        self.model
+            .truth(i, &self.state.boats[i], self.work.rotations[i], &self.sea())
     }
 
     /// Passes boats within `close_m` of anything to rapier. Slower, with the same bytes.
@@ -300,7 +357,9 @@ impl World {
     /// Updates everything derived from the state.
     fn refresh(&mut self) {
         self.work.rotations.clear();
-        self.work.rotations.extend(self.state.boats.iter().map(|boat| boat.pose.rotation()));
+        self.work
+            .rotations
+            .extend(self.state.boats.iter().map(|boat| boat.pose.rotation()));
         self.find_pairs();
     }
 
@@ -311,7 +370,10 @@ impl World {
         // At the end of a tick, for the next tick and for the referee: both need near pairs at the
         // same positions.
         let boats = &self.state.boats;
-        let pairs = self.work.near.pairs(|i| boats[i].pose.at, boats.len(), reach_m);
+        let pairs = self
+            .work
+            .near
+            .pairs(|i| boats[i].pose.at, boats.len(), reach_m);
         self.work.pairs.clear();
         self.work.pairs.extend_from_slice(pairs);
     }
@@ -325,12 +387,23 @@ impl World {
         for (i, boat) in state.boats.iter_mut().enumerate() {
             let heading = (work.rotations[i], model.heading_error_rad(i, &state.senses));
             let failing = model.failing(i, state.now);
-            let (forcing, current_m_s) =
-                model.forcing((i, failing), boat, &mut state.flaws[i], heading, commands[i], &sea);
+            let (forcing, current_m_s) = model.forcing(
+                (i, failing),
+                boat,
+                &mut state.flaws[i],
+                heading,
+                commands[i],
+                &sea,
+            );
             work.forcings.push(forcing);
             work.currents_m_s.push(current_m_s);
         }
-        model.fleet.advance(&work.forcings, model.dt_s, model.sea.is_uniform(), &mut work.motions);
+        model.fleet.advance(
+            &work.forcings,
+            model.dt_s,
+            model.sea.is_uniform(),
+            &mut work.motions,
+        );
         work.displacements.clear();
         work.velocities.clear();
         for (i, boat) in state.boats.iter().enumerate() {
@@ -342,15 +415,32 @@ impl World {
                     (to, to.rotation(), boat.nu)
                 }
                 _ if boat.quarantined => (from, rotation, Planar::default()),
-                Some((place, point)) => {
-                    model.point_moved(from, (point, &mut state.points[place]), commands[i], sea.current_at(from.at))
-                }
-                None => model.hull_moved(from, rotation, &work.forcings[i], &work.motions[i], work.currents_m_s[i]),
+                Some((place, point)) => model.point_moved(
+                    from,
+                    (point, &mut state.points[place]),
+                    commands[i],
+                    sea.current_at(from.at),
+                ),
+                None => model.hull_moved(
+                    from,
+                    rotation,
+                    &work.forcings[i],
+                    &work.motions[i],
+                    work.currents_m_s[i],
+                ),
             };
             let kind = model.kinds[i];
             let role = model.role(i, boat);
             let velocity_change = Planar::default();
-            work.displacements.push(Displacement { kind, from, to, rotation, rotation_to, role, velocity_change });
+            work.displacements.push(Displacement {
+                kind,
+                from,
+                to,
+                rotation,
+                rotation_to,
+                role,
+                velocity_change,
+            });
             work.velocities.push(nu);
         }
     }
@@ -365,15 +455,26 @@ impl World {
             nu = nu.plus(1.0, displacement.velocity_change);
             if is_sound(displacement.to, nu) {
                 boat.nu_change = nu.plus(-1.0, boat.nu);
-                (boat.pose, boat.nu, work.rotations[i]) = (displacement.to, nu, displacement.rotation_to);
-                if let (Some((place, _)), true) = (model.point(i), displacement.velocity_change != Planar::default()) {
+                (boat.pose, boat.nu, work.rotations[i]) =
+                    (displacement.to, nu, displacement.rotation_to);
+                if let (Some((place, _)), true) = (
+                    model.point(i),
+                    displacement.velocity_change != Planar::default(),
+                ) {
                     // Its own speed is through the water.
-                    let drift = frame::body_from_ned(displacement.rotation_to, sea.current_at(displacement.from.at));
+                    let drift = frame::body_from_ned(
+                        displacement.rotation_to,
+                        sea.current_at(displacement.from.at),
+                    );
                     state.points[place].divert(boat.pose.psi_rad, boat.nu.surge - drift.ahead);
                 }
             } else if !boat.quarantined {
                 // At its last valid position, where others may hit it.
-                *boat = BoatState { pose: boat.pose, quarantined: true, ..BoatState::default() };
+                *boat = BoatState {
+                    pose: boat.pose,
+                    quarantined: true,
+                    ..BoatState::default()
+                };
                 work.quarantined.push(VehicleId::at(i));
             }
         }
@@ -387,7 +488,12 @@ fn way_back((from, to): (Ned, Ned), centre: Ned, radius_m: f64) -> Ned {
     let back = back.scaled(1.0 / back.length());
     let from_centre = to - centre;
     let beside = from_centre.dot(back);
-    to + back.scaled((beside * beside + radius_m * radius_m - from_centre.dot(from_centre)).max(0.0).sqrt() - beside)
+    to + back.scaled(
+        (beside * beside + radius_m * radius_m - from_centre.dot(from_centre))
+            .max(0.0)
+            .sqrt()
+            - beside,
+    )
 }
 
 #[inline]

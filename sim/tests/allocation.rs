@@ -1,8 +1,8 @@
 //! Heap allocations of a step: none unless hulls are close, and then none that persist. And of a
 //! decision with radio links and limits on sharing: none once queues have grown.
 //!
-//! `stats_alloc` counts: it has a hundred lines, is safe to use, and avoids an `unsafe` allocator of
-//! our own. It counts the whole process, so this file has one test.
+//! `stats_alloc` counts: it has a hundred lines, is safe to use, and avoids an `unsafe` allocator
+//! of our own. It counts the whole process, so this file has one test.
 
 mod common;
 
@@ -21,16 +21,27 @@ const WARM_UP: u32 = 1_300;
 
 /// All boats head for the centre, then away again, for half a minute each.
 fn orders(world: &World, middle: Ned, orders: &mut [Order]) {
-    let away_rad = if (world.state().tick / 600).is_multiple_of(2) { 0.0 } else { std::f64::consts::PI };
+    let away_rad = if (world.state().tick / 600).is_multiple_of(2) {
+        0.0
+    } else {
+        std::f64::consts::PI
+    };
     for (order, boat) in orders.iter_mut().zip(&world.state().boats) {
-        *order = Order::Steer { heading_rad: boat.pose.at.bearing_rad(middle) + away_rad, speed_m_s: 2.0 };
+        *order = Order::Steer {
+            heading_rad: boat.pose.at.bearing_rad(middle) + away_rad,
+            speed_m_s: 2.0,
+        };
     }
 }
 
 /// Whether any two boats are so close that their hulls may touch in the next tick.
 fn crowded(world: &World, reach_m: f64) -> bool {
     let boats = &world.state().boats;
-    let near = |i: usize| boats[..i].iter().any(|other| other.pose.at.distance(boats[i].pose.at) < reach_m);
+    let near = |i: usize| {
+        boats[..i]
+            .iter()
+            .any(|other| other.pose.at.distance(boats[i].pose.at) < reach_m)
+    };
     (0..boats.len()).any(near)
 }
 
@@ -63,10 +74,17 @@ fn a_step_leaves_nothing_on_the_heap_and_takes_nothing_unless_hulls_are_close() 
             if crowded {
                 busy += 1;
                 // Rapier frees what it allocates.
-                assert_eq!(used.allocations, used.deallocations, "{game}, tick {tick}: {used:?}");
+                assert_eq!(
+                    used.allocations, used.deallocations,
+                    "{game}, tick {tick}: {used:?}"
+                );
             } else {
                 free += 1;
-                assert_eq!(used.allocations + used.reallocations, 0, "{game}, tick {tick}: {used:?}");
+                assert_eq!(
+                    used.allocations + used.reallocations,
+                    0,
+                    "{game}, tick {tick}: {used:?}"
+                );
             }
         }
         // In waves the four boats do not meet.
@@ -94,12 +112,27 @@ fn a_decision_over_the_air_takes_nothing_unless_hulls_are_close_or_something_hap
         let events = contest.events().len();
         let decision = contest.decision();
         let heap = Region::new(HEAP);
-        contacts += contest.pictures().iter().map(|picture| picture.contacts.len()).sum::<usize>();
+        contacts += contest
+            .pictures()
+            .iter()
+            .map(|picture| picture.contacts.len())
+            .sum::<usize>();
         for i in 0..scenario.vehicles.len() {
             let round_rad = decision as f64 * 0.01 + i as f64;
             let at = contest.world().state().boats[i].pose.at;
-            let heading_rad = if at.distance(middle) > 30.0 { at.bearing_rad(middle) } else { round_rad };
-            order(&mut contest, VehicleId::at(i), Order::Steer { heading_rad, speed_m_s: 1.5 });
+            let heading_rad = if at.distance(middle) > 30.0 {
+                at.bearing_rad(middle)
+            } else {
+                round_rad
+            };
+            order(
+                &mut contest,
+                VehicleId::at(i),
+                Order::Steer {
+                    heading_rad,
+                    speed_m_s: 1.5,
+                },
+            );
         }
         contest.advance();
         let used = heap.change();
@@ -108,8 +141,15 @@ fn a_decision_over_the_air_takes_nothing_unless_hulls_are_close_or_something_hap
             busy += 1;
         } else {
             free += 1;
-            assert_eq!(used.allocations + used.reallocations, 0, "decision {decision}: {used:?}");
+            assert_eq!(
+                used.allocations + used.reallocations,
+                0,
+                "decision {decision}: {used:?}"
+            );
         }
     }
-    assert!(free > 1_000 && contacts > 1_000, "{free} decisions without, {busy} with, {contacts} contacts");
+    assert!(
+        free > 1_000 && contacts > 1_000,
+        "{free} decisions without, {busy} with, {contacts} contacts"
+    );
 }

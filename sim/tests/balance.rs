@@ -15,7 +15,12 @@ use sim::World;
 use sim::hull::Planar;
 
 fn blowing(speed_10m_m_s: f64) -> Wind {
-    Wind { speed_10m_m_s, from_rad: 0.0, profile_exponent: 0.0, gusts: Gusts::None }
+    Wind {
+        speed_10m_m_s,
+        from_rad: 0.0,
+        profile_exponent: 0.0,
+        gusts: Gusts::None,
+    }
 }
 
 /// The speed at which a boat drifts beam to the wind:
@@ -25,8 +30,14 @@ fn beam_drift_m_s(scenario: &Scenario, wind_m_s: f64) -> f64 {
     let water_kg_m3 = scenario.sea.water_density_kg_m3;
     let air = 0.5 * 1.225 * boat.windage.sway_coefficient * boat.windage.lateral_area_m2;
     let hull = &boat.hull;
-    let water = 0.5 * water_kg_m3 * hull.crossflow_coefficient * hull.crossflow_length_m * hull.crossflow_draught_m;
-    common::root((0.0, wind_m_s), |v| water * v * v + hull.sway_linear_kg_s * v - air * (wind_m_s - v) * (wind_m_s - v))
+    let water = 0.5
+        * water_kg_m3
+        * hull.crossflow_coefficient
+        * hull.crossflow_length_m
+        * hull.crossflow_draught_m;
+    common::root((0.0, wind_m_s), |v| {
+        water * v * v + hull.sway_linear_kg_s * v - air * (wind_m_s - v) * (wind_m_s - v)
+    })
 }
 
 /// A boat of this kind after `minutes` in this wind from the north, without thrust, from rest on a
@@ -48,13 +59,23 @@ fn a_free_boat_comes_to_lie_beam_to_the_wind_and_drifts_as_the_balance_says() {
     for kind in ["surveyor_m1_8", "otter", "heron"] {
         for wind_m_s in [5.0, 10.0] {
             let drift_m_s = beam_drift_m_s(&alone(kind, "calm"), wind_m_s);
-            for heading_deg in [1.0, 30.0, 60.0, 90.0, 120.0, 150.0, 179.0, 181.0, 230.0, 270.0, 310.0, 359.0] {
+            for heading_deg in [
+                1.0, 30.0, 60.0, 90.0, 120.0, 150.0, 179.0, 181.0, 230.0, 270.0, 310.0, 359.0,
+            ] {
                 let (end_deg, nu) = left_to_the_wind(kind, wind_m_s, heading_deg, 30);
                 let side = if heading_deg < 180.0 { 1.0 } else { -1.0 };
-                let what = format!("{kind}, {wind_m_s} m/s, from {heading_deg}°: {end_deg}°, {nu:?}, not {drift_m_s}");
+                let what = format!(
+                    "{kind}, {wind_m_s} m/s, from {heading_deg}°: {end_deg}°, {nu:?}, not {drift_m_s}"
+                );
                 assert!((end_deg - side * 90.0).abs() < 0.01, "{what}");
-                assert!((nu.sway - side * drift_m_s).abs() < 1e-5 * drift_m_s, "{what}");
-                assert!(nu.surge.abs() < 1e-4 * drift_m_s && nu.yaw.abs() < 1e-6, "{what}");
+                assert!(
+                    (nu.sway - side * drift_m_s).abs() < 1e-5 * drift_m_s,
+                    "{what}"
+                );
+                assert!(
+                    nu.surge.abs() < 1e-4 * drift_m_s && nu.yaw.abs() < 1e-6,
+                    "{what}"
+                );
             }
         }
     }
@@ -64,10 +85,16 @@ fn a_free_boat_comes_to_lie_beam_to_the_wind_and_drifts_as_the_balance_says() {
 fn wind_right_ahead_or_astern_holds_a_boat_only_until_something_turns_it() {
     for heading_deg in [0.0, 180.0] {
         let (end_deg, nu) = left_to_the_wind("surveyor_m1_8", 10.0, heading_deg, 1);
-        assert!(wrap_pi((end_deg - heading_deg).to_radians()).abs() < 1e-9 && nu.surge.abs() > 0.1, "{end_deg} {nu:?}");
+        assert!(
+            wrap_pi((end_deg - heading_deg).to_radians()).abs() < 1e-9 && nu.surge.abs() > 0.1,
+            "{end_deg} {nu:?}"
+        );
         let (end_deg, _) = left_to_the_wind("surveyor_m1_8", 10.0, heading_deg + 0.01, 1);
         assert!(
-            wrap_pi((end_deg - heading_deg).to_radians()).to_degrees().abs() > 0.1,
+            wrap_pi((end_deg - heading_deg).to_radians())
+                .to_degrees()
+                .abs()
+                > 0.1,
             "from {heading_deg}.01°: {end_deg}°"
         );
     }
@@ -87,7 +114,11 @@ impl Accounts {
         scenario.sea.current.mean_m_s = current_m_s;
         scenario.tick = SimTime::from_s(tick_s);
         let world = World::of_game(&scenario, 1).unwrap();
-        Accounts { scenario, world, order }
+        Accounts {
+            scenario,
+            world,
+            order,
+        }
     }
 
     fn step(&mut self) {
@@ -97,7 +128,11 @@ impl Accounts {
     fn through_water(&self) -> Planar {
         let boat = self.world.state().boats[0];
         let water = body_from_ned(boat.pose.rotation(), self.scenario.sea.current.mean_m_s);
-        Planar { surge: boat.nu.surge - water.ahead, sway: boat.nu.sway - water.starboard, yaw: boat.nu.yaw }
+        Planar {
+            surge: boat.nu.surge - water.ahead,
+            sway: boat.nu.sway - water.starboard,
+            yaw: boat.nu.yaw,
+        }
     }
 
     fn energy_joule(&self) -> f64 {
@@ -108,30 +143,52 @@ impl Accounts {
     fn powers_watt(&self) -> (f64, f64) {
         let boat = self.world.state().boats[0];
         let kind = &self.scenario.boats[0];
-        let Planar { surge: u, sway: v, yaw: r } = self.through_water();
+        let Planar {
+            surge: u,
+            sway: v,
+            yaw: r,
+        } = self.through_water();
         let hull = &kind.hull;
-        let scenario::boat::Drive::Thrusters { thruster, .. } = &kind.drive else { panic!("expected thrusters") };
+        let scenario::boat::Drive::Thrusters { thruster, .. } = &kind.drive else {
+            panic!("expected thrusters")
+        };
         let port = boat.port.newton;
         let starboard = boat.starboard.newton;
         let given = (port + starboard) * u + thruster.arm_m * (port - starboard) * r;
         let plain = (hull.surge_linear_kg_s + hull.surge_quadratic_kg_m * u.abs()) * u * u
             + (hull.sway_linear_kg_s + hull.sway_lift_kg_m * u.abs()) * v * v
-            + (hull.yaw_linear_kg_m2_s + hull.yaw_quadratic_kg_m2 * r.abs() + hull.yaw_lift_kg_m * u.abs()) * r * r;
+            + (hull.yaw_linear_kg_m2_s
+                + hull.yaw_quadratic_kg_m2 * r.abs()
+                + hull.yaw_lift_kg_m * u.abs())
+                * r
+                * r;
         let strips = 200;
         let step_m = hull.crossflow_length_m / f64::from(strips);
         let strip = |i: i32| {
             let across = v + r * (step_m * (f64::from(i) + 0.5) - 0.5 * hull.crossflow_length_m);
             across.abs() * across * across * step_m
         };
-        let water = 0.5 * self.scenario.sea.water_density_kg_m3 * hull.crossflow_coefficient * hull.crossflow_draught_m;
+        let water = 0.5
+            * self.scenario.sea.water_density_kg_m3
+            * hull.crossflow_coefficient
+            * hull.crossflow_draught_m;
         (given, plain + water * (0..strips).map(strip).sum::<f64>())
     }
 }
 
 const ORDERS: [Order; 3] = [
-    Order::Thrust { port: 0.7, starboard: 0.7 },
-    Order::Thrust { port: 0.9, starboard: 0.4 },
-    Order::Thrust { port: 0.5, starboard: -0.6 },
+    Order::Thrust {
+        port: 0.7,
+        starboard: 0.7,
+    },
+    Order::Thrust {
+        port: 0.9,
+        starboard: 0.4,
+    },
+    Order::Thrust {
+        port: 0.5,
+        starboard: -0.6,
+    },
 ];
 
 #[test]
@@ -140,9 +197,16 @@ fn the_energy_changes_by_what_thrust_puts_in_and_resistance_takes_out() {
     // through the water counts. Integrals by Simpson's rule over pairs of ticks, which are short
     // because shafts are quick. The Surveyor's Munk factor is not 1.
     const TICK_S: f64 = 0.005;
-    let stream = Ned { north: 0.3, east: -0.4 };
-    for (kind, current) in [("otter", Ned::default()), ("otter", stream), ("surveyor_m1_8", stream), ("heron", stream)]
-    {
+    let stream = Ned {
+        north: 0.3,
+        east: -0.4,
+    };
+    for (kind, current) in [
+        ("otter", Ned::default()),
+        ("otter", stream),
+        ("surveyor_m1_8", stream),
+        ("heron", stream),
+    ] {
         for order in ORDERS {
             let mut boat = Accounts::of(kind, TICK_S, current, order);
             let start_joule = boat.energy_joule();
@@ -150,7 +214,10 @@ fn the_energy_changes_by_what_thrust_puts_in_and_resistance_takes_out() {
             let mut taken_out = 0.0;
             for pair in 0..2_000 {
                 if pair == 1_000 {
-                    boat.order = Order::Thrust { port: -0.3, starboard: 0.8 };
+                    boat.order = Order::Thrust {
+                        port: -0.3,
+                        starboard: 0.8,
+                    };
                 }
                 let mut powers = [boat.powers_watt(); 3];
                 for power in &mut powers[1..] {
@@ -162,7 +229,10 @@ fn the_energy_changes_by_what_thrust_puts_in_and_resistance_takes_out() {
                 taken_out += over_pair(powers.map(|p| p.1));
                 let gained = boat.energy_joule() - start_joule;
                 let off = (gained - (put_in - taken_out)).abs() / taken_out.max(1.0);
-                assert!(off < 1e-4, "{kind}, {order:?}, {pair}: {gained} J, {put_in} J in, {taken_out} J out");
+                assert!(
+                    off < 1e-4,
+                    "{kind}, {order:?}, {pair}: {gained} J, {put_in} J in, {taken_out} J out"
+                );
             }
         }
     }
@@ -172,7 +242,15 @@ fn the_energy_changes_by_what_thrust_puts_in_and_resistance_takes_out() {
 fn at_a_steady_speed_thrust_puts_in_what_resistance_takes_out() {
     for kind in ["otter", "surveyor_m1_8", "heron"] {
         for order in ORDERS {
-            let mut boat = Accounts::of(kind, 0.05, Ned { north: 0.3, east: -0.4 }, order);
+            let mut boat = Accounts::of(
+                kind,
+                0.05,
+                Ned {
+                    north: 0.3,
+                    east: -0.4,
+                },
+                order,
+            );
             for _ in 0..6_000 {
                 boat.step();
             }

@@ -2,7 +2,9 @@
 
 mod common;
 
-use common::{afloat, among, came_together, digest, energy_joule, gap_m, hulls, place_boat, shipped};
+use common::{
+    afloat, among, came_together, digest, energy_joule, gap_m, hulls, place_boat, shipped,
+};
 use messages::Order;
 use primitives::Ned;
 use primitives::stream::Stream;
@@ -13,7 +15,10 @@ use sim::World;
 const BOATS: [&str; 3] = ["heron", "otter", "surveyor_m1_8"];
 /// Maximum penetration of hulls, m: about a hundredth of a boat's beam.
 const DEEPEST_M: f64 = 0.02;
-const AHEAD: Order = Order::Thrust { port: 1.0, starboard: 1.0 };
+const AHEAD: Order = Order::Thrust {
+    port: 1.0,
+    starboard: 1.0,
+};
 
 /// Runs the world; returns the smallest gap between the first two boats, m.
 fn sail(world: &mut World, scenario: &Scenario, orders: [Order; 2], ticks: u32) -> f64 {
@@ -32,9 +37,15 @@ fn boats_that_meet_head_on_stop_each_other() {
         let mut world = afloat(&scenario, 1, (100.0, 100.0, 90.0), (2.0, 0.0, 0.0));
         place_boat(&mut world, 1, (110.0, 100.0, 270.0), (2.0, 0.0, 0.0));
         let least_m = sail(&mut world, &scenario, [AHEAD; 2], 200);
-        assert!((-DEEPEST_M..0.05).contains(&least_m), "{boat}: hulls come as near as {least_m} m");
+        assert!(
+            (-DEEPEST_M..0.05).contains(&least_m),
+            "{boat}: hulls come as near as {least_m} m"
+        );
         let [first, second] = [0, 1].map(|i| world.state().boats[i].pose.at.east);
-        assert!(first < second, "{boat}: the boats passed through each other: {first} {second}");
+        assert!(
+            first < second,
+            "{boat}: the boats passed through each other: {first} {second}"
+        );
     }
 }
 
@@ -45,10 +56,20 @@ fn a_boat_that_rams_anothers_side_pushes_it_away() {
         let mut world = afloat(&scenario, 1, (100.0, 100.0, 90.0), (2.0, 0.0, 0.0));
         place_boat(&mut world, 1, (106.0, 100.0, 0.0), (0.0, 0.0, 0.0));
         let least_m = sail(&mut world, &scenario, [AHEAD, Order::Hold], 120);
-        assert!((-DEEPEST_M..0.05).contains(&least_m), "{boat}: hulls come as near as {least_m} m");
+        assert!(
+            (-DEEPEST_M..0.05).contains(&least_m),
+            "{boat}: hulls come as near as {least_m} m"
+        );
         let rammed = world.state().boats[1].pose.at;
-        assert!(rammed.east > 106.2, "{boat}: not pushed away, at {}", rammed.east);
-        assert!(world.state().boats[0].pose.at.east < rammed.east, "{boat}: passed through the other boat");
+        assert!(
+            rammed.east > 106.2,
+            "{boat}: not pushed away, at {}",
+            rammed.east
+        );
+        assert!(
+            world.state().boats[0].pose.at.east < rammed.east,
+            "{boat}: passed through the other boat"
+        );
     }
 }
 
@@ -60,12 +81,21 @@ fn collision_course(world: &mut World, seed: u64) {
     let (sin, cos) = primitives::math::sin_cos_deg(bearing_deg);
     let aim_deg = bearing_deg + 180.0 + stream.between(-15.0, 15.0);
     let mut nu = |ahead: f64, across: f64, turn: f64| {
-        (stream.between(ahead, ahead + 2.0), stream.between(-across, across), stream.between(-turn, turn))
+        (
+            stream.between(ahead, ahead + 2.0),
+            stream.between(-across, across),
+            stream.between(-turn, turn),
+        )
     };
     let rammer = nu(1.5, 0.5, 0.3);
     let rammed = nu(-1.0, 1.0, 1.0);
     let heading_deg = stream.between(0.0, 360.0);
-    place_boat(world, 0, (100.0 + distance_m * sin, 100.0 + distance_m * cos, aim_deg), rammer);
+    place_boat(
+        world,
+        0,
+        (100.0 + distance_m * sin, 100.0 + distance_m * cos, aim_deg),
+        rammer,
+    );
     place_boat(world, 1, (100.0, 100.0, heading_deg), rammed);
 }
 
@@ -89,7 +119,10 @@ fn no_collision_makes_energy() {
                     "{boat}, seed {seed}, tick {tick}: {before_joule} J became {after_joule} J"
                 );
                 let gap_m = gap_m(&world, &scenario, 0, 1);
-                assert!(gap_m > -0.1, "{boat}, seed {seed}, tick {tick}: the hulls are {gap_m} m apart");
+                assert!(
+                    gap_m > -0.1,
+                    "{boat}, seed {seed}, tick {tick}: the hulls are {gap_m} m apart"
+                );
                 touched |= gap_m < 0.01;
             }
             met += u32::from(touched);
@@ -107,7 +140,13 @@ fn run_into(obstacle: &Obstacle, start: (f64, f64, f64)) -> (f64, Ned) {
     for _ in 0..600 {
         // The front seat keeps its initial heading.
         let heading_rad = primitives::angle::rad_from_compass_deg(start.2);
-        world.step(&[Order::Steer { heading_rad, speed_m_s: 2.5 }, Order::Hold]);
+        world.step(&[
+            Order::Steer {
+                heading_rad,
+                speed_m_s: 2.5,
+            },
+            Order::Hold,
+        ]);
         least_m = least_m.min(outline_gap_m(&world, &scenario, obstacle));
     }
     (least_m, world.state().boats[0].pose.at)
@@ -119,7 +158,9 @@ fn outline_gap_m(world: &World, scenario: &Scenario, obstacle: &Obstacle) -> f64
         Obstacle::Circle { centre, radius_m } => common::point_m(*centre, keel) - radius_m,
         Obstacle::Polygon { corners } => {
             let side = |i: usize| (corners[i], corners[(i + 1) % corners.len()]);
-            (0..corners.len()).map(|i| common::keels_m(keel, side(i))).fold(f64::INFINITY, f64::min)
+            (0..corners.len())
+                .map(|i| common::keels_m(keel, side(i)))
+                .fold(f64::INFINITY, f64::min)
         }
     };
     distance_m - radius_m
@@ -127,7 +168,10 @@ fn outline_gap_m(world: &World, scenario: &Scenario, obstacle: &Obstacle) -> f64
 
 #[test]
 fn a_boat_stops_at_a_dolphin() {
-    let dolphin = Obstacle::Circle { centre: Ned::from_xy(100.0, 100.0), radius_m: 1.5 };
+    let dolphin = Obstacle::Circle {
+        centre: Ned::from_xy(100.0, 100.0),
+        radius_m: 1.5,
+    };
     let (least_m, at) = run_into(&dolphin, (80.0, 100.0, 90.0));
     assert!((-DEEPEST_M..0.05).contains(&least_m), "{least_m} m");
     assert!(at.east < 98.0, "at {at:?}");
@@ -136,9 +180,21 @@ fn a_boat_stops_at_a_dolphin() {
 #[test]
 fn a_boat_stops_in_the_bay_of_a_mole() {
     // A U open to the west, with a bay 6 m wide and 10 m deep.
-    let corners = [(100.0, 95.0), (112.0, 95.0), (112.0, 105.0), (100.0, 105.0), (100.0, 103.0), (110.0, 103.0)];
-    let corners = corners.into_iter().chain([(110.0, 97.0), (100.0, 97.0)]).map(|(x, y)| Ned::from_xy(x, y));
-    let mole = Obstacle::Polygon { corners: corners.collect() };
+    let corners = [
+        (100.0, 95.0),
+        (112.0, 95.0),
+        (112.0, 105.0),
+        (100.0, 105.0),
+        (100.0, 103.0),
+        (110.0, 103.0),
+    ];
+    let corners = corners
+        .into_iter()
+        .chain([(110.0, 97.0), (100.0, 97.0)])
+        .map(|(x, y)| Ned::from_xy(x, y));
+    let mole = Obstacle::Polygon {
+        corners: corners.collect(),
+    };
     // Into the bay: to its end. Into the end of an arm: no farther. From behind and from the side:
     // not at all.
     for (start, east_m, north_m) in [
@@ -148,8 +204,12 @@ fn a_boat_stops_in_the_bay_of_a_mole() {
         ((106.0, 80.0, 0.0), (100.0, 112.0), (93.9, 94.2)),
     ] {
         let (least_m, at) = run_into(&mole, start);
-        assert!((-DEEPEST_M..0.05).contains(&least_m), "from {start:?}: {least_m} m");
-        let inside = (east_m.0..east_m.1).contains(&at.east) && (north_m.0..north_m.1).contains(&at.north);
+        assert!(
+            (-DEEPEST_M..0.05).contains(&least_m),
+            "from {start:?}: {least_m} m"
+        );
+        let inside =
+            (east_m.0..east_m.1).contains(&at.east) && (north_m.0..north_m.1).contains(&at.north);
         assert!(inside, "from {start:?} to {at:?}");
     }
 }
@@ -157,15 +217,31 @@ fn a_boat_stops_in_the_bay_of_a_mole() {
 #[test]
 fn boats_stay_inside_of_walls() {
     let scenario = shipped("harbour_2v2.toml");
-    for (heading_deg, turn) in [(0.0, 0.02), (90.0, -0.02), (180.0, 0.0), (270.0, 0.05), (45.0, 0.0), (225.0, 0.0)] {
+    for (heading_deg, turn) in [
+        (0.0, 0.02),
+        (90.0, -0.02),
+        (180.0, 0.0),
+        (270.0, 0.05),
+        (45.0, 0.0),
+        (225.0, 0.0),
+    ] {
         let mut world = World::of_game(&scenario, 1).unwrap();
         let heading_rad = primitives::angle::rad_from_compass_deg(heading_deg);
         for tick in 0..4_000 {
-            let order = Order::Thrust { port: 1.0 - turn, starboard: 1.0 };
-            let steer = Order::Steer { heading_rad, speed_m_s: 3.0 };
+            let order = Order::Thrust {
+                port: 1.0 - turn,
+                starboard: 1.0,
+            };
+            let steer = Order::Steer {
+                heading_rad,
+                speed_m_s: 3.0,
+            };
             world.step(&[steer, order, steer, order]);
             for (i, boat) in world.state().boats.iter().enumerate() {
-                assert!(scenario.field.contains(boat.pose.at), "{heading_deg}: boat {i} is out at tick {tick}");
+                assert!(
+                    scenario.field.contains(boat.pose.at),
+                    "{heading_deg}: boat {i} is out at tick {tick}"
+                );
                 assert!(!boat.quarantined);
             }
         }
@@ -175,13 +251,22 @@ fn boats_stay_inside_of_walls() {
 /// Boats in a dense crowd: each steers for the middle of the fleet, or past it.
 fn crowd(world: &World, orders: &mut Vec<Order>) {
     let boats = &world.state().boats;
-    let sum = boats.iter().fold(Ned::default(), |sum, boat| sum + boat.pose.at);
+    let sum = boats
+        .iter()
+        .fold(Ned::default(), |sum, boat| sum + boat.pose.at);
     let middle = sum.scaled(1.0 / boats.len() as f64);
     let minute = world.state().tick / 400;
     orders.clear();
     orders.extend(boats.iter().enumerate().map(|(i, boat)| {
-        let past = if (i as u64 + minute).is_multiple_of(3) { 1.5 } else { 0.1 };
-        Order::Steer { heading_rad: boat.pose.at.bearing_rad(middle) + past, speed_m_s: 2.5 }
+        let past = if (i as u64 + minute).is_multiple_of(3) {
+            1.5
+        } else {
+            0.1
+        };
+        Order::Steer {
+            heading_rad: boat.pose.at.bearing_rad(middle) + past,
+            speed_m_s: 2.5,
+        }
     }));
 }
 
@@ -189,7 +274,12 @@ fn crowd(world: &World, orders: &mut Vec<Order>) {
 fn asking_rapier_only_about_close_hulls_changes_no_byte() {
     let crowded = |scenario: &mut Scenario| {
         for vehicle in &mut scenario.vehicles {
-            if let scenario::StartPosition::Somewhere { along_m, across_m, gap_m } = &mut vehicle.start_position {
+            if let scenario::StartPosition::Somewhere {
+                along_m,
+                across_m,
+                gap_m,
+            } = &mut vehicle.start_position
+            {
                 (*along_m, *across_m, *gap_m) = ((60.0, 75.0), (25.0, 55.0), 3.0);
             }
         }
@@ -208,9 +298,15 @@ fn asking_rapier_only_about_close_hulls_changes_no_byte() {
             world.step(&orders);
             all.step(&orders);
             collisions += came_together(&world, &scenario, &mut touching);
-            assert!(digest(&world) == digest(&all), "{game}: different from tick {tick} on");
+            assert!(
+                digest(&world) == digest(&all),
+                "{game}: different from tick {tick} on"
+            );
         }
-        assert!(collisions > 3, "{game}: only {collisions} boats came together");
+        assert!(
+            collisions > 3,
+            "{game}: only {collisions} boats came together"
+        );
     }
 }
 
@@ -227,9 +323,21 @@ fn mirrored_orders_make_a_mirrored_course() {
             if tick % 40 == 0 {
                 let a = stream.between(-1.0, 1.0);
                 let b = stream.between(-1.0, 1.0);
-                let steer = |side: f64| Order::Steer { heading_rad: side * 0.5 * a, speed_m_s: 2.0 * b.abs() };
+                let steer = |side: f64| Order::Steer {
+                    heading_rad: side * 0.5 * a,
+                    speed_m_s: 2.0 * b.abs(),
+                };
                 orders = if tick % 80 == 0 {
-                    [Order::Thrust { port: a, starboard: b }, Order::Thrust { port: b, starboard: a }]
+                    [
+                        Order::Thrust {
+                            port: a,
+                            starboard: b,
+                        },
+                        Order::Thrust {
+                            port: b,
+                            starboard: a,
+                        },
+                    ]
                 } else {
                     [steer(1.0), steer(-1.0)]
                 };
@@ -237,10 +345,22 @@ fn mirrored_orders_make_a_mirrored_course() {
             world.step(&orders);
             let [one, two] = [0, 1].map(|i| world.state().boats[i]);
             let image = (two.pose.at.north, -two.pose.at.east, -two.pose.psi_rad);
-            assert_eq!((one.pose.at.north, one.pose.at.east, one.pose.psi_rad), image, "{boat}, tick {tick}");
+            assert_eq!(
+                (one.pose.at.north, one.pose.at.east, one.pose.psi_rad),
+                image,
+                "{boat}, tick {tick}"
+            );
             let image = (two.nu.surge, -two.nu.sway, -two.nu.yaw);
-            assert_eq!((one.nu.surge, one.nu.sway, one.nu.yaw), image, "{boat}, tick {tick}");
-            assert_eq!((one.port, one.starboard), (two.starboard, two.port), "{boat}, tick {tick}");
+            assert_eq!(
+                (one.nu.surge, one.nu.sway, one.nu.yaw),
+                image,
+                "{boat}, tick {tick}"
+            );
+            assert_eq!(
+                (one.port, one.starboard),
+                (two.starboard, two.port),
+                "{boat}, tick {tick}"
+            );
         }
     }
 }

@@ -28,7 +28,10 @@ fn water_of_which_nothing_is_said_lies_still_to_the_bit() {
     let model = model(&Current::default(), 1);
     let now = model.at_time(SimTime::from_s(77.0));
     assert_eq!(now.at(Ned::from_xy(3.0, 4.0)), Ned::default());
-    assert_eq!(now.over_hull(Ned::from_xy(3.0, 4.0), Rotation { sin: 0.6, cos: 0.8 }), (Ned::default(), 0.0));
+    assert_eq!(
+        now.over_hull(Ned::from_xy(3.0, 4.0), Rotation { sin: 0.6, cos: 0.8 }),
+        (Ned::default(), 0.0)
+    );
 }
 
 #[test]
@@ -37,17 +40,56 @@ fn a_tide_is_a_sine_of_time_on_top_of_the_mean() {
     let mean_m_s = Ned::from_xy(0.1, 0.0);
     let flood_m_s = Ned::from_xy(0.0, 0.5);
     for phase in [0.0, 0.3, 1.0] {
-        let tide = Some(Tide { flood_m_s, period_s: PERIOD_S, phase });
-        let model = model(&Current { mean_m_s, tide, ..Current::default() }, 1);
-        for time_s in [0.0, 600.0, 0.25 * PERIOD_S, 0.5 * PERIOD_S, 0.75 * PERIOD_S, 7.1 * PERIOD_S] {
-            let want = mean_m_s + flood_m_s.scaled(math::sin_cos(TAU * (time_s / PERIOD_S + phase)).0);
+        let tide = Some(Tide {
+            flood_m_s,
+            period_s: PERIOD_S,
+            phase,
+        });
+        let model = model(
+            &Current {
+                mean_m_s,
+                tide,
+                ..Current::default()
+            },
+            1,
+        );
+        for time_s in [
+            0.0,
+            600.0,
+            0.25 * PERIOD_S,
+            0.5 * PERIOD_S,
+            0.75 * PERIOD_S,
+            7.1 * PERIOD_S,
+        ] {
+            let want =
+                mean_m_s + flood_m_s.scaled(math::sin_cos(TAU * (time_s / PERIOD_S + phase)).0);
             let got = at(&model, Ned::from_xy(5.0, 6.0), time_s);
-            assert!(got.distance(want) < 1e-12, "phase {phase}, {time_s} s: {got:?}, want {want:?}");
+            assert!(
+                got.distance(want) < 1e-12,
+                "phase {phase}, {time_s} s: {got:?}, want {want:?}"
+            );
         }
     }
-    let tide = Some(Tide { flood_m_s, period_s: PERIOD_S, phase: 0.0 });
-    let flood = at(&model(&Current { tide, ..Current::default() }, 1), Ned::default(), 0.25 * PERIOD_S);
-    assert!(flood.distance(flood_m_s) < 1e-12, "flood a quarter of a period after slack water: {flood:?}");
+    let tide = Some(Tide {
+        flood_m_s,
+        period_s: PERIOD_S,
+        phase: 0.0,
+    });
+    let flood = at(
+        &model(
+            &Current {
+                tide,
+                ..Current::default()
+            },
+            1,
+        ),
+        Ned::default(),
+        0.25 * PERIOD_S,
+    );
+    assert!(
+        flood.distance(flood_m_s) < 1e-12,
+        "flood a quarter of a period after slack water: {flood:?}"
+    );
 }
 
 fn shear() -> Shear {
@@ -62,10 +104,19 @@ fn shear() -> Shear {
 
 #[test]
 fn a_shear_grows_across_and_turns_a_hull_that_lies_across() {
-    let model = model(&Current { shear: Some(shear()), ..Current::default() }, 1);
+    let model = model(
+        &Current {
+            shear: Some(shear()),
+            ..Current::default()
+        },
+        1,
+    );
     for (y, want_m_s) in [(10.0, 0.0), (-40.0, 0.2), (60.0, -0.2)] {
         let got = at(&model, Ned::from_xy(123.0, y), 0.0);
-        assert!(got.distance(Ned::from_xy(want_m_s, 0.0)) < 1e-15, "y = {y}: {got:?}");
+        assert!(
+            got.distance(Ned::from_xy(want_m_s, 0.0)) < 1e-15,
+            "y = {y}: {got:?}"
+        );
     }
     // Seen from above, the water south of a place flows east faster. A hull that points north is
     // turned anticlockwise by the whole shear; one that points east is not turned.
@@ -73,7 +124,10 @@ fn a_shear_grows_across_and_turns_a_hull_that_lies_across() {
     for (heading_deg, want_rad_s) in [(0.0, -0.004), (180.0, -0.004), (90.0, 0.0), (45.0, -0.002)] {
         let place = Ned::from_xy(5.0, -40.0);
         let (mean, rate_rad_s) = now.over_hull(place, Rotation::from_heading_deg(heading_deg));
-        assert!((rate_rad_s - want_rad_s).abs() < 1e-12, "heading {heading_deg}: {rate_rad_s}");
+        assert!(
+            (rate_rad_s - want_rad_s).abs() < 1e-12,
+            "heading {heading_deg}: {rate_rad_s}"
+        );
         assert!(mean.distance(now.at(place)) < 1e-15, "{mean:?}");
     }
 }
@@ -82,8 +136,15 @@ const CORE_M: f64 = 20.0;
 const PEAK_M_S: f64 = 0.3;
 
 fn eddy_at(centre: Ned) -> Current {
-    let eddy = Eddy { centre, radius_m: CORE_M, peak_m_s: PEAK_M_S };
-    Current { eddies: vec![eddy], ..Current::default() }
+    let eddy = Eddy {
+        centre,
+        radius_m: CORE_M,
+        peak_m_s: PEAK_M_S,
+    };
+    Current {
+        eddies: vec![eddy],
+        ..Current::default()
+    }
 }
 
 #[test]
@@ -102,7 +163,10 @@ fn an_eddy_has_its_circulation_no_divergence_and_the_vorticity_of_a_gaussian() {
         };
         let got: f64 = (0..720).map(step).sum();
         let want = gamma * (1.0 - math::exp(-(radius_m / CORE_M) * (radius_m / CORE_M)));
-        assert!((got / want - 1.0).abs() < 1e-5, "radius {radius_m}: {got}, want {want} m²/s");
+        assert!(
+            (got / want - 1.0).abs() < 1e-5,
+            "radius {radius_m}: {got}, want {want} m²/s"
+        );
     }
     const STEP_M: f64 = 1e-3;
     for (x, y) in [(41.0, -9.0), (60.0, 0.0), (10.0, -30.0), (120.0, 80.0)] {
@@ -111,14 +175,26 @@ fn an_eddy_has_its_circulation_no_divergence_and_the_vorticity_of_a_gaussian() {
             let ahead = at(&model, place + along.scaled(STEP_M), 0.0);
             (ahead - at(&model, place - along.scaled(STEP_M), 0.0)).scaled(0.5 / STEP_M)
         };
-        let by_north = slope(Ned { north: 1.0, east: 0.0 });
-        let by_east = slope(Ned { north: 0.0, east: 1.0 });
+        let by_north = slope(Ned {
+            north: 1.0,
+            east: 0.0,
+        });
+        let by_east = slope(Ned {
+            north: 0.0,
+            east: 1.0,
+        });
         let divergence = by_north.north + by_east.east;
         let vorticity = by_north.east - by_east.north;
         let s = place.distance_squared(centre) / (CORE_M * CORE_M);
         let want = 2.0 * gamma / (TAU * CORE_M * CORE_M) * math::exp(-s);
-        assert!(divergence.abs() < 1e-10, "({x}, {y}): divergence {divergence}");
-        assert!((vorticity - want).abs() < 1e-7, "({x}, {y}): vorticity {vorticity}, not {want}");
+        assert!(
+            divergence.abs() < 1e-10,
+            "({x}, {y}): divergence {divergence}"
+        );
+        assert!(
+            (vorticity - want).abs() < 1e-7,
+            "({x}, {y}): vorticity {vorticity}, not {want}"
+        );
     }
 }
 
@@ -136,12 +212,23 @@ fn an_eddy_turns_a_hull_as_the_flow_at_its_ends_says() {
             (rate_rad_s - core_rad_s).abs() < 1e-6 * core_rad_s,
             "in the middle it turns with the core: {rate_rad_s}"
         );
-        for (x, y) in [(1e-5, 0.0), (0.1, 0.0), (5.0, 3.0), (-22.0, 1.0), (30.0, -40.0), (300.0, 5.0)] {
+        for (x, y) in [
+            (1e-5, 0.0),
+            (0.1, 0.0),
+            (5.0, 3.0),
+            (-22.0, 1.0),
+            (30.0, -40.0),
+            (300.0, 5.0),
+        ] {
             let place = Ned::from_xy(x, y);
             let (velocity, rate_rad_s) = now.over_hull(place, rotation);
             let half = rotation.ahead().scaled(0.5 * LENGTH_M);
-            let want = (now.at(place + half) - now.at(place - half)).dot(rotation.starboard()) / LENGTH_M;
-            assert!((rate_rad_s - want).abs() < 1e-6 * core_rad_s, "({x}, {y}): {rate_rad_s}, not {want}");
+            let want =
+                (now.at(place + half) - now.at(place - half)).dot(rotation.starboard()) / LENGTH_M;
+            assert!(
+                (rate_rad_s - want).abs() < 1e-6 * core_rad_s,
+                "({x}, {y}): {rate_rad_s}, not {want}"
+            );
             assert_eq!(velocity, now.at(place));
         }
     }
@@ -149,29 +236,60 @@ fn an_eddy_turns_a_hull_as_the_flow_at_its_ends_says() {
 
 #[test]
 fn random_eddies_lie_on_the_field_in_their_bounds_and_add_up() {
-    let random = RandomEddies { count: 200, radius_m: (10.0, 40.0), peak_m_s: (0.1, 0.3) };
+    let random = RandomEddies {
+        count: 200,
+        radius_m: (10.0, 40.0),
+        peak_m_s: (0.1, 0.3),
+    };
     let drawn = eddy::draw(&random, &field(), 4);
     assert_eq!(drawn.len(), 200);
     assert!(drawn.iter().all(|eddy| field().contains(eddy.centre)));
-    assert!(drawn.iter().all(|eddy| (10.0..40.0).contains(&eddy.radius_m)));
-    assert!(drawn.iter().all(|eddy| (0.1..0.3).contains(&eddy.peak_m_s.abs())));
+    assert!(
+        drawn
+            .iter()
+            .all(|eddy| (10.0..40.0).contains(&eddy.radius_m))
+    );
+    assert!(
+        drawn
+            .iter()
+            .all(|eddy| (0.1..0.3).contains(&eddy.peak_m_s.abs()))
+    );
     let clockwise = drawn.iter().filter(|eddy| eddy.peak_m_s > 0.0).count();
-    assert!((60..140).contains(&clockwise), "{clockwise} of 200 turn clockwise");
+    assert!(
+        (60..140).contains(&clockwise),
+        "{clockwise} of 200 turn clockwise"
+    );
     assert_eq!(drawn, eddy::draw(&random, &field(), 4));
     assert_ne!(drawn, eddy::draw(&random, &field(), 5));
-    let summed = Current { random_eddies: Some(random), ..eddy_at(Ned::default()) };
-    let alone = |eddy: &Eddy| Current { eddies: vec![*eddy], ..Current::default() };
+    let summed = Current {
+        random_eddies: Some(random),
+        ..eddy_at(Ned::default())
+    };
+    let alone = |eddy: &Eddy| Current {
+        eddies: vec![*eddy],
+        ..Current::default()
+    };
     let place = Ned::from_xy(50.0, 30.0);
-    let want = drawn.iter().fold(at(&model(&eddy_at(Ned::default()), 4), place, 0.0), |sum, eddy| {
-        sum + at(&model(&alone(eddy), 4), place, 0.0)
-    });
+    let want = drawn.iter().fold(
+        at(&model(&eddy_at(Ned::default()), 4), place, 0.0),
+        |sum, eddy| sum + at(&model(&alone(eddy), 4), place, 0.0),
+    );
     assert!(at(&model(&summed, 4), place, 0.0).distance(want) < 1e-12);
 }
 
 fn wandering(sigma_m_s: f64, speed_m_s: (f64, f64)) -> Current {
     let toward = Ned::from_xy(0.6, 0.8);
-    let wander = Some(Wander { toward, sigma_m_s, time_s: 120.0, speed_m_s });
-    Current { mean_m_s: toward.scaled(0.2), wander, ..Current::default() }
+    let wander = Some(Wander {
+        toward,
+        sigma_m_s,
+        time_s: 120.0,
+        speed_m_s,
+    });
+    Current {
+        mean_m_s: toward.scaled(0.2),
+        wander,
+        ..Current::default()
+    }
 }
 
 fn wander_record(current: &Current, count: i64, step_s: f64) -> Vec<f64> {
@@ -181,7 +299,10 @@ fn wander_record(current: &Current, count: i64, step_s: f64) -> Vec<f64> {
         let now = SimTime::from_s(i as f64 * step_s);
         model.prepare(now);
         let velocity = model.at_time(now).at(Ned::from_xy(i as f64, 0.0));
-        assert!((velocity - toward.scaled(velocity.dot(toward))).length() < 1e-15, "it wanders in its direction");
+        assert!(
+            (velocity - toward.scaled(velocity.dot(toward))).length() < 1e-15,
+            "it wanders in its direction"
+        );
         velocity.dot(toward)
     };
     (0..count).map(sample).collect()
@@ -193,7 +314,10 @@ fn a_wander_has_the_variance_and_the_memory_stated() {
     const STEP_S: f64 = 7.0;
     const SIGMA_M_S: f64 = 0.05;
     let speed = wander_record(&wandering(SIGMA_M_S, (-9.0, 9.0)), COUNT as i64, STEP_S);
-    let x: Vec<f64> = speed.iter().map(|speed| (speed - 0.2) / SIGMA_M_S).collect();
+    let x: Vec<f64> = speed
+        .iter()
+        .map(|speed| (speed - 0.2) / SIGMA_M_S)
+        .collect();
     let within = five_errors(COUNT, STEP_S / 120.0);
     assert!(within < 0.03);
     assert_memory("wander", &x, &[0, 3, 10, 17, 34], STEP_S / 120.0, within);
@@ -205,7 +329,10 @@ fn a_wander_is_clipped_to_its_bounds_and_untouched_between() {
     let bound = wander_record(&wandering(0.1, (0.05, 0.3)), 20_000, 11.0);
     let mut clipped = 0;
     for (free, bound) in free.iter().zip(&bound) {
-        assert!((bound - free.clamp(0.05, 0.3)).abs() < 1e-15, "{free} became {bound}");
+        assert!(
+            (bound - free.clamp(0.05, 0.3)).abs() < 1e-15,
+            "{free} became {bound}"
+        );
         clipped += u32::from(free != bound);
     }
     assert!(

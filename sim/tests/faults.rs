@@ -14,9 +14,13 @@ const SPARED: VehicleId = VehicleId(1);
 
 /// Two against two; the first boat has a fault from 20 s to 40 s.
 fn scenario(kind: &str, more: &str) -> Scenario {
-    let fault = format!("fault.tried={{ kind = \"{kind}\", boats = [\"blue_1\"], at_s = 20, for_s = 20{more} }}");
-    let overrides =
-        Overrides { settings: vec![Setting::parse(&fault).expect("the fault is valid")], ..Overrides::default() };
+    let fault = format!(
+        "fault.tried={{ kind = \"{kind}\", boats = [\"blue_1\"], at_s = 20, for_s = 20{more} }}"
+    );
+    let overrides = Overrides {
+        settings: vec![Setting::parse(&fault).expect("the fault is valid")],
+        ..Overrides::default()
+    };
     load_with(&scenarios().join("games/surveyor_2v2.toml"), &overrides)
         .unwrap_or_else(|problems| panic!("{problems}"))
         .of_seed(3)
@@ -29,7 +33,16 @@ fn play_to(contest: &mut Contest, until_s: f64) {
         let at = contest.pictures()[0].stamp.valid_ns;
         for i in 0..4 {
             let heading_rad = 0.05 * at.as_s();
-            contest.order(VehicleId(i), Order::Steer { heading_rad, speed_m_s: 2.0 }, at).expect("the fault is valid");
+            contest
+                .order(
+                    VehicleId(i),
+                    Order::Steer {
+                        heading_rad,
+                        speed_m_s: 2.0,
+                    },
+                    at,
+                )
+                .expect("the fault is valid");
         }
         contest.advance();
     }
@@ -42,8 +55,15 @@ fn speed_m_s(contest: &Contest, vehicle: VehicleId) -> f64 {
 /// Errors of a boat's reported position, m, and of its compass heading, rad.
 fn errors(contest: &Contest, vehicle: VehicleId) -> (f64, f64) {
     let pose = contest.world().state().boats[vehicle.index()].pose;
-    let nav = contest.world().reading(vehicle).expect("the fault is valid").nav;
-    (nav.at().distance(pose.at), primitives::angle::wrap_pi(nav.psi_rad - pose.psi_rad))
+    let nav = contest
+        .world()
+        .reading(vehicle)
+        .expect("the fault is valid")
+        .nav;
+    (
+        nav.at().distance(pose.at),
+        primitives::angle::wrap_pi(nav.psi_rad - pose.psi_rad),
+    )
 }
 
 #[test]
@@ -88,13 +108,19 @@ fn without_its_link_a_boat_is_neither_heard_nor_ordered() {
 
 #[test]
 fn a_receiver_freezes_falls_silent_and_errs_at_its_time() {
-    for (kind, more, least_m) in
-        [("gps_frozen", "", 8.0), ("gps_lost", "", 8.0), ("gps_offset", ", offset_m = 25", 20.0)]
-    {
+    for (kind, more, least_m) in [
+        ("gps_frozen", "", 8.0),
+        ("gps_lost", "", 8.0),
+        ("gps_offset", ", offset_m = 25", 20.0),
+    ] {
         let scenario = scenario(kind, more);
         let mut contest = Contest::new(&scenario, 3).unwrap();
         play_to(&mut contest, 19.9);
-        assert!(errors(&contest, HIT).0 < 8.0, "{kind}: {:?}", errors(&contest, HIT));
+        assert!(
+            errors(&contest, HIT).0 < 8.0,
+            "{kind}: {:?}",
+            errors(&contest, HIT)
+        );
         let mut most_m: f64 = 0.0;
         for tenth in 210..395 {
             play_to(&mut contest, f64::from(tenth) / 10.0);
@@ -103,7 +129,11 @@ fn a_receiver_freezes_falls_silent_and_errs_at_its_time() {
         }
         assert!(most_m > least_m && most_m < 60.0, "{kind}: {most_m} m");
         play_to(&mut contest, 45.0);
-        assert!(errors(&contest, HIT).0 < 8.0, "{kind}: {:?}", errors(&contest, HIT));
+        assert!(
+            errors(&contest, HIT).0 < 8.0,
+            "{kind}: {:?}",
+            errors(&contest, HIT)
+        );
     }
 }
 
@@ -111,13 +141,19 @@ fn a_receiver_freezes_falls_silent_and_errs_at_its_time() {
 fn a_compass_is_off_by_what_is_said_at_its_time() {
     let with = scenario("compass_offset", ", offset_deg = 30");
     let without = scenario("agent_lost", "");
-    let [mut with, mut without] = [with, without].map(|scenario| Contest::new(&scenario, 3).unwrap());
+    let [mut with, mut without] =
+        [with, without].map(|scenario| Contest::new(&scenario, 3).unwrap());
     for contest in [&mut with, &mut without] {
         play_to(contest, 20.1);
     }
     // The boats have barely separated, so the readings differ by the fault.
     let off = |contest: &Contest| errors(contest, HIT).1;
-    assert!((off(&with) - off(&without) - 30_f64.to_radians()).abs() < 0.05, "{} {}", off(&with), off(&without));
+    assert!(
+        (off(&with) - off(&without) - 30_f64.to_radians()).abs() < 0.05,
+        "{} {}",
+        off(&with),
+        off(&without)
+    );
     play_to(&mut with, 41.0);
     assert!(off(&with).abs() < 0.3);
 }
@@ -129,7 +165,11 @@ fn a_thruster_stands_still_or_goes_on_as_it_went() {
         let mut contest = Contest::new(&scenario, 3).unwrap();
         let shaft = |contest: &Contest| {
             let boat = &contest.world().state().boats[HIT.index()];
-            if is_stuck { boat.starboard.command } else { boat.port.command }
+            if is_stuck {
+                boat.starboard.command
+            } else {
+                boat.port.command
+            }
         };
         play_to(&mut contest, 20.0);
         let before = shaft(&contest);
@@ -141,7 +181,8 @@ fn a_thruster_stands_still_or_goes_on_as_it_went() {
         }
         let want = if is_stuck { before } else { 0.0 };
         assert!(
-            seen.iter().all(|command| (command - want).abs() < 1e-9 * before.abs()),
+            seen.iter()
+                .all(|command| (command - want).abs() < 1e-9 * before.abs()),
             "{kind}: {seen:?}, not {want}"
         );
         play_to(&mut contest, 45.0);
@@ -152,18 +193,55 @@ fn a_thruster_stands_still_or_goes_on_as_it_went() {
 #[test]
 fn a_fault_that_cannot_be_is_refused_with_its_place() {
     for (game, fault, want) in [
-        ("surveyor_2v2", "{ kind = \"link_lost\" }", "has neither at_s nor every_s"),
-        ("surveyor_2v2", "{ kind = \"link_lost\", at_s = 1, every_s = 2 }", "has both at_s and every_s"),
-        ("surveyor_2v2", "{ kind = \"gps_offset\", at_s = 1 }", "offset_m is missing"),
-        ("surveyor_2v2", "{ kind = \"gps_lost\", at_s = 1, offset_deg = 3 }", "offset_deg is given"),
-        ("surveyor_2v2", "{ kind = \"sunk\", at_s = 1 }", "kind is \"sunk\""),
-        ("surveyor_2v2", "{ kind = \"gps_lost\", at_s = 1, boats = [\"blue_7\"] }", "boats has \"blue_7\""),
-        ("pyquaticus_2v2", "{ kind = \"port_lost\", at_s = 1 }", "has no thrusters"),
-        ("pyquaticus_2v2", "{ kind = \"gps_lost\", at_s = 1 }", "has no gps"),
+        (
+            "surveyor_2v2",
+            "{ kind = \"link_lost\" }",
+            "has neither at_s nor every_s",
+        ),
+        (
+            "surveyor_2v2",
+            "{ kind = \"link_lost\", at_s = 1, every_s = 2 }",
+            "has both at_s and every_s",
+        ),
+        (
+            "surveyor_2v2",
+            "{ kind = \"gps_offset\", at_s = 1 }",
+            "offset_m is missing",
+        ),
+        (
+            "surveyor_2v2",
+            "{ kind = \"gps_lost\", at_s = 1, offset_deg = 3 }",
+            "offset_deg is given",
+        ),
+        (
+            "surveyor_2v2",
+            "{ kind = \"sunk\", at_s = 1 }",
+            "kind is \"sunk\"",
+        ),
+        (
+            "surveyor_2v2",
+            "{ kind = \"gps_lost\", at_s = 1, boats = [\"blue_7\"] }",
+            "boats has \"blue_7\"",
+        ),
+        (
+            "pyquaticus_2v2",
+            "{ kind = \"port_lost\", at_s = 1 }",
+            "has no thrusters",
+        ),
+        (
+            "pyquaticus_2v2",
+            "{ kind = \"gps_lost\", at_s = 1 }",
+            "has no gps",
+        ),
     ] {
         let setting = Setting::parse(&format!("fault.tried={fault}")).unwrap();
-        let overrides = Overrides { settings: vec![setting], ..Overrides::default() };
-        let said = load_with(&scenarios().join(format!("games/{game}.toml")), &overrides).expect_err(fault).to_string();
+        let overrides = Overrides {
+            settings: vec![setting],
+            ..Overrides::default()
+        };
+        let said = load_with(&scenarios().join(format!("games/{game}.toml")), &overrides)
+            .expect_err(fault)
+            .to_string();
         assert!(said.contains(want), "{fault}: {said}");
     }
 }

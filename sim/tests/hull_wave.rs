@@ -15,7 +15,12 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 const DENSITY_KG_M3: f64 = 1000.0;
 
 fn boat(length_m: f64, beam_m: f64, draught_m: f64) -> Boat {
-    Boat { length_m, beam_m, draught_m, ..common::boat("surveyor_m1_8") }
+    Boat {
+        length_m,
+        beam_m,
+        draught_m,
+        ..common::boat("surveyor_m1_8")
+    }
 }
 
 fn surveyor() -> Boat {
@@ -28,28 +33,53 @@ fn cork() -> Boat {
 }
 
 fn sea(hs_m: f64, tp_s: f64, spreading: Spreading) -> WaveField {
-    WaveField::new(&Waves { spreading, ..waves(hs_m, tp_s, 0.7) }, None, 5)
+    WaveField::new(
+        &Waves {
+            spreading,
+            ..waves(hs_m, tp_s, 0.7)
+        },
+        None,
+        5,
+    )
 }
 
 fn regular(length_m: f64, toward_rad: f64, depth_m: Option<f64>) -> WaveField {
     let k = TAU / length_m;
     let omega_rad_s = (GRAVITY_M_S2 * k * depth_m.map_or(1.0, |h| libm::tanh(k * h))).sqrt();
-    WaveField::of(&[Component { amplitude_m: 0.2, omega_rad_s, toward_rad, phase_rad: 0.3 }], depth_m, 1.0)
+    WaveField::of(
+        &[Component {
+            amplitude_m: 0.2,
+            omega_rad_s,
+            toward_rad,
+            phase_rad: 0.3,
+        }],
+        depth_m,
+        1.0,
+    )
 }
 
 fn pose(north: f64, east: f64, psi_rad: f64) -> Pose {
-    Pose { at: Ned { north, east }, psi_rad }
+    Pose {
+        at: Ned { north, east },
+        psi_rad,
+    }
 }
 
 /// Mean square of a component of the velocity over places and times, on this heading.
 fn mean_square(hull: &HullWaves, psi_rad: f64, part: impl Fn(Planar) -> f64) -> f64 {
-    let at = |i: usize| hull.at(pose((i % 100) as f64 * 7.3, 0.0, psi_rad), 0.37 * i as f64).velocity;
+    let at = |i: usize| {
+        hull.at(pose((i % 100) as f64 * 7.3, 0.0, psi_rad), 0.37 * i as f64)
+            .velocity
+    };
     mean_of(20_000, |i| square(part(at(i))))
 }
 
 #[test]
 fn the_acceleration_at_the_surface_is_minus_g_times_its_gradient() {
-    let waves = Waves { gamma: 2.0, ..waves(0.5, 3.0, 2.0) };
+    let waves = Waves {
+        gamma: 2.0,
+        ..waves(0.5, 3.0, 2.0)
+    };
     for depth_m in [None, Some(1.5)] {
         let field = WaveField::new(&waves, depth_m, 1);
         let hull = HullWaves::new(&field, &cork(), DENSITY_KG_M3);
@@ -58,7 +88,10 @@ fn the_acceleration_at_the_surface_is_minus_g_times_its_gradient() {
             let got = hull.at(at, t).acceleration;
             let got = got.in_ned(at.rotation());
             let off = got + field.surface(at.at, t).slope.scaled(GRAVITY_M_S2);
-            assert!(off.length() < 1e-4, "{depth_m:?}, {t} s: error {off:?} m/s²");
+            assert!(
+                off.length() < 1e-4,
+                "{depth_m:?}, {t} s: error {off:?} m/s²"
+            );
         }
     }
 }
@@ -79,18 +112,32 @@ fn a_hull_feels_the_mean_and_the_first_moment_over_its_length_and_beam() {
         for i in 0..n_x * n_y {
             let ahead = boat.length_m * ((f64::from(i % n_x) + 0.5) / f64::from(n_x) - 0.5);
             let starboard = boat.beam_m * ((f64::from(i / n_x) + 0.5) / f64::from(n_y) - 0.5);
-            let at = Ned { north: 11.0, east: 3.0 } + ned_from_body(rotation, Body { ahead, starboard });
+            let at = Ned {
+                north: 11.0,
+                east: 3.0,
+            } + ned_from_body(rotation, Body { ahead, starboard });
             let there = point.at(Pose { at, psi_rad }, t);
             for (sum, there) in want.iter_mut().zip([there.velocity, there.acceleration]) {
                 let lever = ahead / (boat.length_m * boat.length_m / 12.0);
-                let part = Planar { surge: there.surge, sway: there.sway, yaw: lever * there.sway };
+                let part = Planar {
+                    surge: there.surge,
+                    sway: there.sway,
+                    yaw: lever * there.sway,
+                };
                 *sum = sum.plus(1.0 / f64::from(n_x * n_y), part);
             }
         }
         let got = hull.at(pose(11.0, 3.0, psi_rad), t);
         for (got, want) in [(got.velocity, want[0]), (got.acceleration, want[1])] {
-            let off = [got.surge - want.surge, got.sway - want.sway, got.yaw - want.yaw];
-            assert!(off.iter().all(|off| off.abs() < 2e-3), "{psi_deg} deg: {got:?}, by strips {want:?}");
+            let off = [
+                got.surge - want.surge,
+                got.sway - want.sway,
+                got.yaw - want.yaw,
+            ];
+            assert!(
+                off.iter().all(|off| off.abs() < 2e-3),
+                "{psi_deg} deg: {got:?}, by strips {want:?}"
+            );
         }
     }
 }
@@ -106,8 +153,13 @@ fn off_between_headings(field: &WaveField, boat: &Boat) -> [f64; 4] {
     for step in 0..steps {
         // The same sea in axes rotated by a fraction of a bin: there the heading has an entry.
         let by_rad = bin_rad * (f64::from(step) + 0.5) / f64::from(steps);
-        let turned: Vec<Component> =
-            field.components().map(|c| Component { toward_rad: c.toward_rad - by_rad, ..*c }).collect();
+        let turned: Vec<Component> = field
+            .components()
+            .map(|c| Component {
+                toward_rad: c.toward_rad - by_rad,
+                ..*c
+            })
+            .collect();
         let exact = HullWaves::new(&WaveField::of(&turned, None, 1.0), boat, DENSITY_KG_M3);
         for i in 0..720 {
             let psi_rad = bin_rad * f64::from(i % 72);
@@ -115,7 +167,12 @@ fn off_between_headings(field: &WaveField, boat: &Boat) -> [f64; 4] {
             let got = hull.at(pose(0.0, 0.0, psi_rad + by_rad), t);
             let want = exact.at(pose(0.0, 0.0, psi_rad), t);
             let parts = |s: WaveSample| {
-                [s.velocity.surge, s.velocity.sway, s.velocity.yaw, s.drift_newton.sway + s.drift_newton.surge]
+                [
+                    s.velocity.surge,
+                    s.velocity.sway,
+                    s.velocity.yaw,
+                    s.drift_newton.sway + s.drift_newton.surge,
+                ]
             };
             for (n, (got, want)) in parts(got).into_iter().zip(parts(want)).enumerate() {
                 off[n] += square(got - want);
@@ -133,12 +190,25 @@ fn between_the_headings_of_the_table_the_error_is_a_small_part_of_the_motion() {
     let heron = (boat(1.35, 1.0, 0.1), 0.005);
     let surveyor = (surveyor(), 0.005);
     let otter = (boat(2.0, 1.08, 0.195), 0.005);
-    for (hs_m, tp_s, ten_metres) in [(0.1, 1.5, 0.03), (0.3, 2.0, 0.012), (0.5, 3.0, 0.006), (1.0, 5.0, 0.005)] {
+    for (hs_m, tp_s, ten_metres) in [
+        (0.1, 1.5, 0.03),
+        (0.3, 2.0, 0.012),
+        (0.5, 3.0, 0.006),
+        (1.0, 5.0, 0.005),
+    ] {
         for spreading in [Spreading::None, Spreading::CosineSquared] {
-            for (boat, within) in [&heron, &surveyor, &otter, &(boat(10.0, 3.0, 0.6), ten_metres)] {
+            for (boat, within) in [
+                &heron,
+                &surveyor,
+                &otter,
+                &(boat(10.0, 3.0, 0.6), ten_metres),
+            ] {
                 let off = off_between_headings(&sea(hs_m, tp_s, spreading), boat);
                 let what = format!("{} m in {hs_m} m, {tp_s} s, {spreading:?}", boat.length_m);
-                assert!(off.iter().all(|off| off < within), "{what}: errors {off:?}, limit {within}");
+                assert!(
+                    off.iter().all(|off| off < within),
+                    "{what}: errors {off:?}, limit {within}"
+                );
             }
         }
     }
@@ -146,13 +216,23 @@ fn between_the_headings_of_the_table_the_error_is_a_small_part_of_the_motion() {
 
 #[test]
 fn the_acceleration_is_the_rate_of_change_of_the_velocity() {
-    let hull = HullWaves::new(&sea(0.5, 3.0, Spreading::CosineSquared), &surveyor(), DENSITY_KG_M3);
+    let hull = HullWaves::new(
+        &sea(0.5, 3.0, Spreading::CosineSquared),
+        &surveyor(),
+        DENSITY_KG_M3,
+    );
     for (t, psi_rad) in [(0.0, 0.3), (100.0, -2.0), (86_400.0, 1.0)] {
         let at = pose(50.0, 60.0, psi_rad);
         let got = hull.at(at, t).acceleration;
-        let want = common::derivative(|dt| hull.at(at, t + dt).velocity, |v: &Planar| [v.surge, v.sway, v.yaw]);
+        let want = common::derivative(
+            |dt| hull.at(at, t + dt).velocity,
+            |v: &Planar| [v.surge, v.sway, v.yaw],
+        );
         for (got, want) in [got.surge, got.sway, got.yaw].into_iter().zip(want) {
-            assert!((got - want).abs() < 5e-5, "{t} s: {got}, by differences {want}");
+            assert!(
+                (got - want).abs() < 5e-5,
+                "{t} s: {got}, by differences {want}"
+            );
         }
     }
 }
@@ -172,15 +252,29 @@ fn the_drift_force_of_a_regular_wave_is_steady_and_points_where_it_goes() {
         let omega = |k: f64| (GRAVITY_M_S2 * k * depth_m.map_or(1.0, |h| libm::tanh(k * h))).sqrt();
         let groups = 2.0 * k / omega(k) * (omega(k * 1.0001) - omega(k * 0.9999)) / (k * 0.0002);
         let per_metre = 0.5 * DENSITY_KG_M3 * GRAVITY_M_S2 * square(0.2 * reflected) * groups;
-        for (off_bow_deg, t) in [(0.0, 0.0), (90.0, 0.7), (-90.0, 9.0), (60.0, 50.0), (-150.0, 3.0)] {
+        for (off_bow_deg, t) in [
+            (0.0, 0.0),
+            (90.0, 0.7),
+            (-90.0, 9.0),
+            (60.0, 50.0),
+            (-150.0, 3.0),
+        ] {
             let off_bow_rad = f64::to_radians(off_bow_deg);
-            let got = hull.at(pose(4.0, 5.0, toward_rad - off_bow_rad), t).drift_newton;
+            let got = hull
+                .at(pose(4.0, 5.0, toward_rad - off_bow_rad), t)
+                .drift_newton;
             let (sin, cos) = libm::sincos(off_bow_rad);
-            let want = (boat.beam_m * cos * cos.abs() * per_metre, boat.length_m * sin * sin.abs() * per_metre);
+            let want = (
+                boat.beam_m * cos * cos.abs() * per_metre,
+                boat.length_m * sin * sin.abs() * per_metre,
+            );
             // Error of linear interpolation between the headings of the table: (5°)² / 4.
             let within = 2e-3 * boat.length_m * per_metre;
             let off = ((got.surge - want.0).abs(), (got.sway - want.1).abs());
-            assert!(off.0 < within && off.1 < within, "{off_bow_deg} deg, {depth_m:?}: {got:?}, want {want:?}");
+            assert!(
+                off.0 < within && off.1 < within,
+                "{off_bow_deg} deg, {depth_m:?}: {got:?}, want {want:?}"
+            );
         }
     }
 }
@@ -193,14 +287,25 @@ fn the_drift_force_comes_in_groups_about_the_closed_mean() {
         let hull = HullWaves::new(&field, &boat, DENSITY_KG_M3);
         let psi_rad = 35_f64.to_radians();
         let samples = 40_000;
-        let at = |i: i32| hull.at(pose(f64::from(i % 40) * 13.7, f64::from(i % 7) * 31.0, psi_rad), 0.5 * f64::from(i));
+        let at = |i: i32| {
+            hull.at(
+                pose(f64::from(i % 40) * 13.7, f64::from(i % 7) * 31.0, psi_rad),
+                0.5 * f64::from(i),
+            )
+        };
         let force: Vec<f64> = (0..samples).map(|i| at(i).drift_newton.sway).collect();
         let mean = mean_of(force.len(), |i| force[i]);
         let deviation = mean_of(force.len(), |i| square(force[i] - mean)).sqrt();
         let want = field.mean_drift_newton(&boat, DENSITY_KG_M3, psi_rad).sway;
-        assert!((mean / want - 1.0).abs() < 0.03, "{spreading:?}: {mean} N, not {want} N");
+        assert!(
+            (mean / want - 1.0).abs() < 0.03,
+            "{spreading:?}: {mean} N, not {want} N"
+        );
         // The squared envelope of a Gaussian process is exponentially distributed.
-        assert!((deviation / mean.abs() - 1.0).abs() < 0.1, "{spreading:?}: {deviation} N about {mean} N");
+        assert!(
+            (deviation / mean.abs() - 1.0).abs() < 0.1,
+            "{spreading:?}: {deviation} N about {mean} N"
+        );
     }
 }
 
@@ -225,14 +330,25 @@ fn orbital_motion_and_drift_have_the_magnitudes_computed_elsewhere() {
         let drift = |psi_rad| field.mean_drift_newton(&boat, DENSITY_KG_M3, psi_rad);
         let got = [
             ("orbital velocity", field.orbital_rms_m_s(), orbital),
-            ("orbital velocity on the hull", mean_square(&hull, toward_rad, |v| v.surge).sqrt(), on_hull),
+            (
+                "orbital velocity on the hull",
+                mean_square(&hull, toward_rad, |v| v.surge).sqrt(),
+                on_hull,
+            ),
             ("slope", field.slope_rms_rad().to_degrees(), slope_deg),
-            ("Stokes drift", field.stokes_drift_m_s(1e-6).length(), stokes),
+            (
+                "Stokes drift",
+                field.stokes_drift_m_s(1e-6).length(),
+                stokes,
+            ),
             ("drift beam-on", drift(toward_rad - FRAC_PI_2).sway, beam_on),
             ("drift head-on", -drift(toward_rad + PI).surge, head_on),
         ];
         for (what, got, want) in got {
-            assert!((got / want - 1.0).abs() < 0.2, "{hs_m} m, {tp_s} s: {what} {got}, reference {want}");
+            assert!(
+                (got / want - 1.0).abs() < 0.2,
+                "{hs_m} m, {tp_s} s: {what} {got}, reference {want}"
+            );
         }
     }
 }
@@ -241,21 +357,42 @@ fn orbital_motion_and_drift_have_the_magnitudes_computed_elsewhere() {
 fn on_a_long_swell_a_boat_floats_with_the_surface() {
     // A wave a kilometre long, travelling north. Its period is 25 s or more, slow compared with
     // every spring.
-    for (t, psi_deg, depth_m) in
-        [(0.0, 0.0, None), (6.0, 90.0, None), (12.0, 180.0, Some(20.0)), (18.0, -90.0, Some(5.0)), (3.0, 45.0, None)]
-    {
+    for (t, psi_deg, depth_m) in [
+        (0.0, 0.0, None),
+        (6.0, 90.0, None),
+        (12.0, 180.0, Some(20.0)),
+        (18.0, -90.0, Some(5.0)),
+        (3.0, 45.0, None),
+    ] {
         let field = regular(1000.0, 0.0, depth_m);
         let response = WaveResponse::new(&field, &surveyor());
         let psi_rad = f64::to_radians(psi_deg);
         let got = response.at(pose(100.0, 0.0, psi_rad), Ned::default(), 0.0, t);
-        let surface = field.surface(Ned { north: 100.0, east: 0.0 }, t);
+        let surface = field.surface(
+            Ned {
+                north: 100.0,
+                east: 0.0,
+            },
+            t,
+        );
         let bow_up = surface.slope.north * libm::cos(psi_rad);
         // The surface rises to the north: with the bow east, that is the port side, and starboard
         // is down.
         let starboard_down = surface.slope.north * libm::sin(psi_rad);
-        assert!((got.heave_up_m - surface.elevation_m).abs() < 0.01, "{t} s: {got:?} {surface:?}");
-        assert!((got.pitch_rad - bow_up).abs() < 5e-5, "{t} s: pitch {} {bow_up}", got.pitch_rad);
-        assert!((got.roll_rad - starboard_down).abs() < 5e-5, "{t} s: roll {} {starboard_down}", got.roll_rad);
+        assert!(
+            (got.heave_up_m - surface.elevation_m).abs() < 0.01,
+            "{t} s: {got:?} {surface:?}"
+        );
+        assert!(
+            (got.pitch_rad - bow_up).abs() < 5e-5,
+            "{t} s: pitch {} {bow_up}",
+            got.pitch_rad
+        );
+        assert!(
+            (got.roll_rad - starboard_down).abs() < 5e-5,
+            "{t} s: roll {} {starboard_down}",
+            got.roll_rad
+        );
     }
 }
 
@@ -271,7 +408,10 @@ fn a_wave_at_the_natural_frequency_rolls_the_boat_by_the_springs_amplification()
     for t in [0.1, 0.3, 0.6] {
         let roll_rad = response.at(at, Ned::default(), 0.0, t).roll_rad;
         let slope_then = field.surface(at.at, t - 0.25 * period_s).slope.east;
-        assert!((roll_rad + 2.5 * slope_then).abs() < 1e-3 * 2.5 * 0.2 * k, "{t} s: {roll_rad} {slope_then}");
+        assert!(
+            (roll_rad + 2.5 * slope_then).abs() < 1e-3 * 2.5 * 0.2 * k,
+            "{t} s: {roll_rad} {slope_then}"
+        );
     }
 }
 
@@ -279,17 +419,32 @@ fn a_wave_at_the_natural_frequency_rolls_the_boat_by_the_springs_amplification()
 fn the_rates_of_the_attitude_are_its_changes_along_a_turning_track() {
     let field = sea(0.5, 2.5, Spreading::CosineSquared);
     let response = WaveResponse::new(&field, &surveyor());
-    let velocity = Ned { north: 1.4, east: -0.9 };
+    let velocity = Ned {
+        north: 1.4,
+        east: -0.9,
+    };
     let turn_rad_s = 0.4;
     let along = |t: f64| {
-        let here = pose(10.0 + velocity.north * t, 4.0 + velocity.east * t, 1.0 + turn_rad_s * t);
+        let here = pose(
+            10.0 + velocity.north * t,
+            4.0 + velocity.east * t,
+            1.0 + turn_rad_s * t,
+        );
         response.at(here, velocity, turn_rad_s, 500.0 + t)
     };
     let now = along(0.0);
-    let want = common::derivative(along, |a: &Attitude| [a.heave_up_m, a.roll_rad, a.pitch_rad]);
+    let want = common::derivative(along, |a: &Attitude| {
+        [a.heave_up_m, a.roll_rad, a.pitch_rad]
+    });
     let got = [now.heave_up_m_s, now.roll_rad_s, now.pitch_rad_s];
-    for (what, (got, want)) in ["heave", "roll", "pitch"].into_iter().zip(got.into_iter().zip(want)) {
-        assert!((got - want).abs() < 5e-5, "{what}: {got}, by differences {want}");
+    for (what, (got, want)) in ["heave", "roll", "pitch"]
+        .into_iter()
+        .zip(got.into_iter().zip(want))
+    {
+        assert!(
+            (got - want).abs() < 5e-5,
+            "{what}: {got}, by differences {want}"
+        );
     }
     // On a straight track the acceleration is exactly that of the heave.
     let straight = |t: f64| {

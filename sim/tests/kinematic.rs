@@ -14,7 +14,9 @@ const RUN_UP_S: f64 = 60.0;
 /// The shipped point boat with this name, from Pyquaticus (main, 2025-11).
 fn shipped(name: &str) -> Kinematic {
     let boat = common::boat(&format!("{name}_kinematic"));
-    let scenario::boat::Drive::Kinematic(kinematic) = boat.drive else { panic!("{name} is not a point boat") };
+    let scenario::boat::Drive::Kinematic(kinematic) = boat.drive else {
+        panic!("{name} is not a point boat")
+    };
     kinematic
 }
 
@@ -38,7 +40,12 @@ impl Afloat {
     fn new(boat: &Kinematic) -> Afloat {
         let model = KinematicModel::new(boat);
         let state = KinematicState::default();
-        Afloat { model, state, at: Ned::default(), rate_deg_s: 0.0 }
+        Afloat {
+            model,
+            state,
+            at: Ned::default(),
+            rate_deg_s: 0.0,
+        }
     }
 
     /// A boat after its run-up northward, moved back to the origin.
@@ -50,7 +57,9 @@ impl Afloat {
     }
 
     fn step(&mut self, command: Order) {
-        let motion = self.model.step(&mut self.state, command, Ned::default(), DT_S);
+        let motion = self
+            .model
+            .step(&mut self.state, command, Ned::default(), DT_S);
         self.at = self.at + motion.travel_m;
         self.rate_deg_s = motion.turn_rad.to_degrees() / DT_S;
     }
@@ -59,19 +68,29 @@ impl Afloat {
         let ticks = 1..=(seconds / DT_S).round() as u32;
         let row = |tick: u32| {
             self.step(command(&self.state));
-            Row { t_s: f64::from(tick) * DT_S, at: self.at, state: self.state }
+            Row {
+                t_s: f64::from(tick) * DT_S,
+                at: self.at,
+                state: self.state,
+            }
         };
         ticks.map(row).collect()
     }
 }
 
 fn steer(heading_deg: f64, speed_m_s: f64) -> Order {
-    Order::Steer { heading_rad: heading_deg.to_radians(), speed_m_s }
+    Order::Steer {
+        heading_rad: heading_deg.to_radians(),
+        speed_m_s,
+    }
 }
 
 /// Thrust and rudder, per cent.
 fn impose(thrust: f64, rudder: f64) -> Order {
-    Order::Thrust { port: (thrust + rudder) / 100.0, starboard: (thrust - rudder) / 100.0 }
+    Order::Thrust {
+        port: (thrust + rudder) / 100.0,
+        starboard: (thrust - rudder) / 100.0,
+    }
 }
 
 fn north(speed_m_s: f64) -> Order {
@@ -80,7 +99,9 @@ fn north(speed_m_s: f64) -> Order {
 
 /// The first time at which `holds` is true, s.
 fn first(rows: &[Row], holds: impl Fn(&Row) -> bool) -> f64 {
-    rows.iter().find(|row| holds(row)).map_or(f64::NAN, |row| row.t_s)
+    rows.iter()
+        .find(|row| holds(row))
+        .map_or(f64::NAN, |row| row.t_s)
 }
 
 /// Compares every row and column with a reference, within 1e-6.
@@ -94,26 +115,53 @@ fn follow(name: &str, mut afloat: Afloat, text: &str) {
             _ => afloat.step(impose(number(8), number(9))),
         }
         let state = afloat.state;
-        let got = [afloat.at.east, afloat.at.north, state.speed_m_s, state.heading_deg, state.thrust, state.rudder];
+        let got = [
+            afloat.at.east,
+            afloat.at.north,
+            state.speed_m_s,
+            state.heading_deg,
+            state.thrust,
+            state.rudder,
+        ];
         for (column, got) in got.into_iter().enumerate() {
             let want = number(4 + column);
-            assert!((got - want).abs() < 1e-6, "{name}, row {i}, column {}: {got}, reference {want}", 4 + column);
+            assert!(
+                (got - want).abs() < 1e-6,
+                "{name}, row {i}, column {}: {got}, reference {want}",
+                4 + column
+            );
         }
     }
 }
 
 #[test]
 fn it_accelerates_as_the_reference_does() {
-    follow("heron", Afloat::new(&shipped("heron")), include_str!("kinematic/heron_accel_max.csv"));
-    follow("surveyor", Afloat::new(&shipped("surveyor")), include_str!("kinematic/surveyor_accel_max.csv"));
+    follow(
+        "heron",
+        Afloat::new(&shipped("heron")),
+        include_str!("kinematic/heron_accel_max.csv"),
+    );
+    follow(
+        "surveyor",
+        Afloat::new(&shipped("surveyor")),
+        include_str!("kinematic/surveyor_accel_max.csv"),
+    );
 }
 
 #[test]
 fn it_turns_as_the_reference_does() {
     let heron = Afloat::under_way(&shipped("heron"), 2.0);
-    follow("heron", heron, include_str!("kinematic/heron_turn90_max.csv"));
+    follow(
+        "heron",
+        heron,
+        include_str!("kinematic/heron_turn90_max.csv"),
+    );
     let surveyor = Afloat::under_way(&shipped("surveyor"), 3.0);
-    follow("surveyor", surveyor, include_str!("kinematic/surveyor_turn90_max.csv"));
+    follow(
+        "surveyor",
+        surveyor,
+        include_str!("kinematic/surveyor_turn90_max.csv"),
+    );
 }
 
 #[test]
@@ -122,7 +170,11 @@ fn it_takes_thrust_and_rudder_from_outside_as_the_reference_does() {
         let mut surveyor = Afloat::new(&shipped("surveyor"));
         surveyor.sail(RUN_UP_S, |_| run_up);
         surveyor.at = Ned::default();
-        follow("surveyor", surveyor, include_str!("kinematic/surveyor_tr_thrust100_rudder50.csv"));
+        follow(
+            "surveyor",
+            surveyor,
+            include_str!("kinematic/surveyor_tr_thrust100_rudder50.csv"),
+        );
     }
 }
 
@@ -131,12 +183,21 @@ const BOATS: [&str; 3] = ["heron", "surveyor", "large_usv"];
 /// Compares to the printed precision of the reference: half of the last digit.
 fn compare(name: &str, what: &str, got: &[f64]) {
     let begin = format!("{name},{what},");
-    let line = include_str!("kinematic/manoeuvres.csv").lines().find_map(|line| line.strip_prefix(&begin));
-    let references: Vec<&str> = line.unwrap_or_else(|| panic!("no line starts with {begin}")).split(',').collect();
+    let line = include_str!("kinematic/manoeuvres.csv")
+        .lines()
+        .find_map(|line| line.strip_prefix(&begin));
+    let references: Vec<&str> = line
+        .unwrap_or_else(|| panic!("no line starts with {begin}"))
+        .split(',')
+        .collect();
     assert_eq!(references.len(), got.len(), "{begin}");
     for (reference, got) in references.into_iter().zip(got) {
-        let want: f64 = reference.parse().unwrap_or_else(|e| panic!("{begin}{reference}: {e}"));
-        let half_place = [0.5, 0.05, 0.005][reference.split_once('.').map_or(0, |(_, places)| places.len())];
+        let want: f64 = reference
+            .parse()
+            .unwrap_or_else(|e| panic!("{begin}{reference}: {e}"));
+        let half_place = [0.5, 0.05, 0.005][reference
+            .split_once('.')
+            .map_or(0, |(_, places)| places.len())];
         // The binary neighbours of a decimal half lie on both sides of it.
         let agrees = (got - want).abs() <= half_place + 1e-9 || got.is_nan() && want.is_nan();
         assert!(agrees, "{name}, {what}: {got}, reference {reference}");
@@ -144,11 +205,13 @@ fn compare(name: &str, what: &str, got: &[f64]) {
 }
 
 fn fastest(rows: &[Row]) -> f64 {
-    rows.iter().fold(0.0, |most, row| most.max(row.state.speed_m_s))
+    rows.iter()
+        .fold(0.0, |most, row| most.max(row.state.speed_m_s))
 }
 
 fn slowest(rows: &[Row]) -> f64 {
-    rows.iter().fold(f64::INFINITY, |least, row| least.min(row.state.speed_m_s))
+    rows.iter()
+        .fold(f64::INFINITY, |least, row| least.min(row.state.speed_m_s))
 }
 
 #[test]
@@ -157,11 +220,18 @@ fn its_accelerations_have_the_reference_numbers() {
         let boat = shipped(name);
         let top_m_s = boat.speed_max_m_s;
         let rows = Afloat::new(&boat).sail(60.0, |_| north(top_m_s));
-        let [t63, t90, t99] =
-            [0.632, 0.9, 0.99].map(|share| first(&rows, |row| row.state.speed_m_s >= share * top_m_s));
-        compare(name, "to full speed", &[t63, t90, t99, rows[599].state.speed_m_s, rows[599].at.north]);
+        let [t63, t90, t99] = [0.632, 0.9, 0.99]
+            .map(|share| first(&rows, |row| row.state.speed_m_s >= share * top_m_s));
+        compare(
+            name,
+            "to full speed",
+            &[t63, t90, t99, rows[599].state.speed_m_s, rows[599].at.north],
+        );
         let rows = Afloat::new(&boat).sail(60.0, |_| north(0.5 * top_m_s));
-        let got = [first(&rows, |row| row.state.speed_m_s >= 0.45 * top_m_s), fastest(&rows)];
+        let got = [
+            first(&rows, |row| row.state.speed_m_s >= 0.45 * top_m_s),
+            fastest(&rows),
+        ];
         compare(name, "to half speed", &got);
     }
 }
@@ -172,16 +242,45 @@ fn its_turns_have_the_reference_numbers() {
         let boat = shipped(name);
         let top_m_s = boat.speed_max_m_s;
         let half_m_s = 0.5 * boat.speed_max_m_s;
-        let past = |rows: &[Row], angle_deg: f64| first(rows, |row| row.state.heading_deg.abs() >= angle_deg);
+        let past = |rows: &[Row], angle_deg: f64| {
+            first(rows, |row| row.state.heading_deg.abs() >= angle_deg)
+        };
         let rows = Afloat::under_way(&boat, top_m_s).sail(90.0, |_| steer(90.0, top_m_s));
-        let off = rows.iter().rev().find(|row| (row.state.heading_deg - 90.0).abs() > 2.0);
+        let off = rows
+            .iter()
+            .rev()
+            .find(|row| (row.state.heading_deg - 90.0).abs() > 2.0);
         let settled_s = off.map_or(f64::NAN, |row| row.t_s);
-        compare(name, "by 90°", &[past(&rows, 45.0), past(&rows, 88.2), settled_s, slowest(&rows)]);
+        compare(
+            name,
+            "by 90°",
+            &[
+                past(&rows, 45.0),
+                past(&rows, 88.2),
+                settled_s,
+                slowest(&rows),
+            ],
+        );
         let rows = Afloat::under_way(&boat, top_m_s).sail(90.0, |_| steer(180.0, top_m_s));
-        let aside_m = rows.iter().fold(0.0, |most: f64, row| most.max(row.at.east.abs()));
-        compare(name, "by 180°", &[past(&rows, 90.0), past(&rows, 135.0), past(&rows, 175.0), aside_m]);
+        let aside_m = rows
+            .iter()
+            .fold(0.0, |most: f64, row| most.max(row.at.east.abs()));
+        compare(
+            name,
+            "by 180°",
+            &[
+                past(&rows, 90.0),
+                past(&rows, 135.0),
+                past(&rows, 175.0),
+                aside_m,
+            ],
+        );
         let rows = Afloat::under_way(&boat, half_m_s).sail(90.0, |_| steer(90.0, half_m_s));
-        compare(name, "by 90° at half speed", &[past(&rows, 45.0), past(&rows, 88.2)]);
+        compare(
+            name,
+            "by 90° at half speed",
+            &[past(&rows, 45.0), past(&rows, 88.2)],
+        );
     }
 }
 
@@ -193,7 +292,10 @@ fn its_stops_have_the_reference_numbers() {
             let mut afloat = Afloat::under_way(&boat, share * boat.speed_max_m_s);
             let speed_m_s = afloat.state.speed_m_s;
             let rows = afloat.sail(120.0, |_| Order::Hold);
-            (first(&rows, |row| row.state.speed_m_s <= 0.05 * speed_m_s), rows[1199].at.north)
+            (
+                first(&rows, |row| row.state.speed_m_s <= 0.05 * speed_m_s),
+                rows[1199].at.north,
+            )
         };
         let full = stop(1.0);
         let half = stop(0.5);
@@ -210,6 +312,10 @@ fn its_tightest_turn_has_the_reference_numbers() {
         afloat.sail(200.0, |state| steer(state.heading_deg + 90.0, top_m_s));
         let rate_deg_s = afloat.rate_deg_s;
         let speed_m_s = afloat.state.speed_m_s;
-        compare(name, "held turn", &[rate_deg_s, speed_m_s, speed_m_s / rate_deg_s.to_radians()]);
+        compare(
+            name,
+            "held turn",
+            &[rate_deg_s, speed_m_s, speed_m_s / rate_deg_s.to_radians()],
+        );
     }
 }

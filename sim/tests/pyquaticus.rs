@@ -25,7 +25,10 @@ fn game(rules: &str, boat: &str, (x, y, heading_deg): (f64, f64, f64)) -> Scenar
          [[vehicle]]\nname = \"blue_one\"\nteam = \"blue\"\nat = [{x}, {y}]\nheading_deg = {heading_deg}\n\
          [[vehicle]]\nname = \"red_one\"\nteam = \"red\"\nat = [150, 10]\nheading_deg = -90\n"
     ));
-    let rules = Rules { power_play: SimTime::ZERO, ..scenario.rules.clone() };
+    let rules = Rules {
+        power_play: SimTime::ZERO,
+        ..scenario.rules.clone()
+    };
     Scenario { rules, ..scenario }
 }
 
@@ -36,17 +39,30 @@ fn step(contest: &mut Contest, blue: Order) {
 }
 
 fn steer(heading_deg: f64, speed_m_s: f64) -> Order {
-    Order::Steer { heading_rad: heading_deg.to_radians(), speed_m_s }
+    Order::Steer {
+        heading_rad: heading_deg.to_radians(),
+        speed_m_s,
+    }
 }
 
 /// A boat's position (x, y), speed, and heading in degrees.
 fn state(contest: &Contest, vehicle: VehicleId) -> [f64; 4] {
     let boat = &contest.world().state().boats[vehicle.index()];
-    [boat.pose.at.east, boat.pose.at.north, boat.nu.surge, boat.pose.psi_rad.to_degrees()]
+    [
+        boat.pose.at.east,
+        boat.pose.at.north,
+        boat.nu.surge,
+        boat.pose.psi_rad.to_degrees(),
+    ]
 }
 
 fn assert_near(what: &str, got: [f64; 4], want: [f64; 4], within: f64) {
-    assert!(got.iter().zip(want).all(|(got, want)| (got - want).abs() < within), "{what}: {got:?}, want {want:?}");
+    assert!(
+        got.iter()
+            .zip(want)
+            .all(|(got, want)| (got - want).abs() < within),
+        "{what}: {got:?}, want {want:?}"
+    );
 }
 
 #[test]
@@ -60,7 +76,11 @@ fn a_boat_that_leaves_at_the_side_comes_back_as_soon_as_in_the_competition() {
         ("surveyor", 3.0, 1.0, [17.0, 18.0, 35.0]),
     ] {
         let mut scenario = game("mctf_2026", boat, (40.0, 70.0, 0.0));
-        assert_eq!(scenario.rules.tag_look_period.as_s(), 1.0, "the period of the competition");
+        assert_eq!(
+            scenario.rules.tag_look_period.as_s(),
+            1.0,
+            "the period of the competition"
+        );
         scenario.rules.tag_look_period = SimTime::from_s(looks_s);
         scenario.rules.flag_look_period = SimTime::from_s(looks_s);
         let mut contest = started(&scenario);
@@ -70,7 +90,13 @@ fn a_boat_that_leaves_at_the_side_comes_back_as_soon_as_in_the_competition() {
         while freed_s == 0.0 && contest.now().as_s() < 120.0 {
             let known = contest.events().len();
             // Ahead on its present heading, like the actions of Pyquaticus.
-            step(&mut contest, Order::Turn { by_rad: 0.0, speed_m_s });
+            step(
+                &mut contest,
+                Order::Turn {
+                    by_rad: 0.0,
+                    speed_m_s,
+                },
+            );
             for logged in &contest.events()[known..] {
                 match logged.event {
                     Event::LeftField(BLUE) => left_s = logged.at.as_s(),
@@ -81,8 +107,14 @@ fn a_boat_that_leaves_at_the_side_comes_back_as_soon_as_in_the_competition() {
             }
         }
         let got_s = [left_s, back_s - left_s, freed_s];
-        let is_near = got_s.iter().zip(want_s).all(|(got, want)| (got - want).abs() < 0.01);
-        assert!(is_near, "{boat}, looks every {looks_s} s: {got_s:?}, not {want_s:?}");
+        let is_near = got_s
+            .iter()
+            .zip(want_s)
+            .all(|(got, want)| (got - want).abs() < 0.01);
+        assert!(
+            is_near,
+            "{boat}, looks every {looks_s} s: {got_s:?}, not {want_s:?}"
+        );
     }
 }
 
@@ -92,12 +124,48 @@ fn a_point_boat_slides_along_the_keepout_circle_as_in_pyquaticus() {
     // and heading then; and x, y at 30 s, long after it has passed the flag.
     type Case = (&'static str, (f64, f64, f64), f64, [f64; 4], [f64; 2]);
     let cases: [Case; 6] = [
-        ("heron", (20.0, 25.0, 0.0), 8.9, [20.0, 34.9, 0.0, 90.0], [25.63014, 59.421063]),
-        ("heron", (23.0, 25.0, 0.0), 9.5, [23.0, 35.875682, 0.990426, 53.968121], [25.65013, 70.038497]),
-        ("heron", (10.0, 36.0, 90.0), 7.0, [16.836142, 36.0, 1.188203, 128.342749], [59.091979, 34.361834]),
-        ("surveyor", (20.0, 25.0, 0.0), 16.3, [20.0, 34.9, 0.0, 90.0], [23.630539, 36.506268]),
-        ("surveyor", (23.0, 25.0, 0.0), 17.1, [23.0, 35.875682, 0.754412, 53.968121], [28.426364, 50.322392]),
-        ("surveyor", (10.0, 36.0, 90.0), 13.7, [16.836142, 36.0, 0.805882, 128.342749], [38.955392, 31.435267]),
+        (
+            "heron",
+            (20.0, 25.0, 0.0),
+            8.9,
+            [20.0, 34.9, 0.0, 90.0],
+            [25.63014, 59.421063],
+        ),
+        (
+            "heron",
+            (23.0, 25.0, 0.0),
+            9.5,
+            [23.0, 35.875682, 0.990426, 53.968121],
+            [25.65013, 70.038497],
+        ),
+        (
+            "heron",
+            (10.0, 36.0, 90.0),
+            7.0,
+            [16.836142, 36.0, 1.188203, 128.342749],
+            [59.091979, 34.361834],
+        ),
+        (
+            "surveyor",
+            (20.0, 25.0, 0.0),
+            16.3,
+            [20.0, 34.9, 0.0, 90.0],
+            [23.630539, 36.506268],
+        ),
+        (
+            "surveyor",
+            (23.0, 25.0, 0.0),
+            17.1,
+            [23.0, 35.875682, 0.754412, 53.968121],
+            [28.426364, 50.322392],
+        ),
+        (
+            "surveyor",
+            (10.0, 36.0, 90.0),
+            13.7,
+            [16.836142, 36.0, 0.805882, 128.342749],
+            [38.955392, 31.435267],
+        ),
     ];
     for (boat, start, at_s, want, end) in cases {
         let mut contest = started(&game("pyquaticus", boat, start));
@@ -105,13 +173,21 @@ fn a_point_boat_slides_along_the_keepout_circle_as_in_pyquaticus() {
         while contest.now().as_s() < 29.99 {
             step(&mut contest, steer(start.2, speed_m_s));
             if (contest.now().as_s() - at_s).abs() < 0.01 {
-                assert_near(&format!("{boat} {start:?}"), state(&contest, BLUE), want, 1e-5);
+                assert_near(
+                    &format!("{boat} {start:?}"),
+                    state(&contest, BLUE),
+                    want,
+                    1e-5,
+                );
             }
         }
         let [x, y, ..] = state(&contest, BLUE);
         // Pyquaticus has single-precision headings and speeds, and every set-back enlarges the
         // difference.
-        assert!((x - end[0]).abs() < 0.01 && (y - end[1]).abs() < 0.01, "{boat} {start:?}: ({x}, {y}), not {end:?}");
+        assert!(
+            (x - end[0]).abs() < 0.01 && (y - end[1]).abs() < 0.01,
+            "{boat} {start:?}: ({x}, {y}), not {end:?}"
+        );
     }
 }
 
@@ -123,10 +199,17 @@ fn a_hull_held_at_the_keepout_circle_does_not_go_on_pushing() {
     for _ in 0..300 {
         step(&mut contest, steer(0.0, 2.0));
         let boat = &contest.world().state().boats[0];
-        assert!(boat.pose.at.distance(Ned::from_xy(20.0, 40.0)) > 5.0 - 1e-9, "{:?}", boat.pose);
+        assert!(
+            boat.pose.at.distance(Ned::from_xy(20.0, 40.0)) > 5.0 - 1e-9,
+            "{:?}",
+            boat.pose
+        );
     }
     let boat = &contest.world().state().boats[0];
-    assert!(boat.pose.at.distance(Ned::from_xy(20.0, 40.0)) < 5.2 && boat.nu.surge.abs() < 0.1, "{boat:?}");
+    assert!(
+        boat.pose.at.distance(Ned::from_xy(20.0, 40.0)) < 5.2 && boat.nu.surge.abs() < 0.1,
+        "{boat:?}"
+    );
 }
 
 #[test]
@@ -137,7 +220,10 @@ fn boats_pass_through_each_other_where_the_rules_say_so() {
         (scenario.rules.contact, scenario.rules.tag_radius_m) = (contact, 0.1);
         let mut contest = started(&scenario);
         common::set_in(&mut contest, |state| {
-            state.boats[1].pose = primitives::Pose { at: Ned::from_xy(120.0, 60.5), psi_rad: -PI / 2.0 };
+            state.boats[1].pose = primitives::Pose {
+                at: Ned::from_xy(120.0, 60.5),
+                psi_rad: -PI / 2.0,
+            };
             state.points[1] = sim::kinematic::KinematicState::at_rest(-PI / 2.0);
         });
         let mut gap_m = f64::INFINITY;
@@ -147,10 +233,23 @@ fn boats_pass_through_each_other_where_the_rules_say_so() {
             gap_m = gap_m.min(common::gap_m(contest.world(), &scenario, 0, 1));
         }
         // Their keels pass half a metre apart, and the hulls are a metre wide.
-        let want_m = if contact == Contact::Ghost { -0.5..-0.45 } else { -0.02..0.05 };
+        let want_m = if contact == Contact::Ghost {
+            -0.5..-0.45
+        } else {
+            -0.02..0.05
+        };
         assert!(want_m.contains(&gap_m), "{contact:?}: {gap_m} m");
-        let collided = |logged: &rules::event::Logged| matches!(logged.event, Event::Collided { .. });
-        assert_eq!(contest.events().iter().filter(|logged| collided(logged)).count(), 1, "{contact:?}");
+        let collided =
+            |logged: &rules::event::Logged| matches!(logged.event, Event::Collided { .. });
+        assert_eq!(
+            contest
+                .events()
+                .iter()
+                .filter(|logged| collided(logged))
+                .count(),
+            1,
+            "{contact:?}"
+        );
     }
 }
 
@@ -159,23 +258,74 @@ fn half_a_turn_is_an_order_of_its_own_to_either_side() {
     // Actions 0 and 8 of Pyquaticus, half a turn at full and at half speed, held from rest: x, y,
     // speed and heading after some seconds. To port it is the mirror image.
     for (boat, speed_m_s, at_s, [x, y, speed, heading_deg]) in [
-        ("heron", 2.0, 3.0, [50.21517, 40.155718, 0.188223, 108.030393]),
+        (
+            "heron",
+            2.0,
+            3.0,
+            [50.21517, 40.155718, 0.188223, 108.030393],
+        ),
         ("heron", 2.0, 12.0, [50.081557, 40.114398, 0.3, 48.49927]),
         ("heron", 2.0, 30.0, [50.081557, 40.114398, 0.3, 48.49927]),
-        ("heron", 1.0, 3.0, [50.070658, 40.135417, 0.103561, 54.001006]),
-        ("heron", 1.0, 12.0, [50.08282, 40.095825, 0.297411, 45.493965]),
+        (
+            "heron",
+            1.0,
+            3.0,
+            [50.070658, 40.135417, 0.103561, 54.001006],
+        ),
+        (
+            "heron",
+            1.0,
+            12.0,
+            [50.08282, 40.095825, 0.297411, 45.493965],
+        ),
         ("heron", 1.0, 30.0, [50.082599, 40.095712, 0.3, 45.493965]),
-        ("surveyor", 3.0, 3.0, [50.041019, 40.339859, 0.223125, 13.621031]),
-        ("surveyor", 3.0, 12.0, [52.593356, 40.306473, 0.45, 170.444517]),
-        ("surveyor", 3.0, 30.0, [52.593356, 40.306473, 0.45, 170.444517]),
-        ("surveyor", 1.5, 3.0, [50.014211, 40.236562, 0.15205, 6.750141]),
-        ("surveyor", 1.5, 12.0, [51.623766, 41.601201, 0.362435, 97.475]),
-        ("surveyor", 1.5, 30.0, [51.441386, 41.600823, 0.45, 88.349223]),
+        (
+            "surveyor",
+            3.0,
+            3.0,
+            [50.041019, 40.339859, 0.223125, 13.621031],
+        ),
+        (
+            "surveyor",
+            3.0,
+            12.0,
+            [52.593356, 40.306473, 0.45, 170.444517],
+        ),
+        (
+            "surveyor",
+            3.0,
+            30.0,
+            [52.593356, 40.306473, 0.45, 170.444517],
+        ),
+        (
+            "surveyor",
+            1.5,
+            3.0,
+            [50.014211, 40.236562, 0.15205, 6.750141],
+        ),
+        (
+            "surveyor",
+            1.5,
+            12.0,
+            [51.623766, 41.601201, 0.362435, 97.475],
+        ),
+        (
+            "surveyor",
+            1.5,
+            30.0,
+            [51.441386, 41.600823, 0.45, 88.349223],
+        ),
     ] {
         for side in [1.0, -1.0] {
             let mut contest = started(&game("pyquaticus", boat, (50.0, 40.0, 0.0)));
             while contest.now().as_s() < at_s - 0.05 {
-                step(&mut contest, Order::Turn { by_rad: side * PI, speed_m_s });
+                step(
+                    &mut contest,
+                    Order::Turn {
+                        by_rad: side * PI,
+                        speed_m_s,
+                    },
+                );
             }
             let want = [50.0 + side * (x - 50.0), y, speed, side * heading_deg];
             let what = format!("{boat} at {speed_m_s} m/s, side {side}, after {at_s} s");
@@ -202,15 +352,24 @@ impl Trace {
         let mut trace = Trace::default();
         for line in text.lines().filter(|line| !line.starts_with('#')) {
             let words: Vec<&str> = line.split(' ').collect();
-            let number = |i: usize| words[i].parse::<f64>().unwrap_or_else(|e| panic!("{line}: {e}"));
+            let number = |i: usize| {
+                words[i]
+                    .parse::<f64>()
+                    .unwrap_or_else(|e| panic!("{line}: {e}"))
+            };
             match words[0] {
                 "start" => trace.starts.push([number(2), number(3), number(4)]),
                 "end" => trace.ends.push([number(2), number(3)]),
                 "go" => {
-                    let actions: Vec<usize> = (2..words.len()).map(|i| number(i) as usize).collect();
+                    let actions: Vec<usize> =
+                        (2..words.len()).map(|i| number(i) as usize).collect();
                     trace.actions.extend(vec![actions; number(1) as usize]);
                 }
-                _ => trace.events.entry(trace.actions.len()).or_default().push(line.to_owned()),
+                _ => trace
+                    .events
+                    .entry(trace.actions.len())
+                    .or_default()
+                    .push(line.to_owned()),
             }
         }
         trace
@@ -222,16 +381,28 @@ impl Trace {
 fn order_of(action: usize, speed_max_m_s: f64) -> Order {
     let by_rad = (180.0 - 45.0 * (action % 8) as f64).to_radians();
     match action {
-        0..8 => Order::Turn { by_rad, speed_m_s: speed_max_m_s },
-        8..16 => Order::Turn { by_rad, speed_m_s: 0.5 * speed_max_m_s },
-        _ => Order::Turn { by_rad: 0.0, speed_m_s: 0.0 },
+        0..8 => Order::Turn {
+            by_rad,
+            speed_m_s: speed_max_m_s,
+        },
+        8..16 => Order::Turn {
+            by_rad,
+            speed_m_s: 0.5 * speed_max_m_s,
+        },
+        _ => Order::Turn {
+            by_rad: 0.0,
+            speed_m_s: 0.0,
+        },
     }
 }
 
 /// The trace's word for an event.
 fn told(event: Event) -> Option<String> {
     Some(match event {
-        Event::Tagged { vehicle, cause: TagCause::Opponent(by) } => format!("tag {} {}", by.0, vehicle.0),
+        Event::Tagged {
+            vehicle,
+            cause: TagCause::Opponent(by),
+        } => format!("tag {} {}", by.0, vehicle.0),
         Event::Grabbed { vehicle, .. } => format!("grab {}", vehicle.0),
         Event::Captured { vehicle, .. } => format!("capture {}", vehicle.0),
         Event::LeftField(vehicle) => format!("out {}", vehicle.0),
@@ -243,9 +414,10 @@ fn told(event: Event) -> Option<String> {
 
 #[test]
 fn whole_games_go_event_for_event_as_in_pyquaticus() {
-    for (boat, text) in
-        [("surveyor", include_str!("pyquaticus/surveyor.txt")), ("heron", include_str!("pyquaticus/heron.txt"))]
-    {
+    for (boat, text) in [
+        ("surveyor", include_str!("pyquaticus/surveyor.txt")),
+        ("heron", include_str!("pyquaticus/heron.txt")),
+    ] {
         let trace = Trace::read(text);
         let half = trace.starts.len() / 2;
         let vehicles = trace.starts.iter().enumerate().map(|(i, [x, y, heading_deg])| {
@@ -265,26 +437,41 @@ fn whole_games_go_event_for_event_as_in_pyquaticus() {
         let (mut got, mut known) = (BTreeMap::<usize, Vec<String>>::new(), 0);
         for (step, actions) in trace.actions.iter().enumerate() {
             for (i, action) in actions.iter().enumerate() {
-                order(&mut contest, VehicleId::at(i), order_of(*action, speed_max_m_s));
+                order(
+                    &mut contest,
+                    VehicleId::at(i),
+                    order_of(*action, speed_max_m_s),
+                );
             }
             contest.advance();
-            let new: Vec<String> = contest.events()[known..].iter().filter_map(|logged| told(logged.event)).collect();
+            let new: Vec<String> = contest.events()[known..]
+                .iter()
+                .filter_map(|logged| told(logged.event))
+                .collect();
             known = contest.events().len();
             if !new.is_empty() {
                 got.insert(step + 1, new);
             }
         }
         let sorted = |events: BTreeMap<usize, Vec<String>>| -> Vec<(usize, String)> {
-            let mut events: Vec<_> =
-                events.into_iter().flat_map(|(step, words)| words.into_iter().map(move |word| (step, word))).collect();
+            let mut events: Vec<_> = events
+                .into_iter()
+                .flat_map(|(step, words)| words.into_iter().map(move |word| (step, word)))
+                .collect();
             events.sort_unstable();
             events
         };
         assert!(trace.events.len() > 30, "{boat}: too few events");
         assert_eq!(sorted(got), sorted(trace.events), "{boat}");
         for (i, [x, y]) in trace.ends.iter().enumerate() {
-            let apart_m = contest.world().state().boats[i].pose.at.distance(Ned::from_xy(*x, *y));
-            assert!(apart_m < 1e-6, "{boat}: boat {i} ends {apart_m} m from its place in Pyquaticus");
+            let apart_m = contest.world().state().boats[i]
+                .pose
+                .at
+                .distance(Ned::from_xy(*x, *y));
+            assert!(
+                apart_m < 1e-6,
+                "{boat}: boat {i} ends {apart_m} m from its place in Pyquaticus"
+            );
         }
     }
 }

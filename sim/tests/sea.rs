@@ -20,7 +20,12 @@ fn waves(hs_m: f64, tp_s: f64) -> Waves {
 /// A drifter's mean velocity over ten minutes and the root mean square of its velocity, m/s, in
 /// waves of this height without drift force.
 fn adrift(hs_m: f64, seed: u64) -> (Ned, f64) {
-    let scenario = surveyor_on(|sea| sea.waves = Some(Waves { drift_factor: 0.0, ..waves(hs_m, 2.5) }));
+    let scenario = surveyor_on(|sea| {
+        sea.waves = Some(Waves {
+            drift_factor: 0.0,
+            ..waves(hs_m, 2.5)
+        })
+    });
     let mut world = afloat(&scenario, seed, (300.0, 200.0, 20.0), (0.0, 0.0, 0.0));
     sail(&mut world, &DRIFTING, 1_200);
     let start = world.state().boats[0].pose.at;
@@ -32,7 +37,10 @@ fn adrift(hs_m: f64, seed: u64) -> (Ned, f64) {
         sum += nu.surge * nu.surge + nu.sway * nu.sway;
     }
     let gone = world.state().boats[0].pose.at - start;
-    (gone.scaled(1.0 / (f64::from(n) * 0.05)), (sum / f64::from(n)).sqrt())
+    (
+        gone.scaled(1.0 / (f64::from(n) * 0.05)),
+        (sum / f64::from(n)).sqrt(),
+    )
 }
 
 #[test]
@@ -45,8 +53,14 @@ fn a_drifter_in_waves_goes_to_and_fro_and_only_second_order_takes_it_anywhere() 
     // First-order motion is proportional to the height and has no mean: in waves a tenth as high a
     // boat oscillates a tenth as fast, and a hundredth of the rest remains.
     let (small_mean, small_rms) = adrift(0.03, 4);
-    assert!((small_rms / rms - 0.1).abs() < 0.01, "oscillates at {small_rms} m/s, compared with {rms}");
-    assert!(small_mean.length() < 0.03 * small_rms, "mean velocity {small_mean:?} m/s, oscillation {small_rms} m/s");
+    assert!(
+        (small_rms / rms - 0.1).abs() < 0.01,
+        "oscillates at {small_rms} m/s, compared with {rms}"
+    );
+    assert!(
+        small_mean.length() < 0.03 * small_rms,
+        "mean velocity {small_mean:?} m/s, oscillation {small_rms} m/s"
+    );
 }
 
 #[test]
@@ -56,16 +70,34 @@ fn boats_in_waves_heave_at_the_frequency_of_encounter() {
     let samples = 2_048_usize;
     let dt_s = 0.05;
     let resolution = TAU / (samples as f64 * dt_s);
-    for (from_deg, speed_m_s) in [(0.0, 0.8), (0.0, 1.5), (90.0, 1.5), (180.0, 0.8), (180.0, 1.5)] {
+    for (from_deg, speed_m_s) in [
+        (0.0, 0.8),
+        (0.0, 1.5),
+        (90.0, 1.5),
+        (180.0, 0.8),
+        (180.0, 1.5),
+    ] {
         let from_rad = f64::to_radians(from_deg);
         let scenario = surveyor_on(|sea| {
             let components = 1;
             let spreading = Spreading::None;
-            sea.waves = Some(Waves { components, spreading, from_rad, drift_factor: 0.0, ..waves(0.1, 2.5) });
+            sea.waves = Some(Waves {
+                components,
+                spreading,
+                from_rad,
+                drift_factor: 0.0,
+                ..waves(0.1, 2.5)
+            });
         });
         let mut world = afloat(&scenario, 1, (300.0, 50.0, 0.0), (speed_m_s, 0.0, 0.0));
         let wave = *world.sea().waves().unwrap().components().next().unwrap();
-        let orders = [Order::Steer { heading_rad: 0.0, speed_m_s }, Order::Hold];
+        let orders = [
+            Order::Steer {
+                heading_rad: 0.0,
+                speed_m_s,
+            },
+            Order::Hold,
+        ];
         sail(&mut world, &orders, 400);
         let start = world.state().boats[0].pose.at;
         let step = |_| {
@@ -78,24 +110,47 @@ fn boats_in_waves_heave_at_the_frequency_of_encounter() {
         let (sin, cos) = primitives::math::sin_cos(wave.toward_rad);
         let along_m_s = (gone.north * cos + gone.east * sin) / (samples as f64 * dt_s);
         let want = (wave.omega_rad_s - k * along_m_s) / resolution;
-        let peak = (1..spectrum.len()).fold(0, |best, bin| if spectrum[bin] > spectrum[best] { bin } else { best });
-        let what = format!("from {from_deg}°, {speed_m_s} m/s: {peak}, not {want} at {along_m_s} m/s");
+        let peak = (1..spectrum.len()).fold(0, |best, bin| {
+            if spectrum[bin] > spectrum[best] {
+                bin
+            } else {
+                best
+            }
+        });
+        let what =
+            format!("from {from_deg}°, {speed_m_s} m/s: {peak}, not {want} at {along_m_s} m/s");
         assert!((peak as f64 - want).abs() <= 1.0, "{what}");
         let still = wave.omega_rad_s / resolution;
-        assert!(from_deg == 90.0 || (still - want).abs() > 4.0, "{what}: too close to {still} at a fixed place");
+        assert!(
+            from_deg == 90.0 || (still - want).abs() > 4.0,
+            "{what}: too close to {still} at a fixed place"
+        );
     }
 }
 
 #[test]
 fn every_shipped_sea_can_be_sailed_for_a_whole_game() {
-    let mut files: Vec<_> =
-        std::fs::read_dir(scenarios().join("seas")).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let mut files: Vec<_> = std::fs::read_dir(scenarios().join("seas"))
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .collect();
     files.sort();
     assert!(files.len() >= 14, "{files:?}");
     for file in files {
         let mut world = World::of_game(&on_sea("pav01_afloat.toml", &file), 1).unwrap();
-        sail(&mut world, &[Order::Steer { heading_rad: 1.0, speed_m_s: 2.0 }; 4], 12_000);
-        assert!(world.state().boats.iter().all(|boat| !boat.quarantined), "{}", file.display());
+        sail(
+            &mut world,
+            &[Order::Steer {
+                heading_rad: 1.0,
+                speed_m_s: 2.0,
+            }; 4],
+            12_000,
+        );
+        assert!(
+            world.state().boats.iter().all(|boat| !boat.quarantined),
+            "{}",
+            file.display()
+        );
         let speed = world
             .state()
             .boats
@@ -109,7 +164,11 @@ fn every_shipped_sea_can_be_sailed_for_a_whole_game() {
 #[test]
 fn a_free_boat_in_a_long_swell_goes_with_stokes_drift() {
     for (hs_m, tp_s) in [(0.5, 5.0), (1.0, 6.0)] {
-        let swell = Waves { drift_factor: 0.0, spreading: Spreading::None, ..waves(hs_m, tp_s) };
+        let swell = Waves {
+            drift_factor: 0.0,
+            spreading: Spreading::None,
+            ..waves(hs_m, tp_s)
+        };
         let scenario = surveyor_on(|sea| sea.waves = Some(swell.clone()));
         let field = WaveField::new(&swell, None, 4);
         let want = field.stokes_drift_m_s(scenario.boats[0].draught_m);
@@ -118,27 +177,42 @@ fn a_free_boat_in_a_long_swell_goes_with_stokes_drift() {
         let minutes = 40;
         sail(&mut world, &DRIFTING, 1_200 * minutes);
         let gone = (world.state().boats[0].pose.at - start).scaled(1.0 / f64::from(60 * minutes));
-        assert!(gone.distance(want) < 0.15 * want.length(), "{hs_m} m, {tp_s} s: {gone:?} m/s, not {want:?}");
+        assert!(
+            gone.distance(want) < 0.15 * want.length(),
+            "{hs_m} m, {tp_s} s: {gone:?} m/s, not {want:?}"
+        );
     }
 }
 
 #[test]
 fn point_boats_collide_in_a_current_as_they_do_in_still_water() {
-    let current = Ned { north: 0.3, east: 0.4 };
+    let current = Ned {
+        north: 0.3,
+        east: 0.4,
+    };
     let after = |mean_m_s: Ned| {
         let mut scenario = alone("heron_kinematic", "calm");
         scenario.sea.current.mean_m_s = mean_m_s;
         // Blue runs into red's side.
         let mut world = afloat(&scenario, 1, (300.0, 200.0, 90.0), (0.0, 0.0, 0.0));
         place_boat(&mut world, 1, (308.0, 200.2, 0.0), (0.0, 0.0, 0.0));
-        let ahead = Order::Steer { heading_rad: std::f64::consts::FRAC_PI_2, speed_m_s: 1.5 };
+        let ahead = Order::Steer {
+            heading_rad: std::f64::consts::FRAC_PI_2,
+            speed_m_s: 1.5,
+        };
         sail(&mut world, &[ahead, Order::Hold], 600);
         [0, 1].map(|i| world.state().boats[i].pose.at - mean_m_s.scaled(30.0))
     };
     let still = after(Ned::default());
     let drifting = after(current);
-    assert!((still[0].north - 200.0).abs() > 1.0, "blue did not hit red: {still:?}");
+    assert!(
+        (still[0].north - 200.0).abs() > 1.0,
+        "blue did not hit red: {still:?}"
+    );
     for (still, drifting) in still.into_iter().zip(drifting) {
-        assert!(still.distance(drifting) < 1e-3, "{still:?}, in a current {drifting:?}");
+        assert!(
+            still.distance(drifting) < 1e-3,
+            "{still:?}, in a current {drifting:?}"
+        );
     }
 }

@@ -19,11 +19,18 @@ const DECISION: SimTime = SimTime(100_000_000);
 
 /// Sightings without delay, error or loss, but not the default.
 fn clear_sight() -> Sharing {
-    Sharing { range_m: Some(1e6), memory_s: 1e4, ..Sharing::default() }
+    Sharing {
+        range_m: Some(1e6),
+        memory_s: 1e4,
+        ..Sharing::default()
+    }
 }
 
 fn start_position((x, y, heading_deg): (f64, f64, f64)) -> StartPosition {
-    StartPosition::At(Pose { at: Ned::from_xy(x, y), psi_rad: rad_from_compass_deg(heading_deg) })
+    StartPosition::At(Pose {
+        at: Ned::from_xy(x, y),
+        psi_rad: rad_from_compass_deg(heading_deg),
+    })
 }
 
 /// One boat per side, at x (m), y (m) and a compass heading (deg).
@@ -38,11 +45,18 @@ fn facing(sharing: Sharing, blue: (f64, f64, f64), red: (f64, f64, f64)) -> Scen
 
 /// Blue's contact of red.
 fn shown(contest: &mut Contest) -> Option<Contact> {
-    contest.pictures()[0].contacts.iter().find(|contact| contact.vehicle == RED).copied()
+    contest.pictures()[0]
+        .contacts
+        .iter()
+        .find(|contact| contact.vehicle == RED)
+        .copied()
 }
 
 fn at(contact: &Contact) -> Ned {
-    Ned { north: contact.north_m, east: contact.east_m }
+    Ned {
+        north: contact.north_m,
+        east: contact.east_m,
+    }
 }
 
 fn place(contest: &Contest, vehicle: VehicleId) -> Ned {
@@ -52,8 +66,15 @@ fn place(contest: &Contest, vehicle: VehicleId) -> Ned {
 #[test]
 fn a_boat_is_seen_within_the_range_and_not_beyond() {
     for (distance_m, is_seen) in [(20.0, true), (99.9, true), (100.1, false), (300.0, false)] {
-        let sharing = Sharing { range_m: Some(100.0), ..clear_sight() };
-        let mut contest = started(&facing(sharing, (300.0, 200.0, 0.0), (300.0 + distance_m, 200.0, 0.0)));
+        let sharing = Sharing {
+            range_m: Some(100.0),
+            ..clear_sight()
+        };
+        let mut contest = started(&facing(
+            sharing,
+            (300.0, 200.0, 0.0),
+            (300.0 + distance_m, 200.0, 0.0),
+        ));
         assert_eq!(shown(&mut contest).is_some(), is_seen, "{distance_m} m off");
     }
 }
@@ -64,7 +85,10 @@ fn a_boat_is_seen_within_the_angle_of_view_whatever_the_heading() {
         for heading_deg in [0.0, 90.0, 175.0, 179.0, 180.0, 181.0, 270.0, 359.0] {
             for off_bow_deg in [0.0, edge_deg - 0.5, edge_deg + 0.5, 180.0] {
                 for side in [-1.0, 1.0] {
-                    let sharing = Sharing { view_rad: Some(view_deg.to_radians()), ..clear_sight() };
+                    let sharing = Sharing {
+                        view_rad: Some(view_deg.to_radians()),
+                        ..clear_sight()
+                    };
                     let bearing_rad = rad_from_compass_deg(heading_deg + side * off_bow_deg);
                     let (sin, cos) = primitives::math::sin_cos(bearing_rad);
                     let red = (400.0 + 50.0 * sin, 200.0 + 50.0 * cos, 0.0);
@@ -84,14 +108,28 @@ fn a_boat_is_seen_within_the_angle_of_view_whatever_the_heading() {
 #[test]
 fn a_report_tells_the_truth_of_as_long_ago_as_stated() {
     let late = 15;
-    let sharing = Sharing { delay_s: 1.5, ..clear_sight() };
+    let sharing = Sharing {
+        delay_s: 1.5,
+        ..clear_sight()
+    };
     let mut contest = started(&facing(sharing, (300.0, 200.0, 0.0), (500.0, 200.0, 90.0)));
     let mut past = vec![];
     for k in 0..200 {
         past.push((contest.now(), place(&contest, RED)));
         let want = (k >= late).then(|| past[k - late]);
-        assert_eq!(shown(&mut contest).map(|contact| (contact.seen_ns, at(&contact))), want, "at decision {k}");
-        order(&mut contest, RED, Order::Steer { heading_rad: 1.0, speed_m_s: 2.0 });
+        assert_eq!(
+            shown(&mut contest).map(|contact| (contact.seen_ns, at(&contact))),
+            want,
+            "at decision {k}"
+        );
+        order(
+            &mut contest,
+            RED,
+            Order::Steer {
+                heading_rad: 1.0,
+                speed_m_s: 2.0,
+            },
+        );
         contest.advance();
     }
     assert!(past[0].1.distance(past[199].1) > 20.0, "red did not move");
@@ -102,7 +140,11 @@ fn reports_err_by_the_stated_noise_and_anew_each_time() {
     const REPORTS: usize = 20_000;
     let noise_m = 3.0;
     let velocity_noise_m_s = 0.5;
-    let sharing = Sharing { noise_m, velocity_noise_m_s, ..clear_sight() };
+    let sharing = Sharing {
+        noise_m,
+        velocity_noise_m_s,
+        ..clear_sight()
+    };
     let mut contest = started(&facing(sharing, (300.0, 200.0, 0.0), (500.0, 200.0, 90.0)));
     // Errors in standard deviations.
     let mut errors: [Vec<f64>; 4] = Default::default();
@@ -110,7 +152,11 @@ fn reports_err_by_the_stated_noise_and_anew_each_time() {
         let off = at(&shown(&mut contest).unwrap()) - place(&contest, RED);
         let contact = shown(&mut contest).unwrap();
         let velocity = (contact.velocity_north_m_s, contact.velocity_east_m_s);
-        assert_eq!(contest.world().state().boats[RED.index()].nu, sim::hull::Planar::default(), "red is at rest");
+        assert_eq!(
+            contest.world().state().boats[RED.index()].nu,
+            sim::hull::Planar::default(),
+            "red is at rest"
+        );
         errors[0].push(off.north / noise_m);
         errors[1].push(off.east / noise_m);
         errors[2].push(velocity.0 / velocity_noise_m_s);
@@ -123,16 +169,29 @@ fn reports_err_by_the_stated_noise_and_anew_each_time() {
     for (axis, error) in errors.iter().enumerate() {
         let next = &errors[(axis + 1) % 4];
         assert!(mean(&|i| error[i]).abs() < within, "axis {axis}");
-        assert!((mean(&|i| error[i] * error[i]) - 1.0).abs() < within * 2.0_f64.sqrt(), "axis {axis}");
-        assert!(mean(&|i| error[i] * error[i + 1]).abs() < within, "axis {axis}: correlated over time");
-        assert!(mean(&|i| error[i] * next[i]).abs() < within, "axis {axis}: correlated with the other axis");
+        assert!(
+            (mean(&|i| error[i] * error[i]) - 1.0).abs() < within * 2.0_f64.sqrt(),
+            "axis {axis}"
+        );
+        assert!(
+            mean(&|i| error[i] * error[i + 1]).abs() < within,
+            "axis {axis}: correlated over time"
+        );
+        assert!(
+            mean(&|i| error[i] * next[i]).abs() < within,
+            "axis {axis}: correlated with the other axis"
+        );
     }
 }
 
 #[test]
 fn the_stated_share_of_reports_is_lost() {
     const REPORTS: u32 = 20_000;
-    let sharing = Sharing { loss: 0.3, memory_s: 0.0, ..clear_sight() };
+    let sharing = Sharing {
+        loss: 0.3,
+        memory_s: 0.0,
+        ..clear_sight()
+    };
     let mut contest = started(&facing(sharing, (300.0, 200.0, 0.0), (500.0, 200.0, 90.0)));
     let mut lost = 0;
     for _ in 0..REPORTS {
@@ -141,13 +200,20 @@ fn the_stated_share_of_reports_is_lost() {
     }
     let share = f64::from(lost) / f64::from(REPORTS);
     // Five standard errors.
-    assert!((share - 0.3).abs() < 5.0 * (0.21 / f64::from(REPORTS)).sqrt(), "{share}");
+    assert!(
+        (share - 0.3).abs() < 5.0 * (0.21 / f64::from(REPORTS)).sqrt(),
+        "{share}"
+    );
 }
 
 #[test]
 fn a_contact_is_remembered_as_long_as_stated() {
     let memory_s = 4.05;
-    let sharing = Sharing { range_m: Some(100.0), memory_s, ..clear_sight() };
+    let sharing = Sharing {
+        range_m: Some(100.0),
+        memory_s,
+        ..clear_sight()
+    };
     let mut contest = started(&facing(sharing, (300.0, 200.0, 0.0), (395.0, 200.0, 90.0)));
     let mut last_seen = SimTime::ZERO;
     let mut remembered = 0;
@@ -161,8 +227,19 @@ fn a_contact_is_remembered_as_long_as_stated() {
         let is_known = (now - last_seen).as_s() <= memory_s;
         remembered += u32::from(is_known && !is_near);
         forgotten += u32::from(!is_known);
-        assert_eq!(shown(&mut contest).map(|contact| contact.seen_ns), is_known.then_some(last_seen), "at {k}");
-        order(&mut contest, RED, Order::Steer { heading_rad: std::f64::consts::FRAC_PI_2, speed_m_s: 2.0 });
+        assert_eq!(
+            shown(&mut contest).map(|contact| contact.seen_ns),
+            is_known.then_some(last_seen),
+            "at {k}"
+        );
+        order(
+            &mut contest,
+            RED,
+            Order::Steer {
+                heading_rad: std::f64::consts::FRAC_PI_2,
+                speed_m_s: 2.0,
+            },
+        );
         contest.advance();
     }
     assert_eq!(remembered, 40, "4.05 s are 40 decisions");
@@ -171,9 +248,20 @@ fn a_contact_is_remembered_as_long_as_stated() {
 
 #[test]
 fn sightings_are_late_or_lost_with_the_report_of_the_boat_that_saw() {
-    let loss = Loss { good: 0.2, bad: 0.9, good_time_s: 5.0, bad_time_s: 2.0 };
+    let loss = Loss {
+        good: 0.2,
+        bad: 0.9,
+        good_time_s: 5.0,
+        bad_time_s: 2.0,
+    };
     let mut scenario = facing(clear_sight(), (300.0, 200.0, 0.0), (500.0, 200.0, 90.0));
-    scenario.link = Some(Link { delay_s: 0.25, jitter_s: 0.3, loss, range_m: None, station: Ned::default() });
+    scenario.link = Some(Link {
+        delay_s: 0.25,
+        jitter_s: 0.3,
+        loss,
+        range_m: None,
+        station: Ned::default(),
+    });
     let mut contest = started(&scenario);
     let mut seen = 0;
     let mut stale = 0;
@@ -196,20 +284,41 @@ fn sightings_are_late_or_lost_with_the_report_of_the_boat_that_saw() {
 fn a_boat_out_of_radio_range_tells_nobody_what_it_sees() {
     for (range_m, is_told) in [(Some(100.0), false), (Some(200.0), true), (None, true)] {
         // blue_one is at the station and sees nothing; blue_two, 140 m away, sees red.
-        let sharing = Sharing { range_m: Some(50.0), ..clear_sight() };
+        let sharing = Sharing {
+            range_m: Some(50.0),
+            ..clear_sight()
+        };
         let mut scenario = facing(sharing, (400.0, 200.0, 0.0), (560.0, 200.0, 90.0));
         let mut second = scenario.vehicles[BLUE.index()].clone();
         second.name = "blue_two".to_owned();
         second.start_position = start_position((540.0, 200.0, 0.0));
         scenario.vehicles.push(second);
         let station = Ned::from_xy(400.0, 200.0);
-        scenario.link = Some(Link { delay_s: 0.0, jitter_s: 0.0, loss: Loss::default(), range_m, station });
+        scenario.link = Some(Link {
+            delay_s: 0.0,
+            jitter_s: 0.0,
+            loss: Loss::default(),
+            range_m,
+            station,
+        });
         let mut contest = started(&scenario);
         for k in 0..50_i64 {
-            assert_eq!(shown(&mut contest).is_some(), is_told, "range {range_m:?}, decision {k}");
-            let heard: Vec<SimTime> = contest.pictures()[0].own.iter().map(|own| own.fix_ns).collect();
+            assert_eq!(
+                shown(&mut contest).is_some(),
+                is_told,
+                "range {range_m:?}, decision {k}"
+            );
+            let heard: Vec<SimTime> = contest.pictures()[0]
+                .own
+                .iter()
+                .map(|own| own.fix_ns)
+                .collect();
             let second = if is_told { DECISION * k } else { SimTime::ZERO };
-            assert_eq!(heard, [DECISION * k, second], "range {range_m:?}, decision {k}");
+            assert_eq!(
+                heard,
+                [DECISION * k, second],
+                "range {range_m:?}, decision {k}"
+            );
             contest.advance();
         }
     }
@@ -217,9 +326,19 @@ fn a_boat_out_of_radio_range_tells_nobody_what_it_sees() {
 
 #[test]
 fn the_referee_announces_a_carrier_that_nobody_sees() {
-    let mut scenario = facing(Sharing { range_m: Some(1.0), ..clear_sight() }, (400.0, 100.0, 0.0), (0.0, 0.0, 0.0));
+    let mut scenario = facing(
+        Sharing {
+            range_m: Some(1.0),
+            ..clear_sight()
+        },
+        (400.0, 100.0, 0.0),
+        (0.0, 0.0, 0.0),
+    );
     let flag = scenario.field.flags[0].home;
-    scenario.vehicles[RED.index()].start_position = StartPosition::At(Pose { at: flag, psi_rad: 0.0 });
+    scenario.vehicles[RED.index()].start_position = StartPosition::At(Pose {
+        at: flag,
+        psi_rad: 0.0,
+    });
     let mut contest = started(&scenario);
     contest.advance();
     assert_eq!(shown(&mut contest), None);

@@ -23,9 +23,16 @@ fn sail(world: &mut World, order: Order, seconds: u32) -> BoatState {
 /// The share of full ahead or astern at which one thruster gives this thrust.
 fn share(newton: f64) -> f64 {
     let scenario = alone("surveyor_m1_8", "calm");
-    let Drive::Thrusters { thruster, .. } = &scenario.boats[0].drive else { panic!("expected thrusters") };
-    let ThrustCurve::Table { points } = &thruster.curve else { panic!("expected a thrust table") };
-    primitives::math::interpolate(points.iter().map(|(share, newton)| (*newton, *share)), newton)
+    let Drive::Thrusters { thruster, .. } = &scenario.boats[0].drive else {
+        panic!("expected thrusters")
+    };
+    let ThrustCurve::Table { points } = &thruster.curve else {
+        panic!("expected a thrust table")
+    };
+    primitives::math::interpolate(
+        points.iter().map(|(share, newton)| (*newton, *share)),
+        newton,
+    )
 }
 
 fn speed(nu: Planar) -> f64 {
@@ -33,16 +40,39 @@ fn speed(nu: Planar) -> f64 {
 }
 
 fn within(what: &str, got: f64, want: f64, share: f64) {
-    assert!((got - want).abs() <= share * want.abs(), "{what}: {got}, want {want} within {} %", 100.0 * share);
+    assert!(
+        (got - want).abs() <= share * want.abs(),
+        "{what}: {got}, want {want} within {} %",
+        100.0 * share
+    );
 }
 
 #[test]
 fn it_is_as_fast_as_its_thrust_map_says() {
-    for (percent, want_m_s) in [(-100.0, -2.0), (20.0, 1.0), (40.0, 1.5), (60.0, 2.0), (70.0, 2.25), (100.0, 3.0)] {
+    for (percent, want_m_s) in [
+        (-100.0, -2.0),
+        (20.0, 1.0),
+        (40.0, 1.5),
+        (60.0, 2.0),
+        (70.0, 2.25),
+        (100.0, 3.0),
+    ] {
         let each = percent / 100.0;
-        let nu = sail(&mut afloat(AT_REST), Order::Thrust { port: each, starboard: each }, 100).nu;
+        let nu = sail(
+            &mut afloat(AT_REST),
+            Order::Thrust {
+                port: each,
+                starboard: each,
+            },
+            100,
+        )
+        .nu;
         within(&format!("{percent} %"), nu.surge, want_m_s, 0.02);
-        assert_eq!((nu.sway, nu.yaw), (0.0, 0.0), "{percent} %: a straight line");
+        assert_eq!(
+            (nu.sway, nu.yaw),
+            (0.0, 0.0),
+            "{percent} %: a straight line"
+        );
     }
 }
 
@@ -50,18 +80,47 @@ fn it_is_as_fast_as_its_thrust_map_says() {
 fn it_turns_on_one_thruster_as_its_parameters_predict() {
     // Predicted with all of A22 in surge's Coriolis term: 1.90 m/s. Here the Munk factor acts there
     // too, so that the inertia terms do no work, which makes a difference of 0.04 m/s.
-    let nu = sail(&mut afloat(AT_REST), Order::Thrust { port: 1.0, starboard: 0.0 }, 100).nu;
+    let nu = sail(
+        &mut afloat(AT_REST),
+        Order::Thrust {
+            port: 1.0,
+            starboard: 0.0,
+        },
+        100,
+    )
+    .nu;
     within("surge", nu.surge, 1.90, 0.025);
     within("yaw rate, degrees", nu.yaw.to_degrees(), 23.0, 0.02);
     within("radius", speed(nu) / nu.yaw, 4.7, 0.03);
-    let nu = sail(&mut afloat(AT_REST), Order::Thrust { port: share(45.0), starboard: share(15.0) }, 100).nu;
-    within("yaw rate at 45 and 15 N, degrees", nu.yaw.to_degrees(), 14.8, 0.01);
+    let nu = sail(
+        &mut afloat(AT_REST),
+        Order::Thrust {
+            port: share(45.0),
+            starboard: share(15.0),
+        },
+        100,
+    )
+    .nu;
+    within(
+        "yaw rate at 45 and 15 N, degrees",
+        nu.yaw.to_degrees(),
+        14.8,
+        0.01,
+    );
     within("radius at 45 and 15 N", speed(nu) / nu.yaw, 7.2, 0.01);
 }
 
 #[test]
 fn it_spins_on_the_spot_under_opposed_thrust() {
-    let nu = sail(&mut afloat(AT_REST), Order::Thrust { port: share(30.0), starboard: share(-30.0) }, 100).nu;
+    let nu = sail(
+        &mut afloat(AT_REST),
+        Order::Thrust {
+            port: share(30.0),
+            starboard: share(-30.0),
+        },
+        100,
+    )
+    .nu;
     within("yaw rate, degrees", nu.yaw.to_degrees(), 22.0, 0.01);
     assert!(speed(nu) < 1e-9, "{nu:?}");
 }
@@ -81,5 +140,10 @@ fn it_coasts_as_the_closed_form_says() {
     within("time, s", f64::from(ticks) * 0.05, 9.57, 0.01);
     within("way, m", boat.pose.at.distance(start), 5.87, 0.01);
     let boat = sail(&mut world, Order::Hold, 200);
-    within("distance to rest, m", boat.pose.at.distance(start), 7.48, 0.01);
+    within(
+        "distance to rest, m",
+        boat.pose.at.distance(start),
+        7.48,
+        0.01,
+    );
 }

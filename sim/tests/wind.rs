@@ -24,11 +24,20 @@ fn field() -> Field {
 }
 
 fn wind(from_deg: f64, gusts: Gusts) -> Wind {
-    Wind { speed_10m_m_s: SPEED_10M_M_S, from_rad: from_deg.to_radians(), profile_exponent: 0.12, gusts }
+    Wind {
+        speed_10m_m_s: SPEED_10M_M_S,
+        from_rad: from_deg.to_radians(),
+        profile_exponent: 0.12,
+        gusts,
+    }
 }
 
 fn ornstein_uhlenbeck() -> Gusts {
-    Gusts::OrnsteinUhlenbeck { intensity: INTENSITY, across_ratio: ACROSS_RATIO, length_m: LENGTH_M }
+    Gusts::OrnsteinUhlenbeck {
+        intensity: INTENSITY,
+        across_ratio: ACROSS_RATIO,
+        length_m: LENGTH_M,
+    }
 }
 
 /// Wind from the west at one place, every `step_s`: (east over the mean − 1, south over the mean),
@@ -42,33 +51,53 @@ fn record(gusts: Gusts, seed: u64, count: i64, step_s: f64) -> Vec<(f64, f64)> {
             field.prepare(now);
         }
         let air_m_s = field.at(Ned::from_xy(33.0, 44.0), mean_m_s, now);
-        ((air_m_s.east / mean_m_s - 1.0) / INTENSITY, -air_m_s.north / mean_m_s / INTENSITY)
+        (
+            (air_m_s.east / mean_m_s - 1.0) / INTENSITY,
+            -air_m_s.north / mean_m_s / INTENSITY,
+        )
     };
     (0..count).map(sample).collect()
 }
 
 #[test]
 fn the_wind_blows_from_where_it_is_said_to_come_and_falls_towards_the_water() {
-    for (from_deg, x, y) in [(0.0, 0.0, -1.0), (90.0, -1.0, 0.0), (180.0, 0.0, 1.0), (270.0, 1.0, 0.0)] {
+    for (from_deg, x, y) in [
+        (0.0, 0.0, -1.0),
+        (90.0, -1.0, 0.0),
+        (180.0, 0.0, 1.0),
+        (270.0, 1.0, 0.0),
+    ] {
         let field = WindField::new(&wind(from_deg, Gusts::None), HEIGHT_M, &field(), &1.into());
         let air_m_s = field.at(Ned::default(), field.mean_m_s(10.0), SimTime::ZERO);
-        assert!(air_m_s.distance(Ned::from_xy(x, y).scaled(SPEED_10M_M_S)) < 1e-12, "from {from_deg}: {air_m_s:?}");
+        assert!(
+            air_m_s.distance(Ned::from_xy(x, y).scaled(SPEED_10M_M_S)) < 1e-12,
+            "from {from_deg}: {air_m_s:?}"
+        );
     }
     let field = WindField::new(&wind(0.0, Gusts::None), HEIGHT_M, &field(), &1.into());
-    assert!((field.mean_m_s(HEIGHT_M) / SPEED_10M_M_S - 0.80).abs() < 0.005, "{}", field.mean_m_s(HEIGHT_M));
+    assert!(
+        (field.mean_m_s(HEIGHT_M) / SPEED_10M_M_S - 0.80).abs() < 0.005,
+        "{}",
+        field.mean_m_s(HEIGHT_M)
+    );
 }
 
 #[test]
 fn ornstein_uhlenbeck_gusts_have_the_moments_and_the_memory_of_their_process() {
     const STEP_S: f64 = 0.25;
     const COUNT: i64 = 1_200_000;
-    let mean_m_s = WindField::new(&wind(0.0, Gusts::None), HEIGHT_M, &field(), &1.into()).mean_m_s(HEIGHT_M);
+    let mean_m_s =
+        WindField::new(&wind(0.0, Gusts::None), HEIGHT_M, &field(), &1.into()).mean_m_s(HEIGHT_M);
     let time_s = LENGTH_M / mean_m_s;
     let x = record(ornstein_uhlenbeck(), 11, COUNT, STEP_S);
     let within = five_errors(x.len(), STEP_S / time_s);
     assert!(within < 0.03);
-    assert!(mean_of(x.len(), |i| x[i].0 * x[i].1).abs() < within, "correlation of along and across");
-    let (along, across): (Vec<f64>, Vec<f64>) = x.into_iter().map(|(a, b)| (a, b / ACROSS_RATIO)).unzip();
+    assert!(
+        mean_of(x.len(), |i| x[i].0 * x[i].1).abs() < within,
+        "correlation of along and across"
+    );
+    let (along, across): (Vec<f64>, Vec<f64>) =
+        x.into_iter().map(|(a, b)| (a, b / ACROSS_RATIO)).unzip();
     for (what, x) in [("along", along), ("across", across)] {
         assert_memory(what, &x, &[0, 4, 12, 20, 40, 80], STEP_S / time_s, within);
     }
@@ -78,7 +107,12 @@ fn ornstein_uhlenbeck_gusts_have_the_moments_and_the_memory_of_their_process() {
 fn a_gust_comes_to_a_boat_downwind_as_it_was() {
     const WITHIN_M_S: f64 = 1e-9;
     for from_deg in [0.0, 77.0, 200.0] {
-        let mut field = WindField::new(&wind(from_deg, ornstein_uhlenbeck()), HEIGHT_M, &field(), &7.into());
+        let mut field = WindField::new(
+            &wind(from_deg, ornstein_uhlenbeck()),
+            HEIGHT_M,
+            &field(),
+            &7.into(),
+        );
         let mean_m_s = field.mean_m_s(HEIGHT_M);
         let upwind = Ned::from_xy(80.0, 40.0);
         let downwind = Ned::toward_deg(from_deg + 180.0);
@@ -92,22 +126,43 @@ fn a_gust_comes_to_a_boat_downwind_as_it_was() {
             let later = SimTime::from_s(now.as_s() + way_m / mean_m_s);
             let downwind_later = field.at(upwind + downwind.scaled(way_m), mean_m_s, later);
             // A nanosecond of rounding is 1e-8 m of distance.
-            assert!(air_m_s.distance(downwind_later) < WITHIN_M_S + 1e-7, "{i}: {air_m_s:?}, {downwind_later:?}");
-            assert!(air_m_s.distance(field.at(upwind + abreast.scaled(30.0), mean_m_s, now)) < WITHIN_M_S);
+            assert!(
+                air_m_s.distance(downwind_later) < WITHIN_M_S + 1e-7,
+                "{i}: {air_m_s:?}, {downwind_later:?}"
+            );
+            assert!(
+                air_m_s.distance(field.at(upwind + abreast.scaled(30.0), mean_m_s, now))
+                    < WITHIN_M_S
+            );
             let ratio = field.at(upwind, 2.0 * mean_m_s, now);
-            assert!(ratio.distance(air_m_s.scaled(2.0)) < WITHIN_M_S, "in proportion to the mean");
-            differ += u32::from(air_m_s.distance(field.at(upwind + downwind.scaled(way_m), mean_m_s, now)) > 0.1);
+            assert!(
+                ratio.distance(air_m_s.scaled(2.0)) < WITHIN_M_S,
+                "in proportion to the mean"
+            );
+            differ += u32::from(
+                air_m_s.distance(field.at(upwind + downwind.scaled(way_m), mean_m_s, now)) > 0.1,
+            );
         }
-        assert!(differ > 100, "gusts differ along the wind at only {differ} of 200 times");
+        assert!(
+            differ > 100,
+            "gusts differ along the wind at only {differ} of 200 times"
+        );
     }
 }
 
 #[test]
 fn no_wind_is_no_gusts_either() {
-    let still = Wind { speed_10m_m_s: 0.0, ..wind(40.0, ornstein_uhlenbeck()) };
+    let still = Wind {
+        speed_10m_m_s: 0.0,
+        ..wind(40.0, ornstein_uhlenbeck())
+    };
     let field = WindField::new(&still, HEIGHT_M, &field(), &1.into());
     for i in 0..100 {
-        let air_m_s = field.at(Ned::from_xy(3.0, 4.0), field.mean_m_s(HEIGHT_M), SimTime::from_s(f64::from(i)));
+        let air_m_s = field.at(
+            Ned::from_xy(3.0, 4.0),
+            field.mean_m_s(HEIGHT_M),
+            SimTime::from_s(f64::from(i)),
+        );
         assert_eq!(air_m_s, Ned::default());
     }
 }
@@ -147,16 +202,33 @@ fn the_wind_pushes_a_boat_away_and_its_bow_off() {
         let past = wind_past_boat(Rotation::NORTH, blowing, Planar::default());
         let got = force(past.ahead, past.starboard);
         let sign = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
-        assert_eq!((sign(got.surge), sign(got.sway), sign(got.yaw)), want, "from {from_deg}: {got:?}");
+        assert_eq!(
+            (sign(got.surge), sign(got.sway), sign(got.yaw)),
+            want,
+            "from {from_deg}: {got:?}"
+        );
     }
     // A boat that points east, moving at 3 m/s ahead and 1 m/s to starboard, in a wind from the
     // north on its port side.
     let past = wind_past_boat(
         Rotation::from_heading_deg(90.0),
-        Ned { north: -4.0, east: 0.0 },
-        Planar { surge: 3.0, sway: 1.0, yaw: 0.7 },
+        Ned {
+            north: -4.0,
+            east: 0.0,
+        },
+        Planar {
+            surge: 3.0,
+            sway: 1.0,
+            yaw: 0.7,
+        },
     );
-    assert_eq!(past, Body { ahead: -3.0, starboard: 3.0 });
+    assert_eq!(
+        past,
+        Body {
+            ahead: -3.0,
+            starboard: 3.0
+        }
+    );
 }
 
 #[test]
@@ -175,8 +247,15 @@ fn the_force_is_fossen_s_at_every_angle() {
             yaw: pressure * 0.1 * math::sin_cos(2.0 * gamma).0 * 0.55 * 1.83,
         };
         let got = force(-u_rw, -v_rw);
-        for (got, want) in [(got.surge, want.surge), (got.sway, want.sway), (got.yaw, want.yaw)] {
-            assert!((got - want).abs() < 1e-12 * pressure, "γ = {gamma}: {got}, want {want}");
+        for (got, want) in [
+            (got.surge, want.surge),
+            (got.sway, want.sway),
+            (got.yaw, want.yaw),
+        ] {
+            assert!(
+                (got - want).abs() < 1e-12 * pressure,
+                "γ = {gamma}: {got}, want {want}"
+            );
         }
     }
 }
@@ -186,8 +265,21 @@ fn the_mirror_image_of_a_wind_gives_the_mirror_image_of_the_force_to_the_bit() {
     for (ahead, starboard) in [(3.1, 4.7), (-8.3, 0.1), (0.3, -11.9), (-5.5, -5.5)] {
         let one = force(ahead, starboard);
         let other = force(ahead, -starboard);
-        let bits = |force: Planar| (force.surge.to_bits(), force.sway.to_bits(), force.yaw.to_bits());
-        assert_eq!(bits(one), bits(Planar { surge: other.surge, sway: -other.sway, yaw: -other.yaw }));
+        let bits = |force: Planar| {
+            (
+                force.surge.to_bits(),
+                force.sway.to_bits(),
+                force.yaw.to_bits(),
+            )
+        };
+        assert_eq!(
+            bits(one),
+            bits(Planar {
+                surge: other.surge,
+                sway: -other.sway,
+                yaw: -other.yaw
+            })
+        );
     }
     let nothing = force(0.0, 0.0);
     for part in [nothing.surge, nothing.sway, nothing.yaw] {

@@ -19,13 +19,25 @@ pub(super) fn csv(source: Source<'_>, topic: &str, file: Option<&Path>) -> Resul
     table::check(source.0, topic)?;
     let trying = |path: &Path| format!("cannot write {}", path.display());
     let sink: Box<dyn Write> = match file {
-        Some(path) => Box::new(primitives::output_file::create(path).with_context(|| trying(path))?),
+        Some(path) => {
+            Box::new(primitives::output_file::create(path).with_context(|| trying(path))?)
+        }
         None => Box::new(std::io::stdout().lock()),
     };
     let is_shown = file.is_none() && std::io::stdout().is_terminal();
-    match (rows(source, topic, is_shown, &mut csv::Writer::from_writer(BufWriter::new(sink))), file) {
+    match (
+        rows(
+            source,
+            topic,
+            is_shown,
+            &mut csv::Writer::from_writer(BufWriter::new(sink)),
+        ),
+        file,
+    ) {
         // It is not an error if a reader closes the pipe early.
-        (Err(table::TableError::Sink(e)), None) if e.kind() == ErrorKind::BrokenPipe => Ok(Damaged::default()),
+        (Err(table::TableError::Sink(e)), None) if e.kind() == ErrorKind::BrokenPipe => {
+            Ok(Damaged::default())
+        }
         (Err(table::TableError::Sink(e)), Some(path)) => Err(e).with_context(|| trying(path)),
         (done, _) => Ok(done?),
     }
@@ -43,8 +55,13 @@ fn rows<W: Write>(
         other => std::io::Error::other(format!("{other:?}")),
     };
     let damaged = table::write(source.0, source.1, topic, &mut |cells| {
-        let cells =
-            cells.iter().map(|cell| if is_shown { printable::text(cell) } else { Cow::Borrowed(cell.as_str()) });
+        let cells = cells.iter().map(|cell| {
+            if is_shown {
+                printable::text(cell)
+            } else {
+                Cow::Borrowed(cell.as_str())
+            }
+        });
         csv.write_record(cells.map(Cow::into_owned)).map_err(io)
     })?;
     csv.flush()?;

@@ -20,16 +20,26 @@ pub(super) fn print(files: &[PathBuf], json: Option<&Path>) -> Result<()> {
     }
     progress.end();
     screen::print(&sum.to_string());
-    json.map_or(Ok(()), |path| output_file::write_json(path, "the quality", &sum))
+    json.map_or(Ok(()), |path| {
+        output_file::write_json(path, "the quality", &sum)
+    })
 }
 
 fn of_recording(file: &Path, progress: &mut Progress) -> Result<Quality> {
     let recording = Arc::new(recording_file::open(file, "read")?);
-    progress.expect(recording.bag().topics().get(FRAME).map_or(0, |count| *count as u64));
+    progress.expect(
+        recording
+            .bag()
+            .topics()
+            .get(FRAME)
+            .map_or(0, |count| *count as u64),
+    );
     let mut minds = Minds::new(Arc::clone(&recording));
     let mut quality = GameQuality::new(recording.scenario());
     let damaged = analysis::for_each_step(&recording, |step| {
-        let minds: Vec<_> = (0..step.samples.len()).map(|i| mind_state(&mut minds, &step, i)).collect();
+        let minds: Vec<_> = (0..step.samples.len())
+            .map(|i| mind_state(&mut minds, &step, i))
+            .collect();
         quality.add(&step, &minds);
         progress.add_with(|| file.display().to_string());
     });
@@ -44,5 +54,7 @@ fn of_recording(file: &Path, progress: &mut Progress) -> Result<Quality> {
 fn mind_state(minds: &mut Minds, step: &Step, vehicle: usize) -> Option<MindState> {
     let id = VehicleId::at(vehicle);
     let order = minds.decide(id, step.decision.checked_sub(1)?, false)?;
-    (order == step.samples[vehicle].order).then(|| minds.report(id).map(MindState::from)).flatten()
+    (order == step.samples[vehicle].order)
+        .then(|| minds.report(id).map(MindState::from))
+        .flatten()
 }

@@ -21,14 +21,15 @@ pub(crate) struct Args {
     /// How long to look for the sim and wait for its vehicles to become free, s
     #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
     wait_s: f64,
-    /// How long to wait for a picture before treating the sim as dead, s (5 s if the sim leaves the network)
+    /// How long to wait for a picture before treating the sim as dead, s (5 s if the sim leaves the
+    /// network)
     #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
     silence_s: f64,
     /// Strategy to follow instead of the one in the sim's scenario: a file or a name
     #[arg(long, value_name = "STRATEGY", value_parser = crate::scenario_files::file_of(scenario::Kind::STRATEGY))]
     strategy: Option<PathBuf>,
-    /// In lockstep, if the strategy uses an external policy: how long to wait for its proposal at every decision, s;
-    /// at most half of the game's patience_s
+    /// In lockstep, if the strategy uses an external policy: how long to wait for its proposal at
+    /// every decision, s; at most half of the game's patience_s
     #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = seconds)]
     policy_wait_s: f64,
     /// Prints only errors, and stops when standard input ends
@@ -41,7 +42,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     stop::exit_when_late(&stop);
     let names = args.vehicle.join(", ");
     let load = |path: &PathBuf| {
-        scenario::load_file::<Strategy>(path).with_context(|| format!("cannot use the strategy {}", path.display()))
+        scenario::load_file::<Strategy>(path)
+            .with_context(|| format!("cannot use the strategy {}", path.display()))
     };
     let by = |strategy: Strategy| -> Box<MindMaker> {
         Box::new(move |scenario, boat| agent::mind_by(scenario, boat, &strategy))
@@ -64,10 +66,16 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         News::Looking { reason } if !args.for_parent => {
             screen::remark(&format!("{names}: looking for the game: {reason}"));
         }
-        News::Joined { game } if !args.for_parent => screen::remark(&format!("{names}: joined {game}")),
+        News::Joined { game } if !args.for_parent => {
+            screen::remark(&format!("{names}: joined {game}"))
+        }
         News::Left { .. } | News::Looking { .. } | News::Joined { .. } => {}
     };
     agent::node::serve(&settings, &mut tell).with_context(|| format!("the agent of {names}"))?;
     let stopped = stop.load(std::sync::atomic::Ordering::Relaxed);
-    Ok(if stopped { stop::interrupted() } else { ExitCode::SUCCESS })
+    Ok(if stopped {
+        stop::interrupted()
+    } else {
+        ExitCode::SUCCESS
+    })
 }

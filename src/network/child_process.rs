@@ -19,7 +19,8 @@ pub(crate) fn squall(args: &[&str]) -> Result<Command> {
 
 /// A command that starts this program with these zenoh threads.
 pub(crate) fn squall_with(runtime: &str, args: &[&str]) -> Result<Command> {
-    let mut command = Command::new(std::env::current_exe().context("cannot find this program's executable")?);
+    let mut command =
+        Command::new(std::env::current_exe().context("cannot find this program's executable")?);
     if std::env::var_os(bus::RUNTIME_VARIABLE).is_none() {
         command.env(bus::RUNTIME_VARIABLE, runtime);
     }
@@ -30,13 +31,17 @@ pub(crate) fn squall_with(runtime: &str, args: &[&str]) -> Result<Command> {
 
 /// Checks the given token, if there is one.
 pub(crate) fn check_token() -> Result<()> {
-    std::env::var(TOKEN_VARIABLE).map_or(Ok(()), |text| text.parse::<Token>().map(drop).context(TOKEN_VARIABLE))
+    std::env::var(TOKEN_VARIABLE).map_or(Ok(()), |text| {
+        text.parse::<Token>().map(drop).context(TOKEN_VARIABLE)
+    })
 }
 
 /// The token of the games that this process's children serve and join: new, unless one is given.
 pub(crate) fn token() -> &'static Token {
     static TOKEN: LazyLock<Token> = LazyLock::new(|| {
-        let given = std::env::var(TOKEN_VARIABLE).ok().and_then(|text| text.parse().ok());
+        let given = std::env::var(TOKEN_VARIABLE)
+            .ok()
+            .and_then(|text| text.parse().ok());
         given.unwrap_or_else(Token::random)
     });
     &TOKEN
@@ -45,7 +50,10 @@ pub(crate) fn token() -> &'static Token {
 /// Passes a command the keys for this role from a folder, if there is one. It needs no token then.
 pub(crate) fn give_keys(command: &mut Command, folder: Option<&Path>, identity: &Identity) {
     if let Some(folder) = folder {
-        command.env_remove(TOKEN_VARIABLE).arg("--keys").arg(folder.join(identity.to_string()));
+        command
+            .env_remove(TOKEN_VARIABLE)
+            .arg("--keys")
+            .arg(folder.join(identity.to_string()));
     }
 }
 
@@ -66,20 +74,38 @@ pub(crate) struct ChildProcess {
 impl ChildProcess {
     /// Starts a command with this standard output.
     pub(crate) fn start(name: &str, mut command: Command, stdout: Stdio) -> Result<ChildProcess> {
-        let mut child =
-            command.stdin(Stdio::piped()).stdout(stdout).spawn().with_context(|| format!("cannot start {name}"))?;
+        let mut child = command
+            .stdin(Stdio::piped())
+            .stdout(stdout)
+            .spawn()
+            .with_context(|| format!("cannot start {name}"))?;
         let stdin = child.stdin.take();
-        Ok(ChildProcess { name: name.to_owned(), child, stdin })
+        Ok(ChildProcess {
+            name: name.to_owned(),
+            child,
+            stdin,
+        })
     }
 
     /// The lines of the child's piped output that `parse` accepts. Works once; ends with the child.
-    pub(crate) fn lines<T: Send + 'static>(&mut self, parse: fn(&str) -> Option<T>) -> Result<Receiver<T>> {
-        let output = self.child.stdout.take().with_context(|| format!("{} has no output", self.name))?;
+    pub(crate) fn lines<T: Send + 'static>(
+        &mut self,
+        parse: fn(&str) -> Option<T>,
+    ) -> Result<Receiver<T>> {
+        let output = self
+            .child
+            .stdout
+            .take()
+            .with_context(|| format!("{} has no output", self.name))?;
         let (sender, receiver) = sync_channel(1024);
         std::thread::spawn(move || {
-            let lines = BufReader::new(output).lines().map_while(std::result::Result::ok);
+            let lines = BufReader::new(output)
+                .lines()
+                .map_while(std::result::Result::ok);
             // Keep reading even without a receiver, so that the child is not blocked.
-            lines.filter_map(|line| parse(&line)).for_each(|item| sender.send(item).unwrap_or_default());
+            lines
+                .filter_map(|line| parse(&line))
+                .for_each(|item| sender.send(item).unwrap_or_default());
         });
         Ok(receiver)
     }
@@ -96,7 +122,10 @@ impl ChildProcess {
     /// If the child no longer reads it.
     pub(crate) fn send(&mut self, line: &str) -> Result<()> {
         let name = &self.name;
-        let mut stdin = self.stdin.as_ref().with_context(|| format!("{name} is stopping"))?;
+        let mut stdin = self
+            .stdin
+            .as_ref()
+            .with_context(|| format!("{name} is stopping"))?;
         writeln!(stdin, "{line}").with_context(|| format!("{name} does not accept input"))
     }
 

@@ -19,7 +19,8 @@ enum Command {
     Boat(gateway_cli::Command),
     /// Emulates a boat for a real back seat, using the real boat's sentences.
     Emulate(emulate::Args),
-    /// Simulates a boat for ArduPilot's own firmware in software (SITL), as its JSON physics back end.
+    /// Simulates a boat for ArduPilot's own firmware in software (SITL), as its JSON physics back
+    /// end.
     Sitl(sitl::Args),
 }
 

@@ -18,8 +18,8 @@ use std::time::Duration;
 
 #[derive(Clone, clap::Args)]
 pub(crate) struct LoopArgs {
-    /// Replaces real boats by emulated ones, which gateways drive over the protocol of the gateway file; prints the
-    /// gateways' final status
+    /// Replaces real boats by emulated ones, which gateways drive over the protocol of the gateway
+    /// file; prints the gateways' final status
     #[arg(long, conflicts_with_all = ["in_process", "rehearse"])]
     emulate: bool,
     /// Gateway file or name for the emulated boats [default: a Surveyor with careful limits]
@@ -53,16 +53,23 @@ impl LoopArgs {
         game: (&str, &str),
         keys: Option<&Path>,
     ) -> Result<Option<HardwareLoop>> {
-        let vehicles = scenario.externals().map(|vehicle| &scenario.vehicles[vehicle.index()]);
+        let vehicles = scenario
+            .externals()
+            .map(|vehicle| &scenario.vehicles[vehicle.index()]);
         let names: Vec<&str> = vehicles.map(|vehicle| vehicle.name.as_str()).collect();
         if !self.emulate {
             return Ok(None);
         }
         if names.is_empty() {
-            bail!(UsageError("--emulate requires a game with at least one external boat".to_owned()));
+            bail!(UsageError(
+                "--emulate requires a game with at least one external boat".to_owned()
+            ));
         }
         if names.len() > BOATS_MAX {
-            bail!("{} boats of this game are real, expected at most {BOATS_MAX} with --emulate", names.len());
+            bail!(
+                "{} boats of this game are real, expected at most {BOATS_MAX} with --emulate",
+                names.len()
+            );
         }
         let gateway = match &self.gateway {
             None => gateway::config::default_gateway(),
@@ -74,7 +81,8 @@ impl LoopArgs {
             output_file::make_folder(folder)?;
             // Check first: a gateway that refuses to record would leave its boat out of the game.
             for path in names.iter().map(|name| folder.join(format!("{name}.mcap"))) {
-                let file = NewFile::create(&path).with_context(|| format!("cannot record to {}", path.display()))?;
+                let file = NewFile::create(&path)
+                    .with_context(|| format!("cannot record to {}", path.display()))?;
                 recordings.push(file.lend());
             }
         }
@@ -93,7 +101,11 @@ impl LoopArgs {
             gateways.push(self.start_gateway(vehicle, &link, game, keys)?);
         }
         gateways.extend(emulators);
-        Ok(Some(HardwareLoop { ends: gateways, water, _recordings: recordings }))
+        Ok(Some(HardwareLoop {
+            ends: gateways,
+            water,
+            _recordings: recordings,
+        }))
     }
 
     fn start_gateway(
@@ -103,12 +115,19 @@ impl LoopArgs {
         (game, endpoint): (&str, &str),
         keys: Option<&Path>,
     ) -> Result<ChildProcess> {
-        let mut command = child_process::squall(&["gateway", "surveyor", "--game", game, "--connect", endpoint])?;
+        let mut command =
+            child_process::squall(&["gateway", "surveyor", "--game", game, "--connect", endpoint])?;
         command.args(["--vehicle", name, "--link", link, "--arm", "--at-game-pace"]);
         child_process::give_keys(&mut command, keys, &Identity::Gateway(None));
-        option(&mut command, "--config", self.gateway.as_ref().map(|path| path.display()));
+        option(
+            &mut command,
+            "--config",
+            self.gateway.as_ref().map(|path| path.display()),
+        );
         match &self.record_gateways {
-            Some(folder) => command.arg("--record").arg(folder.join(format!("{name}.mcap"))),
+            Some(folder) => command
+                .arg("--record")
+                .arg(folder.join(format!("{name}.mcap"))),
             None => command.arg("--no-record"),
         };
         ChildProcess::start(&format!("the gateway of {name}"), command, Stdio::inherit())
@@ -127,21 +146,41 @@ impl HardwareLoop {
 }
 
 /// Starts an emulator; returns it and the address of its link.
-fn start_emulator(name: &str, gateway: &Gateway, (water, endpoint): (&str, &str)) -> Result<(ChildProcess, String)> {
+fn start_emulator(
+    name: &str,
+    gateway: &Gateway,
+    (water, endpoint): (&str, &str),
+) -> Result<(ChildProcess, String)> {
     let listen = "tcp://127.0.0.1:0";
-    let mut command = child_process::squall(&["gateway", "emulate", "--game", water, "--connect", endpoint])?;
+    let mut command =
+        child_process::squall(&["gateway", "emulate", "--game", water, "--connect", endpoint])?;
     // The battery must outlast the game: only the game or the gateway may stop a boat here.
-    command.args(["--vehicle", name, "--listen", listen, "--charge-pct", "none"]);
+    command.args([
+        "--vehicle",
+        name,
+        "--listen",
+        listen,
+        "--charge-pct",
+        "none",
+    ]);
     match gateway.protocol {
         BoatProtocol::Surveyor => {
-            option(&mut command, "--declination-deg", gateway.declination_rad.map(f64::to_degrees));
+            option(
+                &mut command,
+                "--declination-deg",
+                gateway.declination_rad.map(f64::to_degrees),
+            );
         }
         BoatProtocol::Mavlink => {
             command.args(["--protocol", "mavlink"]);
         }
     }
-    let mut emulator = ChildProcess::start(&format!("the emulator of {name}"), command, Stdio::piped())?;
+    let mut emulator =
+        ChildProcess::start(&format!("the emulator of {name}"), command, Stdio::piped())?;
     let addresses = emulator.lines(|line| line.strip_prefix("back seat at ").map(str::to_owned))?;
     let address = addresses.recv_timeout(WINDOW);
-    Ok((emulator, address.map_err(|_| anyhow!("the emulator of {name} did not report its address"))?))
+    Ok((
+        emulator,
+        address.map_err(|_| anyhow!("the emulator of {name} did not report its address"))?,
+    ))
 }

@@ -13,10 +13,16 @@ use std::time::Duration;
 pub(crate) const SILENCE: Duration = Duration::from_secs(10);
 
 /// The helm report of a vehicle; `None` if it has no agent now.
-pub(crate) fn report(observer: &Observer, vehicle: VehicleId, question: HelmQuestion) -> Result<Option<HelmReport>> {
+pub(crate) fn report(
+    observer: &Observer,
+    vehicle: VehicleId,
+    question: HelmQuestion,
+) -> Result<Option<HelmReport>> {
     let question = serde_json::to_vec(&question).context("a question is JSON")?;
     let key = topic::helm(&observer.game, &observer.info.scenario, vehicle);
-    let Some(answer) = observer.bus.ask_node(&key, question, bus::ANSWER)? else { return Ok(None) };
+    let Some(answer) = observer.bus.ask_node(&key, question, bus::ANSWER)? else {
+        return Ok(None);
+    };
     let report: Option<HelmReport> =
         serde_json::from_slice(&answer).context("the agent uses another version of Squall")?;
     let name = &observer.info.scenario.vehicles[vehicle.index()].name;
@@ -29,7 +35,11 @@ pub(crate) fn report(observer: &Observer, vehicle: VehicleId, question: HelmQues
 
 /// The helm report of a vehicle that has an agent. Repeats the query if a busy link dropped the
 /// answer.
-pub(crate) fn report_of_agent(observer: &Observer, vehicle: VehicleId, question: HelmQuestion) -> Result<HelmReport> {
+pub(crate) fn report_of_agent(
+    observer: &Observer,
+    vehicle: VehicleId,
+    question: HelmQuestion,
+) -> Result<HelmReport> {
     let start = clock::now();
     loop {
         let asked = clock::now();
@@ -39,7 +49,10 @@ pub(crate) fn report_of_agent(observer: &Observer, vehicle: VehicleId, question:
         // If nothing serves this boat at all, report that before the answer's timeout.
         let is_answered_for = clock::since(asked) >= bus::ANSWER;
         if !is_answered_for || clock::since(start) >= SILENCE {
-            bail!("{} has no agent", observer.info.scenario.vehicles[vehicle.index()].name);
+            bail!(
+                "{} has no agent",
+                observer.info.scenario.vehicles[vehicle.index()].name
+            );
         }
     }
 }

@@ -12,11 +12,12 @@ use std::path::PathBuf;
 
 #[derive(clap::Args, Clone, Debug)]
 pub(crate) struct HubArgs {
-    /// Endpoint to listen on, for example tcp/0.0.0.0:7447, or quic/0.0.0.0:7448 for lossy links; may be repeated
-    /// [default: loopback port 7447, or a free port if it is taken]
+    /// Endpoint to listen on, for example tcp/0.0.0.0:7447, or quic/0.0.0.0:7448 for lossy links;
+    /// may be repeated [default: loopback port 7447, or a free port if it is taken]
     #[arg(long, value_name = "ENDPOINT", value_parser = endpoint)]
     pub(crate) listen: Vec<String>,
-    /// Announces the game by multicast on the local network; without --listen, listens on all interfaces
+    /// Announces the game by multicast on the local network; without --listen, listens on all
+    /// interfaces
     #[arg(long)]
     lan: bool,
     /// Accepts other machines without keys: anyone on that network can see and stop the game
@@ -40,7 +41,10 @@ impl HubArgs {
         }
         listen.iter_mut().try_for_each(with_port)?;
         let keys = self.access.keys()?;
-        match (&keys, listen.iter().find(|endpoint| !bus::is_loopback(endpoint))) {
+        match (
+            &keys,
+            listen.iter().find(|endpoint| !bus::is_loopback(endpoint)),
+        ) {
             (None, Some(open)) if !self.insecure => bail!(UsageError(format!(
                 "{open} can be reached from other machines, where anyone can see and stop the game: create keys with \
                  `squall keys new` and use --keys, or use --insecure on a private network"
@@ -48,8 +52,18 @@ impl HubArgs {
             _ => {}
         }
         // With keys, certificates define the rights, so no token is needed.
-        let token = self.access.token()?.or_else(|| keys.is_none().then(Token::random));
-        Ok(Net { listen, connect: vec![], lan: self.lan, config_file: self.zenoh_config.clone(), token, keys })
+        let token = self
+            .access
+            .token()?
+            .or_else(|| keys.is_none().then(Token::random));
+        Ok(Net {
+            listen,
+            connect: vec![],
+            lan: self.lan,
+            config_file: self.zenoh_config.clone(),
+            token,
+            keys,
+        })
     }
 }
 
@@ -86,7 +100,10 @@ pub(crate) fn own_address() -> Option<IpAddr> {
 
 /// What users on other machines, or other users of this one, need to join and control a game.
 pub(crate) fn token_text(token: &Token) -> String {
-    format!("token for agents and operators on other machines or accounts: {TOKEN_VARIABLE}={}", token.hex())
+    format!(
+        "token for agents and operators on other machines or accounts: {TOKEN_VARIABLE}={}",
+        token.hex()
+    )
 }
 
 #[cfg(test)]
@@ -105,7 +122,10 @@ mod tests {
         for text in ["tcp/127.0.0.1:0", "tcp/[::1]:0"] {
             let endpoint = given(text);
             let (before, port) = endpoint.rsplit_once(':').unwrap();
-            assert!(text.starts_with(before) && port.parse::<u16>().unwrap() > 0, "{endpoint}");
+            assert!(
+                text.starts_with(before) && port.parse::<u16>().unwrap() > 0,
+                "{endpoint}"
+            );
         }
     }
 }

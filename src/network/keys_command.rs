@@ -41,7 +41,8 @@ struct NewArgs {
     /// Creates keys for operators, who control the game and its boats
     #[arg(long)]
     operator: bool,
-    /// Name or address of the sim, besides localhost; repeatable [default: this machine's name and address]
+    /// Name or address of the sim, besides localhost; repeatable [default: this machine's name and
+    /// address]
     #[arg(long = "host", value_name = "HOST", value_parser = host)]
     hosts: Vec<String>,
     /// Validity of the keys, days
@@ -72,25 +73,37 @@ fn new(args: &NewArgs) -> Result<()> {
         identities.push(named(&format!("team-{team}"))?);
     }
     for boat in &args.gateways {
-        identities.push(if boat.is_empty() { Identity::Gateway(None) } else { named(&format!("gateway-{boat}"))? });
+        identities.push(if boat.is_empty() {
+            Identity::Gateway(None)
+        } else {
+            named(&format!("gateway-{boat}"))?
+        });
     }
     identities.extend(args.observer.then_some(Identity::Observer));
     identities.extend(args.operator.then_some(Identity::Operator));
     if let [Identity::Sim] = identities[..] {
         bail!(UsageError(
-            "no node could join; request keys with --team, --gateway, --observer or --operator".to_owned()
+            "no node could join; request keys with --team, --gateway, --observer or --operator"
+                .to_owned()
         ));
     }
     identities.sort();
     if let Some([twice, _]) = identities.windows(2).find(|pair| pair[0] == pair[1]) {
         bail!(UsageError(format!("{twice} is given twice, expected once")));
     }
-    if let Some(there) =
-        identities.iter().map(|identity| args.folder.join(identity.to_string())).find(|path| path.exists())
+    if let Some(there) = identities
+        .iter()
+        .map(|identity| args.folder.join(identity.to_string()))
+        .find(|path| path.exists())
     {
-        bail!("{} exists already; new keys would replace all the old ones, so choose a new folder", there.display());
+        bail!(
+            "{} exists already; new keys would replace all the old ones, so choose a new folder",
+            there.display()
+        );
     }
-    let mut hosts: Vec<String> = ["localhost", "127.0.0.1", "::1"].map(str::to_owned).to_vec();
+    let mut hosts: Vec<String> = ["localhost", "127.0.0.1", "::1"]
+        .map(str::to_owned)
+        .to_vec();
     if args.hosts.is_empty() {
         hosts.extend(own_name());
         hosts.extend(own_address().map(|address| address.to_string()));
@@ -107,15 +120,21 @@ fn new(args: &NewArgs) -> Result<()> {
 
 fn named(text: &str) -> Result<Identity> {
     let wrong = "is not a valid name, expected 1 to 48 of the characters a-z A-Z 0-9 _ -";
-    text.parse().map_err(|_| UsageError(format!("{text:?} {wrong}")).into())
+    text.parse()
+        .map_err(|_| UsageError(format!("{text:?} {wrong}")).into())
 }
 
 fn show(folder: &Path) -> Result<()> {
     let bundle = Bundle::load(folder)?;
     let [from, until] = &bundle.valid;
-    let mut text = format!("{}: {}, valid from {from} until {until}", folder.display(), bundle.identity);
+    let mut text = format!(
+        "{}: {}, valid from {from} until {until}",
+        folder.display(),
+        bundle.identity
+    );
     if !bundle.hosts.is_empty() {
-        write!(text, ", for the hosts {}", bundle.hosts.join(", ")).expect("a text can be written to");
+        write!(text, ", for the hosts {}", bundle.hosts.join(", "))
+            .expect("a text can be written to");
     }
     screen::print(&(text + "\n"));
     Ok(())
@@ -123,7 +142,12 @@ fn show(folder: &Path) -> Result<()> {
 
 /// This machine's name, if the system reports it.
 fn own_name() -> Option<String> {
-    let name = std::fs::read_to_string("/proc/sys/kernel/hostname").ok()?.trim().to_owned();
-    let is_host = name.chars().all(|c| c.is_ascii_alphanumeric() || c == '-' || c == '.');
+    let name = std::fs::read_to_string("/proc/sys/kernel/hostname")
+        .ok()?
+        .trim()
+        .to_owned();
+    let is_host = name
+        .chars()
+        .all(|c| c.is_ascii_alphanumeric() || c == '-' || c == '.');
     (!name.is_empty() && name != "localhost" && is_host).then_some(name)
 }

@@ -24,11 +24,20 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let mut places: Vec<Net> = Vec::new();
     if !args.elsewhere {
         let keys = args.leaf.access.keys()?;
-        let place = |entry: bus::Entry| Net { connect: vec![entry.endpoint], keys: keys.clone(), ..Net::default() };
+        let place = |entry: bus::Entry| Net {
+            connect: vec![entry.endpoint],
+            keys: keys.clone(),
+            ..Net::default()
+        };
         places.extend(bus::local_registry().into_iter().map(place));
     }
     // Several games on this machine are no error here: list them all.
-    places.extend(args.leaf.net().ok().filter(|net| net.lan || !places.iter().any(|p| p.connect == net.connect)));
+    places.extend(
+        args.leaf
+            .net()
+            .ok()
+            .filter(|net| net.lan || !places.iter().any(|p| p.connect == net.connect)),
+    );
     let mut games: BTreeMap<GameName, String> = BTreeMap::new();
     for place in &places {
         match Bus::leaf(place) {
@@ -36,7 +45,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
                 games.extend(games_at(&bus, place)?);
                 bus.close();
             }
-            Err(error @ (BusError::Keys(_) | BusError::NeedsKeys(_))) => screen::remark(&error.to_string()),
+            Err(error @ (BusError::Keys(_) | BusError::NeedsKeys(_))) => {
+                screen::remark(&error.to_string())
+            }
             Err(error) if args.leaf.connects_to(place) => return Err(error.into()),
             // No answer means no game.
             Err(_) => {}
@@ -53,9 +64,14 @@ fn games_at(bus: &Bus, place: &Net) -> Result<BTreeMap<GameName, String>> {
     let keys = bus.who_is_alive(&topic::everyone_alive(), bus::ANSWER)?;
     let mut games = BTreeMap::new();
     for (game, sim) in keys.iter().filter_map(|key| topic::parse_alive(key)) {
-        let mut text = format!("{}  {}\n  sim {sim}\n", game.as_str(), place.connect.join(" "));
+        let mut text = format!(
+            "{}  {}\n  sim {sim}\n",
+            game.as_str(),
+            place.connect.join(" ")
+        );
         let answer = bus.ask(&topic::scenario(&game), Vec::new(), bus::ANSWER)?;
-        if let Some(info) = answer.and_then(|bytes| serde_json::from_slice::<GameInfo>(&bytes).ok()) {
+        if let Some(info) = answer.and_then(|bytes| serde_json::from_slice::<GameInfo>(&bytes).ok())
+        {
             let scenario = &info.scenario;
             text.push_str(&format!(
                 "  {} seed {}, {}, {} boats, Squall {}\n",
@@ -76,7 +92,8 @@ fn games_at(bus: &Bus, place: &Net) -> Result<BTreeMap<GameName, String>> {
 fn run_state(bus: &Bus, game: &GameName) -> Result<Option<RunState>> {
     let newest = Arc::new(Watched::new(None));
     let told = Arc::clone(&newest);
-    let take = move |bytes: &[u8]| told.visit(|newest| *newest = serde_json::from_slice(bytes).ok());
+    let take =
+        move |bytes: &[u8]| told.visit(|newest| *newest = serde_json::from_slice(bytes).ok());
     let _subscription = bus.subscribe(topic::run(game), take)?;
     newest.wait(bus::ANSWER, Option::is_some);
     Ok(newest.visit(Option::take))
@@ -91,6 +108,8 @@ fn in_words(state: &RunState) -> String {
     };
     let missing = [("agents", &state.minds), ("gateways", &state.gateways)];
     let missing = missing.into_iter().filter(|(_, names)| !names.is_empty());
-    let missing: String = missing.map(|(what, names)| format!(", for the {what} of {}", names.join(", "))).collect();
+    let missing: String = missing
+        .map(|(what, names)| format!(", for the {what} of {}", names.join(", ")))
+        .collect();
     format!("{phase} at {:.0} s{missing}", state.now_s)
 }

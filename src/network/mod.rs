@@ -30,21 +30,30 @@ use std::process::ExitCode;
 #[derive(Subcommand)]
 pub(crate) enum Command {
     /// Shows a game in strong wind in the browser.
-    #[command(after_help = "Examples:\n  squall demo\n  SQUALL_PAGE_TOKEN=secret squall demo --listen 0.0.0.0:8088")]
+    #[command(
+        after_help = "Examples:\n  squall demo\n  SQUALL_PAGE_TOKEN=secret squall demo --listen 0.0.0.0:8088"
+    )]
     Demo(page_args::PageArgs),
-    /// Plays a whole game: starts the simulation and the agents, shows events, and prints the result.
+    /// Plays a whole game: starts the simulation and the agents, shows events, and prints the
+    /// result.
     #[command(
         after_help = "Examples:\n  squall run strategy_4_vs_3\n  squall run surveyor_2v2 --sea gale --blue learned --red strategy_3 --view\n  squall run strategy_4_vs_3 --set link.delay_s=1 --seed 7 --both-sides"
     )]
     Run(run_command::Args),
     /// Simulates and serves one game, which agents and gateways join.
-    #[command(after_help = "Examples:\n  squall sim surveyor_2v2 --game mine --listen tcp/0.0.0.0:7447 --insecure")]
+    #[command(
+        after_help = "Examples:\n  squall sim surveyor_2v2 --game mine --listen tcp/0.0.0.0:7447 --insecure"
+    )]
     Sim(sim_command::Args),
     /// Controls one or more boats in a game served by another process.
-    #[command(after_help = "Examples:\n  squall agent --vehicle blue_1 --game mine --connect tcp/10.0.0.5:7447")]
+    #[command(
+        after_help = "Examples:\n  squall agent --vehicle blue_1 --game mine --connect tcp/10.0.0.5:7447"
+    )]
     Agent(agent_command::Args),
     /// Shows a running game in the terminal, or one boat's helm.
-    #[command(after_help = "Examples:\n  squall watch\n  squall watch --game mine --connect tcp/10.0.0.5:7447")]
+    #[command(
+        after_help = "Examples:\n  squall watch\n  squall watch --game mine --connect tcp/10.0.0.5:7447"
+    )]
     Watch(watch_command::Args),
     /// Shows a running game, or a report with its games, in the browser.
     #[command(
@@ -58,7 +67,9 @@ pub(crate) enum Command {
     #[command(after_help = "Examples:\n  squall helm --vehicle blue_1 --csv helm.csv")]
     Helm(helm_command::Args),
     /// Brings real boats into games, and lets real back seats drive simulated ones.
-    #[command(after_help = "Examples:\n  squall gateway emulate --help\n  squall gateway surveyor --help")]
+    #[command(
+        after_help = "Examples:\n  squall gateway emulate --help\n  squall gateway surveyor --help"
+    )]
     Gateway(gateway_command::Args),
     /// Connects MOOS applications to a game: a MOOSDB for each boat, and one for pMarineViewer.
     #[command(

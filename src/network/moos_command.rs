@@ -13,8 +13,8 @@ use std::time::Duration;
 
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Boats to connect. NAME serves a MOOSDB on the next port from --port, NAME=:PORT or NAME=IP:PORT on this
-    /// one; NAME=tcp/HOST:PORT uses a running MOOSDB
+    /// Boats to connect. NAME serves a MOOSDB on the next port from --port, NAME=:PORT or
+    /// NAME=IP:PORT on this one; NAME=tcp/HOST:PORT uses a running MOOSDB
     #[arg(long, num_args = 1.., value_name = "NAME[=ADDRESS]", value_parser = boat)]
     vehicle: Vec<(String, Option<Address>)>,
     /// Connects all boats of this team, each with its own MOOSDB
@@ -26,7 +26,8 @@ pub(crate) struct Args {
     /// Shows the whole game to pMarineViewer in the MOOSDB at this address, for example :9000
     #[arg(long, value_name = "ADDRESS")]
     shore: Option<Address>,
-    /// Sends what the shoreside publishes to pShare there, for example shore.local:9300; may be repeated
+    /// Sends what the shoreside publishes to pShare there, for example shore.local:9300; may be
+    /// repeated
     #[arg(long, value_name = "HOST:PORT", requires = "shore")]
     pshare: Vec<String>,
     /// Receives commands such as DEPLOY_ALL from pShare here, for example 0.0.0.0:9301
@@ -37,7 +38,8 @@ pub(crate) struct Args {
     /// How long to look for the sim and wait for its boats to become free, s
     #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
     wait_s: f64,
-    /// How long to wait for a picture before treating the sim as dead, s (5 s if the sim leaves the network)
+    /// How long to wait for a picture before treating the sim as dead, s (5 s if the sim leaves the
+    /// network)
     #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
     silence_s: f64,
 }
@@ -51,13 +53,19 @@ fn boat(text: &str) -> Result<(String, Option<Address>), String> {
 }
 
 fn resolved(place: &String) -> Result<SocketAddr> {
-    let mut found = place.to_socket_addrs().with_context(|| format!("--pshare {place}, expected HOST:PORT"))?;
-    found.next().ok_or_else(|| anyhow!("--pshare {place}: the host has no address"))
+    let mut found = place
+        .to_socket_addrs()
+        .with_context(|| format!("--pshare {place}, expected HOST:PORT"))?;
+    found
+        .next()
+        .ok_or_else(|| anyhow!("--pshare {place}: the host has no address"))
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     if args.vehicle.is_empty() && args.team.is_none() && args.shore.is_none() {
-        bail!("nothing to connect: use --vehicle NAME or --team TEAM for boats, --shore :9000 for pMarineViewer");
+        bail!(
+            "nothing to connect: use --vehicle NAME or --team TEAM for boats, --shore :9000 for pMarineViewer"
+        );
     }
     let stop = stop::on_ctrl_c()?;
     stop::exit_when_late(&stop);
@@ -74,11 +82,18 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         share_to: args.pshare.iter().map(resolved).collect::<Result<_>>()?,
         share_listen: args.pshare_listen,
     };
-    for address in args.vehicle.iter().filter_map(|(_, address)| address.as_ref()).chain(&args.shore) {
+    for address in args
+        .vehicle
+        .iter()
+        .filter_map(|(_, address)| address.as_ref())
+        .chain(&args.shore)
+    {
         if let Address::Serve(at) = address
             && !at.ip().is_loopback()
         {
-            screen::remark(&format!("{at}: anyone who reaches this address can command the boat: MOOS knows no keys"));
+            screen::remark(&format!(
+                "{at}: anyone who reaches this address can command the boat: MOOS knows no keys"
+            ));
         }
     }
     bridge::serve(&settings, &|news| match news {
@@ -89,5 +104,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     })
     .context("the MOOS bridge")?;
     let stopped = stop.load(std::sync::atomic::Ordering::Relaxed);
-    Ok(if stopped { stop::interrupted() } else { ExitCode::SUCCESS })
+    Ok(if stopped {
+        stop::interrupted()
+    } else {
+        ExitCode::SUCCESS
+    })
 }

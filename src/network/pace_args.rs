@@ -14,7 +14,8 @@ pub(crate) struct PaceArgs {
     /// Pace of the game: lockstep, realtime, or a multiple of real time such as 4x
     #[arg(long, default_value = "lockstep", allow_hyphen_values = true)]
     pub(crate) pace: Pace,
-    /// In lockstep: initial speed limit, as a multiple of real time; the page can change it [default: none]
+    /// In lockstep: initial speed limit, as a multiple of real time; the page can change it
+    /// [default: none]
     #[arg(long, value_name = "FACTOR", allow_hyphen_values = true, value_parser = speed)]
     pub(crate) speed: Option<f64>,
     /// How long to wait for missing agents and gateways before starting without them, s
@@ -25,15 +26,32 @@ pub(crate) struct PaceArgs {
 impl PaceArgs {
     /// A process that serves this game, or a part of it, under a name.
     pub(crate) fn sim(&self, game: &GameArgs, name: &str, endpoint: &str) -> Result<Command> {
-        let runtime = if self.pace == Pace::Lockstep { bus::RUNTIME } else { bus::HUB_RUNTIME };
-        let mut command = child_process::squall_with(runtime, &["sim", "--game", name, "--listen", endpoint])?;
+        let runtime = if self.pace == Pace::Lockstep {
+            bus::RUNTIME
+        } else {
+            bus::HUB_RUNTIME
+        };
+        let mut command =
+            child_process::squall_with(runtime, &["sim", "--game", name, "--listen", endpoint])?;
         command.arg(game.file());
         let overrides = game.overrides()?;
-        option(&mut command, "--sea", overrides.sea.as_ref().map(|sea| sea.display()));
+        option(
+            &mut command,
+            "--sea",
+            overrides.sea.as_ref().map(|sea| sea.display()),
+        );
         for (team, path) in &overrides.strategies {
-            option(&mut command, "--strategy", Some(format!("{team}={}", path.display())));
+            option(
+                &mut command,
+                "--strategy",
+                Some(format!("{team}={}", path.display())),
+            );
         }
-        command.args(overrides.exchange_strategies.then_some("--exchange-strategies"));
+        command.args(
+            overrides
+                .exchange_strategies
+                .then_some("--exchange-strategies"),
+        );
         command.args(overrides.simulate_all.then_some("--rehearse"));
         for Setting { key, value, .. } in &overrides.settings {
             option(&mut command, "--set", Some(format!("{key}={value}")));

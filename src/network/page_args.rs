@@ -22,12 +22,12 @@ const TOKEN_VARIABLE: &str = "SQUALL_PAGE_TOKEN";
 
 #[derive(clap::Args, Clone, Debug)]
 pub(crate) struct PageArgs {
-    /// Address and port of the page; if other machines can reach it, as with 0.0.0.0:8088, a token is required
-    /// [default: 127.0.0.1:8088, or a free port if it is taken]
+    /// Address and port of the page; if other machines can reach it, as with 0.0.0.0:8088, a token
+    /// is required [default: 127.0.0.1:8088, or a free port if it is taken]
     #[arg(long, value_name = "ADDRESS", value_parser = address)]
     listen: Option<SocketAddr>,
-    /// Token required to pause, stop or drive from the page, but not to watch. Other users of this machine can read
-    /// it in the process list: prefer --page-token-file
+    /// Token required to pause, stop or drive from the page, but not to watch. Other users of this
+    /// machine can read it in the process list: prefer --page-token-file
     #[arg(long, value_name = "TEXT")]
     token: Option<String>,
     /// File with the page's token [default: SQUALL_PAGE_TOKEN]
@@ -48,7 +48,9 @@ impl PageArgs {
     /// Checks before a game begins that the page can be served.
     pub(crate) fn check(&self) -> Result<()> {
         let any = SocketAddr::from((Ipv4Addr::LOCALHOST, 0));
-        Ok(Page::check(&self.settings(self.listen.unwrap_or(any), &Arc::default())?)?)
+        Ok(Page::check(
+            &self.settings(self.listen.unwrap_or(any), &Arc::default())?,
+        )?)
     }
 
     fn settings(&self, listen: SocketAddr, stop: &Arc<AtomicBool>) -> Result<PageSettings> {
@@ -56,13 +58,22 @@ impl PageArgs {
         let token = self.token()?;
         let hosts = self.host.clone();
         let stop = Arc::clone(stop);
-        Ok(PageSettings { listen, token, hosts, background, stop })
+        Ok(PageSettings {
+            listen,
+            token,
+            hosts,
+            background,
+            stop,
+        })
     }
 
     /// Serves an empty page.
     pub(crate) fn open(&self, stop: &Arc<AtomicBool>) -> Result<Page> {
         let usual = SocketAddr::from((Ipv4Addr::LOCALHOST, PORT));
-        let page = match (self.listen, Page::open(self.settings(self.listen.unwrap_or(usual), stop)?)) {
+        let page = match (
+            self.listen,
+            Page::open(self.settings(self.listen.unwrap_or(usual), stop)?),
+        ) {
             // Another page uses the port already.
             (None, Err(PageError::Listen { .. })) => {
                 Page::open(self.settings(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)), stop)?)
@@ -75,7 +86,11 @@ impl PageArgs {
     /// Whether any page argument is given.
     pub(crate) fn is_given(&self) -> bool {
         let has_token = self.token.is_some() || self.page_token_file.is_some();
-        self.listen.is_some() || has_token || !self.host.is_empty() || self.chart.is_some() || self.open
+        self.listen.is_some()
+            || has_token
+            || !self.host.is_empty()
+            || self.chart.is_some()
+            || self.open
     }
 
     /// Whether the user chose a page token, which then is part of the page's address.
@@ -89,9 +104,14 @@ impl PageArgs {
             return Ok(self.token.clone());
         }
         let given = leaf_args::text_of(self.page_token_file.as_deref(), TOKEN_VARIABLE)?;
-        let Some((text, place)) = given else { return Ok(None) };
+        let Some((text, place)) = given else {
+            return Ok(None);
+        };
         let token = text.trim();
-        ensure!(!token.is_empty() && !token.contains('\n'), "{place}: expected a token, one line of text");
+        ensure!(
+            !token.is_empty() && !token.contains('\n'),
+            "{place}: expected a token, one line of text"
+        );
         Ok(Some(token.to_owned()))
     }
 
@@ -103,14 +123,26 @@ impl PageArgs {
 
     /// The same arguments with the browser opened.
     pub(crate) fn opened(&self) -> PageArgs {
-        PageArgs { open: true, ..self.clone() }
+        PageArgs {
+            open: true,
+            ..self.clone()
+        }
     }
 
     /// Serves a page with what `put` puts there, from this path, until Ctrl-C.
-    pub(crate) fn show(&self, path: &Path, stop: &Arc<AtomicBool>, put: impl FnOnce(&Page)) -> Result<ExitCode> {
+    pub(crate) fn show(
+        &self,
+        path: &Path,
+        stop: &Arc<AtomicBool>,
+        put: impl FnOnce(&Page),
+    ) -> Result<ExitCode> {
         let page = self.open(stop)?;
         put(&page);
-        Screen::new(Names::default()).line(&format!("{} at {} (Ctrl-C to stop)", path.display(), self.url(&page)));
+        Screen::new(Names::default()).line(&format!(
+            "{} at {} (Ctrl-C to stop)",
+            path.display(),
+            self.url(&page)
+        ));
         self.open_browser(&page);
         stop::wait(stop);
         Ok(ExitCode::SUCCESS)
@@ -125,10 +157,19 @@ impl PageArgs {
 
     /// Passes these arguments to another process, the token where no other user can read it.
     pub(crate) fn give_to(&self, command: &mut Command) {
-        let listen = self.listen.iter().map(|listen| ("--listen", listen.to_string()));
+        let listen = self
+            .listen
+            .iter()
+            .map(|listen| ("--listen", listen.to_string()));
         let hosts = self.host.iter().map(|host| ("--host", host.clone()));
-        let chart = self.chart.iter().map(|chart| ("--chart", chart.display().to_string()));
-        let words = listen.chain(hosts).chain(chart).flat_map(|(name, value)| [name.to_owned(), value]);
+        let chart = self
+            .chart
+            .iter()
+            .map(|chart| ("--chart", chart.display().to_string()));
+        let words = listen
+            .chain(hosts)
+            .chain(chart)
+            .flat_map(|(name, value)| [name.to_owned(), value]);
         command.args(words.chain(self.open.then(|| "--open".to_owned())));
         if let Ok(Some(token)) = self.token() {
             command.env(TOKEN_VARIABLE, token);
@@ -142,7 +183,9 @@ pub(crate) fn operator_url(page: &Page) -> String {
 }
 
 fn address_of(page: &Page, token: Option<&str>) -> String {
-    let token = token.map(|token| format!("#token={}", in_address(token))).unwrap_or_default();
+    let token = token
+        .map(|token| format!("#token={}", in_address(token)))
+        .unwrap_or_default();
     let mut address = page.address;
     if address.ip().is_unspecified() {
         address.set_ip(own_address().unwrap_or(Ipv4Addr::LOCALHOST.into()));
@@ -152,7 +195,11 @@ fn address_of(page: &Page, token: Option<&str>) -> String {
 
 /// A text, escaped for a URL.
 fn in_address(text: &str) -> String {
-    const SPELLED: &AsciiSet = &NON_ALPHANUMERIC.remove(b'-').remove(b'.').remove(b'_').remove(b'~');
+    const SPELLED: &AsciiSet = &NON_ALPHANUMERIC
+        .remove(b'-')
+        .remove(b'.')
+        .remove(b'_')
+        .remove(b'~');
     utf8_percent_encode(text, SPELLED).to_string()
 }
 
@@ -163,7 +210,8 @@ mod tests {
 
     fn page_args(words: &[&str]) -> PageArgs {
         let command = PageArgs::augment_args(clap::Command::new("page").no_binary_name(true));
-        PageArgs::from_arg_matches(&command.get_matches_from(words)).expect("they are options of the page")
+        PageArgs::from_arg_matches(&command.get_matches_from(words))
+            .expect("they are options of the page")
     }
 
     #[test]
@@ -171,23 +219,38 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let file = folder.path().join("token");
         std::fs::write(&file, "sesame\n").expect("it is written");
-        for words in [["--token", "sesame"], ["--page-token-file", file.to_str().expect("text")]] {
+        for words in [
+            ["--token", "sesame"],
+            ["--page-token-file", file.to_str().expect("text")],
+        ] {
             let mut command = Command::new("squall");
             page_args(&words).give_to(&mut command);
-            assert!(!format!("{:?}", command.get_args().collect::<Vec<_>>()).contains("sesame"), "{command:?}");
+            assert!(
+                !format!("{:?}", command.get_args().collect::<Vec<_>>()).contains("sesame"),
+                "{command:?}"
+            );
             let given: Vec<_> = command.get_envs().collect();
             assert_eq!(given, [(TOKEN_VARIABLE.as_ref(), Some("sesame".as_ref()))]);
         }
         for (text, why) in [("", "expected a token"), ("two\nlines", "one line of text")] {
             std::fs::write(&file, text).expect("it is written");
-            let error = page_args(&["--page-token-file", file.to_str().expect("text")]).check().expect_err(text);
-            assert!(error.to_string().contains(why) && error.to_string().contains("token"), "{error}");
+            let error = page_args(&["--page-token-file", file.to_str().expect("text")])
+                .check()
+                .expect_err(text);
+            assert!(
+                error.to_string().contains(why) && error.to_string().contains("token"),
+                "{error}"
+            );
         }
     }
 
     #[test]
     fn a_token_stands_in_an_address_as_one_word() {
-        for (token, want) in [("secret-1", "secret-1"), ("a b&c#é", "a%20b%26c%23%C3%A9"), ("50%+", "50%25%2B")] {
+        for (token, want) in [
+            ("secret-1", "secret-1"),
+            ("a b&c#é", "a%20b%26c%23%C3%A9"),
+            ("50%+", "50%25%2B"),
+        ] {
             assert_eq!(in_address(token), want);
         }
     }

@@ -24,7 +24,10 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let file = args.replay.file.as_deref();
     if args.replay.check {
         if args.page.is_given() {
-            bail!(UsageError("--check shows no page; omit --listen, --token, --page-token-file and --host".to_owned()));
+            bail!(UsageError(
+                "--check shows no page; omit --listen, --token, --page-token-file and --host"
+                    .to_owned()
+            ));
         }
         return replay_command::check(file);
     }
@@ -41,6 +44,14 @@ pub(crate) fn show(file: &Path, page: &PageArgs) -> Result<ExitCode> {
 pub(crate) fn open(file: &Path, about: Option<String>) -> Result<ReplayView> {
     let recording = Arc::new(replay_command::open(file)?);
     let recorded = Recorded::new(Arc::clone(&recording), file.display().to_string());
-    recorded.damaged.remark().iter().for_each(|remark| screen::remark(remark));
-    Ok(ReplayView::about(about, Arc::new(recorded), Some(Box::new(ReplayHelms::new(recording)))))
+    recorded
+        .damaged
+        .remark()
+        .iter()
+        .for_each(|remark| screen::remark(remark));
+    Ok(ReplayView::about(
+        about,
+        Arc::new(recorded),
+        Some(Box::new(ReplayHelms::new(recording))),
+    ))
 }

@@ -22,19 +22,49 @@ pub(super) struct ReplayHelms {
 impl ReplayHelms {
     pub(super) fn new(recording: Arc<Recording>) -> ReplayHelms {
         // Inputs are recorded with the frame that they result in, one decision later.
-        let decision =
-            |place| Some((recording.bag().message(place).read::<Inputs>().ok()?.stamp.seq.saturating_sub(1), place));
-        let inputs = recording.bag().places(INPUTS).filter_map(decision).collect();
-        ReplayHelms { minds: Minds::new(Arc::clone(&recording)), inputs, recording }
+        let decision = |place| {
+            Some((
+                recording
+                    .bag()
+                    .message(place)
+                    .read::<Inputs>()
+                    .ok()?
+                    .stamp
+                    .seq
+                    .saturating_sub(1),
+                place,
+            ))
+        };
+        let inputs = recording
+            .bag()
+            .places(INPUTS)
+            .filter_map(decision)
+            .collect();
+        ReplayHelms {
+            minds: Minds::new(Arc::clone(&recording)),
+            inputs,
+            recording,
+        }
     }
 
     /// The recorded order for the vehicle at this decision.
     fn recorded(&self, vehicle: VehicleId, decision: u64) -> Option<Order> {
-        let inputs: Inputs = self.recording.bag().message(*self.inputs.get(&decision)?).read().ok()?;
-        inputs.inputs.iter().rev().find_map(|record| match record.input() {
-            Some(Input::Ordered { vehicle: of, order, .. }) if of == vehicle => Some(order),
-            _ => None,
-        })
+        let inputs: Inputs = self
+            .recording
+            .bag()
+            .message(*self.inputs.get(&decision)?)
+            .read()
+            .ok()?;
+        inputs
+            .inputs
+            .iter()
+            .rev()
+            .find_map(|record| match record.input() {
+                Some(Input::Ordered {
+                    vehicle: of, order, ..
+                }) if of == vehicle => Some(order),
+                _ => None,
+            })
     }
 }
 
@@ -44,13 +74,19 @@ impl Helms for ReplayHelms {
         // strategies are deterministic. Comparison with the recorded order verifies this.
         let Some(order) = self.minds.decide(vehicle, decision, true) else {
             let reason = "no picture of this moment was recorded".to_owned();
-            return HelmAnswer { reason: Some(reason), computed: true, ..HelmAnswer::default() };
+            return HelmAnswer {
+                reason: Some(reason),
+                computed: true,
+                ..HelmAnswer::default()
+            };
         };
         HelmAnswer {
             report: self.minds.report(vehicle),
             reason: None,
             computed: true,
-            agrees: self.recorded(vehicle, decision).map(|recorded| recorded == order),
+            agrees: self
+                .recorded(vehicle, decision)
+                .map(|recorded| recorded == order),
         }
     }
 

@@ -40,10 +40,12 @@ struct BridgeArgs {
     /// Hides the true state from ROS 2: no topics with truth, no markers of boats
     #[arg(long)]
     no_truth: bool,
-    /// Lets every ROS 2 node pause, resume, step and end the game and release stops, by this node's token
+    /// Lets every ROS 2 node pause, resume, step and end the game and release stops, by this node's
+    /// token
     #[arg(long)]
     operator: bool,
-    /// Endpoint of the ROS 2 router (rmw_zenohd); on this machine the bridge becomes it if there is none
+    /// Endpoint of the ROS 2 router (rmw_zenohd); on this machine the bridge becomes it if there is
+    /// none
     #[arg(long, value_name = "ENDPOINT", default_value = "tcp/127.0.0.1:7447", value_parser = endpoint)]
     router: String,
     /// ROS domain [default: ROS_DOMAIN_ID, or 0]
@@ -60,8 +62,12 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     match &args.command {
         Command::Bridge(args) => bridge(args),
         Command::Messages { folder } => {
-            ros::package::write(folder).with_context(|| format!("cannot write {}", folder.display()))?;
-            screen::remark(&format!("wrote the package squall_msgs to {}", folder.display()));
+            ros::package::write(folder)
+                .with_context(|| format!("cannot write {}", folder.display()))?;
+            screen::remark(&format!(
+                "wrote the package squall_msgs to {}",
+                folder.display()
+            ));
             Ok(ExitCode::SUCCESS)
         }
     }
@@ -75,8 +81,14 @@ fn domain(text: &str) -> Result<u32, String> {
 impl BridgeArgs {
     /// The ROS domain, from the same variable as for ROS 2 nodes.
     fn domain(&self) -> Result<u32> {
-        let variable = std::env::var("ROS_DOMAIN_ID").ok().filter(|text| !text.is_empty());
-        let of_variable = || variable.map_or(Ok(0), |text| domain(&text).map_err(|e| anyhow!("ROS_DOMAIN_ID: {e}")));
+        let variable = std::env::var("ROS_DOMAIN_ID")
+            .ok()
+            .filter(|text| !text.is_empty());
+        let of_variable = || {
+            variable.map_or(Ok(0), |text| {
+                domain(&text).map_err(|e| anyhow!("ROS_DOMAIN_ID: {e}"))
+            })
+        };
         self.domain.map_or_else(of_variable, Ok)
     }
 }
@@ -97,13 +109,21 @@ fn bridge(args: &BridgeArgs) -> Result<ExitCode> {
         stop: stop.clone(),
     };
     let mut tell = |news: News<'_>| match news {
-        News::OnRos { is_router: true } => screen::remark(&format!("no router ran at {}: this is it now", args.router)),
-        News::OnRos { is_router: false } => screen::remark(&format!("connected to the router at {}", args.router)),
+        News::OnRos { is_router: true } => {
+            screen::remark(&format!("no router ran at {}: this is it now", args.router))
+        }
+        News::OnRos { is_router: false } => {
+            screen::remark(&format!("connected to the router at {}", args.router))
+        }
         News::Looking { reason } => screen::remark(&format!("looking for the game: {reason}")),
         News::Showing { game } => screen::remark(&format!("ROS 2 sees {game}")),
         News::Refused { refused } => screen::remark(&format!("refused: {refused}")),
     };
     ros::node::serve(&settings, &mut tell).context("the ROS 2 bridge")?;
     let stopped = stop.load(std::sync::atomic::Ordering::Relaxed);
-    Ok(if stopped { stop::interrupted() } else { ExitCode::SUCCESS })
+    Ok(if stopped {
+        stop::interrupted()
+    } else {
+        ExitCode::SUCCESS
+    })
 }

@@ -31,7 +31,8 @@ pub(crate) struct Args {
     run: run_command::Args,
     #[command(flatten)]
     pace: PaceArgs,
-    /// Shows the game on a page, then its recording; in lockstep, limits the speed to 10x unless --speed is given
+    /// Shows the game on a page, then its recording; in lockstep, limits the speed to 10x unless
+    /// --speed is given
     #[arg(long, conflicts_with_all = ["in_process", "both_sides", "watch_files"])]
     view: bool,
     #[command(flatten)]
@@ -39,7 +40,8 @@ pub(crate) struct Args {
     /// Number of boats per agent process
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole::<u16>(1, u64::from(u16::MAX)))]
     agents_per_process: u16,
-    /// Folder with keys from `squall keys new`: encrypts all links, and authenticates every node by certificate
+    /// Folder with keys from `squall keys new`: encrypts all links, and authenticates every node by
+    /// certificate
     #[arg(long, value_name = "FOLDER")]
     keys: Option<PathBuf>,
     #[command(flatten)]
@@ -48,9 +50,22 @@ pub(crate) struct Args {
 
 /// Plays a game to watch.
 pub(crate) fn demo(page: &PageArgs) -> Result<ExitCode> {
-    let words = ["run", "surveyor_2v2", "--sea", "fresh_breeze", "--blue", "learned", "--red", "strategy_3", "--view"];
+    let words = [
+        "run",
+        "surveyor_2v2",
+        "--sea",
+        "fresh_breeze",
+        "--blue",
+        "learned",
+        "--red",
+        "strategy_3",
+        "--view",
+    ];
     let matches = Args::augment_args(clap::Command::new("demo")).try_get_matches_from(words)?;
-    run(&Args { page: page.opened(), ..Args::from_arg_matches(&matches)? })
+    run(&Args {
+        page: page.opened(),
+        ..Args::from_arg_matches(&matches)?
+    })
 }
 
 /// The fastest speed that a person can follow, simulated seconds per second.
@@ -58,7 +73,10 @@ const SPEED_TO_WATCH: f64 = 10.0;
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     if args.page.is_given() && !args.view {
-        bail!(UsageError("--listen, --token, --page-token-file, --host, --chart and --open require --view".to_owned()));
+        bail!(UsageError(
+            "--listen, --token, --page-token-file, --host, --chart and --open require --view"
+                .to_owned()
+        ));
     }
     if args.pace.join_s < 1.0 && !args.run.in_process {
         bail!(UsageError(format!(
@@ -86,7 +104,11 @@ impl Player for Processes<'_> {
         }
         check_keys(self.args, scenario)?;
         child_process::check_token()?;
-        if self.args.view { self.args.page.check() } else { Ok(()) }
+        if self.args.view {
+            self.args.page.check()
+        } else {
+            Ok(())
+        }
     }
 
     fn play(
@@ -105,11 +127,22 @@ impl Player for Processes<'_> {
         let file = file.map(NewFile::lend);
         let mut sim = start_sim((args, play), place, file.as_ref().map(LentFile::path))?;
         let messages = sim.lines(|line| serde_json::from_str(line).ok())?;
-        self.page = if args.view { Some(start_page(args, &game, &endpoint)?) } else { None };
+        self.page = if args.view {
+            Some(start_page(args, &game, &endpoint)?)
+        } else {
+            None
+        };
         let agents = start_agents(args, scenario, &game, &endpoint)?;
-        let hardware_loop = args.hardware_loop.start((play, &args.pace), scenario, place, args.keys.as_deref())?;
+        let hardware_loop =
+            args.hardware_loop
+                .start((play, &args.pace), scenario, place, args.keys.as_deref())?;
         let token = args.keys.is_none().then(child_process::token);
-        let report = follow(&messages, (&mut sim, self.page.as_mut(), token), stop, screen)?;
+        let report = follow(
+            &messages,
+            (&mut sim, self.page.as_mut(), token),
+            stop,
+            screen,
+        )?;
         let mut problems = hardware_loop.map(HardwareLoop::end).unwrap_or_default();
         let mut everybody = agents;
         everybody.push(sim);
@@ -126,7 +159,9 @@ impl Player for Processes<'_> {
     }
 
     fn end(&mut self, file: Option<&Path>, problems: &[String], (stop, screen): Shell) {
-        let Some(mut page) = self.page.take() else { return };
+        let Some(mut page) = self.page.take() else {
+            return;
+        };
         problems.iter().for_each(|problem| screen::remark(problem));
         screen.line("the game is over; the page stays open until Ctrl-C");
         // The sim has ended, so the recording is complete.
@@ -142,12 +177,21 @@ impl Player for Processes<'_> {
 
 /// Checks that the keys of all parts of the game exist.
 fn check_keys(args: &Args, scenario: &Scenario) -> Result<()> {
-    let Some(folder) = &args.keys else { return Ok(()) };
+    let Some(folder) = &args.keys else {
+        return Ok(());
+    };
     let mut parts = vec![Identity::Sim];
-    parts.extend(scenario.teams.iter().map(|team| Identity::Team(team.name.clone())));
+    parts.extend(
+        scenario
+            .teams
+            .iter()
+            .map(|team| Identity::Team(team.name.clone())),
+    );
     parts.extend(args.view.then_some(Identity::Operator));
     parts.extend(scenario.externals().next().map(|_| Identity::Gateway(None)));
-    parts.iter().try_for_each(|part| Bundle::load(&folder.join(part.to_string())).map(drop))?;
+    parts
+        .iter()
+        .try_for_each(|part| Bundle::load(&folder.join(part.to_string())).map(drop))?;
     Ok(())
 }
 
@@ -165,7 +209,10 @@ fn start_sim(
     file: Option<&Path>,
 ) -> Result<ChildProcess> {
     let mut command = args.pace.sim(play, game, endpoint)?;
-    let speed = args.pace.speed.or((args.view && args.pace.pace == Pace::Lockstep).then_some(SPEED_TO_WATCH));
+    let speed = args
+        .pace
+        .speed
+        .or((args.view && args.pace.pace == Pace::Lockstep).then_some(SPEED_TO_WATCH));
     option(&mut command, "--join-s", Some(args.pace.join_s));
     option(&mut command, "--speed", speed);
     child_process::give_keys(&mut command, args.keys.as_deref(), &Identity::Sim);
@@ -181,21 +228,33 @@ fn crew_size(asked: u16, vehicles: usize) -> usize {
 }
 
 /// Starts the agent processes. With keys, each one serves a single team.
-fn start_agents(args: &Args, scenario: &Scenario, game: &str, endpoint: &str) -> Result<Vec<ChildProcess>> {
+fn start_agents(
+    args: &Args,
+    scenario: &Scenario,
+    game: &str,
+    endpoint: &str,
+) -> Result<Vec<ChildProcess>> {
     let mut vehicles: Vec<&Vehicle> = scenario.vehicles.iter().collect();
-    let is_together = |one: &&Vehicle, other: &&Vehicle| args.keys.is_none() || one.team == other.team;
+    let is_together =
+        |one: &&Vehicle, other: &&Vehicle| args.keys.is_none() || one.team == other.team;
     if args.keys.is_some() {
         vehicles.sort_by_key(|vehicle| vehicle.team);
     }
     let size = crew_size(args.agents_per_process, vehicles.len());
-    let crews = vehicles.chunk_by(is_together).flat_map(|crew| crew.chunks(size));
+    let crews = vehicles
+        .chunk_by(is_together)
+        .flat_map(|crew| crew.chunks(size));
     let start = |crew: &[&Vehicle]| {
         let names: Vec<&str> = crew.iter().map(|vehicle| vehicle.name.as_str()).collect();
         let mut command = child_process::squall(&["agent", "--game", game, "--connect", endpoint])?;
         let team = scenario.teams[crew[0].team.index()].name.clone();
         child_process::give_keys(&mut command, args.keys.as_deref(), &Identity::Team(team));
         command.arg("--vehicle").args(&names);
-        ChildProcess::start(&format!("the agent of {}", names.join(", ")), command, Stdio::null())
+        ChildProcess::start(
+            &format!("the agent of {}", names.join(", ")),
+            command,
+            Stdio::null(),
+        )
     };
     crews.map(start).collect()
 }
@@ -214,7 +273,9 @@ fn follow(
             Ok(message) => {
                 screen.show(&message);
                 match message {
-                    ProgressMessage::Open { .. } => token.into_iter().for_each(|token| screen.line(&token_text(token))),
+                    ProgressMessage::Open { .. } => token
+                        .into_iter()
+                        .for_each(|token| screen.line(&token_text(token))),
                     ProgressMessage::Started => page = None,
                     ProgressMessage::Done(report) => return Ok(Some(*report)),
                     _ => {}
@@ -244,7 +305,13 @@ mod tests {
 
     #[test]
     fn thousands_of_boats_do_not_start_thousands_of_agents() {
-        for (asked, vehicles, want) in [(1, 4, 1), (1, 64, 1), (1, 65, 2), (1, 10_000, 157), (500, 10_000, 500)] {
+        for (asked, vehicles, want) in [
+            (1, 4, 1),
+            (1, 64, 1),
+            (1, 65, 2),
+            (1, 10_000, 157),
+            (500, 10_000, 500),
+        ] {
             assert_eq!(crew_size(asked, vehicles), want, "{vehicles} boats");
         }
     }

@@ -41,7 +41,11 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let scenario = args.play.load()?;
     let seed = args.play.seed(&scenario);
-    let scenario = if args.afloat.is_empty() { scenario } else { sim::afloat(&scenario, seed, &args.afloat)? };
+    let scenario = if args.afloat.is_empty() {
+        scenario
+    } else {
+        sim::afloat(&scenario, seed, &args.afloat)?
+    };
     args.play.check_result_file()?;
     if !args.for_parent {
         args.play.remark_on_rehearsal()?;
@@ -74,9 +78,18 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         is_water: !args.afloat.is_empty(),
     };
     let record = |path: &PathBuf| {
-        let file = if args.for_parent { NewFile::of_child(path) } else { NewFile::create(path) };
+        let file = if args.for_parent {
+            NewFile::of_child(path)
+        } else {
+            NewFile::create(path)
+        };
         let file = file.with_context(|| format!("cannot record to {}", path.display()))?;
-        anyhow::Ok(GameRecorder::on_network(file, game.as_str(), &args.pace.pace.to_string(), env!("SQUALL_COMMIT")))
+        anyhow::Ok(GameRecorder::on_network(
+            file,
+            game.as_str(),
+            &args.pace.pace.to_string(),
+            env!("SQUALL_COMMIT"),
+        ))
     };
     let mut recorder = args.record.as_ref().map(record).transpose()?;
     let settings = Settings {
@@ -106,5 +119,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     if let (Some(problem), false) = (problem, args.for_parent) {
         bail!(problem);
     }
-    Ok(if cut_short { stop::interrupted() } else { ExitCode::SUCCESS })
+    Ok(if cut_short {
+        stop::interrupted()
+    } else {
+        ExitCode::SUCCESS
+    })
 }

@@ -19,8 +19,9 @@ mod training;
 
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// What to show: the JSON report of a tournament, the folder of a league, sweep or training, or a recording, also by
-    /// a part of its name [default: a running game; if there is none, the newest recording in runs]
+    /// What to show: the JSON report of a tournament, the folder of a league, sweep or training, or
+    /// a recording, also by a part of its name [default: a running game; if there is none, the
+    /// newest recording in runs]
     #[arg(value_name = "REPORT", conflicts_with_all = ["game", "connect"], value_parser = recording_file::named)]
     report: Option<PathBuf>,
     #[command(flatten)]
@@ -53,18 +54,27 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     });
     let place = args.leaf.place()?;
     let game = args.leaf.game.clone();
-    let live = LiveView::open(place, game, tell, gateway_cli::read_mission).context("cannot search for games")?;
+    let live = LiveView::open(place, game, tell, gateway_cli::read_mission)
+        .context("cannot search for games")?;
     let live = Arc::new(live);
     page.show(Arc::clone(&live) as Arc<dyn View>);
-    Screen::new(Names::default()).line(&format!("the page is at {} (Ctrl-C to stop)", args.page.url(&page)));
+    Screen::new(Names::default()).line(&format!(
+        "the page is at {} (Ctrl-C to stop)",
+        args.page.url(&page)
+    ));
     args.page.open_browser(&page);
     let mut operators_know = args.page.has_token();
     while !stop::is_set_soon(&stop) {
         if !operators_know && live.has_real_boats() {
             operators_know = true;
-            screen::remark(&format!("to operate real boats, open {}", page_args::operator_url(&page)));
+            screen::remark(&format!(
+                "to operate real boats, open {}",
+                page_args::operator_url(&page)
+            ));
         }
-        let Some(file) = recordings.as_ref().and_then(|named| named.try_recv().ok()) else { continue };
+        let Some(file) = recordings.as_ref().and_then(|named| named.try_recv().ok()) else {
+            continue;
+        };
         match replay_command::open(Path::new(&file), None) {
             Ok(show) => page.show(Arc::new(show)),
             Err(error) => screen::remark(&command_line::explain::line(&error)),

@@ -65,7 +65,9 @@ struct Seen {
 
 impl Seen {
     fn take(&mut self, scenario: &Scenario, bytes: &[u8]) {
-        let Ok(frame) = codec::decode::<Frame>(bytes) else { return };
+        let Ok(frame) = codec::decode::<Frame>(bytes) else {
+            return;
+        };
         self.count += 1;
         self.events.extend(frame.logged(scenario));
         let surplus = self.events.len().saturating_sub(EVENTS);
@@ -87,7 +89,8 @@ fn watch_field(observer: &Observer, pause: Duration, stop: &AtomicBool) -> Resul
     let live = std::io::stdout().is_terminal();
     while !stop.load(Ordering::Relaxed) {
         seen.wait(SILENCE, |seen| seen.frame.is_some());
-        let (frame, count, events) = seen.visit(|seen| (seen.frame.take(), seen.count, seen.events.clone()));
+        let (frame, count, events) =
+            seen.visit(|seen| (seen.frame.take(), seen.count, seen.events.clone()));
         let Some(frame) = frame else {
             // A paused game sends no frames.
             if stop.load(Ordering::Relaxed) || observer.is_on()? {
@@ -96,7 +99,10 @@ fn watch_field(observer: &Observer, pause: Duration, stop: &AtomicBool) -> Resul
             bail!("game {} is no longer running", game.as_str());
         };
         let rates = meter.read(frame.stamp.valid_ns, count);
-        let events: Vec<String> = events.iter().map(|logged| sentence(&info.scenario, logged)).collect();
+        let events: Vec<String> = events
+            .iter()
+            .map(|logged| sentence(&info.scenario, logged))
+            .collect();
         let is_read = if live {
             screen::is_seen(&names.paint(&chart::page(info, game, &frame, &events, &rates)))
         } else {
@@ -133,14 +139,25 @@ pub(crate) struct Rates {
 
 impl Meter {
     fn new() -> Meter {
-        Meter { then: clock::now(), sim: None, frames: 0 }
+        Meter {
+            then: clock::now(),
+            sim: None,
+            frames: 0,
+        }
     }
 
     fn read(&mut self, sim: SimTime, frames: u64) -> Rates {
         let passed_s = clock::since(self.then).as_secs_f64().max(1e-6);
         let sim_s = self.sim.map_or(0.0, |before| (sim - before).as_s());
-        let rates = Rates { frames_hz: (frames - self.frames) as f64 / passed_s, factor: sim_s / passed_s };
-        *self = Meter { then: clock::now(), sim: Some(sim), frames };
+        let rates = Rates {
+            frames_hz: (frames - self.frames) as f64 / passed_s,
+            factor: sim_s / passed_s,
+        };
+        *self = Meter {
+            then: clock::now(),
+            sim: Some(sim),
+            frames,
+        };
         rates
     }
 }

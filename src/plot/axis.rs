@@ -6,7 +6,9 @@ use std::ops::Range;
 /// Maximum number of labels on an axis.
 const LABELS: f64 = 9.0;
 /// Allowed steps between labels of angles, degrees.
-const ANGLES_DEG: [f64; 12] = [1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0, 90.0, 180.0, 360.0, 720.0, 1800.0];
+const ANGLES_DEG: [f64; 12] = [
+    1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0, 90.0, 180.0, 360.0, 720.0, 1800.0,
+];
 
 /// An axis with labels at multiples of 1, 2 or 5; for angles, at compass steps.
 pub(crate) struct Axis {
@@ -30,11 +32,19 @@ impl Axis {
             }
         };
         let angle = Some(ANGLES_DEG).filter(|_| name.contains("degrees") && decimal >= 1.0);
-        let step = angle.and_then(|steps| steps.into_iter().find(is_enough)).unwrap_or(decimal);
+        let step = angle
+            .and_then(|steps| steps.into_iter().find(is_enough))
+            .unwrap_or(decimal);
         let first = (range.0 / step - 1e-9).ceil();
         let count = (range.1 / step + 1e-9).floor() - first;
-        let labels = (0..=count.clamp(0.0, LABELS) as u32).map(|i| (first + f64::from(i)) * step).collect();
-        Axis { range, labels, places: usize::try_from(places).unwrap_or_default() }
+        let labels = (0..=count.clamp(0.0, LABELS) as u32)
+            .map(|i| (first + f64::from(i)) * step)
+            .collect();
+        Axis {
+            range,
+            labels,
+            places: usize::try_from(places).unwrap_or_default(),
+        }
     }
 }
 
@@ -48,7 +58,11 @@ impl Ranged for Axis {
     }
 
     fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
-        if hint.weight().allow_light_points() { vec![] } else { self.labels.clone() }
+        if hint.weight().allow_light_points() {
+            vec![]
+        } else {
+            self.labels.clone()
+        }
     }
 
     fn range(&self) -> Range<f64> {
@@ -67,14 +81,25 @@ mod tests {
             ("m/s", (-0.1, 1.9), "0.0 0.5 1.0 1.5"),
             ("m", (0.93, 1.13), "0.95 1.00 1.05 1.10"),
             ("m", (-3.0, -1.0), "-3.0 -2.5 -2.0 -1.5 -1.0"),
-            ("N", (0.0, 4e6), "0 500000 1000000 1500000 2000000 2500000 3000000 3500000 4000000"),
-            ("compass heading in degrees", (0.0, 360.0), "0 45 90 135 180 225 270 315 360"),
+            (
+                "N",
+                (0.0, 4e6),
+                "0 500000 1000000 1500000 2000000 2500000 3000000 3500000 4000000",
+            ),
+            (
+                "compass heading in degrees",
+                (0.0, 360.0),
+                "0 45 90 135 180 225 270 315 360",
+            ),
             ("degrees", (-20.0, 3810.0), "0 720 1440 2160 2880 3600"),
             ("degrees", (-0.3, 0.3), "-0.3 -0.2 -0.1 0.0 0.1 0.2 0.3"),
             ("degrees", (0.0, 1e5), "0 20000 40000 60000 80000 100000"),
         ] {
             let Axis { labels, places, .. } = Axis::new(name, range);
-            let labels: Vec<String> = labels.into_iter().map(|at| primitives::math::decimal(at, places)).collect();
+            let labels: Vec<String> = labels
+                .into_iter()
+                .map(|at| primitives::math::decimal(at, places))
+                .collect();
             assert_eq!(labels.join(" "), want, "{name} {range:?}");
         }
     }
@@ -83,7 +108,10 @@ mod tests {
     fn any_range_has_an_axis() {
         for range in [(0.0, 1e-11), (-1e300, 1e300), (5.0, 5.0 + 1e-9)] {
             let Axis { labels, .. } = Axis::new("m", range);
-            assert!(labels.len() <= LABELS as usize + 1 && labels.iter().all(|at| at.is_finite()), "{range:?}");
+            assert!(
+                labels.len() <= LABELS as usize + 1 && labels.iter().all(|at| at.is_finite()),
+                "{range:?}"
+            );
         }
     }
 }

@@ -11,8 +11,12 @@ const TEAMS: usize = 4;
 /// The colour of a team: the custom property `--team-N: #rrggbb;`.
 pub(crate) fn of_team(team: usize) -> RGBColor {
     let name = format!("--team-{}: #", team % TEAMS);
-    let (_, rest) = STYLE_SHEET.split_once(&name).expect("the style sheet has this colour");
-    let channel = |i: usize| u8::from_str_radix(&rest[2 * i..2 * i + 2], 16).expect("a colour has six hex digits");
+    let (_, rest) = STYLE_SHEET
+        .split_once(&name)
+        .expect("the style sheet has this colour");
+    let channel = |i: usize| {
+        u8::from_str_radix(&rest[2 * i..2 * i + 2], 16).expect("a colour has six hex digits")
+    };
     RGBColor(channel(0), channel(1), channel(2))
 }
 
@@ -22,7 +26,15 @@ mod tests {
 
     #[test]
     fn all_colours_of_teams_are_found_in_the_style_sheet() {
-        assert_eq!(of_team(0), RGBColor(0, 114, 178), "the first, for light ground");
-        assert_eq!((0..=TEAMS).map(of_team).collect::<Vec<_>>()[TEAMS], of_team(0), "then they repeat");
+        assert_eq!(
+            of_team(0),
+            RGBColor(0, 114, 178),
+            "the first, for light ground"
+        );
+        assert_eq!(
+            (0..=TEAMS).map(of_team).collect::<Vec<_>>()[TEAMS],
+            of_team(0),
+            "then they repeat"
+        );
     }
 }

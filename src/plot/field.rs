@@ -106,14 +106,22 @@ impl View {
     }
 
     fn size(&self) -> (u32, u32) {
-        (self.water.0 + LABELS.0 + 2 * MARGIN, TITLE + self.water.1 + LABELS.1 + BELOW + MARGIN)
+        (
+            self.water.0 + LABELS.0 + 2 * MARGIN,
+            TITLE + self.water.1 + LABELS.1 + BELOW + MARGIN,
+        )
     }
 
     /// A position in pixels.
     pub(super) fn pixel(&self, at: Ned) -> (i32, i32) {
-        let right = (at.east - self.east_m.0) / (self.east_m.1 - self.east_m.0) * f64::from(self.water.0);
-        let down = (self.north_m.1 - at.north) / (self.north_m.1 - self.north_m.0) * f64::from(self.water.1);
-        ((right + f64::from(self.corner.0)).round() as i32, (down + f64::from(self.corner.1)).round() as i32)
+        let right =
+            (at.east - self.east_m.0) / (self.east_m.1 - self.east_m.0) * f64::from(self.water.0);
+        let down = (self.north_m.1 - at.north) / (self.north_m.1 - self.north_m.0)
+            * f64::from(self.water.1);
+        (
+            (right + f64::from(self.corner.0)).round() as i32,
+            (down + f64::from(self.corner.1)).round() as i32,
+        )
     }
 }
 
@@ -124,17 +132,34 @@ impl Drawing for Chart<'_> {
 
     fn draw(&self, root: &Area<'_>) -> Drawn {
         let view = View::of(self);
-        root.draw(&Text::new(self.title.clone(), (24, 16), (FONT, 20).into_font()))?;
+        root.draw(&Text::new(
+            self.title.clone(),
+            (24, 16),
+            (FONT, 20).into_font(),
+        ))?;
         draw_axes(root, &view)?;
         draw_field(root, self.field, &view)?;
         for track in &self.tracks {
-            root.draw(&PathElement::new(fine(&track.places, &view), track.colour.stroke_width(2)))?;
+            root.draw(&PathElement::new(
+                fine(&track.places, &view),
+                track.colour.stroke_width(2),
+            ))?;
         }
         for flag in &self.field.flags {
-            draw_symbol(root, Symbol::Flag, view.pixel(flag.home), colour::of_team(flag.team.index()))?;
+            draw_symbol(
+                root,
+                Symbol::Flag,
+                view.pixel(flag.home),
+                colour::of_team(flag.team.index()),
+            )?;
         }
         for spot in self.spots.iter().filter(|spot| is_drawn(&spot.at)) {
-            draw_symbol(root, spot.symbol, view.pixel(spot.at), colour::of_team(spot.team))?;
+            draw_symbol(
+                root,
+                spot.symbol,
+                view.pixel(spot.at),
+                colour::of_team(spot.team),
+            )?;
         }
         draw_names(root, self, &view)?;
         draw_legend(root, self, &view)
@@ -149,11 +174,20 @@ fn draw_axes(root: &Area<'_>, view: &View) -> Drawn {
         .y_label_area_size(LABELS.0)
         .build_cartesian_2d(view.east_m.0..view.east_m.1, view.north_m.0..view.north_m.1)?;
     // The view places everything that is drawn: the axes must agree with it.
-    for (east_m, north_m) in [(view.east_m.0, view.north_m.0), (view.east_m.1, view.north_m.1)] {
+    for (east_m, north_m) in [
+        (view.east_m.0, view.north_m.0),
+        (view.east_m.1, view.north_m.1),
+    ] {
         let on_axes = axes.backend_coord(&(east_m, north_m));
-        let drawn = view.pixel(Ned { north: north_m, east: east_m });
+        let drawn = view.pixel(Ned {
+            north: north_m,
+            east: east_m,
+        });
         let off = on_axes.0.abs_diff(drawn.0).max(on_axes.1.abs_diff(drawn.1));
-        assert!(off <= 2, "the axes are not where the field is: {on_axes:?} instead of {drawn:?}");
+        assert!(
+            off <= 2,
+            "the axes are not where the field is: {on_axes:?} instead of {drawn:?}"
+        );
     }
     axes.configure_mesh()
         .x_desc("x (east) in m")
@@ -171,19 +205,37 @@ fn draw_axes(root: &Area<'_>, view: &View) -> Drawn {
 
 /// Draws zones in their teams' colours, the outline, the scrimmage line, and obstacles.
 pub(super) fn draw_field(root: &Area<'_>, field: &Field, view: &View) -> Drawn {
-    let pixels = |places: &[Ned]| places.iter().map(|place| view.pixel(*place)).collect::<Vec<_>>();
+    let pixels = |places: &[Ned]| {
+        places
+            .iter()
+            .map(|place| view.pixel(*place))
+            .collect::<Vec<_>>()
+    };
     for (team, zone) in field.zones.iter().enumerate() {
-        root.draw(&Polygon::new(pixels(&zone.corners), colour::of_team(team).mix(0.08)))?;
+        root.draw(&Polygon::new(
+            pixels(&zone.corners),
+            colour::of_team(team).mix(0.08),
+        ))?;
     }
-    let outline: Vec<Ned> = field.corners.iter().chain(field.corners.first()).copied().collect();
+    let outline: Vec<Ned> = field
+        .corners
+        .iter()
+        .chain(field.corners.first())
+        .copied()
+        .collect();
     root.draw(&PathElement::new(pixels(&outline), GREY.stroke_width(1)))?;
-    root.draw(&PathElement::new(pixels(&field.scrimmage), GREY.mix(0.6).stroke_width(1)))?;
+    root.draw(&PathElement::new(
+        pixels(&field.scrimmage),
+        GREY.mix(0.6).stroke_width(1),
+    ))?;
     for obstacle in &field.plan.obstacles {
         let corners = match obstacle {
             Obstacle::Polygon { corners } => corners.clone(),
             Obstacle::Circle { centre, radius_m } => {
                 let toward = |i: i32| Ned::toward_deg(10.0 * f64::from(i));
-                (0..36).map(|i| *centre + toward(i).scaled(*radius_m)).collect()
+                (0..36)
+                    .map(|i| *centre + toward(i).scaled(*radius_m))
+                    .collect()
             }
         };
         root.draw(&Polygon::new(pixels(&corners), GREY.mix(0.5)))?;
@@ -193,17 +245,37 @@ pub(super) fn draw_field(root: &Area<'_>, field: &Field, view: &View) -> Drawn {
 
 /// The south-west and the north-east corner of an area that contains all these places.
 pub(super) fn bounds<'a>(places: impl Iterator<Item = &'a Ned>) -> (Ned, Ned) {
-    let nothing = (Ned { north: f64::MAX, east: f64::MAX }, Ned { north: f64::MIN, east: f64::MIN });
+    let nothing = (
+        Ned {
+            north: f64::MAX,
+            east: f64::MAX,
+        },
+        Ned {
+            north: f64::MIN,
+            east: f64::MIN,
+        },
+    );
     places.fold(nothing, |(low, high), place| {
-        let low = Ned { north: low.north.min(place.north), east: low.east.min(place.east) };
-        (low, Ned { north: high.north.max(place.north), east: high.east.max(place.east) })
+        let low = Ned {
+            north: low.north.min(place.north),
+            east: low.east.min(place.east),
+        };
+        (
+            low,
+            Ned {
+                north: high.north.max(place.north),
+                east: high.east.max(place.east),
+            },
+        )
     })
 }
 
 /// Whether a position can be drawn: false for positions from a damaged recording or a boat with
 /// non-finite numbers.
 pub(super) fn is_drawn(place: &Ned) -> bool {
-    [place.north, place.east].iter().all(|number| number.abs() < 1e6)
+    [place.north, place.east]
+        .iter()
+        .all(|number| number.abs() < 1e6)
 }
 
 /// The pixels of a track, without points that change nothing.
@@ -211,14 +283,22 @@ pub(super) fn fine(places: &[Ned], view: &View) -> Vec<(i32, i32)> {
     let least_m = FINE * (view.east_m.1 - view.east_m.0) / f64::from(view.water.0);
     let mut kept: Vec<Ned> = vec![];
     for place in places.iter().filter(|place| is_drawn(place)) {
-        if kept.last().is_none_or(|last| last.distance(*place) >= least_m) {
+        if kept
+            .last()
+            .is_none_or(|last| last.distance(*place) >= least_m)
+        {
             kept.push(*place);
         }
     }
     kept.into_iter().map(|place| view.pixel(place)).collect()
 }
 
-pub(super) fn draw_symbol(root: &Area<'_>, symbol: Symbol, at: (i32, i32), colour: RGBColor) -> Drawn {
+pub(super) fn draw_symbol(
+    root: &Area<'_>,
+    symbol: Symbol,
+    at: (i32, i32),
+    colour: RGBColor,
+) -> Drawn {
     let off = |(right, down): (i32, i32)| (at.0 + right, at.1 + down);
     let edge = BLACK.stroke_width(1);
     let solid = |corners: Vec<(i32, i32)>| {
@@ -242,7 +322,10 @@ pub(super) fn draw_symbol(root: &Area<'_>, symbol: Symbol, at: (i32, i32), colou
             Ok(())
         }
         Symbol::Flag => {
-            root.draw(&PathElement::new([(0, 2), (0, -18)].map(off), BLACK.stroke_width(2)))?;
+            root.draw(&PathElement::new(
+                [(0, 2), (0, -18)].map(off),
+                BLACK.stroke_width(2),
+            ))?;
             solid(vec![(1, -18), (14, -13), (1, -8)])?;
             root.draw(&Circle::new(at, 3, BLACK.filled()))
         }
@@ -254,7 +337,10 @@ fn star(radius: f64) -> Vec<(i32, i32)> {
     let corner = |i: i32| {
         let (sin, cos) = math::sin_cos_deg(36.0 * f64::from(i));
         let radius = if i % 2 == 0 { radius } else { 0.45 * radius };
-        ((radius * sin).round() as i32, (-radius * cos).round() as i32)
+        (
+            (radius * sin).round() as i32,
+            (-radius * cos).round() as i32,
+        )
     };
     (0..10).map(corner).collect()
 }
@@ -262,18 +348,30 @@ fn star(radius: f64) -> Vec<(i32, i32)> {
 /// Draws names beside the starts on a light background, so that tracks do not hide them.
 fn draw_names(root: &Area<'_>, chart: &Chart<'_>, view: &View) -> Drawn {
     for track in chart.tracks.iter().filter(|track| !track.name.is_empty()) {
-        let Some(start) = track.places.first() else { continue };
+        let Some(start) = track.places.first() else {
+            continue;
+        };
         let at = view.pixel(*start);
         // Place the name away from the middle of the field, where there are fewer tracks, and away
         // from the edge, where space ends.
         let is_right = start.east > 0.5 * (view.east_m.0 + view.east_m.1);
-        let (side, x) = if is_right { (HPos::Right, at.0 - 11) } else { (HPos::Left, at.0 + 11) };
+        let (side, x) = if is_right {
+            (HPos::Right, at.0 - 11)
+        } else {
+            (HPos::Left, at.0 + 11)
+        };
         let wide = 8 + 7 * track.name.chars().count() as i32;
         let left = if is_right { x - wide } else { x };
-        let ground = Rectangle::new([(left - 1, at.1 - 9), (left + wide, at.1 + 8)], WHITE.mix(0.75).filled());
+        let ground = Rectangle::new(
+            [(left - 1, at.1 - 9), (left + wide, at.1 + 8)],
+            WHITE.mix(0.75).filled(),
+        );
         root.draw(&ground)?;
         let x = if is_right { x - 3 } else { x + 3 };
-        let style = (FONT, 14).into_font().color(&BLACK).pos(Pos::new(side, VPos::Center));
+        let style = (FONT, 14)
+            .into_font()
+            .color(&BLACK)
+            .pos(Pos::new(side, VPos::Center));
         root.draw(&Text::new(track.name.clone(), (x, at.1), style))?;
     }
     Ok(())
@@ -283,12 +381,18 @@ fn draw_legend(root: &Area<'_>, chart: &Chart<'_>, view: &View) -> Drawn {
     let y = (TITLE + view.water.1 + LABELS.1 + BELOW / 2) as i32;
     let mut x = (MARGIN + LABELS.0) as i32;
     let name = |text: &str, x: i32| {
-        let style = (FONT, 14).into_font().color(&BLACK).pos(Pos::new(HPos::Left, VPos::Center));
+        let style = (FONT, 14)
+            .into_font()
+            .color(&BLACK)
+            .pos(Pos::new(HPos::Left, VPos::Center));
         root.draw(&Text::new(text.to_owned(), (x, y), style))
     };
     let width = |text: &str| 8 * text.chars().count() as i32;
     for (i, team) in chart.teams.iter().enumerate() {
-        root.draw(&PathElement::new([(x, y), (x + 22, y)], colour::of_team(i).stroke_width(3)))?;
+        root.draw(&PathElement::new(
+            [(x, y), (x + 22, y)],
+            colour::of_team(i).stroke_width(3),
+        ))?;
         name(team, x + 28)?;
         x += 28 + width(team) + 18;
     }
@@ -316,19 +420,30 @@ mod tests {
             depth_m: 80.0,
             flag_inset_m: 20.0,
             extra_flags: vec![],
-            obstacles: vec![Obstacle::Circle { centre: Ned::from_xy(80.0, 40.0), radius_m: 5.0 }],
+            obstacles: vec![Obstacle::Circle {
+                centre: Ned::from_xy(80.0, 40.0),
+                radius_m: 5.0,
+            }],
             walls: Walls::None,
         })
     }
 
     fn chart(field: &Field, places: Vec<Ned>) -> Chart<'_> {
-        let spots = places.last().map(|at| Spot { symbol: Symbol::Capture, at: *at, team: 0 });
+        let spots = places.last().map(|at| Spot {
+            symbol: Symbol::Capture,
+            at: *at,
+            team: 0,
+        });
         Chart {
             title: "a game".into(),
             field,
             teams: vec!["blue".into(), "red".into()],
             spots: spots.into_iter().collect(),
-            tracks: vec![Track { name: "blue_one".into(), colour: colour::of_team(0), places }],
+            tracks: vec![Track {
+                name: "blue_one".into(),
+                colour: colour::of_team(0),
+                places,
+            }],
         }
     }
 
@@ -336,31 +451,56 @@ mod tests {
     fn a_metre_is_as_long_either_way_and_everything_is_shown() {
         for along_deg in [90.0, 20.0, 0.0] {
             let field = field(along_deg);
-            let chart = chart(&field, vec![Ned::from_xy(-50.0, 10.0), Ned::from_xy(200.0, 10.0)]);
+            let chart = chart(
+                &field,
+                vec![Ned::from_xy(-50.0, 10.0), Ned::from_xy(200.0, 10.0)],
+            );
             let view = View::of(&chart);
             let (wide, high) = view.size();
             for place in field.corners.iter().chain(&chart.tracks[0].places) {
                 let (x, y) = view.pixel(*place);
-                assert!((0..wide as i32).contains(&x) && (0..high as i32).contains(&y), "{place:?} at {along_deg}");
+                assert!(
+                    (0..wide as i32).contains(&x) && (0..high as i32).contains(&y),
+                    "{place:?} at {along_deg}"
+                );
             }
             let a = Ned::default();
             let b = Ned::from_xy(100.0, 0.0);
             let c = Ned::from_xy(0.0, 100.0);
             let east = view.pixel(b).0 - view.pixel(a).0;
             let north = view.pixel(a).1 - view.pixel(c).1;
-            assert!((east - north).abs() <= 3, "{east} and {north} pixels at {along_deg}");
+            assert!(
+                (east - north).abs() <= 3,
+                "{east} and {north} pixels at {along_deg}"
+            );
         }
     }
 
     #[test]
     fn a_chart_has_names_and_a_legend_and_stands_odd_places() {
         let dir = tempfile::tempdir().expect("a temporary directory");
-        for places in [vec![], vec![Ned { north: f64::NAN, east: 1.0 }, Ned::from_xy(5.0, 5.0)]] {
+        for places in [
+            vec![],
+            vec![
+                Ned {
+                    north: f64::NAN,
+                    east: 1.0,
+                },
+                Ned::from_xy(5.0, 5.0),
+            ],
+        ] {
             let stem = dir.path().join("tracks");
             let field = field(90.0);
             crate::plot::write_both(&stem, &chart(&field, places)).expect("it can be drawn");
             let svg = std::fs::read_to_string(stem.with_extension("svg")).expect("it is there");
-            for text in ["a game", "blue", "red", "capture", "tagged", "x (east) in m"] {
+            for text in [
+                "a game",
+                "blue",
+                "red",
+                "capture",
+                "tagged",
+                "x (east) in m",
+            ] {
                 assert!(svg.contains(text), "{text}");
             }
             assert!(stem.with_extension("png").exists());

@@ -51,13 +51,29 @@ pub(crate) struct Panel {
 
 impl Panel {
     fn coloured(&self) -> impl Iterator<Item = (&Line, RGBColor)> {
-        self.lines.iter().zip(COLOURS.iter().cycle()).map(|(line, colour)| (line, line.colour.unwrap_or(*colour)))
+        self.lines
+            .iter()
+            .zip(COLOURS.iter().cycle())
+            .map(|(line, colour)| (line, line.colour.unwrap_or(*colour)))
     }
 
     /// A panel with these lines, independent axes and no marks. Without lines it shows the text
     /// `absent`.
-    pub(crate) fn of(title: &'static str, [x, y]: [&'static str; 2], lines: Vec<Line>, absent: &'static str) -> Panel {
-        Panel { title, x, y, equal: false, lines, absent, marks: vec![] }
+    pub(crate) fn of(
+        title: &'static str,
+        [x, y]: [&'static str; 2],
+        lines: Vec<Line>,
+        absent: &'static str,
+    ) -> Panel {
+        Panel {
+            title,
+            x,
+            y,
+            equal: false,
+            lines,
+            absent,
+            marks: vec![],
+        }
     }
 }
 
@@ -85,7 +101,11 @@ pub(crate) struct Mark {
 impl Line {
     /// An unfilled line.
     pub(crate) fn of(name: &str, points: Vec<(f64, f64)>) -> Line {
-        Line { name: name.into(), points, ..Line::default() }
+        Line {
+            name: name.into(),
+            points,
+            ..Line::default()
+        }
     }
 }
 
@@ -146,13 +166,26 @@ fn pixels_of(svg: &str) -> anyhow::Result<Pixmap> {
     let fonts = FONTS.get_or_init(|| {
         let mut fonts = fontdb::Database::new();
         fonts.load_font_data(epaint_default_fonts::UBUNTU_LIGHT.to_vec());
-        let family = fonts.faces().next().and_then(|face| face.families.first()).map(|(name, _)| name.clone());
-        family.into_iter().for_each(|family| fonts.set_sans_serif_family(family));
+        let family = fonts
+            .faces()
+            .next()
+            .and_then(|face| face.families.first())
+            .map(|(name, _)| name.clone());
+        family
+            .into_iter()
+            .for_each(|family| fonts.set_sans_serif_family(family));
         Arc::new(fonts)
     });
-    let tree = Tree::from_str(svg, &Options { fontdb: Arc::clone(fonts), ..Options::default() })?;
+    let tree = Tree::from_str(
+        svg,
+        &Options {
+            fontdb: Arc::clone(fonts),
+            ..Options::default()
+        },
+    )?;
     let size = tree.size().to_int_size();
-    let mut picture = Pixmap::new(size.width(), size.height()).context("the picture is too large")?;
+    let mut picture =
+        Pixmap::new(size.width(), size.height()).context("the picture is too large")?;
     resvg::render(&tree, Transform::identity(), &mut picture.as_mut());
     Ok(picture)
 }
@@ -162,7 +195,11 @@ pub(crate) fn write_both(stem: &Path, drawing: &impl Drawing) -> anyhow::Result<
     write_svg(&stem.with_extension("svg"), drawing)?;
     let path = stem.with_extension("png");
     let picture = pixels(drawing).and_then(|picture| Ok(picture.encode_png()?));
-    output_file::write(&path, "the plot", picture.with_context(|| format!("cannot draw {}", path.display()))?)
+    output_file::write(
+        &path,
+        "the plot",
+        picture.with_context(|| format!("cannot draw {}", path.display()))?,
+    )
 }
 
 fn draw_on(svg: &mut String, drawing: &impl Drawing) -> Drawn {
@@ -181,17 +218,27 @@ impl Page {
 
 impl Drawing for Page {
     fn size(&self) -> (u32, u32) {
-        (self.panel.0 * self.columns as u32, TITLE_HEIGHT + self.panel.1 * self.rows() as u32)
+        (
+            self.panel.0 * self.columns as u32,
+            TITLE_HEIGHT + self.panel.1 * self.rows() as u32,
+        )
     }
 
     fn draw(&self, root: &Area<'_>) -> Drawn {
         let (top, rest) = root.split_vertically(TITLE_HEIGHT);
-        top.draw(&Text::new(self.title.clone(), (24, 14), (FONT, 20).into_font()))?;
+        top.draw(&Text::new(
+            self.title.clone(),
+            (24, 14),
+            (FONT, 20).into_font(),
+        ))?;
         let areas = rest.split_evenly((self.rows(), self.columns));
-        areas.iter().zip(&self.panels).try_for_each(|(area, panel)| match panel.lines.is_empty() {
-            true => draw_absent(area, panel),
-            false => draw_lines(area, panel),
-        })
+        areas
+            .iter()
+            .zip(&self.panels)
+            .try_for_each(|(area, panel)| match panel.lines.is_empty() {
+                true => draw_absent(area, panel),
+                false => draw_lines(area, panel),
+            })
     }
 }
 
@@ -225,16 +272,36 @@ fn draw_lines(area: &Area<'_>, panel: &Panel) -> Drawn {
             if line.filled {
                 chart.draw_series([Polygon::new(down_to_0(piece), colour.mix(FILLING))])?;
             }
-            chart.draw_series(LineSeries::new(piece.iter().copied(), colour.stroke_width(2)))?;
+            chart.draw_series(LineSeries::new(
+                piece.iter().copied(),
+                colour.stroke_width(2),
+            ))?;
         }
     }
     let rises = rises(&panel.marks);
-    for mark in panel.marks.iter().filter(|mark| mark.at.0.is_finite() && mark.at.1.is_finite()) {
+    for mark in panel
+        .marks
+        .iter()
+        .filter(|mark| mark.at.0.is_finite() && mark.at.1.is_finite())
+    {
         // Put the name on the side with more room, and off the line between marks.
-        let (side, right) = if mark.at.0 > 0.5 * (x0 + x1) { (HPos::Right, -1) } else { (HPos::Left, 1) };
-        let style = (FONT, 12).into_font().into_text_style(&area).pos(Pos::new(side, VPos::Center));
-        let name = Text::new(mark.name.clone(), (7 * right, if rises { 6 * right } else { -6 * right }), style);
-        chart.draw_series([EmptyElement::at(mark.at) + Circle::new((0, 0), 3, BLACK.filled()) + name])?;
+        let (side, right) = if mark.at.0 > 0.5 * (x0 + x1) {
+            (HPos::Right, -1)
+        } else {
+            (HPos::Left, 1)
+        };
+        let style = (FONT, 12)
+            .into_font()
+            .into_text_style(&area)
+            .pos(Pos::new(side, VPos::Center));
+        let name = Text::new(
+            mark.name.clone(),
+            (7 * right, if rises { 6 * right } else { -6 * right }),
+            style,
+        );
+        chart.draw_series([EmptyElement::at(mark.at)
+            + Circle::new((0, 0), 3, BLACK.filled())
+            + name])?;
     }
     Ok(())
 }
@@ -242,14 +309,24 @@ fn draw_lines(area: &Area<'_>, panel: &Panel) -> Drawn {
 /// Draws the title and the names of the lines, beside it or in rows below; returns the rest of the
 /// area.
 fn draw_header<'a>(area: &Area<'a>, panel: &Panel) -> Drawn<Area<'a>> {
-    let style = (FONT, 12).into_font().into_text_style(area).pos(Pos::new(HPos::Left, VPos::Center));
+    let style = (FONT, 12)
+        .into_font()
+        .into_text_style(area)
+        .pos(Pos::new(HPos::Left, VPos::Center));
     let left = HEADER_LEFT;
     let right = area.dim_in_pixel().0 as i32 - 24;
-    let title = CAPTION.into_font().into_text_style(area).pos(Pos::new(HPos::Left, VPos::Center));
+    let title = CAPTION
+        .into_font()
+        .into_text_style(area)
+        .pos(Pos::new(HPos::Left, VPos::Center));
     let mut at = left + area.estimate_text_size(panel.title, &title)?.0 as i32 + 32;
     let mut rows = 0;
     let mut places = vec![];
-    let named = || panel.coloured().filter(|(line, _)| !line.name.is_empty() && !pieces(&line.points).is_empty());
+    let named = || {
+        panel
+            .coloured()
+            .filter(|(line, _)| !line.name.is_empty() && !pieces(&line.points).is_empty())
+    };
     for (line, _) in named() {
         let width = KEY + 6 + area.estimate_text_size(&line.name, &style)?.0 as i32;
         if at > left && at + width > right {
@@ -260,8 +337,15 @@ fn draw_header<'a>(area: &Area<'a>, panel: &Panel) -> Drawn<Area<'a>> {
     }
     area.draw(&Text::new(panel.title, (left, HEADER_ROW / 2 + 4), title))?;
     for ((line, colour), (x, y)) in named().zip(places) {
-        area.draw(&PathElement::new([(x, y), (x + KEY, y)], colour.stroke_width(2)))?;
-        area.draw(&Text::new(line.name.clone(), (x + KEY + 6, y), style.clone()))?;
+        area.draw(&PathElement::new(
+            [(x, y), (x + KEY, y)],
+            colour.stroke_width(2),
+        ))?;
+        area.draw(&Text::new(
+            line.name.clone(),
+            (x + KEY + 6, y),
+            style.clone(),
+        ))?;
     }
     Ok(area.split_vertically(HEADER_ROW * (rows + 1) + 12).1)
 }
@@ -271,9 +355,19 @@ fn draw_absent(area: &Area<'_>, panel: &Panel) -> Drawn {
     let area = area.margin(12, 12, 12, 24).titled(panel.title, CAPTION)?;
     let (wide, high) = area.dim_in_pixel();
     let frame = RGBColor(222, 222, 222).stroke_width(1);
-    area.draw(&Rectangle::new([(0, 0), (wide as i32 - 1, high as i32 - 1)], frame))?;
-    let style = CAPTION.into_font().color(&RGBColor(120, 120, 120)).pos(Pos::new(HPos::Center, VPos::Center));
-    area.draw(&Text::new(panel.absent, (wide as i32 / 2, high as i32 / 2), style))
+    area.draw(&Rectangle::new(
+        [(0, 0), (wide as i32 - 1, high as i32 - 1)],
+        frame,
+    ))?;
+    let style = CAPTION
+        .into_font()
+        .color(&RGBColor(120, 120, 120))
+        .pos(Pos::new(HPos::Center, VPos::Center));
+    area.draw(&Text::new(
+        panel.absent,
+        (wide as i32 / 2, high as i32 / 2),
+        style,
+    ))
 }
 
 /// The horizontal and vertical range of a panel.
@@ -293,19 +387,28 @@ fn ranges(panel: &Panel, size: (u32, u32)) -> ((f64, f64), (f64, f64)) {
 
 /// Whether the marks rise from left to right.
 fn rises(marks: &[Mark]) -> bool {
-    let (Some(first), Some(last)) = (marks.first(), marks.last()) else { return true };
+    let (Some(first), Some(last)) = (marks.first(), marks.last()) else {
+        return true;
+    };
     (last.at.0 - first.at.0) * (last.at.1 - first.at.1) >= 0.0
 }
 
 /// The outline of the area between a line and 0.
 fn down_to_0(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let ends = [points.last(), points.first()];
-    points.iter().copied().chain(ends.into_iter().flatten().map(|end| (end.0, 0.0))).collect()
+    points
+        .iter()
+        .copied()
+        .chain(ends.into_iter().flatten().map(|end| (end.0, 0.0)))
+        .collect()
 }
 
 /// The runs of a line without gaps.
 fn pieces(points: &[(f64, f64)]) -> Vec<&[(f64, f64)]> {
-    points.split(|point| !(point.0.is_finite() && point.1.is_finite())).filter(|piece| !piece.is_empty()).collect()
+    points
+        .split(|point| !(point.0.is_finite() && point.1.is_finite()))
+        .filter(|piece| !piece.is_empty())
+        .collect()
 }
 
 /// The range of a panel's points in one direction, with a margin and a minimum for its unit: a
@@ -314,17 +417,34 @@ fn extent(panel: &Panel, axis: &str, of: impl Fn(&(f64, f64)) -> f64) -> (f64, f
     if axis == COMPASS {
         return (0.0, 360.0);
     }
-    let numbers = panel.lines.iter().flat_map(|line| &line.points).map(of).filter(|number| number.is_finite());
-    let (low, high) = numbers.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), n| (l.min(n), h.max(n)));
+    let numbers = panel
+        .lines
+        .iter()
+        .flat_map(|line| &line.points)
+        .map(of)
+        .filter(|number| number.is_finite());
+    let (low, high) = numbers.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), n| {
+        (l.min(n), h.max(n))
+    });
     if low > high {
         return (0.0, 1.0);
     }
-    let least = LEAST.iter().find(|(unit, _)| axis == *unit).map_or(0.0, |(_, least)| *least);
+    let least = LEAST
+        .iter()
+        .find(|(unit, _)| axis == *unit)
+        .map_or(0.0, |(_, least)| *least);
     // A constant gets a margin of a tenth of its value on each side; a line that varies only by
     // rounding is a constant.
-    let constant = 0.2 * if low == 0.0 && high == 0.0 { 1.0 } else { low.abs().max(high.abs()) };
+    let constant = 0.2
+        * if low == 0.0 && high == 0.0 {
+            1.0
+        } else {
+            low.abs().max(high.abs())
+        };
     let is_constant = high - low < 1e-6 * constant;
-    let wide = (1.1 * (high - low)).max(if is_constant { constant } else { 0.0 }).max(least);
+    let wide = (1.1 * (high - low))
+        .max(if is_constant { constant } else { 0.0 })
+        .max(least);
     about_middle(low, high, wide)
 }
 
@@ -332,7 +452,13 @@ fn extent(panel: &Panel, axis: &str, of: impl Fn(&(f64, f64)) -> f64) -> (f64, f
 pub(crate) const COMPASS: &str = "compass heading in degrees";
 
 /// Minimum range of an axis, by unit.
-const LEAST: [(&str, f64); 5] = [("m", 0.2), ("m/s", 0.2), ("degrees", 2.0), ("degrees per s", 1.0), ("N", 1.0)];
+const LEAST: [(&str, f64); 5] = [
+    ("m", 0.2),
+    ("m/s", 0.2),
+    ("degrees", 2.0),
+    ("degrees per s", 1.0),
+    ("N", 1.0),
+];
 
 /// The range, widened around its middle.
 fn about_middle(low: f64, high: f64, width: f64) -> (f64, f64) {
@@ -344,7 +470,11 @@ fn about_middle(low: f64, high: f64, width: f64) -> (f64, f64) {
 fn provide_font() {
     let font = epaint_default_fonts::UBUNTU_LIGHT;
     // Registration fails only for an invalid font; a plot would then report it.
-    drop(plotters::style::register_font(FONT, FontStyle::Normal, font));
+    drop(plotters::style::register_font(
+        FONT,
+        FontStyle::Normal,
+        font,
+    ));
 }
 
 #[cfg(test)]
@@ -352,15 +482,32 @@ mod tests {
     use super::*;
 
     fn page(points: Vec<(f64, f64)>) -> Page {
-        let line =
-            |name: &str| Line { name: name.into(), points: points.clone(), filled: !name.is_empty(), colour: None };
-        let mark = |at: &(f64, f64)| Mark { name: "here".into(), at: *at };
+        let line = |name: &str| Line {
+            name: name.into(),
+            points: points.clone(),
+            filled: !name.is_empty(),
+            colour: None,
+        };
+        let mark = |at: &(f64, f64)| Mark {
+            name: "here".into(),
+            at: *at,
+        };
         let panel = |equal| Panel {
             equal,
             marks: points.iter().map(mark).collect(),
-            ..Panel::of("speed", ["t in s", "u in m/s"], vec![line("surge"), line("")], "")
+            ..Panel::of(
+                "speed",
+                ["t in s", "u in m/s"],
+                vec![line("surge"), line("")],
+                "",
+            )
         };
-        Page { title: "a trial".into(), columns: 2, panel: PANEL, panels: vec![panel(true), panel(false)] }
+        Page {
+            title: "a trial".into(),
+            columns: 2,
+            panel: PANEL,
+            panels: vec![panel(true), panel(false)],
+        }
     }
 
     fn drawn(points: Vec<(f64, f64)>) -> String {
@@ -391,14 +538,25 @@ mod tests {
     #[test]
     fn what_hardly_varies_is_not_blown_up() {
         let range = |y: &'static str, points: &[f64]| {
-            let points = points.iter().enumerate().map(|(i, y)| (i as f64, *y)).collect();
-            ranges(&Panel::of("", ["time in s", y], vec![Line::of("", points)], ""), (500, 300)).1
+            let points = points
+                .iter()
+                .enumerate()
+                .map(|(i, y)| (i as f64, *y))
+                .collect();
+            ranges(
+                &Panel::of("", ["time in s", y], vec![Line::of("", points)], ""),
+                (500, 300),
+            )
+            .1
         };
         assert_eq!(range("m", &[0.0, 0.0]), (-0.1 * 1.0, 0.1 * 1.0));
         let (low, high) = range("m/s", &[0.001, -0.001]);
         assert!(low <= -0.1 && high >= 0.1);
         let (low, high) = range("loss", &[3e-4, 1e-4]);
-        assert!(low > 0.0 && high < 4e-4, "a unit without a least width is shown as it is");
+        assert!(
+            low > 0.0 && high < 4e-4,
+            "a unit without a least width is shown as it is"
+        );
         let (low, high) = range("loss", &[5.0, 5.0 + 1e-13]);
         assert!(low < 4.6 && high > 5.4);
         assert_eq!(range(COMPASS, &[10.0, 20.0]), (0.0, 360.0));
@@ -411,9 +569,18 @@ mod tests {
                 "<svg xmlns='http://www.w3.org/2000/svg' width='300' height='40'><text x='5' y='25' font-family='sans-serif' font-size='20'>{text}</text></svg>"
             );
             let picture = pixels_of(&svg).expect("it is SVG");
-            let dark = |x: &u32| (0..40).any(|y| picture.pixel(*x, y).is_some_and(|pixel| pixel.alpha() > 64));
-            (0..300).filter(|x| !dark(x) && (0..*x).any(|x| dark(&x)) && (*x..300).any(|x| dark(&x))).count()
+            let dark = |x: &u32| {
+                (0..40).any(|y| picture.pixel(*x, y).is_some_and(|pixel| pixel.alpha() > 64))
+            };
+            (0..300)
+                .filter(|x| !dark(x) && (0..*x).any(|x| dark(&x)) && (*x..300).any(|x| dark(&x)))
+                .count()
         };
-        assert!(width("time in s") > width("timeins") + 4, "{} {}", width("time in s"), width("timeins"));
+        assert!(
+            width("time in s") > width("timeins") + 4,
+            "{} {}",
+            width("time in s"),
+            width("timeins")
+        );
     }
 }

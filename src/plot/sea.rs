@@ -27,9 +27,28 @@ const STAYS_M: f64 = 0.01;
 
 /// Draws a sea to a file: the spectrum specified in its file, the realised sea, and the track of
 /// an unsteered boat from the datum.
-pub(crate) fn write(path: &Path, title: String, sea: &Sea, model: &SeaModel, track: &[Sample]) -> Result<()> {
-    let panels = vec![spectrum(sea, model), elevation(sea, model), wind(sea, model), drift(track)];
-    plot::write_svg(path, &Page { title, columns: 2, panel: plot::PANEL, panels })
+pub(crate) fn write(
+    path: &Path,
+    title: String,
+    sea: &Sea,
+    model: &SeaModel,
+    track: &[Sample],
+) -> Result<()> {
+    let panels = vec![
+        spectrum(sea, model),
+        elevation(sea, model),
+        wind(sea, model),
+        drift(track),
+    ];
+    plot::write_svg(
+        path,
+        &Page {
+            title,
+            columns: 2,
+            panel: plot::PANEL,
+            panels,
+        },
+    )
 }
 
 /// Bars and curve are both densities: the area of a bar is the variance of the components in its
@@ -40,28 +59,64 @@ fn spectrum(sea: &Sea, model: &SeaModel) -> Panel {
     if let (Some(waves), Some(field)) = (&sea.waves, field.waves()) {
         let (low_hz, high_hz) = band::range_hz(waves.tp_s);
         let at = |i: usize| low_hz + (high_hz - low_hz) * i as f64 / CURVE as f64;
-        let corners = |band: &Band| [(band.range_hz.0, band.density_m2_hz()), (band.range_hz.1, band.density_m2_hz())];
+        let corners = |band: &Band| {
+            [
+                (band.range_hz.0, band.density_m2_hz()),
+                (band.range_hz.1, band.density_m2_hz()),
+            ]
+        };
         lines = vec![
             Line {
                 name: format!("{} components of this seed", waves.components),
-                points: field.bands((low_hz, high_hz), BANDS).iter().flat_map(corners).collect(),
+                points: field
+                    .bands((low_hz, high_hz), BANDS)
+                    .iter()
+                    .flat_map(corners)
+                    .collect(),
                 filled: true,
                 colour: None,
             },
-            Line::of("specified", (0..=CURVE).map(|i| (at(i), spectrum::density_m2_hz(waves, at(i)))).collect()),
+            Line::of(
+                "specified",
+                (0..=CURVE)
+                    .map(|i| (at(i), spectrum::density_m2_hz(waves, at(i))))
+                    .collect(),
+            ),
         ];
     }
-    Panel::of("Wave spectrum", ["frequency in Hz", "m²/Hz"], lines, "no waves")
+    Panel::of(
+        "Wave spectrum",
+        ["frequency in Hz", "m²/Hz"],
+        lines,
+        "no waves",
+    )
 }
 
 fn elevation(sea: &Sea, model: &SeaModel) -> Panel {
     let tp_s = sea.waves.as_ref().map(|waves| waves.tp_s);
     let point = |tp_s: f64, i: u32| {
         let t_s = tp_s * f64::from(i) / f64::from(ELEVATION_STEPS);
-        (t_s, model.at_time(SimTime::from_s(t_s)).elevation_m(Ned::default()))
+        (
+            t_s,
+            model
+                .at_time(SimTime::from_s(t_s))
+                .elevation_m(Ned::default()),
+        )
     };
-    let line = |tp_s: f64| Line::of("", (0..=ELEVATION_PERIODS * ELEVATION_STEPS).map(|i| point(tp_s, i)).collect());
-    Panel::of("Surface elevation at the datum", ["time in s", "m"], tp_s.map(line).into_iter().collect(), "no waves")
+    let line = |tp_s: f64| {
+        Line::of(
+            "",
+            (0..=ELEVATION_PERIODS * ELEVATION_STEPS)
+                .map(|i| point(tp_s, i))
+                .collect(),
+        )
+    };
+    Panel::of(
+        "Surface elevation at the datum",
+        ["time in s", "m"],
+        tp_s.map(line).into_iter().collect(),
+        "no waves",
+    )
 }
 
 fn wind(sea: &Sea, model: &SeaModel) -> Panel {
@@ -71,30 +126,71 @@ fn wind(sea: &Sea, model: &SeaModel) -> Panel {
         let series = |name: &str, unit: Ned| {
             let point = |i: u32| {
                 let t_s = f64::from(i) / f64::from(WIND_STEPS_PER_S);
-                (t_s, model.at_time(SimTime::from_s(t_s)).wind_at(Ned::default()).dot(unit))
+                (
+                    t_s,
+                    model
+                        .at_time(SimTime::from_s(t_s))
+                        .wind_at(Ned::default())
+                        .dot(unit),
+                )
             };
             Line::of(name, (0..=WIND_S * WIND_STEPS_PER_S).map(point).collect())
         };
         lines = vec![
-            series("along the mean wind", Ned { north: -cos, east: -sin }),
-            series("across it, to the right", Ned { north: sin, east: -cos }),
+            series(
+                "along the mean wind",
+                Ned {
+                    north: -cos,
+                    east: -sin,
+                },
+            ),
+            series(
+                "across it, to the right",
+                Ned {
+                    north: sin,
+                    east: -cos,
+                },
+            ),
         ];
     }
-    Panel::of("Wind at the datum, 10 m above the water", ["time in s", "m/s"], lines, "no wind")
+    Panel::of(
+        "Wind at the datum, 10 m above the water",
+        ["time in s", "m/s"],
+        lines,
+        "no wind",
+    )
 }
 
 fn drift(samples: &[Sample]) -> Panel {
     let place = |sample: &Sample| (sample.at.east, sample.at.north);
     let moves = samples.iter().any(|sample| sample.at.length() > STAYS_M);
-    let marked = samples.iter().filter(|sample| (sample.t_s + 1e-6) % MARK_S < 1e-3);
-    let name = |sample: &Sample| if sample.t_s > 0.0 { format!("{:.0} s", sample.t_s) } else { "start".to_owned() };
+    let marked = samples
+        .iter()
+        .filter(|sample| (sample.t_s + 1e-6) % MARK_S < 1e-3);
+    let name = |sample: &Sample| {
+        if sample.t_s > 0.0 {
+            format!("{:.0} s", sample.t_s)
+        } else {
+            "start".to_owned()
+        }
+    };
     Panel {
         equal: true,
-        marks: marked.filter(|_| moves).map(|sample| Mark { name: name(sample), at: place(sample) }).collect(),
+        marks: marked
+            .filter(|_| moves)
+            .map(|sample| Mark {
+                name: name(sample),
+                at: place(sample),
+            })
+            .collect(),
         ..Panel::of(
             "Track of a drifting boat",
             ["x (east) in m", "y (north) in m"],
-            if moves { vec![Line::of("", samples.iter().map(place).collect())] } else { vec![] },
+            if moves {
+                vec![Line::of("", samples.iter().map(place).collect())]
+            } else {
+                vec![]
+            },
             "the boat does not drift",
         )
     }

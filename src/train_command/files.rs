@@ -16,12 +16,13 @@ use std::time::Instant;
 use xxhash_rust::xxh3::Xxh3;
 
 /// The header of the table of updates.
-const UPDATES: &str =
-    "samples,stage,reward,policy_loss,value_loss,entropy,divergence,clipped,epochs,explained_variance\n";
+const UPDATES: &str = "samples,stage,reward,policy_loss,value_loss,entropy,divergence,clipped,epochs,explained_variance\n";
 /// The header of the table of evaluations.
-const EVALUATIONS: &str = "samples,stage,opponent,won,drawn,lost,points,points_against,left_field,best\n";
+const EVALUATIONS: &str =
+    "samples,stage,opponent,won,drawn,lost,points,points_against,left_field,best\n";
 /// The header of the table of episodes.
-const EPISODES: &str = "samples,stage,seed,team,opponent,points,points_against,steps,cut_off,recording\n";
+const EPISODES: &str =
+    "samples,stage,seed,team,opponent,points,points_against,steps,cut_off,recording\n";
 
 /// The length and checksum of each table at every saved state: `samples,table,bytes,checksum`.
 const SUMS: &str = "sums.csv";
@@ -49,13 +50,18 @@ pub(super) struct Files {
 struct Table {
     name: &'static str,
     bytes: usize,
-    // Kept up with each line: reading a table again at every saved state would take longer and longer.
+    // Kept up with each line: reading a table again at every saved state would take longer and
+    // longer.
     sum: Xxh3,
 }
 
 impl Table {
     fn of(name: &'static str, text: &str) -> Table {
-        let mut table = Table { name, bytes: 0, sum: Xxh3::new() };
+        let mut table = Table {
+            name,
+            bytes: 0,
+            sum: Xxh3::new(),
+        };
         table.note(text);
         table
     }
@@ -72,10 +78,15 @@ impl Table {
 }
 
 impl Files {
-    /// Opens the folder of a training run; on resuming, drops everything written after the saved state.
+    /// Opens the folder of a training run; on resuming, drops everything written after the saved
+    /// state.
     pub(super) fn open(folder: &Path, base: &Path, trainer: &Trainer) -> Result<Files> {
         let (samples, _) = trainer.samples();
-        let tables = [("updates.csv", UPDATES), ("evaluations.csv", EVALUATIONS), ("episodes.csv", EPISODES)];
+        let tables = [
+            ("updates.csv", UPDATES),
+            ("evaluations.csv", EVALUATIONS),
+            ("episodes.csv", EPISODES),
+        ];
         output_file::make_folder(folder)?;
         let mut texts = tables.map(|(name, head)| (name, head.to_owned()));
         let mut sums = String::new();
@@ -83,15 +94,27 @@ impl Files {
             let path = folder.join(SUMS);
             let text = read(&path)?;
             // The last line may have been cut off while it was written.
-            let is_kept = |line: &&str| line.ends_with('\n') && first_number(line).is_some_and(|at| at <= samples);
+            let is_kept = |line: &&str| {
+                line.ends_with('\n') && first_number(line).is_some_and(|at| at <= samples)
+            };
             sums.extend(text.split_inclusive('\n').filter(is_kept));
             for ((name, table), (_, head)) in texts.iter_mut().zip(tables) {
                 *table = read(&folder.join(*name))?;
                 let begins = format!("{samples},{name},");
-                let noted = sums.lines().find_map(|line| line.strip_prefix(&begins)?.split_once(','));
-                let (bytes, sum) = noted
-                    .with_context(|| format!("{} has no entry for {name} at {samples} samples", path.display()))?;
-                let kept = bytes.parse().ok().and_then(|bytes: usize| table.get(..bytes)).map(str::to_owned);
+                let noted = sums
+                    .lines()
+                    .find_map(|line| line.strip_prefix(&begins)?.split_once(','));
+                let (bytes, sum) = noted.with_context(|| {
+                    format!(
+                        "{} has no entry for {name} at {samples} samples",
+                        path.display()
+                    )
+                })?;
+                let kept = bytes
+                    .parse()
+                    .ok()
+                    .and_then(|bytes: usize| table.get(..bytes))
+                    .map(str::to_owned);
                 // An earlier version wrote other columns.
                 *table = kept
                     .filter(|kept| kept.starts_with(head) && Table::of(name, kept).checksum() == sum)
@@ -111,12 +134,21 @@ impl Files {
         let tables = texts.map(|(name, text)| Table::of(name, &text));
         let (times, before_s) = open_times(&folder.join(TIMES), samples)?;
         let stage = trainer.training().stage.last();
-        let sea = stage.and_then(|stage| stage.sea.as_deref()).map(argument_for);
+        let sea = stage
+            .and_then(|stage| stage.sea.as_deref())
+            .map(argument_for);
         let game = stage.map(|stage| argument_for(&stage.game));
         let seed = trainer.training().seed.to_string();
         let run = json!({"samples": trainer.samples().1, "seed": seed, "game": game, "sea": sea});
         output_file::write_json(&folder.join(RUN), "the training", &run)?;
-        Ok(Files { folder: folder.to_owned(), tables, times, begun: clock::now(), before_s, base: base_for(base) })
+        Ok(Files {
+            folder: folder.to_owned(),
+            tables,
+            times,
+            begun: clock::now(),
+            before_s,
+            base: base_for(base),
+        })
     }
 
     /// The file from which a training run resumes.
@@ -132,7 +164,11 @@ impl Files {
     /// The path of an episode's recording relative to the folder; empty if there is none.
     fn recording(&self, one: &Finished) -> String {
         let path = format!("{GAMES}/{}", recording_name(one.standing.seed, one.number));
-        if self.folder.join(&path).exists() { path } else { String::new() }
+        if self.folder.join(&path).exists() {
+            path
+        } else {
+            String::new()
+        }
     }
 
     /// Adds an update to its table.
@@ -151,7 +187,11 @@ impl Files {
                 .map(|(_, value)| value.map_or(",".to_owned(), |value| format!(",{value}")))
                 .concat()
         );
-        for (name, played) in progress.evaluated.iter().flat_map(|evaluated| &evaluated.played) {
+        for (name, played) in progress
+            .evaluated
+            .iter()
+            .flat_map(|evaluated| &evaluated.played)
+        {
             let [won, drawn, lost] = played.results;
             let [own, theirs] = played.points;
             let _ = writeln!(
@@ -186,23 +226,34 @@ impl Files {
     pub(super) fn keep_state(&self, samples: u64, state: &[u8]) -> Result<()> {
         let mut sums = String::new();
         for table in &self.tables {
-            let _ = writeln!(sums, "{samples},{},{},{}", table.name, table.bytes, table.checksum());
+            let _ = writeln!(
+                sums,
+                "{samples},{},{},{}",
+                table.name,
+                table.bytes,
+                table.checksum()
+            );
         }
         // Write the checksums first: the state depends on them.
         append(&self.folder.join(SUMS), sums)?;
         let path = Files::state(&self.folder);
         let new = self.folder.join("state.new");
         output_file::write(&new, "the state", state)?;
-        std::fs::rename(&new, &path).with_context(|| format!("cannot write the state to {}", path.display()))
+        std::fs::rename(&new, &path)
+            .with_context(|| format!("cannot write the state to {}", path.display()))
     }
 
     /// Writes the current policy, and the best one with a strategy that uses it.
     pub(super) fn models(&self, trainer: &Trainer, is_best: bool) -> Result<()> {
         let model = trainer.model().context("cannot export the policy")?;
         output_file::write(&self.folder.join("last.onnx"), "the policy", model)?;
-        let Some(best) = trainer.best().filter(|_| is_best) else { return Ok(()) };
+        let Some(best) = trainer.best().filter(|_| is_best) else {
+            return Ok(());
+        };
         output_file::write(&self.folder.join("best.onnx"), "the policy", &best.onnx)?;
-        let Some(base) = &self.base else { return Ok(()) };
+        let Some(base) = &self.base else {
+            return Ok(());
+        };
         let strategy = format!(
             "# Plays the policy of the training {}.\nbase = {:?}\n\n[behaviour.learned]\nmodel = \"best.onnx\"\n",
             printable::line(&trainer.training().name),
@@ -215,10 +266,18 @@ impl Files {
 /// Opens the table of times without what was written after the saved state; also returns the last
 /// time.
 fn open_times(path: &Path, samples: u64) -> Result<(File, f64)> {
-    let text = if samples > 0 && path.exists() { read(path)? } else { String::new() };
-    let is_kept = |line: &&str| line.ends_with('\n') && first_number(line).is_some_and(|at| at <= samples);
+    let text = if samples > 0 && path.exists() {
+        read(path)?
+    } else {
+        String::new()
+    };
+    let is_kept =
+        |line: &&str| line.ends_with('\n') && first_number(line).is_some_and(|at| at <= samples);
     let kept: String = text.split_inclusive('\n').filter(is_kept).collect();
-    let last = kept.lines().last().and_then(|line| line.split_once(',')?.1.parse().ok());
+    let last = kept
+        .lines()
+        .last()
+        .and_then(|line| line.split_once(',')?.1.parse().ok());
     output_file::write(path, "the training", format!("samples,elapsed_s\n{kept}"))?;
     let file = File::options().append(true).open(path);
     let file = file.with_context(|| format!("cannot write to {}", path.display()))?;
@@ -242,7 +301,8 @@ fn base_for(strategy: &Path) -> Option<PathBuf> {
 
 /// Reads a text file of the folder.
 fn read(path: &Path) -> Result<String> {
-    input_file::read_text(path, TABLE_BYTES_MAX).with_context(|| format!("cannot read {}", path.display()))
+    input_file::read_text(path, TABLE_BYTES_MAX)
+        .with_context(|| format!("cannot read {}", path.display()))
 }
 
 fn first_number(line: &str) -> Option<u64> {

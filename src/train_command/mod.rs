@@ -21,8 +21,8 @@ use std::time::Duration;
 
 /// Size limit of a state, bytes: networks of the largest size, and a league of them.
 const STATE_BYTES_MAX: u64 = 4 << 30;
-/// Shortest time between two saved states. SIGTERM does not wait for the end of an update, and loses
-/// what came after the last one.
+/// Shortest time between two saved states. SIGTERM does not wait for the end of an update, and
+/// loses what came after the last one.
 const SAVE_EVERY: Duration = Duration::from_secs(10);
 /// Part of the time, at most, that saving takes: one in this many.
 const SAVE_SHARE: u32 = 20;
@@ -46,7 +46,8 @@ pub(crate) struct Args {
     seed: Option<u64>,
     #[command(flatten)]
     jobs: JobsArgs,
-    /// Records every Nth episode to games/ in the output folder, for `squall replay`; does not affect the policy
+    /// Records every Nth episode to games/ in the output folder, for `squall replay`; does not
+    /// affect the policy
     #[arg(long, value_name = "N", value_parser = whole::<NonZeroU64>(1, u64::MAX))]
     record_every: Option<NonZeroU64>,
 }
@@ -54,7 +55,10 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let mut training = scenario::load_file::<Training>(&args.training)?;
     training.seed = args.seed.unwrap_or(training.seed);
-    let folder = args.out.clone().unwrap_or_else(|| Path::new("runs/train").join(&training.name));
+    let folder = args
+        .out
+        .clone()
+        .unwrap_or_else(|| Path::new("runs/train").join(&training.name));
     // Learning uses all threads, however few games there are.
     let jobs = args.jobs.threads(usize::MAX).get();
     let stop = stop::on_ctrl_c()?;
@@ -68,7 +72,10 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     });
     let mut trainer = begin(args, training, &folder, jobs)?;
     let mut files = Files::open(&folder, &base(&args.training, trainer.training()), &trainer)?;
-    let recordings = args.record_every.map(|every| record(&mut trainer, &folder, every)).transpose()?;
+    let recordings = args
+        .record_every
+        .map(|every| record(&mut trainer, &folder, every))
+        .transpose()?;
     let (done, all) = trainer.samples();
     let progress = Progress::of(all, "samples");
     progress.begin_at(done);
@@ -93,9 +100,17 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
             if samples > done {
                 files.keep_state(samples, &trainer.state())?;
             }
-            let next = if samples > 0 { "; --resume continues from there" } else { "" };
+            let next = if samples > 0 {
+                "; --resume continues from there"
+            } else {
+                ""
+            };
             screen::remark(&format!("stopped after {samples} samples{next}"));
-            return Ok(if is_enough { ExitCode::SUCCESS } else { stop::interrupted() });
+            return Ok(if is_enough {
+                ExitCode::SUCCESS
+            } else {
+                stop::interrupted()
+            });
         }
         let update = trainer.update()?;
         let _complete = writing.lock();
@@ -105,12 +120,16 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         }
         progress.set(update.samples);
         files.update(&trainer, &update)?;
-        recordings.iter().flat_map(|log| log.take_problems()).for_each(|problem| progress.print(&problem));
+        recordings
+            .iter()
+            .flat_map(|log| log.take_problems())
+            .for_each(|problem| progress.print(&problem));
         if let Some(evaluated) = &update.evaluated {
             files.models(&trainer, update.is_best)?;
             progress.print(&line(evaluated, update.is_best));
             let how = play_command(&trainer, &folder).filter(|_| update.is_best);
-            how.iter().for_each(|how| progress.print(&format!("           {how}")));
+            how.iter()
+                .for_each(|how| progress.print(&format!("           {how}")));
         }
         let began = clock::now();
         if update.games_restart || began >= next_save {
@@ -124,8 +143,18 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 
 /// The strategy whose helm uses the policy in the last stage, or the one beside the training file.
 fn base(file: &Path, training: &Training) -> PathBuf {
-    let helm = training.stage.iter().rev().find_map(|stage| stage.helm.clone());
-    let beside = || file.parent().unwrap_or(Path::new("")).join("..").join(Kind::STRATEGY.folder()).join("policy.toml");
+    let helm = training
+        .stage
+        .iter()
+        .rev()
+        .find_map(|stage| stage.helm.clone());
+    let beside = || {
+        file.parent()
+            .unwrap_or(Path::new(""))
+            .join("..")
+            .join(Kind::STRATEGY.folder())
+            .join("policy.toml")
+    };
     helm.unwrap_or_else(beside)
 }
 
@@ -133,7 +162,12 @@ fn begin(args: &Args, training: Training, folder: &Path, jobs: usize) -> Result<
     let path = Files::state(folder);
     if args.resume {
         let state = primitives::input_file::read(&path, STATE_BYTES_MAX);
-        let state = state.with_context(|| format!("cannot read {}, from which --resume continues", path.display()))?;
+        let state = state.with_context(|| {
+            format!(
+                "cannot read {}, from which --resume continues",
+                path.display()
+            )
+        })?;
         return Trainer::resume(training, jobs, &state).with_context(|| path.display().to_string());
     }
     if path.exists() {
@@ -149,10 +183,19 @@ fn begin(args: &Args, training: Training, folder: &Path, jobs: usize) -> Result<
 fn record(trainer: &mut Trainer, folder: &Path, every: NonZeroU64) -> Result<Arc<RecordingLog>> {
     let folder = Files::games(folder);
     let log = Arc::<RecordingLog>::default();
-    check_recording_folder(&folder).with_context(|| format!("cannot record to {}", folder.display()))?;
+    check_recording_folder(&folder)
+        .with_context(|| format!("cannot record to {}", folder.display()))?;
     let names = RecordingNames::ByNumber;
     let commit = env!("SQUALL_COMMIT").to_owned();
-    trainer.watch(Recordings { folder, names, every: every.get(), commit }.watches(Arc::clone(&log)))?;
+    trainer.watch(
+        Recordings {
+            folder,
+            names,
+            every: every.get(),
+            commit,
+        }
+        .watches(Arc::clone(&log)),
+    )?;
     Ok(log)
 }
 
@@ -161,7 +204,10 @@ fn line(evaluated: &Evaluated, is_best: bool) -> String {
     let against = |(name, played): &(String, Played)| {
         let [won, drawn, lost] = played.results;
         let [own, theirs] = played.points;
-        format!("{name} {won}-{drawn}-{lost}, {own:.1} : {theirs:.1}, out {:.1}", played.left_field)
+        format!(
+            "{name} {won}-{drawn}-{lost}, {own:.1} : {theirs:.1}, out {:.1}",
+            played.left_field
+        )
     };
     let all: Vec<String> = evaluated.played.iter().map(against).collect();
     let best = if is_best { "  best" } else { "" };
@@ -177,14 +223,27 @@ fn line(evaluated: &Evaluated, is_best: bool) -> String {
 fn play_command(trainer: &Trainer, folder: &Path) -> Option<String> {
     let strategy = folder.join("best.toml");
     let stage = trainer.training().stage.last()?;
-    let sea = stage.sea.as_ref().map_or(String::new(), |sea| format!(" --sea {}", argument_for(sea)));
-    let command = || format!("squall run {}{sea} --blue {}", argument_for(&stage.game), argument_for(&strategy));
+    let sea = stage
+        .sea
+        .as_ref()
+        .map_or(String::new(), |sea| format!(" --sea {}", argument_for(sea)));
+    let command = || {
+        format!(
+            "squall run {}{sea} --blue {}",
+            argument_for(&stage.game),
+            argument_for(&strategy)
+        )
+    };
     strategy.exists().then(command)
 }
 
 fn finish(trainer: &Trainer, folder: &Path) -> Result<ExitCode> {
-    let Some(best) = trainer.best() else { return Ok(ExitCode::SUCCESS) };
-    let digest = onnx::Network::read(&best.onnx).context("cannot export the policy")?.digest();
+    let Some(best) = trainer.best() else {
+        return Ok(ExitCode::SUCCESS);
+    };
+    let digest = onnx::Network::read(&best.onnx)
+        .context("cannot export the policy")?
+        .digest();
     let samples = best.samples;
     let won = 100.0 * best.won;
     let mut text = format!("best after {samples} samples: won {won:.0} %, digest {digest:032x}\n");
@@ -192,6 +251,10 @@ fn finish(trainer: &Trainer, folder: &Path) -> Result<ExitCode> {
         text += &format!("play it with: {how}\n");
     }
     screen::print(&text);
-    output_file::write(&folder.join("digest.txt"), "the digest", format!("{digest:032x}\n"))?;
+    output_file::write(
+        &folder.join("digest.txt"),
+        "the digest",
+        format!("{digest:032x}\n"),
+    )?;
     Ok(ExitCode::SUCCESS)
 }

@@ -16,7 +16,10 @@ const THERE: &str = "SQUALL_TEST_OTHER_MACHINE";
 /// Runs another of these tests in a process on the second machine.
 fn on_the_other(hosts: &Hosts, test: &str) -> Process {
     let mut command = hosts.command(1, std::env::current_exe().expect("this is a process"));
-    command.args(["--exact", "--ignored"]).arg(format!("another_machine::{test}")).env(THERE, "");
+    command
+        .args(["--exact", "--ignored"])
+        .arg(format!("another_machine::{test}"))
+        .env(THERE, "");
     Process::start(command)
 }
 
@@ -26,17 +29,28 @@ fn game_there() -> Option<Target> {
         eprintln!("skipped: a process on another machine, which a test starts there");
         return None;
     }
-    Some(Target { endpoint: ENDPOINT.to_owned(), game: GameName::new(GAME).expect("a name") })
+    Some(Target {
+        endpoint: ENDPOINT.to_owned(),
+        game: GameName::new(GAME).expect("a name"),
+    })
 }
 
 #[test]
 fn connections_whose_other_end_has_vanished_keep_nobody_out() {
     const COUNT: usize = 30;
-    let Some(hosts) = Hosts::connect() else { return };
+    let Some(hosts) = Hosts::connect() else {
+        return;
+    };
     let sim = hosts.sim("patient", &["--join-s", "600"]);
-    let descriptors = || std::fs::read_dir(format!("/proc/{}/fd", sim.process.0.id())).expect("it runs").count();
+    let descriptors = || {
+        std::fs::read_dir(format!("/proc/{}/fd", sim.process.0.id()))
+            .expect("it runs")
+            .count()
+    };
     let before = descriptors();
-    let connect = format!("for i in $(seq {COUNT}); do exec {{fd}}<>/dev/tcp/10.77.0.1/7447; done; sleep 600");
+    let connect = format!(
+        "for i in $(seq {COUNT}); do exec {{fd}}<>/dev/tcp/10.77.0.1/7447; done; sleep 600"
+    );
     let mut command = hosts.command(1, "bash");
     command.args(["-c", &connect]);
     let _vanished = Process::start(command);
@@ -47,23 +61,40 @@ fn connections_whose_other_end_has_vanished_keep_nobody_out() {
     let start = Instant::now();
     let _agents = hosts.agent(0, &FOUR);
     sim.wait_for_kind("started");
-    assert!(start.elapsed() < Duration::from_secs(20), "{:?}", start.elapsed());
+    assert!(
+        start.elapsed() < Duration::from_secs(20),
+        "{:?}",
+        start.elapsed()
+    );
     sim.stop();
 }
 
 #[test]
 fn a_stranger_on_another_machine_changes_no_game_and_hears_no_orders() {
-    let Some(hosts) = Hosts::connect() else { return };
+    let Some(hosts) = Hosts::connect() else {
+        return;
+    };
     let sim = hosts.sim("pav01_600s", &["--speed", SPEED]);
     let agents = vec![hosts.agent(0, &FOUR[..2]), hosts.agent(1, &FOUR[2..])];
     sim.wait_for_kind("started");
-    let mut game = DisturbedGame { sim, agents, operator: None };
+    let mut game = DisturbedGame {
+        sim,
+        agents,
+        operator: None,
+    };
     let mut stranger = on_the_other(&hosts, "what_the_stranger_does");
     while stranger.0.try_wait().expect("it can be asked").is_none() {
         game.check();
     }
-    assert!(stranger.wait().success(), "the stranger was let do something");
-    assert!(on_the_other(&hosts, "what_the_operator_does").wait().success());
+    assert!(
+        stranger.wait().success(),
+        "the stranger was let do something"
+    );
+    assert!(
+        on_the_other(&hosts, "what_the_operator_does")
+            .wait()
+            .success()
+    );
     game.ends_as_if_undisturbed();
 }
 
@@ -80,14 +111,26 @@ fn what_the_stranger_does() {
     std::thread::sleep(Duration::from_millis(500));
     assert!(open.keys().len() > 20, "what everybody may hear is heard");
     let is_open = |key: &String| *key == target.topic("frame");
-    assert_eq!(secret.iter().flat_map(|heard| heard.keys()).find(|key| !is_open(key)), None);
+    assert_eq!(
+        secret
+            .iter()
+            .flat_map(|heard| heard.keys())
+            .find(|key| !is_open(key)),
+        None
+    );
 }
 
 #[test]
 #[ignore = "a process on another machine, which the test above starts there"]
 fn what_the_operator_does() {
-    let Some(Target { endpoint, game }) = game_there() else { return };
-    let net = Net { connect: vec![endpoint], token: Some(token()), ..Net::default() };
+    let Some(Target { endpoint, game }) = game_there() else {
+        return;
+    };
+    let net = Net {
+        connect: vec![endpoint],
+        token: Some(token()),
+        ..Net::default()
+    };
     let operator = Bus::leaf(&net).expect("the port is open");
     bus::control(&operator, &game, Control::Speed(None)).expect("it may");
 }

@@ -20,19 +20,35 @@ const MEMORY_MAX_KB: u64 = 400_000;
 pub(crate) type Attack = (&'static str, fn(&Target) -> Box<dyn Any>);
 
 pub(crate) const ATTACKS: [Attack; 9] = [
-    ("messages of 64 MB, and many of a size that is read", big_messages),
+    (
+        "messages of 64 MB, and many of a size that is read",
+        big_messages,
+    ),
     ("a million keys", many_keys),
     ("nested JSON", nested_json),
     ("long keys", long_keys),
-    ("thousands of declarations of one session", many_declarations),
+    (
+        "thousands of declarations of one session",
+        many_declarations,
+    ),
     ("a node that passes for a router", router),
     ("connections that say nothing", silent_connections),
-    ("connections that stop half-way through the handshake", half_handshakes),
+    (
+        "connections that stop half-way through the handshake",
+        half_handshakes,
+    ),
     ("as many sessions as there is room for", sessions),
 ];
 
 /// Topics that anybody may publish on, and topics that only the sim receives.
-const PUBLISHED: [&str; 6] = ["control", "order/x", "say/blue", "policy/blue_one", "nav/blue_one", "status/blue_one"];
+const PUBLISHED: [&str; 6] = [
+    "control",
+    "order/x",
+    "say/blue",
+    "policy/blue_one",
+    "nav/blue_one",
+    "status/blue_one",
+];
 const ASKED: [&str; 5] = ["control", "join/agent/blue", "scenario", "events", "water"];
 
 fn big_messages(target: &Target) -> Box<dyn Any> {
@@ -62,11 +78,20 @@ fn many_keys(target: &Target) -> Box<dyn Any> {
 
 fn nested_json(target: &Target) -> Box<dyn Any> {
     let intruder = Intruder::of(target);
-    for nested in ["[", "{\"body\":", "{\"body\":{\"vehicles\":[[", "{\"answer\":"] {
+    for nested in [
+        "[",
+        "{\"body\":",
+        "{\"body\":{\"vehicles\":[[",
+        "{\"answer\":",
+    ] {
         let payload = nested.repeat(60_000 / nested.len());
         for _ in 0..200 {
-            PUBLISHED.iter().for_each(|topic| intruder.publish(topic, payload.as_bytes().to_vec()));
-            ASKED.iter().for_each(|topic| intruder.ask_in_vain(topic, payload.as_bytes().to_vec()));
+            PUBLISHED
+                .iter()
+                .for_each(|topic| intruder.publish(topic, payload.as_bytes().to_vec()));
+            ASKED
+                .iter()
+                .for_each(|topic| intruder.ask_in_vain(topic, payload.as_bytes().to_vec()));
         }
     }
     Box::new(intruder)
@@ -78,28 +103,73 @@ fn long_keys(target: &Target) -> Box<dyn Any> {
     let intruder = Intruder::of(target);
     let listener = Intruder::of(target);
     let mut kept: Vec<Box<dyn Any>> = Vec::new();
-    for topic in ["say", "policy", "status", "order", "helm", "operate", "join", "alive/agent"] {
+    for topic in [
+        "say",
+        "policy",
+        "status",
+        "order",
+        "helm",
+        "operate",
+        "join",
+        "alive/agent",
+    ] {
         for pattern in ["*", "*/*", "**"].map(|rest| listener.topic(&format!("{topic}/{rest}"))) {
             kept.push(Box::new(listener.listen_anywhere(&pattern)));
-            kept.push(Box::new(listener.session.declare_queryable(pattern.clone()).callback(drop).wait().ok()));
+            kept.push(Box::new(
+                listener
+                    .session
+                    .declare_queryable(pattern.clone())
+                    .callback(drop)
+                    .wait()
+                    .ok(),
+            ));
             let liveliness = listener.session.liveliness();
-            kept.push(Box::new(liveliness.declare_subscriber(pattern).callback(drop).wait().ok()));
+            kept.push(Box::new(
+                liveliness
+                    .declare_subscriber(pattern)
+                    .callback(drop)
+                    .wait()
+                    .ok(),
+            ));
         }
         // From here on the hub refers to this key by a number.
         let known = intruder.topic(&format!("{topic}/{}", "k".repeat(40_000)));
-        kept.push(Box::new(intruder.session.declare_subscriber(known).callback(drop).wait().ok()));
+        kept.push(Box::new(
+            intruder
+                .session
+                .declare_subscriber(known)
+                .callback(drop)
+                .wait()
+                .ok(),
+        ));
     }
     // Another thread sends the declarations.
     std::thread::sleep(Duration::from_millis(500));
-    for topic in ["say", "policy", "status", "order", "helm", "operate", "join"] {
+    for topic in [
+        "say", "policy", "status", "order", "helm", "operate", "join",
+    ] {
         for rest in [10, 25_000, 40_000] {
             let key = format!("{topic}/{}/{}", "k".repeat(40_000), "l".repeat(rest));
             intruder.publish(&key, "x");
             intruder.ask_in_vain(&key, "{}");
         }
         let key = format!("{topic}/{}", "m".repeat(65_000));
-        kept.push(Box::new(intruder.session.declare_subscriber(intruder.topic(&key)).callback(drop).wait().ok()));
-        kept.push(Box::new(intruder.session.liveliness().declare_token(intruder.topic(&key)).wait().ok()));
+        kept.push(Box::new(
+            intruder
+                .session
+                .declare_subscriber(intruder.topic(&key))
+                .callback(drop)
+                .wait()
+                .ok(),
+        ));
+        kept.push(Box::new(
+            intruder
+                .session
+                .liveliness()
+                .declare_token(intruder.topic(&key))
+                .wait()
+                .ok(),
+        ));
     }
     kept.push(Box::new((intruder, listener)));
     Box::new(kept)
@@ -112,13 +182,29 @@ fn many_declarations(target: &Target) -> Box<dyn Any> {
     for i in 0..500 {
         for topic in ["say", "picture", "policy", "alive/agent"] {
             let key = intruder.topic(&format!("{topic}/x{i}"));
-            kept.push(Box::new(session.declare_subscriber(key.clone()).callback(drop).wait().ok()));
-            kept.push(Box::new(session.liveliness().declare_token(key).wait().ok()));
+            kept.push(Box::new(
+                session
+                    .declare_subscriber(key.clone())
+                    .callback(drop)
+                    .wait()
+                    .ok(),
+            ));
+            kept.push(Box::new(
+                session.liveliness().declare_token(key).wait().ok(),
+            ));
         }
         let helm = intruder.topic(&format!("helm/x{i}"));
-        kept.push(Box::new(session.declare_queryable(helm).callback(drop).wait().ok()));
+        kept.push(Box::new(
+            session.declare_queryable(helm).callback(drop).wait().ok(),
+        ));
         // Duplicate subscriptions are allowed.
-        kept.push(Box::new(session.declare_subscriber(intruder.topic("frame")).callback(drop).wait().ok()));
+        kept.push(Box::new(
+            session
+                .declare_subscriber(intruder.topic("frame"))
+                .callback(drop)
+                .wait()
+                .ok(),
+        ));
     }
     // Drop the session last: it keeps the others open.
     kept.push(Box::new(intruder));
@@ -128,11 +214,27 @@ fn many_declarations(target: &Target) -> Box<dyn Any> {
 /// A router receives announcements that clients must request, and may speak for other nodes.
 fn router(target: &Target) -> Box<dyn Any> {
     let intruder = target.open("router").expect("the port is open");
-    let answers =
-        ["scenario", "join/**", "join", "events", "water", "control", "**"].map(|topic| intruder.answer(topic));
-    let token = intruder.session.liveliness().declare_token(intruder.topic("alive/sim/zz")).wait().ok();
+    let answers = [
+        "scenario", "join/**", "join", "events", "water", "control", "**",
+    ]
+    .map(|topic| intruder.answer(topic));
+    let token = intruder
+        .session
+        .liveliness()
+        .declare_token(intruder.topic("alive/sim/zz"))
+        .wait()
+        .ok();
     let heard = ["**", "order/*", "nav/*"].map(|topic| intruder.listen(topic));
-    for topic in ["frame", "picture/blue", "picture/red", "picture/*", "**", "run", "released", "external/blue_one"] {
+    for topic in [
+        "frame",
+        "picture/blue",
+        "picture/red",
+        "picture/*",
+        "**",
+        "run",
+        "released",
+        "external/blue_one",
+    ] {
         (0..100).for_each(|_| intruder.publish(topic, "forged"));
     }
     Box::new((answers, token, heard, intruder))
@@ -176,7 +278,13 @@ fn sessions(target: &Target) -> Box<dyn Any> {
 /// A value of `/proc/…/status`, kB; `None` on systems without that file.
 fn status_kb(process: &Process, name: &str) -> Option<u64> {
     let status = std::fs::read_to_string(format!("/proc/{}/status", process.0.id())).ok()?;
-    status.lines().find_map(|line| line.strip_prefix(name)?.split_whitespace().nth(1)?.parse().ok())
+    status.lines().find_map(|line| {
+        line.strip_prefix(name)?
+            .split_whitespace()
+            .nth(1)?
+            .parse()
+            .ok()
+    })
 }
 
 #[test]
@@ -188,7 +296,11 @@ fn no_attack_changes_the_game_or_exhausts_memory() {
         game.check();
         drop(kept);
         let memory = status_kb(&game.sim.process, "VmHWM");
-        eprintln!("{what}: {:.1?}, at most {} kB so far", start.elapsed(), memory.unwrap_or_default());
+        eprintln!(
+            "{what}: {:.1?}, at most {} kB so far",
+            start.elapsed(),
+            memory.unwrap_or_default()
+        );
         assert!(memory.unwrap_or_default() < MEMORY_MAX_KB, "{what}");
     }
     game.ends_as_if_undisturbed();
@@ -209,7 +321,9 @@ fn an_e_stop_gets_through_every_attack() {
         eprintln!("{what}: boats are stopped after {took:.1?}");
         assert!(took < Duration::from_secs(1), "{what}: {took:?}");
         drop(kept);
-        wait_until("it is released", || bus::control(&operator, &sim.name(), Control::Release).is_ok());
+        wait_until("it is released", || {
+            bus::control(&operator, &sim.name(), Control::Release).is_ok()
+        });
         sim.wait_for_event("released", Value::Null);
     }
     sim.stop();
@@ -219,10 +333,16 @@ fn an_e_stop_gets_through_every_attack() {
 fn crowding_the_port_keeps_no_client_out_and_does_not_disturb_the_game() {
     for files in FILES {
         let endpoint = free_endpoint();
-        let sim = Sim::start_with(squall_with_files(files), "long", &["--listen", &endpoint, "--pace", "20x"]);
+        let sim = Sim::start_with(
+            squall_with_files(files),
+            "long",
+            &["--listen", &endpoint, "--pace", "20x"],
+        );
         let agents = FOUR.map(|name| sim.agent(&[name]));
         let operator = sim.bus();
-        is_withstood(sim, agents.into(), files, &operator, &|sim| Target::of(sim).open("client").is_some());
+        is_withstood(sim, agents.into(), files, &operator, &|sim| {
+            Target::of(sim).open("client").is_some()
+        });
     }
 }
 
@@ -240,5 +360,7 @@ fn who_waits_for_room_gets_in_when_there_is_some() {
     assert!(start.elapsed() < LIMIT / 2, "{:?}", start.elapsed());
     sim.play_on(1.0);
     sim.stop();
-    agents.iter_mut().for_each(|agent| assert!(agent.wait().success()));
+    agents
+        .iter_mut()
+        .for_each(|agent| assert!(agent.wait().success()));
 }

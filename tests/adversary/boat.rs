@@ -26,7 +26,10 @@ impl Boat {
         let link = format!("tcp://{}", listener.local_addr().expect("bound"));
         let (sender, commands) = channel();
         std::thread::spawn(move || {
-            listener.incoming().map_while(Result::ok).for_each(|stream| serve(stream, datum, &sender));
+            listener
+                .incoming()
+                .map_while(Result::ok)
+                .for_each(|stream| serve(stream, datum, &sender));
         });
         Boat { link, commands }
     }
@@ -36,7 +39,10 @@ impl Boat {
         let start = Instant::now();
         loop {
             let left = limit.saturating_sub(start.elapsed());
-            let (at, mode) = self.commands.recv_timeout(left).expect("the boat is sent it in time");
+            let (at, mode) = self
+                .commands
+                .recv_timeout(left)
+                .expect("the boat is sent it in time");
             if mode == *wanted {
                 return at;
             }
@@ -57,7 +63,11 @@ fn serve(mut stream: TcpStream, datum: LatLon, commands: &Sender<(Instant, Mode)
     };
     let mut emulator = Emulator::new(plan);
     let mut framer = Framer::new();
-    let nav = Nav { north_m: 40.0, east_m: 80.0, ..Nav::default() };
+    let nav = Nav {
+        north_m: 40.0,
+        east_m: 80.0,
+        ..Nav::default()
+    };
     let start = Instant::now();
     let mut due = Instant::now();
     let mut bytes = [0; 4096];
@@ -66,14 +76,22 @@ fn serve(mut stream: TcpStream, datum: LatLon, commands: &Sender<(Instant, Mode)
         let now = SimTime::from_s(start.elapsed().as_secs_f64());
         if Instant::now() >= due {
             due += TELEMETRY_EVERY;
-            emulator.observe(now, &OwnBoat { fix_ns: now, ..OwnBoat::new(VehicleId(0), nav) });
+            emulator.observe(
+                now,
+                &OwnBoat {
+                    fix_ns: now,
+                    ..OwnBoat::new(VehicleId(0), nav)
+                },
+            );
             let mut burst = Vec::new();
             emulator.telemetry(now, &mut burst);
             if stream.write_all(&burst).is_err() {
                 return;
             }
         }
-        let wait = due.saturating_duration_since(Instant::now()).max(Duration::from_millis(1));
+        let wait = due
+            .saturating_duration_since(Instant::now())
+            .max(Duration::from_millis(1));
         stream.set_read_timeout(Some(wait)).expect("a socket");
         let read = match stream.read(&mut bytes) {
             Ok(0) => return,

@@ -22,8 +22,18 @@ const DAY: Duration = Duration::from_secs(24 * 3600);
 fn keys(valid: Duration) -> TempDir {
     bus::restart_for_keys().expect("the tests start again");
     let folder = temporary();
-    let named = ["sim", "team-blue", "team-red", "gateway-red_one", "observer", "operator"];
-    let identities: Vec<Identity> = named.iter().map(|name| name.parse().expect("an identity")).collect();
+    let named = [
+        "sim",
+        "team-blue",
+        "team-red",
+        "gateway-red_one",
+        "observer",
+        "operator",
+    ];
+    let identities: Vec<Identity> = named
+        .iter()
+        .map(|name| name.parse().expect("an identity"))
+        .collect();
     make(folder.path(), &identities, &["127.0.0.1".to_owned()], valid).expect("keys");
     folder
 }
@@ -38,13 +48,31 @@ fn sim_by(mut program: Command, keys: &TempDir, scenario: &str, args: &[&str]) -
     program.env_remove(TOKEN_VARIABLE);
     let endpoint = free_endpoint();
     let folder = keys.path().join("sim").display().to_string();
-    Sim::start_with(program, scenario, &[&["--listen", &endpoint, "--keys", &folder], args].concat())
+    Sim::start_with(
+        program,
+        scenario,
+        &[&["--listen", &endpoint, "--keys", &folder], args].concat(),
+    )
 }
 
 fn agent(endpoint: &str, sim: &Sim, keys: &Path, vehicles: &[&str]) -> Process {
-    let args = ["agent", "--connect", endpoint, "--game", &sim.game, "--wait-s", "10", "--vehicle"];
+    let args = [
+        "agent",
+        "--connect",
+        endpoint,
+        "--game",
+        &sim.game,
+        "--wait-s",
+        "10",
+        "--vehicle",
+    ];
     let mut command = squall(&[&args[..], vehicles].concat());
-    command.env_remove(TOKEN_VARIABLE).arg("--keys").arg(keys).stdout(Stdio::null()).stderr(Stdio::piped());
+    command
+        .env_remove(TOKEN_VARIABLE)
+        .arg("--keys")
+        .arg(keys)
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped());
     Process::start(command)
 }
 
@@ -57,7 +85,11 @@ fn agents(sim: &Sim, keys: &TempDir) -> Vec<Process> {
 /// Opens a session of our own program with these keys.
 fn node(sim: &Sim, keys: &TempDir, name: &str) -> Result<Bus, BusError> {
     let bundle = Arc::new(Bundle::load(&keys.path().join(name)).expect("good keys"));
-    Bus::leaf(&Net { connect: vec![sim.endpoint.clone()], keys: Some(bundle), ..Net::default() })
+    Bus::leaf(&Net {
+        connect: vec![sim.endpoint.clone()],
+        keys: Some(bundle),
+        ..Net::default()
+    })
 }
 
 /// zenoh's TLS settings: the trusted authority and the node's own certificate.
@@ -76,12 +108,15 @@ fn tls(trusted: &Path, shown: Option<&Path>) -> Value {
 /// An intruder that holds valid keys of this role.
 fn traitor(sim: &Sim, keys: &TempDir, name: &str) -> Intruder {
     let folder = keys.path().join(name);
-    Target::of(sim).open_with("client", &tls(&folder, Some(&folder))).expect("its keys are good")
+    Target::of(sim)
+        .open_with("client", &tls(&folder, Some(&folder)))
+        .expect("its keys are good")
 }
 
 /// A request to join with these vehicles, without a proof.
 fn join_request(role: &str, vehicles: &Value) -> Vec<u8> {
-    let body = json!({ "version": primitives::VERSION, "role": role, "node": "x", "vehicles": vehicles });
+    let body =
+        json!({ "version": primitives::VERSION, "role": role, "node": "x", "vehicles": vehicles });
     json!({ "body": body }).to_string().into_bytes()
 }
 
@@ -92,16 +127,43 @@ fn a_client_without_a_certificate_gets_no_session() {
     let sim = sim(&own, "patient", &["--join-s", "600"]);
     let target = Target::of(&sim);
     let [trusted, forged] = [&own, &foreign].map(|keys| keys.path().join("operator"));
-    assert!(target.open_with("client", &tls(&trusted, Some(&trusted))).is_some(), "good keys");
+    assert!(
+        target
+            .open_with("client", &tls(&trusted, Some(&trusted)))
+            .is_some(),
+        "good keys"
+    );
     for mode in ["client", "router"] {
-        assert!(target.open_with(mode, &tls(&trusted, None)).is_none(), "no certificate");
-        assert!(target.open_with(mode, &tls(&trusted, Some(&forged))).is_none(), "of another authority");
+        assert!(
+            target.open_with(mode, &tls(&trusted, None)).is_none(),
+            "no certificate"
+        );
+        assert!(
+            target
+                .open_with(mode, &tls(&trusted, Some(&forged)))
+                .is_none(),
+            "of another authority"
+        );
         // The sim's own certificate is valid for serving only.
-        assert!(target.open_with(mode, &tls(&trusted, Some(&own.path().join("sim")))).is_none(), "the sim's");
-        let plain = Target { endpoint: target.endpoint.replace("tls/", "tcp/"), ..target.clone() };
+        assert!(
+            target
+                .open_with(mode, &tls(&trusted, Some(&own.path().join("sim"))))
+                .is_none(),
+            "the sim's"
+        );
+        let plain = Target {
+            endpoint: target.endpoint.replace("tls/", "tcp/"),
+            ..target.clone()
+        };
         assert!(plain.open(mode).is_none(), "without TLS");
     }
-    let refused = agent(&sim.endpoint, &sim, &foreign.path().join("team-blue"), &FOUR[..1]).refusal();
+    let refused = agent(
+        &sim.endpoint,
+        &sim,
+        &foreign.path().join("team-blue"),
+        &FOUR[..1],
+    )
+    .refusal();
     assert!(refused.contains("another authority"), "{refused}");
     let elsewhere = sim.endpoint.replace("127.0.0.1", "localhost");
     let refused = agent(&elsewhere, &sim, &own.path().join("team-blue"), &FOUR[..1]).refusal();
@@ -116,7 +178,9 @@ fn who_crowds_the_port_keeps_nobody_with_keys_out_and_disturbs_nobody() {
         let sim = sim_by(squall_with_files(files), &own, "long", &["--pace", "20x"]);
         let agents = agents(&sim, &own);
         let operator = node(&sim, &own, "operator").expect("good keys");
-        is_withstood(sim, agents, files, &operator, &|sim| node(sim, &own, "observer").is_ok());
+        is_withstood(sim, agents, files, &operator, &|sim| {
+            node(sim, &own, "observer").is_ok()
+        });
     }
 }
 
@@ -131,9 +195,17 @@ fn an_expired_certificate_is_rejected_but_open_links_continue() {
     let _agents = agents(&sim, &own);
     sim.wait_for_kind("started");
     let late = Target::of(&sim);
-    assert!(late.open_with("client", &tls(&folder, Some(&folder))).is_some(), "they are good still");
+    assert!(
+        late.open_with("client", &tls(&folder, Some(&folder)))
+            .is_some(),
+        "they are good still"
+    );
     std::thread::sleep((valid + Duration::from_secs(1)).saturating_sub(start.elapsed()));
-    assert!(late.open_with("client", &tls(&folder, Some(&folder))).is_none(), "they have expired");
+    assert!(
+        late.open_with("client", &tls(&folder, Some(&folder)))
+            .is_none(),
+        "they have expired"
+    );
     let refused = agent(&sim.endpoint, &sim, &folder, &FOUR[..1]).refusal();
     assert!(refused.contains("expired"), "{refused}");
     sim.newest_progress();
@@ -151,31 +223,86 @@ fn a_red_agent_learns_nothing_about_blue_and_changes_nothing() {
     let red = traitor(&served, &own, "team-red");
     // Forge from a second session: a session receives its own publications.
     let forger = traitor(&served, &own, "team-red");
-    let mut game = DisturbedGame { sim: served, agents: playing, operator: Some(operator) };
-    let secret =
-        ["picture/blue", "say/blue", "policy/blue_one", "frame", "order/**", "**"].map(|word| red.listen(word));
+    let mut game = DisturbedGame {
+        sim: served,
+        agents: playing,
+        operator: Some(operator),
+    };
+    let secret = [
+        "picture/blue",
+        "say/blue",
+        "policy/blue_one",
+        "frame",
+        "order/**",
+        "**",
+    ]
+    .map(|word| red.listen(word));
     let open = red.listen("picture/red");
-    let forged = ["join/agent/blue", "scenario", "helm/blue_one", "operate/blue_one"].map(|topic| forger.answer(topic));
-    let words =
-        ["order/blue/x", "order/x", "say/blue", "policy/blue_one", "picture/blue", "frame", "run", "nav/blue_one"];
+    let forged = [
+        "join/agent/blue",
+        "scenario",
+        "helm/blue_one",
+        "operate/blue_one",
+    ]
+    .map(|topic| forger.answer(topic));
+    let words = [
+        "order/blue/x",
+        "order/x",
+        "say/blue",
+        "policy/blue_one",
+        "picture/blue",
+        "frame",
+        "run",
+        "nav/blue_one",
+    ];
     for _ in 0..200 {
         words.iter().for_each(|word| forger.publish(word, "forged"));
     }
     wait_until("its own pictures come", || open.keys().len() > 20);
     let not_its_own = |key: &String| *key != red.topic("picture/red");
-    assert_eq!(secret.iter().flat_map(|heard| heard.keys()).find(not_its_own), None);
-    for (place, vehicles) in [("join/agent/blue", json!(["blue_one"])), ("join/agent", json!(["blue_one", "red_one"]))]
-    {
-        assert_eq!(red.ask(place, join_request("agent", &vehicles)).len(), 0, "{place}");
+    assert_eq!(
+        secret
+            .iter()
+            .flat_map(|heard| heard.keys())
+            .find(not_its_own),
+        None
+    );
+    for (place, vehicles) in [
+        ("join/agent/blue", json!(["blue_one"])),
+        ("join/agent", json!(["blue_one", "red_one"])),
+    ] {
+        assert_eq!(
+            red.ask(place, join_request("agent", &vehicles)).len(),
+            0,
+            "{place}"
+        );
     }
     // Joining is allowed, but not for these boats.
-    for vehicles in [json!(["blue_one"]), json!(["red_one", "blue_one"]), json!([])] {
+    for vehicles in [
+        json!(["blue_one"]),
+        json!(["red_one", "blue_one"]),
+        json!([]),
+    ] {
         let answer = red.ask("join/agent/red", join_request("agent", &vehicles));
         let answer: Value = serde_json::from_slice(&answer[0]).expect("JSON");
-        assert!(answer["answer"]["Refused"].is_object(), "{vehicles}: {answer}");
+        assert!(
+            answer["answer"]["Refused"].is_object(),
+            "{vehicles}: {answer}"
+        );
     }
-    for topic in ["control", "events", "water", "helm/blue_one", "operate/blue_one"] {
-        assert_eq!(red.ask(topic, json!({ "body": "stop" }).to_string().into_bytes()).len(), 0, "{topic}");
+    for topic in [
+        "control",
+        "events",
+        "water",
+        "helm/blue_one",
+        "operate/blue_one",
+    ] {
+        assert_eq!(
+            red.ask(topic, json!({ "body": "stop" }).to_string().into_bytes())
+                .len(),
+            0,
+            "{topic}"
+        );
     }
     game.check();
     drop(forged);
@@ -192,11 +319,18 @@ fn an_observer_can_stop_boats_but_controls_nothing() {
     let traitor = traitor(&sim, &own, "observer");
     for control in ["pause", "stop", "release", "go_on", "step"] {
         let payload = json!({ "body": control }).to_string();
-        assert_eq!(traitor.ask("control", payload.clone().into_bytes()).len(), 0, "{control}");
+        assert_eq!(
+            traitor.ask("control", payload.clone().into_bytes()).len(),
+            0,
+            "{control}"
+        );
         traitor.publish("control", json!(control).to_string());
     }
     let refused = bus::control(&observer, &sim.name(), Control::Stop);
-    assert!(matches!(refused, Err(BusError::NotAllowed { .. })), "{refused:?}");
+    assert!(
+        matches!(refused, Err(BusError::NotAllowed { .. })),
+        "{refused:?}"
+    );
     sim.newest_progress();
     sim.play_on(5.0);
     bus::control(&observer, &sim.name(), Control::EStop).expect("it may");
@@ -221,9 +355,16 @@ fn an_agents_certificate_cannot_serve_a_game() {
         ("transport/link/tls", &tls(&blue, Some(&blue)).to_string()),
     ]);
     let session = zenoh::Wait::wait(zenoh::open(config)).expect("the port is free");
-    let shown = zenoh::Wait::wait(session.liveliness().declare_token(Target::of(&sim).topic("alive/sim/fake")));
+    let shown = zenoh::Wait::wait(
+        session
+            .liveliness()
+            .declare_token(Target::of(&sim).topic("alive/sim/fake")),
+    );
     let refused = agent(&endpoint, &sim, &own.path().join("team-red"), &FOUR[2..]).refusal();
-    assert!(refused.contains("the sim's certificate is refused"), "{refused}");
+    assert!(
+        refused.contains("the sim's certificate is refused"),
+        "{refused}"
+    );
     drop(shown);
     sim.stop();
 }
@@ -231,10 +372,19 @@ fn an_agents_certificate_cannot_serve_a_game() {
 #[test]
 fn a_gateway_can_report_only_for_its_own_boat() {
     let own = keys(DAY);
-    let sim = sim(&own, "mixed_60s", &["--pace", "realtime", "--join-s", "600"]);
+    let sim = sim(
+        &own,
+        "mixed_60s",
+        &["--pace", "realtime", "--join-s", "600"],
+    );
     let red_one = traitor(&sim, &own, "gateway-red_one");
     let request = |vehicle: &str| join_request("gateway", &json!([vehicle]));
-    assert_eq!(red_one.ask("join/gateway/blue_one", request("blue_one")).len(), 0);
+    assert_eq!(
+        red_one
+            .ask("join/gateway/blue_one", request("blue_one"))
+            .len(),
+        0
+    );
     assert_eq!(red_one.ask("join/gateway", request("blue_one")).len(), 0);
     let answer = |vehicle: &str| -> Value {
         let answer = red_one.ask("join/gateway/red_one", request(vehicle));
@@ -245,15 +395,26 @@ fn a_gateway_can_report_only_for_its_own_boat() {
     // Only a boat's own gateway can answer for it, whatever keys others hold; it receives no order
     // for another boat.
     let others = ["team-blue", "observer", "operator"].map(|name| traitor(&sim, &own, name));
-    let _forged: Vec<_> = others.iter().chain([&red_one]).map(|other| other.answer("operate/blue_one")).collect();
+    let _forged: Vec<_> = others
+        .iter()
+        .chain([&red_one])
+        .map(|other| other.answer("operate/blue_one"))
+        .collect();
     // A session receives its own publications, so listen with a second one.
     let listener = traitor(&sim, &own, "gateway-red_one");
     let orders = ["external/blue_one", "**"].map(|word| listener.listen(word));
     let operator = traitor(&sim, &own, "operator");
     assert_eq!(operator.ask("operate/blue_one", "{}").len(), 0);
-    let heard = ["status/blue_one", "status/red_one", "report/**"].map(|word| operator.listen(word));
+    let heard =
+        ["status/blue_one", "status/red_one", "report/**"].map(|word| operator.listen(word));
     for _ in 0..50 {
-        for word in ["status/blue_one", "nav/blue_one", "link/blue_one", "report/status/blue_one", "status/red_one"] {
+        for word in [
+            "status/blue_one",
+            "nav/blue_one",
+            "link/blue_one",
+            "report/status/blue_one",
+            "status/red_one",
+        ] {
             red_one.publish(word, "forged");
         }
     }

@@ -9,7 +9,9 @@ use crate::intruder::Intruder;
 use crate::support::{LIMIT, Process, Sim, stderr, temporary, token, wait_until};
 use bus::ask_gateway;
 use gateway::nmea::Mode;
-use messages::external::{ExternalOrder, FleetCommand, GatewayCommand, OperatorCommand, OperatorReply};
+use messages::external::{
+    ExternalOrder, FleetCommand, GatewayCommand, OperatorCommand, OperatorReply,
+};
 use messages::{Message, Order, Stamp, VehicleOrder};
 use primitives::{SimTime, VehicleId, codec};
 use std::net::SocketAddr;
@@ -31,17 +33,39 @@ pub(crate) struct Rig {
 
 impl Rig {
     pub(crate) fn start(sim_args: &[&str]) -> Rig {
-        let sim = Sim::start("real_attacker", &[&["--pace", "realtime"], sim_args].concat());
+        let sim = Sim::start(
+            "real_attacker",
+            &[&["--pace", "realtime"], sim_args].concat(),
+        );
         let boat = Boat::start(sim.info(&sim.bus()).scenario.field.plan.datum);
-        let control = SocketAddr::from(([127, 0, 0, 1], bus::free_port(false).expect("a free port")));
+        let control =
+            SocketAddr::from(([127, 0, 0, 1], bus::free_port(false).expect("a free port")));
         let address = control.to_string();
-        let args = ["gateway", "surveyor", "--vehicle", "blue_one", "--no-record", "--control-listen", &address];
+        let args = [
+            "gateway",
+            "surveyor",
+            "--vehicle",
+            "blue_one",
+            "--no-record",
+            "--control-listen",
+            &address,
+        ];
         let gateway = sim.quiet(&[&args[..], &["--link", &boat.link]].concat());
         let agents = sim.agent(&["blue_one", "red_one"]);
-        let rig = Rig { sim, _agents: agents, _gateway: gateway, boat, control };
+        let rig = Rig {
+            sim,
+            _agents: agents,
+            _gateway: gateway,
+            boat,
+            control,
+        };
         let is_up = |rig: &Rig| {
-            let status = GatewayCommand::Boat { name: "blue_one".to_owned(), command: OperatorCommand::Status };
-            ask_gateway(rig.control, None, &status, LIMIT).is_ok_and(|reply| reply.status.link == "up")
+            let status = GatewayCommand::Boat {
+                name: "blue_one".to_owned(),
+                command: OperatorCommand::Status,
+            };
+            ask_gateway(rig.control, None, &status, LIMIT)
+                .is_ok_and(|reply| reply.status.link == "up")
         };
         wait_until("the boat is there", || is_up(&rig));
         rig
@@ -52,13 +76,18 @@ impl Rig {
     }
 
     pub(crate) fn tell(&self, command: OperatorCommand) -> OperatorReply {
-        self.ask(GatewayCommand::Boat { name: "blue_one".to_owned(), command })
+        self.ask(GatewayCommand::Boat {
+            name: "blue_one".to_owned(),
+            command,
+        })
     }
 
     /// Arms the boat as soon as it is ready.
     pub(crate) fn arm(&self) {
         self.tell(OperatorCommand::Release);
-        wait_until("the boat is armed", || self.tell(OperatorCommand::Arm).refused.is_none());
+        wait_until("the boat is armed", || {
+            self.tell(OperatorCommand::Arm).refused.is_none()
+        });
     }
 
     /// Delegates station keeping to the boat. The gateway then sends nothing, so the next command
@@ -77,18 +106,32 @@ impl Rig {
         self.delegate();
         let asked = Instant::now();
         stop();
-        self.boat.next(&Mode::Standby, LIMIT).saturating_duration_since(asked)
+        self.boat
+            .next(&Mode::Standby, LIMIT)
+            .saturating_duration_since(asked)
     }
 
     /// Repeats the measurement, alternating between the boat and the fleet.
     fn measure(&self, what: &str) {
-        let tries: usize = std::env::var("SQUALL_TRIES").map_or(30, |text| text.parse().expect("a number"));
+        let tries: usize =
+            std::env::var("SQUALL_TRIES").map_or(30, |text| text.parse().expect("a number"));
         let one = |i: usize| {
-            let boat = GatewayCommand::Boat { name: "blue_one".to_owned(), command: OperatorCommand::EStop };
-            let command = if i.is_multiple_of(2) { boat } else { GatewayCommand::Fleet(FleetCommand::EStop) };
+            let boat = GatewayCommand::Boat {
+                name: "blue_one".to_owned(),
+                command: OperatorCommand::EStop,
+            };
+            let command = if i.is_multiple_of(2) {
+                boat
+            } else {
+                GatewayCommand::Fleet(FleetCommand::EStop)
+            };
             self.stops_after(|| {
-                let reply = ask_gateway(self.control, None, &command, LIMIT).expect("the gateway answers");
-                assert!(reply.refused.is_none() && reply.status.state.contains("e-stopped"), "{reply:?}");
+                let reply =
+                    ask_gateway(self.control, None, &command, LIMIT).expect("the gateway answers");
+                assert!(
+                    reply.refused.is_none() && reply.status.state.contains("e-stopped"),
+                    "{reply:?}"
+                );
             })
         };
         let mut took: Vec<Duration> = (0..tries).map(one).collect();
@@ -128,11 +171,22 @@ fn an_e_stop_is_on_the_wire_in_time_whatever_happens_to_the_game() {
     rig.measure("with a suspended sim");
     // As operators do, through this machine's registry: the game itself does not respond.
     rig.delegate();
-    for (vehicle, words) in [("blue_one", "an E-stop of this boat"), ("all", "of this boat and of the fleet")] {
-        let mut tell = crate::support::squall(&["gateway", "tell", vehicle, "estop", "--game", &rig.sim.game]);
+    for (vehicle, words) in [
+        ("blue_one", "an E-stop of this boat"),
+        ("all", "of this boat and of the fleet"),
+    ] {
+        let mut tell =
+            crate::support::squall(&["gateway", "tell", vehicle, "estop", "--game", &rig.sim.game]);
         let output = tell.output().expect("the program starts");
-        assert!(output.status.success() || vehicle == "all", "{}", stderr(&output));
-        assert!(String::from_utf8_lossy(&output.stdout).contains(words), "{output:?}");
+        assert!(
+            output.status.success() || vehicle == "all",
+            "{}",
+            stderr(&output)
+        );
+        assert!(
+            String::from_utf8_lossy(&output.stdout).contains(words),
+            "{output:?}"
+        );
     }
     rig.sim.process.signal("CONT");
     rig.sim.process.kill();
@@ -144,23 +198,39 @@ fn orders_ahead_of_the_game_are_refused_and_the_sims_orders_still_count() {
     // A hub without access control, unlike ours.
     let dir = temporary();
     let file = dir.path().join("open.json5");
-    let rules =
-        r#"{ access_control: { enabled: true, default_permission: "allow", rules: [], subjects: [], policies: [] } }"#;
+    let rules = r#"{ access_control: { enabled: true, default_permission: "allow", rules: [], subjects: [], policies: [] } }"#;
     std::fs::write(&file, rules).expect("a temporary file");
     let rig = Rig::start(&["--zenoh-config", &file.display().to_string()]);
     let count = |name: &str| {
         let counts = rig.tell(OperatorCommand::Status).status.counts;
-        counts.iter().find(|(counted, _)| counted == name).map_or(0, |(_, count)| *count)
+        counts
+            .iter()
+            .find(|(counted, _)| counted == name)
+            .map_or(0, |(_, count)| *count)
     };
     wait_until("orders come", || count("orders") > 5);
     let intruder = Intruder::at(&rig.sim);
     let hour = SimTime::from_s(3600.0);
-    for (stamp, given) in [(hour, hour), (SimTime::ZERO, hour), (SimTime(i64::MAX), SimTime(i64::MAX))] {
+    for (stamp, given) in [
+        (hour, hour),
+        (SimTime::ZERO, hour),
+        (SimTime(i64::MAX), SimTime(i64::MAX)),
+    ] {
         let before = count("orders ahead of the game");
         let forged = ExternalOrder {
-            stamp: Stamp { valid_ns: stamp, version: ExternalOrder::VERSION, seq: 1 },
+            stamp: Stamp {
+                valid_ns: stamp,
+                version: ExternalOrder::VERSION,
+                seq: 1,
+            },
             given_ns: given,
-            order: VehicleOrder::new(VehicleId(0), Order::Thrust { port: 1.0, starboard: 1.0 }),
+            order: VehicleOrder::new(
+                VehicleId(0),
+                Order::Thrust {
+                    port: 1.0,
+                    starboard: 1.0,
+                },
+            ),
         };
         wait_until("it is refused and counted", || {
             intruder.publish("external/blue_one", codec::encode(&forged));

@@ -31,10 +31,18 @@ const GAP: Duration = Duration::from_secs(2);
 type Crowd = (&'static str, fn(&Target, usize) -> Box<dyn Any>);
 
 const CROWDS: [Crowd; 4] = [
-    ("silent", |target, count| Box::new(target.connections(&[], count))),
-    ("half-way through a handshake", |target, count| Box::new(target.connections(&HALF_HELLO, count))),
-    ("with garbage", |target, count| Box::new(target.connections(&[b'x'; 5000], count))),
-    ("new ones all the time", |target, count| Box::new(stream(target, count))),
+    ("silent", |target, count| {
+        Box::new(target.connections(&[], count))
+    }),
+    ("half-way through a handshake", |target, count| {
+        Box::new(target.connections(&HALF_HELLO, count))
+    }),
+    ("with garbage", |target, count| {
+        Box::new(target.connections(&[b'x'; 5000], count))
+    }),
+    ("new ones all the time", |target, count| {
+        Box::new(stream(target, count))
+    }),
 ];
 
 /// Work that is repeated in its own thread until it is dropped.
@@ -52,14 +60,20 @@ impl Repeated {
                 work();
             }
         });
-        Repeated { is_over, thread: Some(thread) }
+        Repeated {
+            is_over,
+            thread: Some(thread),
+        }
     }
 }
 
 impl Drop for Repeated {
     fn drop(&mut self) {
         self.is_over.store(true, Ordering::Relaxed);
-        self.thread.take().into_iter().for_each(|thread| thread.join().expect("it does not panic"));
+        self.thread
+            .take()
+            .into_iter()
+            .for_each(|thread| thread.join().expect("it does not panic"));
     }
 }
 
@@ -82,9 +96,15 @@ fn stream(target: &Target, count: usize) -> Repeated {
 pub(crate) fn squall_with_files(files: usize) -> Command {
     let program = squall(&[]);
     let mut shell = Command::new("sh");
-    shell.args(["-c", &format!("ulimit -n {files}; exec \"$0\" \"$@\"")]).arg(program.get_program());
+    shell
+        .args(["-c", &format!("ulimit -n {files}; exec \"$0\" \"$@\"")])
+        .arg(program.get_program());
     shell.current_dir(env!("CARGO_MANIFEST_DIR"));
-    shell.envs(program.get_envs().filter_map(|(name, value)| Some((name, value?))));
+    shell.envs(
+        program
+            .get_envs()
+            .filter_map(|(name, value)| Some((name, value?))),
+    );
     shell
 }
 
@@ -98,9 +118,14 @@ struct Gaps {
 impl Gaps {
     fn note(&self) {
         let now = Instant::now();
-        let last = self.last.lock().expect("nobody panics with it").replace(now);
+        let last = self
+            .last
+            .lock()
+            .expect("nobody panics with it")
+            .replace(now);
         let gap = last.map_or(Duration::ZERO, |last| now - last);
-        self.longest_us.fetch_max(gap.as_micros() as u64, Ordering::Relaxed);
+        self.longest_us
+            .fetch_max(gap.as_micros() as u64, Ordering::Relaxed);
     }
 }
 
@@ -116,27 +141,44 @@ pub(crate) fn is_withstood(
     sim.wait_for_kind("started");
     let gaps = Arc::new(Gaps::default());
     let noted = Arc::clone(&gaps);
-    let _heard = operator.subscribe(topic::frame(&sim.name()), move |_| noted.note()).expect("it is in the game");
+    let _heard = operator
+        .subscribe(topic::frame(&sim.name()), move |_| noted.note())
+        .expect("it is in the game");
     for (what, crowd) in CROWDS {
         let kept = crowd(&Target::of(&sim), files * 3 / 2);
-        let during = wait_within(IN, &format!("somebody comes in beside connections {what}"), || comes_in(&sim));
+        let during = wait_within(
+            IN,
+            &format!("somebody comes in beside connections {what}"),
+            || comes_in(&sim),
+        );
         sim.newest_progress();
         let asked = Instant::now();
         bus::control(operator, &sim.name(), Control::EStop).expect("it is published");
         sim.wait_for_event("e_stopped", Value::Null);
         let stopped = asked.elapsed();
         drop(kept);
-        let after = wait_within(IN, &format!("somebody comes in after connections {what}"), || comes_in(&sim));
+        let after = wait_within(
+            IN,
+            &format!("somebody comes in after connections {what}"),
+            || comes_in(&sim),
+        );
         let gap = Duration::from_micros(gaps.longest_us.swap(0, Ordering::Relaxed));
         eprintln!(
             "{files} files, {what}: in after {during:.1?}, later after {after:.1?}; E-stop after {stopped:.1?}; no frame for {gap:.1?}"
         );
         assert!(stopped < Duration::from_secs(1) && gap < GAP, "{what}");
-        wait_until("it is released", || bus::control(operator, &sim.name(), Control::Release).is_ok());
+        wait_until("it is released", || {
+            bus::control(operator, &sim.name(), Control::Release).is_ok()
+        });
         sim.wait_for_event("released", Value::Null);
     }
     sim.play_on(1.0);
     all_stay(&mut agents);
     let done = sim.stop();
-    FOUR.iter().for_each(|name| assert_eq!(done["outcome"]["counts"]["boats"][name]["agents_lost"], 0, "{name}"));
+    FOUR.iter().for_each(|name| {
+        assert_eq!(
+            done["outcome"]["counts"]["boats"][name]["agents_lost"], 0,
+            "{name}"
+        )
+    });
 }

@@ -21,7 +21,10 @@ pub(crate) struct DisturbedGame {
 /// Checks that none of these agents has left its game.
 pub(crate) fn all_stay(agents: &mut [Process]) {
     for agent in agents {
-        assert!(agent.0.try_wait().expect("it can be asked").is_none(), "an agent has left the game");
+        assert!(
+            agent.0.try_wait().expect("it can be asked").is_none(),
+            "an agent has left the game"
+        );
     }
 }
 
@@ -29,7 +32,11 @@ impl DisturbedGame {
     pub(crate) fn start() -> DisturbedGame {
         let (sim, agents) = Sim::start_with_agents(SCENARIO, &["--speed", SPEED]);
         let operator = Some(sim.bus());
-        DisturbedGame { sim, agents, operator }
+        DisturbedGame {
+            sim,
+            agents,
+            operator,
+        }
     }
 
     /// Checks that no node has left and that the game goes on.
@@ -47,7 +54,9 @@ impl DisturbedGame {
         }
         let done = self.sim.wait_for_kind("done");
         assert_eq!(done["outcome"]["digest"], undisturbed, "{}", done["run"]);
-        self.agents.iter_mut().for_each(|agent| assert!(agent.wait().success(), "everybody leaves in peace"));
+        self.agents
+            .iter_mut()
+            .for_each(|agent| assert!(agent.wait().success(), "everybody leaves in peace"));
         done
     }
 }

@@ -12,32 +12,63 @@ use zenoh::{Session, Wait};
 struct FakeSim {
     _session: Session,
     asked: Arc<Mutex<Vec<String>>>,
-    _standing: (Vec<zenoh::query::Queryable<()>>, zenoh::liveliness::LivelinessToken),
+    _standing: (
+        Vec<zenoh::query::Queryable<()>>,
+        zenoh::liveliness::LivelinessToken,
+    ),
 }
 
 impl FakeSim {
     /// Imitates the true sim's game, and answers requests with its own challenge.
     fn open(endpoint: &str, true_sim: &Intruder) -> FakeSim {
-        let config = config(&[("mode", "\"router\""), ("listen/endpoints", &format!("[{endpoint:?}]"))]);
+        let config = config(&[
+            ("mode", "\"router\""),
+            ("listen/endpoints", &format!("[{endpoint:?}]")),
+        ]);
         let session = zenoh::open(config).wait().expect("the port is free");
         let asked = Arc::new(Mutex::new(Vec::new()));
-        let challenge = vec![json!({ "challenge": "00".repeat(16) }).to_string().into_bytes()];
+        let challenge = vec![
+            json!({ "challenge": "00".repeat(16) })
+                .to_string()
+                .into_bytes(),
+        ];
         let scenario = true_sim.ask("scenario", "");
-        let answers = [("scenario", scenario), ("join/agent/blue", challenge.clone()), ("control", challenge)];
+        let answers = [
+            ("scenario", scenario),
+            ("join/agent/blue", challenge.clone()),
+            ("control", challenge),
+        ];
         let queryables = answers.map(|(rest, answer)| {
             let noted = Arc::clone(&asked);
             let key = true_sim.topic(rest);
             let queryable = session.declare_queryable(key).callback(move |query| {
-                let payload = query.payload().map(|bytes| bytes.to_bytes().into_owned()).unwrap_or_default();
-                noted.lock().expect("nobody panics with it").push(String::from_utf8_lossy(&payload).into_owned());
+                let payload = query
+                    .payload()
+                    .map(|bytes| bytes.to_bytes().into_owned())
+                    .unwrap_or_default();
+                noted
+                    .lock()
+                    .expect("nobody panics with it")
+                    .push(String::from_utf8_lossy(&payload).into_owned());
                 let key = query.key_expr().clone();
-                drop(query.reply(key, answer.first().cloned().unwrap_or_default()).wait());
+                drop(
+                    query
+                        .reply(key, answer.first().cloned().unwrap_or_default())
+                        .wait(),
+                );
             });
             queryable.wait().expect("the session is open")
         });
-        let token = session.liveliness().declare_token(true_sim.topic("alive/sim/fake")).wait();
+        let token = session
+            .liveliness()
+            .declare_token(true_sim.topic("alive/sim/fake"))
+            .wait();
         let token = token.expect("the session is open");
-        FakeSim { _session: session, asked, _standing: (queryables.into(), token) }
+        FakeSim {
+            _session: session,
+            asked,
+            _standing: (queryables.into(), token),
+        }
     }
 
     fn asked(&self) -> Vec<String> {
@@ -51,18 +82,31 @@ fn nobody_passes_for_the_sim_or_receives_orders_and_navigation() {
     let mut game = DisturbedGame::start();
     let target = Target::of(&game.sim);
     let observer = game.sim.bus();
-    let watch = SimWatch::open(&observer, &game.sim.name(), Patience::of_player(LIMIT)).expect("a session");
+    let watch =
+        SimWatch::open(&observer, &game.sim.name(), Patience::of_player(LIMIT)).expect("a session");
     let intruders = ["client", "router"].map(|mode| target.open(mode).expect("the port is open"));
-    let topics = ["scenario", "join", "join/**", "events", "water", "control", "*", "**"];
-    let answers: Vec<_> = intruders.iter().flat_map(|intruder| topics.map(|topic| intruder.answer(topic))).collect();
+    let topics = [
+        "scenario", "join", "join/**", "events", "water", "control", "*", "**",
+    ];
+    let answers: Vec<_> = intruders
+        .iter()
+        .flat_map(|intruder| topics.map(|topic| intruder.answer(topic)))
+        .collect();
     // Beside the sim's own.
     let tokens = intruders.each_ref().map(|intruder| {
-        intruder.session.liveliness().declare_token(intruder.topic("alive/sim/zz")).wait().expect("a session")
+        intruder
+            .session
+            .liveliness()
+            .declare_token(intruder.topic("alive/sim/zz"))
+            .wait()
+            .expect("a session")
     });
     // A session receives its own publications, so another client listens too.
     let listener = Intruder::of(&target);
     let listen = |intruder: &Intruder| -> Vec<Heard> {
-        ["**", "*/*", "order/*", "order/**", "nav/*"].map(|topic| intruder.listen(topic)).into()
+        ["**", "*/*", "order/*", "order/**", "nav/*"]
+            .map(|topic| intruder.listen(topic))
+            .into()
     };
     let mut heard = listen(&listener);
     let heard_by_router = listen(&intruders[1]);
@@ -70,11 +114,15 @@ fn nobody_passes_for_the_sim_or_receives_orders_and_navigation() {
     let open = listener.listen("picture/blue");
     for _ in 0..200 {
         for topic in ["frame", "picture/blue", "picture/red", "run", "released"] {
-            intruders.iter().for_each(|intruder| intruder.publish(topic, "forged"));
+            intruders
+                .iter()
+                .for_each(|intruder| intruder.publish(topic, "forged"));
         }
     }
     game.check();
-    wait_until("what everybody may hear is heard", || open.keys().len() > 20);
+    wait_until("what everybody may hear is heard", || {
+        open.keys().len() > 20
+    });
     let asker = Intruder::of(&target);
     for topic in ["scenario", "events", "water", "join/agent/blue", "control"] {
         let answers = asker.ask(topic, json!({ "body": {} }).to_string().into_bytes());
@@ -84,9 +132,21 @@ fn nobody_passes_for_the_sim_or_receives_orders_and_navigation() {
     assert_eq!(watch.state(), SimState::Alive);
     // A message for one subscription of a session reaches all of its matching subscriptions.
     let is_open = |key: &String| key.starts_with(&target.topic("picture/"));
-    assert_eq!(heard.iter().flat_map(|heard| heard.keys()).find(|key| !is_open(key)), None);
+    assert_eq!(
+        heard
+            .iter()
+            .flat_map(|heard| heard.keys())
+            .find(|key| !is_open(key)),
+        None
+    );
     let is_secret = |key: &String| key.contains("/order/") || key.contains("/nav/");
-    assert_eq!(heard_by_router.iter().flat_map(|heard| heard.keys()).find(is_secret), None);
+    assert_eq!(
+        heard_by_router
+            .iter()
+            .flat_map(|heard| heard.keys())
+            .find(is_secret),
+        None
+    );
     drop((answers, tokens));
     game.ends_as_if_undisturbed();
 }
@@ -102,8 +162,16 @@ fn an_agent_lured_to_a_false_sim_reveals_nothing_that_opens_the_real_one() {
     let refused = led_astray.refusal();
     assert!(refused.contains("wrong token for this game"), "{refused}");
     let asked = false_sim.asked();
-    assert!(asked.iter().any(|payload| payload.contains("mac")), "{asked:?}");
-    assert!(asked.iter().all(|payload| !payload.contains(&token().hex())), "{asked:?}");
+    assert!(
+        asked.iter().any(|payload| payload.contains("mac")),
+        "{asked:?}"
+    );
+    assert!(
+        asked
+            .iter()
+            .all(|payload| !payload.contains(&token().hex())),
+        "{asked:?}"
+    );
     for payload in asked.iter().filter(|payload| payload.contains("mac")) {
         let answer = intruder.ask("join/agent/blue", payload.clone().into_bytes());
         let answer: Value = serde_json::from_slice(&answer[0]).expect("JSON");
@@ -117,11 +185,18 @@ fn a_second_sim_with_the_same_name_disturbs_no_node() {
     let mut game = DisturbedGame::start();
     let name = game.sim.game.clone();
     let endpoint = free_endpoint();
-    let second = Sim::start_with(squall(&[]), "patient", &["--game", &name, "--listen", &endpoint, "--join-s", "600"]);
+    let second = Sim::start_with(
+        squall(&[]),
+        "patient",
+        &["--game", &name, "--listen", &endpoint, "--join-s", "600"],
+    );
     assert_eq!(second.game, name);
     game.check();
     // Each agent joined at the address it was given.
-    let _agents: Vec<Process> = FOUR.iter().map(|vehicle| second.agent(&[vehicle])).collect();
+    let _agents: Vec<Process> = FOUR
+        .iter()
+        .map(|vehicle| second.agent(&[vehicle]))
+        .collect();
     second.wait_for_kind("started");
     game.check();
     second.stop();

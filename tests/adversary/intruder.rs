@@ -32,7 +32,10 @@ pub(crate) struct Heard {
 /// A zenoh configuration with these settings, without scouting.
 pub(crate) fn config(settings: &[(&str, &str)]) -> Config {
     let mut config = Config::default();
-    for (key, value) in settings.iter().chain(&[("scouting/multicast/enabled", "false")]) {
+    for (key, value) in settings
+        .iter()
+        .chain(&[("scouting/multicast/enabled", "false")])
+    {
         config.insert_json5(key, value).expect("a setting of zenoh");
     }
     config
@@ -40,7 +43,10 @@ pub(crate) fn config(settings: &[(&str, &str)]) -> Config {
 
 impl Target {
     pub(crate) fn of(sim: &Sim) -> Target {
-        Target { endpoint: sim.endpoint.clone(), game: sim.name() }
+        Target {
+            endpoint: sim.endpoint.clone(),
+            game: sim.name(),
+        }
     }
 
     /// The address, for connections that do not speak zenoh.
@@ -79,7 +85,10 @@ impl Target {
             ("transport/link/tls", &tls.to_string()),
         ]);
         let session = zenoh::open(config).wait().ok()?;
-        Some(Intruder { session, game: self.game.clone() })
+        Some(Intruder {
+            session,
+            game: self.game.clone(),
+        })
     }
 }
 
@@ -104,14 +113,26 @@ impl Intruder {
     pub(crate) fn listen_anywhere(&self, key: &str) -> Heard {
         let keys = Arc::new(Mutex::new(Vec::new()));
         let heard = Arc::clone(&keys);
-        let subscriber = self.session.declare_subscriber(key.to_owned()).callback(move |sample| {
-            heard.lock().expect("nobody panics with it").push(sample.key_expr().to_string());
-        });
-        Heard { keys, _subscriber: subscriber.wait().expect("the session is open") }
+        let subscriber = self
+            .session
+            .declare_subscriber(key.to_owned())
+            .callback(move |sample| {
+                heard
+                    .lock()
+                    .expect("nobody panics with it")
+                    .push(sample.key_expr().to_string());
+            });
+        Heard {
+            keys,
+            _subscriber: subscriber.wait().expect("the session is open"),
+        }
     }
 
     pub(crate) fn publish(&self, rest: &str, payload: impl Into<ZBytes>) {
-        self.session.put(self.topic(rest), payload).wait().expect("the session is open");
+        self.session
+            .put(self.topic(rest), payload)
+            .wait()
+            .expect("the session is open");
     }
 
     /// The answers to a query.
@@ -120,23 +141,40 @@ impl Intruder {
     }
 
     pub(crate) fn ask_at(&self, key: &str, payload: impl Into<ZBytes>) -> Vec<Vec<u8>> {
-        let replies = self.session.get(key).payload(payload).timeout(Duration::from_secs(5)).wait();
+        let replies = self
+            .session
+            .get(key)
+            .payload(payload)
+            .timeout(Duration::from_secs(5))
+            .wait();
         let replies = replies.expect("the session is open");
-        let sound = std::iter::from_fn(|| replies.recv().ok()).filter_map(|reply| reply.into_result().ok());
-        sound.map(|sample| sample.payload().to_bytes().into_owned()).collect()
+        let sound =
+            std::iter::from_fn(|| replies.recv().ok()).filter_map(|reply| reply.into_result().ok());
+        sound
+            .map(|sample| sample.payload().to_bytes().into_owned())
+            .collect()
     }
 
     /// Sends a query without waiting for an answer.
     pub(crate) fn ask_in_vain(&self, rest: &str, payload: impl Into<ZBytes>) {
-        drop(self.session.get(self.topic(rest)).payload(payload).wait().expect("the session is open"));
+        drop(
+            self.session
+                .get(self.topic(rest))
+                .payload(payload)
+                .wait()
+                .expect("the session is open"),
+        );
     }
 
     /// Answers a topic with false data until dropped.
     pub(crate) fn answer(&self, rest: &str) -> zenoh::query::Queryable<()> {
-        let queryable = self.session.declare_queryable(self.topic(rest)).callback(|query| {
-            let key = query.key_expr().clone();
-            drop(query.reply(key, "forged").wait());
-        });
+        let queryable = self
+            .session
+            .declare_queryable(self.topic(rest))
+            .callback(|query| {
+                let key = query.key_expr().clone();
+                drop(query.reply(key, "forged").wait());
+            });
         queryable.wait().expect("the session is open")
     }
 }

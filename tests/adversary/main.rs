@@ -17,7 +17,11 @@ mod intruder;
 mod network;
 mod operate;
 #[path = "../process/support.rs"]
-#[allow(dead_code, unreachable_pub, reason = "shared with the tests of whole games")]
+#[allow(
+    dead_code,
+    unreachable_pub,
+    reason = "shared with the tests of whole games"
+)]
 mod support;
 mod take_over;
 mod token;

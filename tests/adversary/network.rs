@@ -29,25 +29,49 @@ fn forged_messages_of_the_sim_reach_nobody() {
         }
     };
     let heard = [
-        observer.subscribe(topic::frame(&name), count(|bytes| codec::decode::<Frame>(bytes).is_ok_and(|f| f.over))),
+        observer.subscribe(
+            topic::frame(&name),
+            count(|bytes| codec::decode::<Frame>(bytes).is_ok_and(|f| f.over)),
+        ),
         observer.subscribe(
             topic::picture(&name, &scenario, TeamId(0)),
             count(|bytes| codec::decode::<Picture>(bytes).is_ok_and(|picture| picture.over)),
         ),
         observer.subscribe(
             topic::run(&name),
-            count(|bytes| serde_json::from_slice::<RunState>(bytes).is_ok_and(|run| run.phase == Phase::Over)),
+            count(|bytes| {
+                serde_json::from_slice::<RunState>(bytes).is_ok_and(|run| run.phase == Phase::Over)
+            }),
         ),
     ];
     heard.iter().for_each(|declared| assert!(declared.is_ok()));
 
     let intruder = Intruder::at(&sim);
-    let frame = Frame { over: true, stamp: Stamp { version: Frame::VERSION, ..Stamp::default() }, ..Frame::default() };
-    let picture = |seq| {
-        let stamp = Stamp { version: Picture::VERSION, seq, ..Stamp::default() };
-        codec::encode(&Picture { over: true, stamp, ..Picture::default() })
+    let frame = Frame {
+        over: true,
+        stamp: Stamp {
+            version: Frame::VERSION,
+            ..Stamp::default()
+        },
+        ..Frame::default()
     };
-    let run = serde_json::to_vec(&RunState { phase: Phase::Over, ..RunState::default() }).expect("JSON");
+    let picture = |seq| {
+        let stamp = Stamp {
+            version: Picture::VERSION,
+            seq,
+            ..Stamp::default()
+        };
+        codec::encode(&Picture {
+            over: true,
+            stamp,
+            ..Picture::default()
+        })
+    };
+    let run = serde_json::to_vec(&RunState {
+        phase: Phase::Over,
+        ..RunState::default()
+    })
+    .expect("JSON");
     for seq in 0..500 {
         // Use the exact key, and wildcard expressions that match it.
         for key in ["frame", "*"] {
@@ -80,8 +104,14 @@ fn that_there_is_a_game_is_open_to_all_and_who_watches_hears_it() {
     assert!(heard.is_ok());
     let frame = frames.take(LIMIT).pop().flatten().expect("a frame");
     assert_eq!(frame.vehicles.len(), 4);
-    let keys = observer.who_is_alive(&topic::everyone_alive(), bus::ANSWER).expect("a session");
-    let games: Vec<_> = keys.iter().filter_map(|key| topic::parse_alive(key)).map(|(game, _)| game).collect();
+    let keys = observer
+        .who_is_alive(&topic::everyone_alive(), bus::ANSWER)
+        .expect("a session");
+    let games: Vec<_> = keys
+        .iter()
+        .filter_map(|key| topic::parse_alive(key))
+        .map(|(game, _)| game)
+        .collect();
     assert_eq!(games, [sim.name()], "{keys:?}");
     sim.stop();
 }

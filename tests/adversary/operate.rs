@@ -17,25 +17,49 @@ use zenoh::query::Query;
 /// Longer than the validity of a proof.
 const LATER: Duration = Duration::from_secs(2);
 
-fn operate(bus: &Bus, sim: &Sim, command: &OperatorCommand) -> Result<Option<OperatorReply>, BusError> {
+fn operate(
+    bus: &Bus,
+    sim: &Sim,
+    command: &OperatorCommand,
+) -> Result<Option<OperatorReply>, BusError> {
     bus.request_node(&topic::operate(&sim.name(), "blue_one"), command, LIMIT)
 }
 
 /// Answers at the topic of the boat's gateway, claiming to be complete, until dropped.
-fn answer(intruder: &Intruder, take: impl Fn(Query) + Send + Sync + 'static) -> zenoh::query::Queryable<()> {
-    let queryable = intruder.session.declare_queryable(intruder.topic("operate/blue_one")).complete(true);
-    queryable.callback(take).wait().expect("the session is open")
+fn answer(
+    intruder: &Intruder,
+    take: impl Fn(Query) + Send + Sync + 'static,
+) -> zenoh::query::Queryable<()> {
+    let queryable = intruder
+        .session
+        .declare_queryable(intruder.topic("operate/blue_one"))
+        .complete(true);
+    queryable
+        .callback(take)
+        .wait()
+        .expect("the session is open")
 }
 
 fn reply(query: &Query, json: &str) {
-    drop(query.reply(query.key_expr().clone(), json.to_owned()).wait());
+    drop(
+        query
+            .reply(query.key_expr().clone(), json.to_owned())
+            .wait(),
+    );
 }
 
 /// The stranger's answer in the gateway's place: the boat is disarmed.
 fn forged_reply() -> String {
-    let status =
-        GatewayStatus { vehicle: "blue_one".to_owned(), state: "disarmed".to_owned(), ..GatewayStatus::default() };
-    let reply = serde_json::to_value(OperatorReply { refused: None, status }).expect("JSON");
+    let status = GatewayStatus {
+        vehicle: "blue_one".to_owned(),
+        state: "disarmed".to_owned(),
+        ..GatewayStatus::default()
+    };
+    let reply = serde_json::to_value(OperatorReply {
+        refused: None,
+        status,
+    })
+    .expect("JSON");
     serde_json::json!({ "answer": reply }).to_string()
 }
 
@@ -46,26 +70,47 @@ fn a_stranger_who_answers_operators_cannot_swallow_commands() {
     let intruder = Intruder::at(&rig.sim);
     let forged = forged_reply();
     let asked = Arc::new(Mutex::new(Vec::<Query>::new()));
-    let lies = answer(&intruder, move |query| (0..3).for_each(|_| reply(&query, &forged)));
+    let lies = answer(&intruder, move |query| {
+        (0..3).for_each(|_| reply(&query, &forged))
+    });
     // A second stranger keeps each query open, as if it were about to answer.
     let second = Intruder::at(&rig.sim);
     let kept = Arc::clone(&asked);
     let silence = answer(&second, move |query| kept.lock().push(query));
-    for command in [OperatorCommand::EStop, OperatorCommand::Release, OperatorCommand::Disarm] {
+    for command in [
+        OperatorCommand::EStop,
+        OperatorCommand::Release,
+        OperatorCommand::Disarm,
+    ] {
         for _ in 0..6 {
             rig.arm();
-            let reply = operate(&operator, &rig.sim, &command).expect("it is the gateway that answers");
+            let reply =
+                operate(&operator, &rig.sim, &command).expect("it is the gateway that answers");
             let reply = reply.expect("the gateway answers");
             let state = reply.status.state;
             let at_port = rig.tell(OperatorCommand::Status).status.state;
-            assert!(at_port.starts_with(&state[..5]), "the reply says {state:?}, the gateway {at_port:?}");
-            let expected = if command == OperatorCommand::Release { "armed" } else { "" };
-            assert_eq!(at_port == "armed", expected == "armed", "{command:?}: {at_port}");
+            assert!(
+                at_port.starts_with(&state[..5]),
+                "the reply says {state:?}, the gateway {at_port:?}"
+            );
+            let expected = if command == OperatorCommand::Release {
+                "armed"
+            } else {
+                ""
+            };
+            assert_eq!(
+                at_port == "armed",
+                expected == "armed",
+                "{command:?}: {at_port}"
+            );
         }
     }
     assert!(!asked.lock().is_empty(), "he was asked as well");
     // An operator who cannot distinguish the gateway from the stranger gets an error.
-    assert!(matches!(operate(&session(&rig.sim, None), &rig.sim, &OperatorCommand::Status), Err(BusError::NeedsToken)));
+    assert!(matches!(
+        operate(&session(&rig.sim, None), &rig.sim, &OperatorCommand::Status),
+        Err(BusError::NeedsToken)
+    ));
     drop((lies, silence));
 }
 
@@ -75,8 +120,15 @@ fn an_answer_without_the_token_is_no_answer() {
     let intruder = Intruder::at(&sim);
     let forged = forged_reply();
     let _lies = answer(&intruder, move |query| reply(&query, &forged));
-    let refused = operate(&session(&sim, Some(token())), &sim, &OperatorCommand::Status);
-    assert!(matches!(refused, Err(BusError::Unsealed { .. })), "{refused:?}");
+    let refused = operate(
+        &session(&sim, Some(token())),
+        &sim,
+        &OperatorCommand::Status,
+    );
+    assert!(
+        matches!(refused, Err(BusError::Unsealed { .. })),
+        "{refused:?}"
+    );
     sim.stop();
 }
 
@@ -88,13 +140,17 @@ fn an_intercepted_proof_cannot_arm_a_boat_later() {
     let proofs = Arc::new(Mutex::new(Vec::new()));
     let kept = Arc::clone(&proofs);
     let _keeps = answer(&intruder, move |query| {
-        let payload = query.payload().map(|bytes| bytes.to_bytes().into_owned()).unwrap_or_default();
+        let payload = query
+            .payload()
+            .map(|bytes| bytes.to_bytes().into_owned())
+            .unwrap_or_default();
         if payload.windows(7).any(|word| word == b"\"proof\"") {
             kept.lock().push(payload);
         }
     });
     wait_until("the boat is armed", || {
-        let reply = operate(&operator, &rig.sim, &OperatorCommand::Arm).expect("it is the gateway that answers");
+        let reply = operate(&operator, &rig.sim, &OperatorCommand::Arm)
+            .expect("it is the gateway that answers");
         // Before the gateway joins the game, nobody answers.
         reply.is_some_and(|reply| reply.refused.is_none())
     });
@@ -104,7 +160,12 @@ fn an_intercepted_proof_cannot_arm_a_boat_later() {
     assert!(!proofs.is_empty(), "he has heard proofs");
     for proof in proofs {
         let answers = intruder.ask("operate/blue_one", proof);
-        assert!(answers.iter().all(|answer| answer.starts_with(b"{\"challenge\"")), "{answers:?}");
+        assert!(
+            answers
+                .iter()
+                .all(|answer| answer.starts_with(b"{\"challenge\"")),
+            "{answers:?}"
+        );
         assert_eq!(rig.tell(OperatorCommand::Status).status.state, "disarmed");
     }
 }
@@ -124,32 +185,63 @@ fn gateway_reports_cannot_be_forged() {
         *(if is_forged { &count_forged } else { &count }).lock() += 1;
     };
     let take = Arc::new(take);
-    let topics = [topic::status(&rig.sim.name(), "blue_one"), topic::link(&rig.sim.name(), "blue_one")];
+    let topics = [
+        topic::status(&rig.sim.name(), "blue_one"),
+        topic::link(&rig.sim.name(), "blue_one"),
+    ];
     let _heard = topics.map(|key| {
         let take = Arc::clone(&take);
-        observer.subscribe(key, move |bytes| take(bytes)).expect("the session is open")
+        observer
+            .subscribe(key, move |bytes| take(bytes))
+            .expect("the session is open")
     });
     let intruder = Intruder::at(&rig.sim);
     // A session receives its own publications, so listen with a second one.
     let listener = Intruder::at(&rig.sim);
     let tickets = ["report/**", "report/status/blue_one"].map(|word| listener.listen(word));
-    let status =
-        GatewayStatus { vehicle: "blue_one".to_owned(), state: "FORGED".to_owned(), ..GatewayStatus::default() };
+    let status = GatewayStatus {
+        vehicle: "blue_one".to_owned(),
+        state: "FORGED".to_owned(),
+        ..GatewayStatus::default()
+    };
     let status = serde_json::to_vec(&status).expect("JSON");
     for ticket in 0..200 {
         intruder.publish("status/blue_one", status.clone());
         intruder.publish("link/blue_one", b"FORGED".to_vec());
         for what in Reported::ALL {
-            intruder.publish(&format!("report/{what}/blue_one"), Reported::with_ticket(ticket, &status));
+            intruder.publish(
+                &format!("report/{what}/blue_one"),
+                Reported::with_ticket(ticket, &status),
+            );
         }
     }
     intruder.publish("report/status/blue_one", b"1234567".to_vec());
     wait_until("true statuses are heard", || *told.lock() > 20);
     assert_eq!(*forged.lock(), 0);
-    assert_eq!(tickets.iter().flat_map(|heard| heard.keys()).next(), None, "tickets are for the sim alone");
+    assert_eq!(
+        tickets.iter().flat_map(|heard| heard.keys()).next(),
+        None,
+        "tickets are for the sim alone"
+    );
     let report = rig.sim.stop();
-    assert!(report["run"]["refused"]["ticket"].as_u64().unwrap_or_default() >= 400, "{}", report["run"]);
-    let log = run(&["log", record.to_str().expect("UTF-8"), "--csv", "status/blue_one"]);
-    assert!(log.status.success() && stdout(&log).contains("disarmed"), "{}", stderr(&log));
+    assert!(
+        report["run"]["refused"]["ticket"]
+            .as_u64()
+            .unwrap_or_default()
+            >= 400,
+        "{}",
+        report["run"]
+    );
+    let log = run(&[
+        "log",
+        record.to_str().expect("UTF-8"),
+        "--csv",
+        "status/blue_one",
+    ]);
+    assert!(
+        log.status.success() && stdout(&log).contains("disarmed"),
+        "{}",
+        stderr(&log)
+    );
     assert!(!stdout(&log).contains("FORGED"));
 }

@@ -17,34 +17,60 @@ use zenoh::Wait;
 /// The contested boat, and its number.
 const BOAT: &str = "red_two";
 const NUMBER: VehicleId = VehicleId(3);
-const FULL_AHEAD: Order = Order::Thrust { port: 1.0, starboard: 1.0 };
+const FULL_AHEAD: Order = Order::Thrust {
+    port: 1.0,
+    starboard: 1.0,
+};
 
 /// The reply to a request to join as the boat's agent; `None` if the token is refused.
 fn join((game, scenario): (&GameName, &Scenario), bus: &Bus) -> Option<JoinReply> {
     let version = primitives::VERSION.to_owned();
     let vehicles = vec![BOAT.to_owned()];
-    let request = JoinRequest { version, role: Role::Agent, node: bus.id(), vehicles };
+    let request = JoinRequest {
+        version,
+        role: Role::Agent,
+        node: bus.id(),
+        vehicles,
+    };
     let key = topic::join(game, scenario, Role::Agent, &request.vehicles);
     bus.request(&key, &request, Duration::from_secs(10)).ok()?
 }
 
 fn ticket(reply: Option<JoinReply>) -> Option<u64> {
-    let Some(JoinReply::Granted { ticket, vehicles, .. }) = reply else { return None };
+    let Some(JoinReply::Granted {
+        ticket, vehicles, ..
+    }) = reply
+    else {
+        return None;
+    };
     assert_eq!(vehicles, [NUMBER]);
     Some(ticket)
 }
 
 fn orders(ticket: u64, seq: u64, at: SimTime) -> Orders {
-    let stamp = Stamp { valid_ns: at, seq, version: Orders::VERSION };
+    let stamp = Stamp {
+        valid_ns: at,
+        seq,
+        version: Orders::VERSION,
+    };
     let all = (0..4).map(|i| VehicleOrder::new(VehicleId(i), FULL_AHEAD));
-    Orders { stamp, ticket, orders: all.collect() }
+    Orders {
+        stamp,
+        ticket,
+        orders: all.collect(),
+    }
 }
 
 #[test]
 fn of_many_that_race_for_a_boat_one_has_it_and_the_next_when_that_is_gone() {
     let sim = Sim::start("patient", &["--join-s", "600"]);
     // Every third node has no token, and every third a wrong one.
-    let token_of = |i: usize| [Some(token()), None, Some(Token::random())].into_iter().nth(i % 3).flatten();
+    let token_of = |i: usize| {
+        [Some(token()), None, Some(Token::random())]
+            .into_iter()
+            .nth(i % 3)
+            .flatten()
+    };
     let tokens = (0..12).map(token_of);
     let mut racers: Vec<Bus> = tokens.map(|token| session(&sim, token)).collect();
     let scenario = sim.info(&racers[0]).scenario;
@@ -55,10 +81,19 @@ fn of_many_that_race_for_a_boat_one_has_it_and_the_next_when_that_is_gone() {
         let mut winners = Vec::new();
         wait_until("somebody has it", || {
             let replies: Vec<Option<JoinReply>> = std::thread::scope(|scope| {
-                let asking: Vec<_> = racers.iter().map(|racer| scope.spawn(move || join(at, racer))).collect();
-                asking.into_iter().map(|asks| asks.join().expect("it asks")).collect()
+                let asking: Vec<_> = racers
+                    .iter()
+                    .map(|racer| scope.spawn(move || join(at, racer)))
+                    .collect();
+                asking
+                    .into_iter()
+                    .map(|asks| asks.join().expect("it asks"))
+                    .collect()
             });
-            winners = (0..).zip(replies).filter_map(|(i, reply)| Some((i, ticket(reply)?))).collect();
+            winners = (0..)
+                .zip(replies)
+                .filter_map(|(i, reply)| Some((i, ticket(reply)?)))
+                .collect();
             assert!(winners.len() <= 1, "{winners:?}");
             !winners.is_empty()
         });
@@ -67,7 +102,12 @@ fn of_many_that_race_for_a_boat_one_has_it_and_the_next_when_that_is_gone() {
         assert!(!seen.contains(&ticket), "a ticket that somebody had");
         seen.push(ticket);
         // A repeated request does not harm the boat's agent, whatever the others do.
-        assert_eq!(join(at, &racers[(winner + 3) % 12]), Some(JoinReply::Busy { vehicle: BOAT.to_owned() }));
+        assert_eq!(
+            join(at, &racers[(winner + 3) % 12]),
+            Some(JoinReply::Busy {
+                vehicle: BOAT.to_owned()
+            })
+        );
         racers[winner].close();
         racers[winner] = session(&sim, Some(token()));
     }
@@ -92,10 +132,18 @@ fn the_ticket_of_the_dead_is_void_once_somebody_else_has_the_boat() {
     let refused = || sim.newest_progress()["refused"].as_u64();
     let before = refused();
     for seq in 0..50 {
-        thief.publish(&format!("order/{}", first.id()), codec::encode(&orders(old, seq, SimTime::ZERO)));
-        thief.publish("order/thief", codec::encode(&orders(old, u64::MAX - seq, SimTime::from_s(1e6))));
+        thief.publish(
+            &format!("order/{}", first.id()),
+            codec::encode(&orders(old, seq, SimTime::ZERO)),
+        );
+        thief.publish(
+            "order/thief",
+            codec::encode(&orders(old, u64::MAX - seq, SimTime::from_s(1e6))),
+        );
     }
-    wait_until("they are refused", || refused() >= before.map(|before| before + 100));
+    wait_until("they are refused", || {
+        refused() >= before.map(|before| before + 100)
+    });
     let done = sim.stop();
     assert_eq!(done["run"]["refused"]["ticket"], 100, "{}", done["run"]);
     let boat = &done["outcome"]["counts"]["boats"][BOAT];
@@ -115,40 +163,70 @@ fn nobody_without_a_ticket_can_take_over_a_steered_boat() {
     for round in 0..20 {
         for name in info.scenario.vehicles.iter().map(|vehicle| &vehicle.name) {
             for role in [Role::Agent, Role::Gateway] {
-                let request =
-                    json!({ "version": primitives::VERSION, "role": role, "node": agents.id(), "vehicles": [name] });
-                let key = topic::join(&sim.name(), &info.scenario, role, std::slice::from_ref(name));
-                for payload in [json!({ "body": request }), json!({ "body": request, "proof": proof })] {
+                let request = json!({ "version": primitives::VERSION, "role": role, "node": agents.id(), "vehicles": [name] });
+                let key = topic::join(
+                    &sim.name(),
+                    &info.scenario,
+                    role,
+                    std::slice::from_ref(name),
+                );
+                for payload in [
+                    json!({ "body": request }),
+                    json!({ "body": request, "proof": proof }),
+                ] {
                     let answers = intruder.ask_at(&key, payload.to_string().into_bytes());
-                    let answer = String::from_utf8_lossy(answers.first().expect("an answer")).into_owned();
-                    assert!(answer.contains("challenge") && !answer.contains("Granted"), "{answer}");
+                    let answer =
+                        String::from_utf8_lossy(answers.first().expect("an answer")).into_owned();
+                    assert!(
+                        answer.contains("challenge") && !answer.contains("Granted"),
+                        "{answer}"
+                    );
                 }
             }
         }
         for ticket in [0, 1, round, u64::MAX - round] {
             for (seq, at) in [(0, 0.0), (round, 1.0), (u64::MAX, 1e9)] {
-                intruder.publish("order/x", codec::encode(&orders(ticket, seq, SimTime::from_s(at))));
+                intruder.publish(
+                    "order/x",
+                    codec::encode(&orders(ticket, seq, SimTime::from_s(at))),
+                );
             }
         }
     }
     let publisher = stranger
-        .publisher(topic::orders(&sim.name(), &info.scenario, &[TeamId(0)], &stranger.id()), Priority::Normal)
+        .publisher(
+            topic::orders(&sim.name(), &info.scenario, &[TeamId(0)], &stranger.id()),
+            Priority::Normal,
+        )
         .expect("open");
     publisher.send(&orders(7, 7, SimTime::ZERO)).expect("open");
     game.check();
     let done = game.ends_as_if_undisturbed();
-    assert_eq!(done["run"]["refused"]["ticket"], 20 * 4 * 3 + 1, "{}", done["run"]);
+    assert_eq!(
+        done["run"]["refused"]["ticket"],
+        20 * 4 * 3 + 1,
+        "{}",
+        done["run"]
+    );
 }
 
 #[test]
 fn who_shows_the_sims_liveliness_token_and_takes_it_back_ends_nobody() {
     let mut game = DisturbedGame::start();
     let watcher = game.sim.bus();
-    let shown = watcher.who_is_alive(&topic::all_alive(&game.sim.name()), LIMIT).expect("a session");
+    let shown = watcher
+        .who_is_alive(&topic::all_alive(&game.sim.name()), LIMIT)
+        .expect("a session");
     assert_eq!(shown.len(), 1, "{shown:?}");
     let intruder = Intruder::at(&game.sim);
     for _ in 0..100 {
-        drop(intruder.session.liveliness().declare_token(shown[0].clone()).wait());
+        drop(
+            intruder
+                .session
+                .liveliness()
+                .declare_token(shown[0].clone())
+                .wait(),
+        );
     }
     game.check();
     game.ends_as_if_undisturbed();

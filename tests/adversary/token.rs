@@ -10,31 +10,70 @@ use std::time::Duration;
 
 /// A session of our own program, with this token or none.
 pub(crate) fn session(sim: &Sim, token: Option<Token>) -> Bus {
-    Bus::leaf(&Net { connect: vec![sim.endpoint.clone()], token, ..Net::default() }).expect("the port is open")
+    Bus::leaf(&Net {
+        connect: vec![sim.endpoint.clone()],
+        token,
+        ..Net::default()
+    })
+    .expect("the port is open")
 }
 
 fn join(sim: &Sim, token: Option<Token>, role: Role) -> Result<JoinReply, BusError> {
     let bus = session(sim, token);
     let vehicles = vec!["red_two".to_owned()];
     let key = topic::join(&sim.name(), &sim.info(&bus).scenario, role, &vehicles);
-    let request = JoinRequest { version: primitives::VERSION.to_owned(), role, node: bus.id(), vehicles };
-    Ok(bus.request(&key, &request, Duration::from_secs(10))?.expect("the sim answers"))
+    let request = JoinRequest {
+        version: primitives::VERSION.to_owned(),
+        role,
+        node: bus.id(),
+        vehicles,
+    };
+    Ok(bus
+        .request(&key, &request, Duration::from_secs(10))?
+        .expect("the sim answers"))
 }
 
 #[test]
 fn nobody_can_join_or_control_without_the_token() {
     let sim = Sim::start("patient", &["--join-s", "600"]);
     for role in [Role::Agent, Role::Gateway] {
-        assert!(matches!(join(&sim, None, role), Err(BusError::NeedsToken)), "{role}");
-        assert!(matches!(join(&sim, Some(Token::random()), role), Err(BusError::WrongToken)), "{role}");
+        assert!(
+            matches!(join(&sim, None, role), Err(BusError::NeedsToken)),
+            "{role}"
+        );
+        assert!(
+            matches!(
+                join(&sim, Some(Token::random()), role),
+                Err(BusError::WrongToken)
+            ),
+            "{role}"
+        );
     }
-    for control in [Control::Stop, Control::Pause, Control::Release, Control::GoOn, Control::Speed(Some(0.01))] {
+    for control in [
+        Control::Stop,
+        Control::Pause,
+        Control::Release,
+        Control::GoOn,
+        Control::Speed(Some(0.01)),
+    ] {
         let controlled = |token| bus::control(&session(&sim, token), &sim.name(), control);
-        assert!(matches!(controlled(None), Err(BusError::NeedsToken)), "{control:?}");
-        assert!(matches!(controlled(Some(Token::random())), Err(BusError::WrongToken)), "{control:?}");
+        assert!(
+            matches!(controlled(None), Err(BusError::NeedsToken)),
+            "{control:?}"
+        );
+        assert!(
+            matches!(controlled(Some(Token::random())), Err(BusError::WrongToken)),
+            "{control:?}"
+        );
     }
-    assert!(matches!(join(&sim, Some(token()), Role::Agent), Ok(JoinReply::Granted { .. })));
-    let refused = sim.squall(&["agent", "--vehicle", "red_one"]).env(TOKEN_VARIABLE, Token::random().hex()).output();
+    assert!(matches!(
+        join(&sim, Some(token()), Role::Agent),
+        Ok(JoinReply::Granted { .. })
+    ));
+    let refused = sim
+        .squall(&["agent", "--vehicle", "red_one"])
+        .env(TOKEN_VARIABLE, Token::random().hex())
+        .output();
     let refused = stderr(&refused.expect("the program starts"));
     assert!(refused.contains("wrong token for this game"), "{refused}");
     sim.stop();
@@ -51,7 +90,12 @@ fn what_was_seen_once_cannot_be_used_again() {
     let answers = intruder.ask("control", request(json!({ "body": "pause" })));
     let challenge: Value = serde_json::from_slice(&answers[0]).expect("JSON");
     assert!(challenge["challenge"].is_string(), "{challenge}");
-    bus::control(&session(&sim, Some(token())), &sim.name(), Control::Speed(Some(5.0))).expect("it may");
+    bus::control(
+        &session(&sim, Some(token())),
+        &sim.name(),
+        Control::Speed(Some(5.0)),
+    )
+    .expect("it may");
     // The same challenge with an invented proof, a missing challenge and an invalid one; below,
     // bare controls as in the earlier protocol.
     for forged in [
@@ -60,7 +104,9 @@ fn what_was_seen_once_cannot_be_used_again() {
         json!({ "body": "stop", "proof": { "challenge": "x".repeat(10_000), "mac": "ff" } }),
     ] {
         let answers = intruder.ask("control", request(forged));
-        assert!(serde_json::from_slice::<Value>(&answers[0]).expect("JSON")["challenge"].is_string());
+        assert!(
+            serde_json::from_slice::<Value>(&answers[0]).expect("JSON")["challenge"].is_string()
+        );
     }
     for control in ["\"stop\"", "\"pause\"", "\"release\"", "{\"speed\":0.01}"] {
         intruder.publish("control", control);

@@ -13,5 +13,9 @@ mod disturbed_game;
 #[allow(dead_code, reason = "shared with the games without keys")]
 mod intruder;
 #[path = "../process/support.rs"]
-#[allow(dead_code, unreachable_pub, reason = "shared with the tests of whole games")]
+#[allow(
+    dead_code,
+    unreachable_pub,
+    reason = "shared with the tests of whole games"
+)]
 mod support;

@@ -7,7 +7,15 @@ use std::path::Path;
 
 /// A short recorded game in a folder, which is also the folder of all commands.
 fn recorded_game(dir: &Path) -> String {
-    let args = ["run", "attack_1v1", "--in-process", "--set", "game.duration_s=5", "--record", "runs"];
+    let args = [
+        "run",
+        "attack_1v1",
+        "--in-process",
+        "--set",
+        "game.duration_s=5",
+        "--record",
+        "runs",
+    ];
     printed(dir, &args);
     only_file(dir.join("runs"))
 }
@@ -16,9 +24,14 @@ fn recorded_game(dir: &Path) -> String {
 fn silent<'a>(dir: &Path, output: &str, commands: &[&'a str]) -> Vec<&'a str> {
     let is_silent = |line: &&&str| {
         let mut command = command(dir, &words(line));
-        let output = command.stdout(File::create(output).unwrap()).output().unwrap();
+        let output = command
+            .stdout(File::create(output).unwrap())
+            .output()
+            .unwrap();
         let errors = String::from_utf8_lossy(&output.stderr);
-        output.status.success() || !errors.contains("cannot ") || !errors.contains("No space left on device")
+        output.status.success()
+            || !errors.contains("cannot ")
+            || !errors.contains("No space left on device")
     };
     commands.iter().filter(is_silent).copied().collect()
 }
@@ -27,7 +40,10 @@ fn silent<'a>(dir: &Path, output: &str, commands: &[&'a str]) -> Vec<&'a str> {
 fn results_that_cannot_be_printed_are_an_error() {
     let dir = tempfile::tempdir().unwrap();
     let game = recorded_game(dir.path());
-    let policy = project().join("scenarios/policies/options.onnx").display().to_string();
+    let policy = project()
+        .join("scenarios/policies/options.onnx")
+        .display()
+        .to_string();
     let commands = [
         "run attack_1v1 --in-process --no-record --set game.duration_s=5",
         &format!("log {game}"),

@@ -21,9 +21,24 @@ fn game() -> &'static Game {
         let runs = text(dir.path().join("runs"));
         let json = text(dir.path().join("result.json"));
         let game = "scenarios/games/attack_1v1.toml";
-        program::printed(program::project(), &["run", game, "--in-process", "--record", &runs, "--json", &json]);
+        program::printed(
+            program::project(),
+            &[
+                "run",
+                game,
+                "--in-process",
+                "--record",
+                &runs,
+                "--json",
+                &json,
+            ],
+        );
         let result = serde_json::from_str(&std::fs::read_to_string(json).unwrap()).unwrap();
-        Game { _dir: dir, recording: program::only_file(&runs), result }
+        Game {
+            _dir: dir,
+            recording: program::only_file(&runs),
+            result,
+        }
     })
 }
 
@@ -42,8 +57,16 @@ fn the_summary_agrees_with_the_result_of_the_game() {
     let dir = tempfile::tempdir().unwrap();
     let json = text(dir.path().join("summary.json"));
     let page = log(&[&game.recording, "--json", &json]);
-    for part in ["attack_1v1", "seed 1", "in process", "blue", "digest", "navigation error", "picture/blue", "messages"]
-    {
+    for part in [
+        "attack_1v1",
+        "seed 1",
+        "in process",
+        "blue",
+        "digest",
+        "navigation error",
+        "picture/blue",
+        "messages",
+    ] {
         assert!(page.contains(part), "{part} is not in\n{page}");
     }
     let summary: Value = serde_json::from_str(&std::fs::read_to_string(json).unwrap()).unwrap();
@@ -51,7 +74,10 @@ fn the_summary_agrees_with_the_result_of_the_game() {
     // The frames contain every event.
     assert_eq!(summary["events"], outcome["events"]);
     assert_eq!(summary["score"], outcome["score"]["teams"]);
-    assert_eq!((&summary["digest"], &summary["winner"]), (&outcome["digest"], &outcome["winner"]));
+    assert_eq!(
+        (&summary["digest"], &summary["winner"]),
+        (&outcome["digest"], &outcome["winner"])
+    );
     assert_eq!(summary["is_cut"], Value::Bool(false));
     for boat in summary["boats"].as_array().unwrap() {
         let name = boat["boat"].as_str().unwrap();
@@ -59,7 +85,10 @@ fn the_summary_agrees_with_the_result_of_the_game() {
         assert!(boat["distance_m"].as_f64().unwrap() >= 0.0);
     }
     let events = log(&[&game.recording, "--events"]);
-    assert_eq!(events.lines().count(), outcome["events"].as_array().unwrap().len());
+    assert_eq!(
+        events.lines().count(),
+        outcome["events"].as_array().unwrap().len()
+    );
 }
 
 #[test]
@@ -69,14 +98,29 @@ fn every_topic_comes_as_csv() {
     let out = dir.path().join("table.csv");
     for topic in ["frame", "inputs", "picture/blue", "picture/red", "events"] {
         let printed = log(&[&game.recording, "--csv", topic]);
-        assert!(printed.starts_with("t_s,") && printed.lines().count() > 1, "{topic}: {printed}");
-        assert_eq!(log(&[&game.recording, "--csv", topic, "--out", out.to_str().unwrap()]), "");
+        assert!(
+            printed.starts_with("t_s,") && printed.lines().count() > 1,
+            "{topic}: {printed}"
+        );
+        assert_eq!(
+            log(&[
+                &game.recording,
+                "--csv",
+                topic,
+                "--out",
+                out.to_str().unwrap()
+            ]),
+            ""
+        );
         assert_eq!(std::fs::read_to_string(&out).unwrap(), printed, "{topic}");
     }
     let frame = log(&[&game.recording, "--csv", "frame"]);
     let mut rows = csv::Reader::from_reader(frame.as_bytes());
     let heads = rows.headers().unwrap().clone();
-    assert!(heads.iter().any(|head| head.ends_with(".north_m")), "{heads:?}");
+    assert!(
+        heads.iter().any(|head| head.ends_with(".north_m")),
+        "{heads:?}"
+    );
     assert!(rows.records().all(|row| row.unwrap().len() == heads.len()));
 }
 
@@ -86,14 +130,23 @@ fn plots_are_drawn_as_svg_and_png() {
     let dir = tempfile::tempdir().unwrap();
     let plots = dir.path().join("plots");
     log(&[&game.recording, "--plot", plots.to_str().unwrap()]);
-    let names: Vec<String> =
-        std::fs::read_dir(&plots).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-    let boats = names.iter().filter(|name| name.starts_with("boat_") && name.ends_with(".svg")).count();
+    let names: Vec<String> = std::fs::read_dir(&plots)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    let boats = names
+        .iter()
+        .filter(|name| name.starts_with("boat_") && name.ends_with(".svg"))
+        .count();
     assert_eq!((boats, names.len()), (2, 8), "{names:?}");
     for name in ["tracks", "score"] {
         let svg = std::fs::read_to_string(plots.join(format!("{name}.svg"))).unwrap();
-        assert!(svg.ends_with("</svg>\n") && svg.contains("attack_1v1") && svg.contains("blue"), "{name}");
-        let picture = resvg::tiny_skia::Pixmap::load_png(plots.join(format!("{name}.png"))).unwrap();
+        assert!(
+            svg.ends_with("</svg>\n") && svg.contains("attack_1v1") && svg.contains("blue"),
+            "{name}"
+        );
+        let picture =
+            resvg::tiny_skia::Pixmap::load_png(plots.join(format!("{name}.png"))).unwrap();
         assert!(picture.width() > 500, "{name}");
     }
 }
@@ -103,37 +156,64 @@ fn a_film_has_a_picture_for_each_tenth_of_a_second_that_it_is_looked_at() {
     let dir = tempfile::tempdir().unwrap();
     let path = text(dir.path().join("film.gif"));
     let film = |more: &[&str]| {
-        log(&[&[game().recording.as_str(), "--gif", &path, "--width", "300"], more].concat());
+        log(&[
+            &[game().recording.as_str(), "--gif", &path, "--width", "300"],
+            more,
+        ]
+        .concat());
         let mut options = gif::DecodeOptions::new();
         options.set_color_output(gif::ColorOutput::RGBA);
-        let mut film = options.read_info(std::fs::File::open(&path).unwrap()).unwrap();
+        let mut film = options
+            .read_info(std::fs::File::open(&path).unwrap())
+            .unwrap();
         let size = (film.width(), film.height());
         let mut delays = vec![];
         let mut pixels = vec![];
         while let Some(picture) = film.read_next_frame().unwrap() {
             let is_whole = (picture.width, picture.height) == size;
-            assert_eq!(is_whole, delays.is_empty(), "the first is whole, the others are what changed");
+            assert_eq!(
+                is_whole,
+                delays.is_empty(),
+                "the first is whole, the others are what changed"
+            );
             delays.push(picture.delay);
-            pixels.push(picture.buffer.chunks(4).filter(|pixel| pixel[3] > 0).count());
+            pixels.push(
+                picture
+                    .buffer
+                    .chunks(4)
+                    .filter(|pixel| pixel[3] > 0)
+                    .count(),
+            );
         }
         (size, delays, pixels)
     };
     // From 10 s to 20 s at 5x: a picture every half second.
     let (size, delays, pixels) = film(&["--from", "10", "--to", "20", "--speed", "5x"]);
     assert_eq!((size.0, delays.len()), (300, 21), "{delays:?}");
-    assert!(delays[..20].iter().all(|delay| *delay == 10) && delays[20] > 100, "{delays:?}");
     assert!(
-        pixels[1..].iter().all(|changed| (10..10_000).contains(changed)),
+        delays[..20].iter().all(|delay| *delay == 10) && delays[20] > 100,
+        "{delays:?}"
+    );
+    assert!(
+        pixels[1..]
+            .iter()
+            .all(|changed| (10..10_000).contains(changed)),
         "boats move, the field does not: {pixels:?}"
     );
     let all = game().result["duration_s"].as_f64().unwrap();
     let (_, delays, _) = film(&["--speed", "40x"]);
     assert_eq!(delays.len() as f64, (all / 4.0).floor() + 1.0);
     for (words, why) in [
-        (&["--from", "20", "--to", "10"][..], "--to is 10 s, expected more than --from, 20 s"),
+        (
+            &["--from", "20", "--to", "10"][..],
+            "--to is 10 s, expected more than --from, 20 s",
+        ),
         (&["--from", "99999"], "has no frame after 99999 s"),
     ] {
-        let said = program::refusal(&dir, &[&["log", &game().recording, "--gif", "other.gif"], words].concat());
+        let said = program::refusal(
+            &dir,
+            &[&["log", &game().recording, "--gif", "other.gif"], words].concat(),
+        );
         assert!(said.contains(why), "{said}");
     }
 }
@@ -147,7 +227,9 @@ fn moos_logs_are_written_for_shore_and_boats() {
     assert_eq!(std::fs::read_dir(&logs).unwrap().count(), 3);
     let shoreside = std::fs::read_to_string(logs.join("shoreside.alog")).unwrap();
     assert!(
-        shoreside.starts_with("%%%%") && shoreside.contains(" NODE_REPORT ") && shoreside.contains(" BLUE_SCORES ")
+        shoreside.starts_with("%%%%")
+            && shoreside.contains(" NODE_REPORT ")
+            && shoreside.contains(" BLUE_SCORES ")
     );
     let alone = dir.path().join("shore.alog");
     log(&[&game.recording, "--alog", alone.to_str().unwrap()]);
@@ -159,8 +241,17 @@ fn a_game_beside_itself_differs_in_nothing() {
     let game = game();
     let dir = tempfile::tempdir().unwrap();
     let json = text(dir.path().join("compare.json"));
-    let page = log(&["--compare", &game.recording, &game.recording, "--json", &json]);
-    assert!(page.contains("Fréchet") && !page.contains("only in"), "{page}");
+    let page = log(&[
+        "--compare",
+        &game.recording,
+        &game.recording,
+        "--json",
+        &json,
+    ]);
+    assert!(
+        page.contains("Fréchet") && !page.contains("only in"),
+        "{page}"
+    );
     let comparison: Value = serde_json::from_str(&std::fs::read_to_string(json).unwrap()).unwrap();
     for pair in comparison["boats"].as_array().unwrap() {
         for (what, metres) in pair["apart"].as_object().unwrap() {
@@ -178,13 +269,25 @@ fn mistakes_are_explained() {
             &[recording, "--csv", "whales"][..],
             "there is no topic \"whales\" in this recording; there are events, frame",
         ),
-        (&["--compare", recording, "nowhere.mcap"], "there is no file nowhere.mcap"),
-        (&["--compare", recording], "recordings given: 1, expected two with --compare"),
+        (
+            &["--compare", recording, "nowhere.mcap"],
+            "there is no file nowhere.mcap",
+        ),
+        (
+            &["--compare", recording],
+            "recordings given: 1, expected two with --compare",
+        ),
         (&[recording, recording], "recordings given: 2, expected one"),
-        (&["--quality", recording, "nowhere.mcap"], "there is no file nowhere.mcap"),
+        (
+            &["--quality", recording, "nowhere.mcap"],
+            "there is no file nowhere.mcap",
+        ),
         (&[recording, "--plot", toml], "cannot create the folder"),
     ] {
         let refused = program::refusal(program::project(), &[&["log"], args].concat());
-        assert!(refused.contains(said), "{args:?} should say {said:?}, but says {refused}");
+        assert!(
+            refused.contains(said),
+            "{args:?} should say {said:?}, but says {refused}"
+        );
     }
 }

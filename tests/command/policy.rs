@@ -12,7 +12,11 @@ use std::collections::BTreeMap;
 use tempfile::TempDir;
 
 const SPEC: PolicySpec = PolicySpec {
-    observation: ObservationSpace::Squall { mates: 0, enemies: 1, frames: 1 },
+    observation: ObservationSpace::Squall {
+        mates: 0,
+        enemies: 1,
+        frames: 1,
+    },
     action: ActionSpace::Pyquaticus,
     period_s: 0.5,
 };
@@ -24,12 +28,20 @@ fn model() -> Vec<u8> {
     let names = SPEC.observation.names(0, 1);
     let inputs = names.len();
     let outputs = SPEC.action.outputs();
-    let mut layer = Layer { inputs, outputs, weights: vec![0.0; inputs * outputs], biases: vec![0.0; outputs] };
+    let mut layer = Layer {
+        inputs,
+        outputs,
+        weights: vec![0.0; inputs * outputs],
+        biases: vec![0.0; outputs],
+    };
     layer.biases[ACTION] = 3.0;
     layer.weights[ACTION * inputs + names.iter().position(|name| name == MATTERS).unwrap()] = 2.0;
     let network = Perceptron {
         hidden: vec![],
-        heads: vec![Head { name: "logits".to_owned(), layer }],
+        heads: vec![Head {
+            name: "logits".to_owned(),
+            layer,
+        }],
         bounded: false,
         metadata: BTreeMap::from(SPEC.metadata()),
     };
@@ -57,20 +69,46 @@ fn a_decision_of_a_recorded_game_is_explained() {
     let dir = known();
     let here = dir.path();
     let game = scenario("games/attack_1v1.toml");
-    printed(here, &["run", &game, "--in-process", "--blue", "known.toml", "--record", "runs"]);
+    printed(
+        here,
+        &[
+            "run",
+            &game,
+            "--in-process",
+            "--blue",
+            "known.toml",
+            "--record",
+            "runs",
+        ],
+    );
     let recording = only_file(here.join("runs"));
     let explain = |vehicle: &str, at: &str| {
         format!("policy known.onnx --game {recording} --vehicle {vehicle} --at {at} --inputs 1")
     };
     let text = printed(here, &words(&explain("blue_one", "20.5")));
-    assert!(text.contains("one of 17 turns and speeds") && text.contains("every 0.5 s"), "{text}");
+    assert!(
+        text.contains("one of 17 turns and speeds") && text.contains("every 0.5 s"),
+        "{text}"
+    );
     let row: Vec<&str> = text.lines().last().unwrap().split_whitespace().collect();
-    let [name, value, then, "%"] = row[..] else { panic!("{text}") };
+    let [name, value, then, "%"] = row[..] else {
+        panic!("{text}")
+    };
     let [value, then] = [value, then].map(|number| number.parse::<f64>().unwrap());
-    assert!(name == MATTERS && value != 0.0 && (then - percent(0.0)).abs() < 0.051, "{text}");
-    let first = text.lines().find(|line| line.contains("full speed, straight on")).unwrap();
+    assert!(
+        name == MATTERS && value != 0.0 && (then - percent(0.0)).abs() < 0.051,
+        "{text}"
+    );
+    let first = text
+        .lines()
+        .find(|line| line.contains("full speed, straight on"))
+        .unwrap();
     let is: f64 = first.split_whitespace().next().unwrap().parse().unwrap();
-    assert!((is - percent(value)).abs() < 0.15, "{is} is not {}: {text}", percent(value));
+    assert!(
+        (is - percent(value)).abs() < 0.15,
+        "{is} is not {}: {text}",
+        percent(value)
+    );
 
     for (vehicle, at, said) in [
         ("red_one", "20", "red_one uses no policy"),
@@ -87,7 +125,10 @@ fn a_decision_of_a_recorded_game_is_explained() {
 fn what_a_helm_reports_of_a_policy_is_told_in_words() {
     let dir = known();
     let strategies = BTreeMap::from([("blue".to_owned(), dir.path().join("known.toml"))]);
-    let overrides = Overrides { strategies, ..Overrides::default() };
+    let overrides = Overrides {
+        strategies,
+        ..Overrides::default()
+    };
     let game = scenario::load_with(scenario("games/attack_1v1.toml").as_ref(), &overrides).unwrap();
     let blue = game.vehicle_named("blue_one").unwrap();
     let names = SPEC.observation.names(0, 1);
@@ -99,11 +140,25 @@ fn what_a_helm_reports_of_a_policy_is_told_in_words() {
     let speed_m_s = Some(1.0);
     let fault = None;
     let behaviour = "learned".to_owned();
-    let mut report =
-        PolicyReport { behaviour, model, course_deg, speed_m_s, option: None, fault, probabilities, observed };
+    let mut report = PolicyReport {
+        behaviour,
+        model,
+        course_deg,
+        speed_m_s,
+        option: None,
+        fault,
+        probabilities,
+        observed,
+    };
     let words = report.words(&game, blue);
     let [first, second] = [0, 1].map(|i: usize| (words.actions[i].0.as_str(), words.actions[i].1));
-    assert_eq!((first, second), (("full speed, straight on", 0.75), ("full speed, about", 0.25)));
+    assert_eq!(
+        (first, second),
+        (
+            ("full speed, straight on", 0.75),
+            ("full speed, about", 0.25)
+        )
+    );
     let goal = names.iter().position(|name| name == MATTERS).unwrap();
     assert_eq!(words.observed[goal], (MATTERS.to_owned(), goal as f32));
     // If an agent reports a model that its boat does not have, the report is rejected.
@@ -113,6 +168,12 @@ fn what_a_helm_reports_of_a_policy_is_told_in_words() {
 
 #[test]
 fn a_model_that_says_nothing_of_itself_is_described() {
-    let text = printed(project(), &["policy", "crates/onnx/tests/network/sb3_dynamo.onnx"]);
-    assert!(text.contains("obs (45) -> logits (17)") && text.contains("the strategy must declare it"), "{text}");
+    let text = printed(
+        project(),
+        &["policy", "crates/onnx/tests/network/sb3_dynamo.onnx"],
+    );
+    assert!(
+        text.contains("obs (45) -> logits (17)") && text.contains("the strategy must declare it"),
+        "{text}"
+    );
 }

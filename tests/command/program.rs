@@ -15,7 +15,10 @@ pub(crate) fn scenario(file: &str) -> String {
 
 /// The path of the only file in a folder.
 pub(crate) fn only_file(dir: impl AsRef<Path>) -> String {
-    let files: Vec<_> = std::fs::read_dir(dir).unwrap().map(|file| file.unwrap().path()).collect();
+    let files: Vec<_> = std::fs::read_dir(dir)
+        .unwrap()
+        .map(|file| file.unwrap().path())
+        .collect();
     assert_eq!(files.len(), 1, "{files:?}");
     files[0].display().to_string()
 }
@@ -40,7 +43,11 @@ pub(crate) fn squall(dir: impl AsRef<Path>, args: &[&str]) -> Output {
 /// Runs the program, which must succeed; returns its standard output.
 pub(crate) fn printed(dir: impl AsRef<Path>, args: &[&str]) -> String {
     let output = squall(dir, args);
-    assert!(output.status.success(), "{args:?}: {}", String::from_utf8_lossy(&output.stderr));
+    assert!(
+        output.status.success(),
+        "{args:?}: {}",
+        String::from_utf8_lossy(&output.stderr)
+    );
     String::from_utf8(output.stdout).unwrap()
 }
 

@@ -10,7 +10,10 @@ fn missing(case: &str) -> Vec<String> {
     let mut missing = vec![];
     let mut looked_for = 0;
     for line in case.lines().filter(|line| !line.is_empty()) {
-        let line = line.replace("SCENARIOS", &project().join("scenarios").display().to_string());
+        let line = line.replace(
+            "SCENARIOS",
+            &project().join("scenarios").display().to_string(),
+        );
         if let Some(path) = line.strip_prefix("--- ") {
             file = Some((dir.path().join(path), String::new()));
         } else if let Some(command) = line.strip_prefix("$ squall ") {
@@ -22,7 +25,11 @@ fn missing(case: &str) -> Vec<String> {
         } else {
             looked_for += commands.len();
             let silent = commands.iter().filter(|(_, said)| !said.contains(&line));
-            missing.extend(silent.map(|(command, said)| format!("{command} should say {line:?}, but says {said}")));
+            missing.extend(
+                silent.map(|(command, said)| {
+                    format!("{command} should say {line:?}, but says {said}")
+                }),
+            );
         }
         if let Some((path, text)) = &file {
             std::fs::write(path, text).unwrap();
@@ -35,11 +42,21 @@ fn missing(case: &str) -> Vec<String> {
 #[test]
 fn every_mistake_is_refused_and_explained() {
     let text = include_str!("refusals.txt");
-    let cases: Vec<_> = text.split("\n## ").skip(1).map(|case| case.split_once('\n').unwrap_or((case, ""))).collect();
-    assert_eq!(cases.len(), text.lines().filter(|line| line.starts_with("##")).count());
+    let cases: Vec<_> = text
+        .split("\n## ")
+        .skip(1)
+        .map(|case| case.split_once('\n').unwrap_or((case, "")))
+        .collect();
+    assert_eq!(
+        cases.len(),
+        text.lines().filter(|line| line.starts_with("##")).count()
+    );
     assert!(cases.len() >= 75, "only {} cases", cases.len());
-    let wrong =
-        cases.iter().flat_map(|(name, case)| missing(case).into_iter().map(move |why| format!("{name}: {why}")));
+    let wrong = cases.iter().flat_map(|(name, case)| {
+        missing(case)
+            .into_iter()
+            .map(move |why| format!("{name}: {why}"))
+    });
     let wrong: Vec<String> = wrong.collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
@@ -47,21 +64,38 @@ fn every_mistake_is_refused_and_explained() {
 #[test]
 fn mistakes_in_the_command_line_exit_with_2_and_name_the_next_step() {
     let dir = tempfile::tempdir().unwrap();
-    let utf_16: Vec<u8> = "\u{feff}fild = 1\r\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
+    let utf_16: Vec<u8> = "\u{feff}fild = 1\r\n"
+        .encode_utf16()
+        .flat_map(u16::to_le_bytes)
+        .collect();
     std::fs::write(dir.path().join("game.mcap"), "").unwrap();
     std::fs::write(dir.path().join("wide.toml"), utf_16).unwrap();
     std::fs::write(dir.path().join("Mine.TOML"), "").unwrap();
-    let cases = include_str!("mistakes.txt").lines().filter(|line| !line.starts_with('#'));
+    let cases = include_str!("mistakes.txt")
+        .lines()
+        .filter(|line| !line.starts_with('#'));
     let wrong = cases.filter_map(|case| {
-        let [code, line, want] = case.split(" | ").collect::<Vec<_>>()[..] else { panic!("{case}") };
+        let [code, line, want] = case.split(" | ").collect::<Vec<_>>()[..] else {
+            panic!("{case}")
+        };
         let output = command(&dir, &words(line)).output().unwrap();
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        let is_right = output.status.code() == code.parse().ok() && said.contains(want) && !said.contains("os error");
-        (!is_right).then(|| format!("{line}: expected {code} and {want:?}, found {} and {said}", output.status))
+        let is_right = output.status.code() == code.parse().ok()
+            && said.contains(want)
+            && !said.contains("os error");
+        (!is_right).then(|| {
+            format!(
+                "{line}: expected {code} and {want:?}, found {} and {said}",
+                output.status
+            )
+        })
     });
     let wrong: Vec<String> = wrong.collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    assert!(std::fs::read_dir(&dir).unwrap().count() == 3, "a mistake leaves no files");
+    assert!(
+        std::fs::read_dir(&dir).unwrap().count() == 3,
+        "a mistake leaves no files"
+    );
 }
 
 #[test]
@@ -81,13 +115,21 @@ fn errors_show_the_line_with_a_caret_and_colours_where_they_are_wanted() {
     assert_eq!(plain, want);
     assert_eq!(said(&["--color", "never"], None), plain);
     // The values of an axis are settings with the same mistake, which no line of a file has.
-    let sweep =
-        format!("base = {:?}\n[[axis]]\nkey = \"sea.wind.sped_m_s\"\nvalues = [1, 2]\n", scenario("sweeps/wind.toml"));
+    let sweep = format!(
+        "base = {:?}\n[[axis]]\nkey = \"sea.wind.sped_m_s\"\nvalues = [1, 2]\n",
+        scenario("sweeps/wind.toml")
+    );
     std::fs::write(dir.path().join("s.toml"), sweep).unwrap();
     let checked = command(&dir, &["check", "s.toml"]).output().unwrap().stdout;
     let checked = String::from_utf8(checked).unwrap();
-    assert!(checked.matches("sped_m_s").count() == 1 && checked.starts_with("s.toml:3:"), "{checked}");
+    assert!(
+        checked.matches("sped_m_s").count() == 1 && checked.starts_with("s.toml:3:"),
+        "{checked}"
+    );
     let coloured = said(&["--color", "always"], Some("1"));
-    assert!(coloured.contains("\u{1b}[1;31ma.toml:2:14:\u{1b}[0m"), "{coloured:?}");
+    assert!(
+        coloured.contains("\u{1b}[1;31ma.toml:2:14:\u{1b}[0m"),
+        "{coloured:?}"
+    );
     assert!(!said(&[], Some("1")).contains('\u{1b}'));
 }

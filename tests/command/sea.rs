@@ -15,20 +15,31 @@ const TITLES: [&str; 4] = [
 /// Runs `squall sea` for the Surveyor in a folder; returns its output and the page.
 fn sea(dir: &TempDir, file: &str, more: &[&str]) -> (String, String) {
     let boat = scenario("boats/surveyor_m1_8.toml");
-    let text = printed(dir, &[&["sea", file, "--boat", &boat, "--plot", "page.svg"], more].concat());
+    let text = printed(
+        dir,
+        &[&["sea", file, "--boat", &boat, "--plot", "page.svg"], more].concat(),
+    );
     assert!(text.ends_with("plot: page.svg\n"), "{text}");
-    (text, std::fs::read_to_string(dir.path().join("page.svg")).unwrap())
+    (
+        text,
+        std::fs::read_to_string(dir.path().join("page.svg")).unwrap(),
+    )
 }
 
 /// The value after a name in the program's output.
 fn value<'a>(text: &'a str, name: &str) -> &'a str {
-    let line = text.lines().find_map(|line| line.trim_start().strip_prefix(name));
-    line.unwrap_or_else(|| panic!("no {name:?} in\n{text}")).trim()
+    let line = text
+        .lines()
+        .find_map(|line| line.trim_start().strip_prefix(name));
+    line.unwrap_or_else(|| panic!("no {name:?} in\n{text}"))
+        .trim()
 }
 
 /// The numbers in a text, in order.
 fn numbers(text: &str) -> Vec<f64> {
-    text.split(|c: char| !(c.is_ascii_digit() || c == '.')).filter_map(|word| word.parse().ok()).collect()
+    text.split(|c: char| !(c.is_ascii_digit() || c == '.'))
+        .filter_map(|word| word.parse().ok())
+        .collect()
 }
 
 /// Checks that elements are closed in order and that special characters are escaped.
@@ -40,18 +51,41 @@ fn assert_well_formed(svg: &str) {
 fn every_sea_has_its_numbers_and_a_page_of_four_panels() {
     let calm = ["no waves", "no waves", "no wind", "the boat does not drift"];
     // The panels without data.
-    for (name, absent) in
-        [("fresh_breeze", &[][..]), ("bay_gale", &[]), ("calm", &calm), ("tidal", &calm[..3]), ("any", &[])]
-    {
+    for (name, absent) in [
+        ("fresh_breeze", &[][..]),
+        ("bay_gale", &[]),
+        ("calm", &calm),
+        ("tidal", &calm[..3]),
+        ("any", &[]),
+    ] {
         let dir = tempfile::tempdir().unwrap();
         let (text, svg) = sea(&dir, &scenario(&format!("seas/{name}.toml")), &[]);
-        assert!(text.contains(&format!("{name} for the boat surveyor_m1_8\n")), "{text}");
-        assert_eq!(text.contains("randomised by seed 1: sea/wind.speed_m_s = "), name == "any", "{text}");
+        assert!(
+            text.contains(&format!("{name} for the boat surveyor_m1_8\n")),
+            "{text}"
+        );
+        assert_eq!(
+            text.contains("randomised by seed 1: sea/wind.speed_m_s = "),
+            name == "any",
+            "{text}"
+        );
         assert_well_formed(&svg);
-        for title in TITLES.into_iter().chain([format!("{name}: surveyor_m1_8, seed 1").as_str()]) {
-            assert!(svg.lines().any(|line| line == title), "{name} has no {title:?}");
+        for title in TITLES
+            .into_iter()
+            .chain([format!("{name}: surveyor_m1_8, seed 1").as_str()])
+        {
+            assert!(
+                svg.lines().any(|line| line == title),
+                "{name} has no {title:?}"
+            );
         }
-        assert_eq!(svg.lines().filter(|line| calm.contains(line)).collect::<Vec<_>>(), absent, "{name}");
+        assert_eq!(
+            svg.lines()
+                .filter(|line| calm.contains(line))
+                .collect::<Vec<_>>(),
+            absent,
+            "{name}"
+        );
         assert!(!svg.contains("NaN") && !svg.contains("inf"), "{name}");
     }
 }
@@ -63,7 +97,10 @@ fn the_page_is_named_after_the_sea_and_changes_with_the_seed() {
     let boat = scenario("boats/otter.toml");
     std::fs::write(&file, format!("base = {:?}\n", scenario("seas/gale.toml"))).unwrap();
     let page = |seed: &str| {
-        let text = printed(&dir, &["sea", "own_gale.toml", "--boat", &boat, "--seed", seed]);
+        let text = printed(
+            &dir,
+            &["sea", "own_gale.toml", "--boat", &boat, "--seed", seed],
+        );
         assert!(text.ends_with("plot: own_gale.svg\n"), "{text}");
         std::fs::read_to_string(dir.path().join("own_gale.svg")).unwrap()
     };
@@ -81,11 +118,27 @@ fn the_free_boat_is_that_of_the_trial() {
         let file = scenario(&format!("seas/{name}.toml"));
         let boat = scenario("boats/surveyor_m1_8.toml");
         let (text, _) = sea(&dir, &file, &["--seed", seed]);
-        let trial = printed(&dir, &["trial", &boat, "--manoeuvre", "drift", "--sea", &file, "--seed", seed]);
-        let want = ["drift speed", "drift toward", "mean heading"].map(|name| numbers(value(&trial, name))[0]);
+        let trial = printed(
+            &dir,
+            &[
+                "trial",
+                &boat,
+                "--manoeuvre",
+                "drift",
+                "--sea",
+                &file,
+                "--seed",
+                seed,
+            ],
+        );
+        let want = ["drift speed", "drift toward", "mean heading"]
+            .map(|name| numbers(value(&trial, name))[0]);
         let got = numbers(value(&text, "free boat, simulated"));
         // Speeds are printed in hundredths, bearings in whole degrees.
-        assert!((got[0] - want[0]).abs() < 0.0051, "{name}: {got:?}, the trial {want:?}");
+        assert!(
+            (got[0] - want[0]).abs() < 0.0051,
+            "{name}: {got:?}, the trial {want:?}"
+        );
         for i in [1, 2] {
             let off_deg = (got[i] - want[i] + 180.0).rem_euclid(360.0) - 180.0;
             assert!(off_deg.abs() < 0.51, "{name}: {got:?}, the trial {want:?}");
@@ -104,8 +157,14 @@ fn in_a_steady_wind_the_free_boat_drifts_as_the_balance_of_forces_says() {
         let (text, _) = sea(&dir, "wind.toml", &[]);
         let free = numbers(value(&text, "free boat, simulated"));
         let balance_m_s = numbers(value(&text, "wind drift, beam on"))[0];
-        assert!((free[0] - balance_m_s).abs() < TOLERANCE_M_S, "{wind_m_s}: {text}");
-        assert!((free[1] - 45.0).abs() < 2.0, "{wind_m_s} m/s from 225°: {text}");
+        assert!(
+            (free[0] - balance_m_s).abs() < TOLERANCE_M_S,
+            "{wind_m_s}: {text}"
+        );
+        assert!(
+            (free[1] - 45.0).abs() < 2.0,
+            "{wind_m_s} m/s from 225°: {text}"
+        );
         assert_eq!(value(&text, "waves"), "none");
     }
 }
@@ -113,12 +172,22 @@ fn in_a_steady_wind_the_free_boat_drifts_as_the_balance_of_forces_says() {
 #[test]
 fn a_stream_carries_the_free_boat_as_fast_as_it_runs() {
     let dir = tempfile::tempdir().unwrap();
-    std::fs::write(dir.path().join("stream.toml"), "current = { speed_m_s = 0.4, toward_deg = 290 }\n").unwrap();
+    std::fs::write(
+        dir.path().join("stream.toml"),
+        "current = { speed_m_s = 0.4, toward_deg = 290 }\n",
+    )
+    .unwrap();
     let (text, _) = sea(&dir, "stream.toml", &[]);
     for name in ["current at the datum", "free boat, simulated"] {
-        assert!(value(&text, name).starts_with("0.40 m/s towards 290°"), "{text}");
+        assert!(
+            value(&text, name).starts_with("0.40 m/s towards 290°"),
+            "{text}"
+        );
     }
-    assert!((numbers(value(&text, "from its start"))[0] - 0.4 * 300.0).abs() < 5.0, "{text}");
+    assert!(
+        (numbers(value(&text, "from its start"))[0] - 0.4 * 300.0).abs() < 5.0,
+        "{text}"
+    );
     let (text, _) = sea(&dir, &scenario("seas/calm.toml"), &[]);
     assert_eq!(value(&text, "free boat, simulated"), "stays");
 }
@@ -129,5 +198,8 @@ fn a_kinematic_boat_stays_in_a_gale_and_the_text_says_why() {
     let boat = scenario("boats/heron_kinematic.toml");
     let text = printed(&dir, &["sea", &scenario("seas/gale.toml"), "--boat", &boat]);
     assert_eq!(value(&text, "free boat, simulated"), "stays");
-    assert!(text.contains("only the current moves a kinematic boat"), "{text}");
+    assert!(
+        text.contains("only the current moves a kinematic boat"),
+        "{text}"
+    );
 }

@@ -12,7 +12,11 @@ fn shown(text: &str, more: &[&str]) -> (bool, String, String) {
     let output = squall(project(), &[&["strategy", file.as_str()], more].concat());
     let root = format!("{}/", folder.path().display());
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap().replace(&root, "");
-    (output.status.success(), text(output.stdout), text(output.stderr))
+    (
+        output.status.success(),
+        text(output.stdout),
+        text(output.stderr),
+    )
 }
 
 const PROGRAM: &str = r#"
@@ -91,7 +95,9 @@ fn a_broken_strategy_is_explained_and_fails() {
     let (is_good, text, errors) = shown(&PROGRAM.replace("laps < 3", "lap < 3"), &[]);
     assert!(!is_good);
     assert!(
-        text.starts_with("x.toml:13:9: when has \"lap\" here, which is unknown, expected a variable (laps)"),
+        text.starts_with(
+            "x.toml:13:9: when has \"lap\" here, which is unknown, expected a variable (laps)"
+        ),
         "{text}"
     );
     assert!(errors.contains("1 error"), "{errors}");
@@ -107,7 +113,10 @@ fn a_strategy_is_drawn_as_a_graph() {
         "    r0m1 -> r0m2 [label=\"when laps < 3 && !has_flag\"];",
         "    r0m0 [label=\"tagged\\nkeep_clear: avoid_collision 250, safety\\nstay_in: op_region 300, safety\"];",
     ] {
-        assert!(text.lines().any(|found| found == line), "{line} is not in\n{text}");
+        assert!(
+            text.lines().any(|found| found == line),
+            "{line} is not in\n{text}"
+        );
     }
     assert_eq!(text.matches('{').count(), text.matches('}').count());
 }
@@ -115,14 +124,19 @@ fn a_strategy_is_drawn_as_a_graph() {
 #[test]
 fn shipped_strategies_are_shown_role_by_role() {
     let text = printed(project(), &["strategy", "scenarios/strategies/pav01.toml"]);
-    for words in ["role 1: easy_defender", "role 2: easy_attacker", "\n  in tagged\n"] {
+    for words in [
+        "role 1: easy_defender",
+        "role 2: easy_attacker",
+        "\n  in tagged\n",
+    ] {
         assert!(text.contains(words), "{words} is not in\n{text}");
     }
 }
 
 #[test]
 fn the_reference_is_printed_without_a_file() {
-    let page = std::fs::read_to_string(project().join("scenarios/strategies/REFERENCE.md")).unwrap();
+    let page =
+        std::fs::read_to_string(project().join("scenarios/strategies/REFERENCE.md")).unwrap();
     assert!(printed(project(), &["strategy", "--reference"]) == page);
     refusal(project(), &["strategy"]);
 }
@@ -146,9 +160,17 @@ fn a_check_warns_of_points_within_the_turning_circle_of_the_boat() {
     };
     let said = game("[[30, 20], [30, 24], [26, 24], [26, 20]]");
     assert!(
-        said.starts_with("game.toml: valid game\n  warning: square: behaviour \"round\": 4 of 4 points lie"),
+        said.starts_with(
+            "game.toml: valid game\n  warning: square: behaviour \"round\": 4 of 4 points lie"
+        ),
         "{said}"
     );
-    assert!(said.contains("circle of a surveyor_afloat coming"), "{said}");
-    assert_eq!(game("[[30, 20], [30, 50], [60, 50], [60, 20]]"), "game.toml: valid game\n");
+    assert!(
+        said.contains("circle of a surveyor_afloat coming"),
+        "{said}"
+    );
+    assert_eq!(
+        game("[[30, 20], [30, 50], [60, 50], [60, 20]]"),
+        "game.toml: valid game\n"
+    );
 }

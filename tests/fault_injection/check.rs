@@ -25,7 +25,10 @@ const LEFT: Duration = Duration::from_secs(75);
 pub(crate) fn faults_of(plan: &Plan, played: &Played) -> Vec<String> {
     let mut wrong = played.monitor.wrong.clone();
     if played.run.verdict != Verdict::Ended {
-        wrong.push(format!("{:?} after {:?}", played.run.verdict, played.run.time));
+        wrong.push(format!(
+            "{:?} after {:?}",
+            played.run.verdict, played.run.time
+        ));
         return wrong;
     }
     match &played.sim {
@@ -44,7 +47,9 @@ pub(crate) fn faults_of(plan: &Plan, played: &Played) -> Vec<String> {
 
 impl Plan {
     fn kills(&self, node: usize) -> bool {
-        self.faults.iter().any(|(_, fault)| matches!(fault, Fault::Kill { node: who, .. } if *who == node))
+        self.faults
+            .iter()
+            .any(|(_, fault)| matches!(fault, Fault::Kill { node: who, .. } if *who == node))
     }
 
     /// When the real boat must be back whatever happened to it; `None` without a real boat or if a
@@ -57,7 +62,12 @@ impl Plan {
 
     fn agent_of(&self, boat: usize) -> usize {
         let has = |boats: &Vec<usize>| boats.contains(&boat);
-        FIRST_AGENT + self.agents.iter().position(has).expect("every boat has an agent")
+        FIRST_AGENT
+            + self
+                .agents
+                .iter()
+                .position(has)
+                .expect("every boat has an agent")
     }
 }
 
@@ -71,19 +81,24 @@ fn undisturbed(plan: &Plan) -> String {
         return known.clone();
     }
     let scenario = plan.scenario();
-    let outcome = arena::play(&scenario, agent::minds_of(&scenario), plan.game_seed).unwrap_or_else(|e| panic!("{e}"));
+    let outcome = arena::play(&scenario, agent::minds_of(&scenario), plan.game_seed)
+        .unwrap_or_else(|e| panic!("{e}"));
     UNDISTURBED.lock().insert(key, outcome.digest.clone());
     outcome.digest
 }
 
 fn has_lost_agents(outcome: &Outcome) -> bool {
-    outcome.events.iter().any(|event| event.event == "agent_lost")
+    outcome
+        .events
+        .iter()
+        .any(|event| event.event == "agent_lost")
 }
 
 /// A lockstep game must equal the game played without a network, unless an agent was lost.
 fn check_digest(plan: &Plan, played: &Played, report: &Report) -> Option<String> {
     let words_lost = plan.talks() && played.refused.of(Refusal::TeamMessageMissing) > 0;
-    let is_other = plan.forges() || has_lost_agents(&report.outcome) || words_lost || report.run.cut_short;
+    let is_other =
+        plan.forges() || has_lost_agents(&report.outcome) || words_lost || report.run.cut_short;
     if plan.pace != Pace::Lockstep || is_other {
         return None;
     }
@@ -105,13 +120,23 @@ fn unjust_losses(plan: &Plan, played: &Played, outcome: &Outcome) -> Vec<String>
         let absent = plan.longest_absence(node, node == SIM);
         absent > Duration::ZERO && absent >= enough
     };
-    let lost = outcome.events.iter().filter(|event| event.event == "agent_lost");
+    let lost = outcome
+        .events
+        .iter()
+        .filter(|event| event.event == "agent_lost");
     let mut wrong = Vec::new();
     for event in lost {
         let name = event.vehicle.clone().unwrap_or_default();
-        let boat = played.scenario.vehicle_by_name(&name).expect("a boat of the game").index();
+        let boat = played
+            .scenario
+            .vehicle_by_name(&name)
+            .expect("a boat of the game")
+            .index();
         if !is_excused(plan.agent_of(boat)) && !is_excused(SIM) {
-            wrong.push(format!("{name} lost its agent at {} s of the game, which was there", event.at_s));
+            wrong.push(format!(
+                "{name} lost its agent at {} s of the game, which was there",
+                event.at_s
+            ));
         }
     }
     wrong
@@ -120,13 +145,19 @@ fn unjust_losses(plan: &Plan, played: &Played, outcome: &Outcome) -> Vec<String>
 /// A killed agent is reported lost within patience, and all agents are present after the faults.
 fn check_presence(plan: &Plan, played: &Played) -> Vec<String> {
     let mut wrong = Vec::new();
-    let Some((first_frame, last_frame)) = played.monitor.frames else { return wrong };
+    let Some((first_frame, last_frame)) = played.monitor.frames else {
+        return wrong;
+    };
     let sim_is_well = plan.longest_absence(SIM, false).is_zero();
-    let all_are_back = plan.faults_end().max(first_frame) + plan.conditions.lease + plan.patience() + BACK;
+    let all_are_back =
+        plan.faults_end().max(first_frame) + plan.conditions.lease + plan.patience() + BACK;
     for (boat, lost) in played.monitor.lost.iter().enumerate() {
         let node = plan.agent_of(boat);
         let died = plan.faults.iter().find_map(|(at, fault)| match fault {
-            Fault::Kill { node: who, restart: None } if *who == node => Some(*at),
+            Fault::Kill {
+                node: who,
+                restart: None,
+            } if *who == node => Some(*at),
             _ => None,
         });
         match died {
@@ -154,20 +185,38 @@ fn check_presence(plan: &Plan, played: &Played) -> Vec<String> {
 /// No node exits during the game, and all exit after it.
 fn check_ends(plan: &Plan, played: &Played) -> Vec<String> {
     let mut wrong = Vec::new();
-    let ended = |name: &str| played.run.ends.iter().rfind(|end| end.node == name).map(|end| end.at);
-    let Some(sim_ended) = ended("sim") else { return vec!["the sim never ends".to_owned()] };
+    let ended = |name: &str| {
+        played
+            .run
+            .ends
+            .iter()
+            .rfind(|end| end.node == name)
+            .map(|end| end.at)
+    };
+    let Some(sim_ended) = ended("sim") else {
+        return vec!["the sim never ends".to_owned()];
+    };
     if played.run.time > sim_ended.max(plan.faults_end()) + LEFT {
-        wrong.push(format!("the sim ended at {sim_ended:?}, the last node at {:?}", played.run.time));
+        wrong.push(format!(
+            "the sim ended at {sim_ended:?}, the last node at {:?}",
+            played.run.time
+        ));
     }
     for (agent, result) in &played.agents {
         let Err(reason) = result else { continue };
-        let end = played.run.ends.iter().find(|end| end.node == format!("agent {agent}") && !end.was_killed);
+        let end = played
+            .run
+            .ends
+            .iter()
+            .find(|end| end.node == format!("agent {agent}") && !end.was_killed);
         let is_early = end.is_some_and(|end| end.at < sim_ended);
         if is_early && !plan.forges() {
             wrong.push(format!("agent {agent} gives up during the game: {reason}"));
         } else if plan.faults.is_empty() && !plan.forges() {
             // Messages get lost even so.
-            wrong.push(format!("agent {agent} misses the end of the game: {reason}"));
+            wrong.push(format!(
+                "agent {agent} misses the end of the game: {reason}"
+            ));
         }
     }
     wrong

@@ -22,8 +22,12 @@ const LOOK: Duration = Duration::from_millis(500);
 /// The gateway's settings.
 static GATEWAY: LazyLock<Gateway> = LazyLock::new(|| {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/gateways/surveyor.toml");
-    let gateway = scenario::load_file::<gateway::config::Gateway>(&file).unwrap_or_else(|e| panic!("{e}"));
-    Gateway { declination_rad: Some(DECLINATION_RAD), ..gateway }
+    let gateway =
+        scenario::load_file::<gateway::config::Gateway>(&file).unwrap_or_else(|e| panic!("{e}"));
+    Gateway {
+        declination_rad: Some(DECLINATION_RAD),
+        ..gateway
+    }
 });
 
 /// Runs the gateway of a boat until `stop` is set.
@@ -40,7 +44,11 @@ pub(crate) fn connect(wire: &Arc<Wire>, vehicle: &str, stop: &Arc<AtomicBool>) {
     wire.note_start();
     let open = |on_event| Ok(Box::new(MemoryLink::open(wire, on_event)) as Box<dyn BoatLink>);
     let mut notify = |event: NodeEvent<'_>| {
-        if let NodeEvent::Event { event: Event::State { from, to }, .. } = event {
+        if let NodeEvent::Event {
+            event: Event::State { from, to },
+            ..
+        } = event
+        {
             wire.note_state(from, to);
         }
     };
@@ -70,7 +78,11 @@ impl MemoryLink {
         let read_from = Arc::clone(&wire);
         let tell = Arc::clone(&on_event);
         let reader = NodeThread::start(move || read(&read_from, link, &**tell));
-        MemoryLink { wire, on_event, _reader: reader.expect("a thread of the simulation") }
+        MemoryLink {
+            wire,
+            on_event,
+            _reader: reader.expect("a thread of the simulation"),
+        }
     }
 }
 
@@ -90,20 +102,33 @@ fn read(wire: &Wire, link: u64, tell: &(dyn Fn(LinkEvent) + Send + Sync)) {
             (state.is_connected, state.from_boat) = (true, vec![]);
             state.oracle.forget();
         });
-        tell(LinkEvent::Up { peer, name: "memory".to_owned() });
-        while wire.wait(SILENCE, |state| state.links != link || !state.from_boat.is_empty()) && !is_over() {
+        tell(LinkEvent::Up {
+            peer,
+            name: "memory".to_owned(),
+        });
+        while wire.wait(SILENCE, |state| {
+            state.links != link || !state.from_boat.is_empty()
+        }) && !is_over()
+        {
             let bytes = wire.visit(|state, now| {
                 let bytes = std::mem::take(&mut state.from_boat);
                 state.oracle.note(now, &bytes);
                 bytes
             });
-            tell(LinkEvent::Bytes { peer, at: clock::now(), bytes });
+            tell(LinkEvent::Bytes {
+                peer,
+                at: clock::now(),
+                bytes,
+            });
         }
         if is_over() {
             return;
         }
         wire.visit(|state, _| state.is_connected = false);
-        tell(LinkEvent::Down { peer, reason: format!("no bytes for {SILENCE:?}") });
+        tell(LinkEvent::Down {
+            peer,
+            reason: format!("no bytes for {SILENCE:?}"),
+        });
         peer += 1;
     }
 }
@@ -111,7 +136,10 @@ fn read(wire: &Wire, link: u64, tell: &(dyn Fn(LinkEvent) + Send + Sync)) {
 impl BoatLink for MemoryLink {
     fn send(&self, bytes: Vec<u8>, tag: u64) {
         self.wire.carry(&bytes);
-        (self.on_event)(LinkEvent::Written { tag, at: clock::now() });
+        (self.on_event)(LinkEvent::Written {
+            tag,
+            at: clock::now(),
+        });
     }
 
     fn displaced(&self) -> u64 {

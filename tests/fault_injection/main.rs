@@ -41,7 +41,10 @@ const FAILURES: usize = 5;
 
 fn number(variable: &str) -> Option<u64> {
     let text = std::env::var(variable).ok()?;
-    Some(text.parse().unwrap_or_else(|_| panic!("{variable} is {text:?}, expected a whole number")))
+    Some(
+        text.parse()
+            .unwrap_or_else(|_| panic!("{variable} is {text:?}, expected a whole number")),
+    )
 }
 
 /// Combines the traces of all games, in any order: two builds that print the same value played the
@@ -54,7 +57,9 @@ fn failure(seed: u64) -> Option<String> {
     let played = play(&plan, false);
     TRACES.fetch_add(played.run.trace.wrapping_mul(seed | 1), Ordering::Relaxed);
     let wrong = faults_of(&plan, &played);
-    let again = format!("SQUALL_FAULT_SEED={seed} cargo test --release --test fault_injection -- --nocapture");
+    let again = format!(
+        "SQUALL_FAULT_SEED={seed} cargo test --release --test fault_injection -- --nocapture"
+    );
     (!wrong.is_empty()).then(|| format!("seed {seed}:\n  {}\n  again: {again}", wrong.join("\n  ")))
 }
 
@@ -62,7 +67,9 @@ fn failure(seed: u64) -> Option<String> {
 fn show(seed: u64) {
     let plan = Plan::drawn(seed);
     let played = play(&plan, true);
-    let Played { run, sim, agents, .. } = &played;
+    let Played {
+        run, sim, agents, ..
+    } = &played;
     run.lines.iter().for_each(|line| println!("{line}"));
     println!(
         "{plan:#?}\n{:#?}\nagents: {agents:?}\nends: {:#?}",
@@ -70,7 +77,11 @@ fn show(seed: u64) {
         run.ends
     );
     if let Some(Ok(report)) = sim {
-        report.outcome.events.iter().for_each(|event| println!("{event:?}"));
+        report
+            .outcome
+            .events
+            .iter()
+            .for_each(|event| println!("{event:?}"));
     }
     let wrong = faults_of(&plan, &played);
     assert!(wrong.is_empty(), "seed {seed}: {wrong:#?}");
@@ -85,7 +96,8 @@ fn games_keep_their_guarantees_under_any_network_faults() {
     let from = number("SQUALL_FAULT_FROM").unwrap_or(0);
     let next = AtomicU64::new(from);
     let start = Instant::now();
-    let failures = parking_lot::Mutex::new(SELDOM.into_iter().filter_map(failure).collect::<Vec<_>>());
+    let failures =
+        parking_lot::Mutex::new(SELDOM.into_iter().filter_map(failure).collect::<Vec<_>>());
     let work = || {
         while failures.lock().len() < FAILURES {
             let seed = next.fetch_add(1, Ordering::Relaxed);
@@ -101,7 +113,10 @@ fn games_keep_their_guarantees_under_any_network_faults() {
     std::thread::scope(|scope| (0..workers).for_each(|_| drop(scope.spawn(work))));
     let took_s = start.elapsed().as_secs_f64();
     let played = next.load(Ordering::Relaxed).min(from + games) - from;
-    println!("{played} games in {took_s:.1} s: {:.0} a minute on {workers} cores", 60.0 * played as f64 / took_s);
+    println!(
+        "{played} games in {took_s:.1} s: {:.0} a minute on {workers} cores",
+        60.0 * played as f64 / took_s
+    );
     println!("traces {:016x}", TRACES.load(Ordering::Relaxed));
     let failures = failures.into_inner();
     assert!(failures.is_empty(), "{}", failures.join("\n"));

@@ -46,7 +46,13 @@ pub(crate) struct Operator<'a> {
 }
 
 /// Acts as operator until the game is over, then stops the gateway and its boat.
-pub(crate) fn operate(plan: &Plan, wire: &Wire, vehicle: &str, over: &Arc<Watched<bool>>, stop: &AtomicBool) {
+pub(crate) fn operate(
+    plan: &Plan,
+    wire: &Wire,
+    vehicle: &str,
+    over: &Arc<Watched<bool>>,
+    stop: &AtomicBool,
+) {
     let _ends_gateway = AtExit(|| stop.store(true, Ordering::Relaxed));
     let began = clock::now();
     let search_stop = AtomicBool::new(false);
@@ -97,17 +103,27 @@ impl Operator<'_> {
 
     fn are_undisturbed(&self, nodes: &[usize]) -> bool {
         let now = clock::since(self.began) + BEGINS;
-        self.plan.is_calm() && !self.is_over() && !self.plan.is_disturbed(nodes, now.saturating_sub(RECOVERS), now)
+        self.plan.is_calm()
+            && !self.is_over()
+            && !self
+                .plan
+                .is_disturbed(nodes, now.saturating_sub(RECOVERS), now)
     }
 
     fn ask(&mut self, command: &OperatorCommand) -> Option<OperatorReply> {
         let key = topic::operate(&self.game, &self.vehicle);
         // A node that is cut off gets no answer either.
-        let reply: Option<OperatorReply> = self.bus.request_node(&key, command, ANSWER).ok().flatten();
+        let reply: Option<OperatorReply> =
+            self.bus.request_node(&key, command, ANSWER).ok().flatten();
         let must_answer = self.has_answered && self.is_undisturbed();
-        assert!(reply.is_some() || !must_answer, "the gateway does not answer {command:?}");
+        assert!(
+            reply.is_some() || !must_answer,
+            "the gateway does not answer {command:?}"
+        );
         self.has_answered |= reply.is_some();
-        let is_forged = reply.as_ref().is_some_and(|reply| reply.status.state == stranger::FORGED);
+        let is_forged = reply
+            .as_ref()
+            .is_some_and(|reply| reply.status.state == stranger::FORGED);
         assert!(!is_forged, "a stranger's answer counts");
         reply
     }
@@ -119,7 +135,9 @@ impl Operator<'_> {
         });
         let reply = self.ask(&OperatorCommand::Arm);
         self.unanswered += u32::from(reply.is_none());
-        let is_stopped = reply.as_ref().is_some_and(|reply| reply.status.state.contains("e-stopped"));
+        let is_stopped = reply
+            .as_ref()
+            .is_some_and(|reply| reply.status.state.contains("e-stopped"));
         match reply {
             Some(reply) if has_no_orders(&reply) => self.check_orders_come(),
             reply => self.has_had_orders |= reply.is_some(),
@@ -174,8 +192,12 @@ impl Operator<'_> {
             let was_undisturbed = self.is_undisturbed();
             let is_released = bus::control(&self.bus, &self.game, Control::Release).is_ok();
             clock::rest(Duration::from_millis(300));
-            let state = self.ask(&OperatorCommand::Status).map(|reply| reply.status.state);
-            let is_stopped = state.as_deref().is_none_or(|state| state.contains("e-stopped"));
+            let state = self
+                .ask(&OperatorCommand::Status)
+                .map(|reply| reply.status.state);
+            let is_stopped = state
+                .as_deref()
+                .is_none_or(|state| state.contains("e-stopped"));
             if is_released && !is_stopped {
                 break;
             }
@@ -184,13 +206,17 @@ impl Operator<'_> {
                 && self.has_answered
                 && self.is_undisturbed()
                 && by_page.is_none_or(|at| clock::since(at) > SAID_AGAIN);
-            assert!(!is_late, "an E-stop of all that was released is in force: {is_released}, {state:?}");
+            assert!(
+                !is_late,
+                "an E-stop of all that was released is in force: {is_released}, {state:?}"
+            );
         }
         self.note_release(false);
     }
 
     fn note_release(&self, begins: bool) {
-        self.wire.visit(|state, _| (state.is_releasing, state.must_rest) = (begins, None));
+        self.wire
+            .visit(|state, _| (state.is_releasing, state.must_rest) = (begins, None));
     }
 
     /// Stops the boat through its gateway, for a while.
@@ -200,7 +226,10 @@ impl Operator<'_> {
         }
         self.wire.visit(|state, _| state.must_rest = None);
         while !self.is_over() {
-            if self.ask(&OperatorCommand::Release).is_some_and(|reply| reply.refused.is_none()) {
+            if self
+                .ask(&OperatorCommand::Release)
+                .is_some_and(|reply| reply.refused.is_none())
+            {
                 break;
             }
             clock::rest(Duration::from_millis(300));
@@ -215,5 +244,9 @@ impl Operator<'_> {
 }
 
 fn has_no_orders(reply: &OperatorReply) -> bool {
-    reply.status.missing.iter().any(|missing| missing == "a fresh order")
+    reply
+        .status
+        .missing
+        .iter()
+        .any(|missing| missing == "a fresh order")
 }

@@ -23,14 +23,20 @@ const LATE: Duration = Duration::from_secs(3);
 pub(crate) fn look(plan: &Plan, wire: &Wire, over: &Watched<bool>) {
     let began = clock::now();
     let stream = &mut Stream::new(plan.seed, "page");
-    let view =
-        LiveView::open(net(false).into(), Some(name()), Box::new(|_| ()), |_| Err(String::new())).expect("a thread");
+    let view = LiveView::open(net(false).into(), Some(name()), Box::new(|_| ()), |_| {
+        Err(String::new())
+    })
+    .expect("a thread");
     let mut viewer = view.open_viewer(Access::Control);
-    let mut shown = Shown { at: clock::now(), frames: 0 };
+    let mut shown = Shown {
+        at: clock::now(),
+        frames: 0,
+    };
     while !over.wait(LOOKS, |over| *over) {
         let since = clock::since(began) + BEGINS;
         let nodes = [SIM, plan.page()];
-        let is_calm = plan.is_calm() && !plan.is_disturbed(&nodes, since.saturating_sub(RECOVERS), since);
+        let is_calm =
+            plan.is_calm() && !plan.is_disturbed(&nodes, since.saturating_sub(RECOVERS), since);
         shown.take(&mut *viewer, is_calm);
         if stream.below(80) == 0 {
             stop(plan, wire, &mut *viewer, since);
@@ -55,7 +61,11 @@ impl Shown {
         if self.frames > before || !is_calm || self.frames == 0 {
             self.at = now;
         }
-        assert!(now < self.at + LATE, "a page has been shown {} frames, and none any more", self.frames);
+        assert!(
+            now < self.at + LATE,
+            "a page has been shown {} frames, and none any more",
+            self.frames
+        );
     }
 }
 
@@ -64,7 +74,14 @@ impl Shown {
 fn stop(plan: &Plan, wire: &Wire, viewer: &mut dyn Viewer, since: Duration) {
     let asked = clock::now();
     wire.visit(|state, _| state.page_stopped = Some(asked));
-    let is_sent = viewer.ask(&PageRequest::Control { what: Control::EStop }, asked).is_ok();
+    let is_sent = viewer
+        .ask(
+            &PageRequest::Control {
+                what: Control::EStop,
+            },
+            asked,
+        )
+        .is_ok();
     let nodes = [SIM, plan.gateway(), plan.page()];
     let is_disturbed = plan.is_disturbed(&nodes, since.saturating_sub(RECOVERS), since + LATE);
     if is_sent && plan.is_calm() && !is_disturbed {

@@ -55,19 +55,32 @@ impl Plan {
     pub(crate) fn drawn(seed: u64) -> Plan {
         let stream = &mut Stream::new(seed, "plan");
         let game = stream.below(GAMES.len() as u64) as usize;
-        let boats = if matches!(GAMES[game], "duel" | "real_boat") { 2 } else { 4 };
+        let boats = if matches!(GAMES[game], "duel" | "real_boat") {
+            2
+        } else {
+            4
+        };
         let agents = drawn_agents(stream, boats);
         let pace = match stream.below(5) {
             // A real boat runs in real time.
             _ if GAMES[game] == "real_boat" => Pace::Realtime { factor: 1.0 },
             0..3 => Pace::Lockstep,
-            _ => Pace::Realtime { factor: one(stream, &[1.0, 2.0, 4.0]) },
+            _ => Pace::Realtime {
+                factor: one(stream, &[1.0, 2.0, 4.0]),
+            },
         };
         let mut plan = Plan {
             seed,
             game,
             game_seed: 1 + stream.below(4),
-            duration_s: one(stream, if GAMES[game] == "real_boat" { &[6, 20, 40] } else { &[3, 6, 20] }),
+            duration_s: one(
+                stream,
+                if GAMES[game] == "real_boat" {
+                    &[6, 20, 40]
+                } else {
+                    &[3, 6, 20]
+                },
+            ),
             pace,
             speed: one(stream, &[None, None, Some(4.0), Some(1.0)]),
             patience_s: one(stream, &[2.0, 3.0, 5.0]),
@@ -112,10 +125,16 @@ impl Plan {
             5..8 => Fault::Suspend { node, time },
             // The operator ends the gateway and the boat, so it must survive.
             _ if node == self.operator() => Fault::Suspend { node, time },
-            _ if node == self.page() => Fault::Kill { node, restart: None },
+            _ if node == self.page() => Fault::Kill {
+                node,
+                restart: None,
+            },
             // The death of the sim ends the game, so it should be rare.
             _ if node == SIM && stream.below(4) > 0 => Fault::Suspend { node, time },
-            _ if node == SIM => Fault::Kill { node, restart: None },
+            _ if node == SIM => Fault::Kill {
+                node,
+                restart: None,
+            },
             _ => Fault::Kill { node, restart },
         };
         (at, fault)
@@ -161,7 +180,9 @@ impl Plan {
         self.faults.iter().any(|(at, fault)| {
             let (node, end) = match fault {
                 Fault::Cut { node, time } | Fault::Suspend { node, time } => (node, *at + *time),
-                Fault::Kill { node, restart } => (node, restart.map_or(Duration::MAX, |restart| *at + restart)),
+                Fault::Kill { node, restart } => {
+                    (node, restart.map_or(Duration::MAX, |restart| *at + restart))
+                }
             };
             nodes.contains(node) && *at <= to && end >= from
         })
@@ -187,18 +208,22 @@ impl Plan {
             Fault::Cut { time, .. } | Fault::Suspend { time, .. } => *at + *time,
             Fault::Kill { restart, .. } => *at + restart.unwrap_or_default(),
         });
-        ends.chain(self.wire_cuts.iter().map(|(_, end)| *end)).max().unwrap_or_default()
+        ends.chain(self.wire_cuts.iter().map(|(_, end)| *end))
+            .max()
+            .unwrap_or_default()
     }
 
-    /// The longest continuous period in which `node` was cut off or, unless only cuts count, suspended;
-    /// unlimited if it was killed.
+    /// The longest continuous period in which `node` was cut off or, unless only cuts count,
+    /// suspended; unlimited if it was killed.
     pub(crate) fn longest_absence(&self, node: usize, only_cuts: bool) -> Duration {
         let mut spans: Vec<(Duration, Duration)> = Vec::new();
         for (at, fault) in &self.faults {
             match fault {
                 Fault::Kill { node: who, .. } if *who == node => return Duration::MAX,
                 Fault::Suspend { .. } if only_cuts => {}
-                Fault::Cut { node: who, time } | Fault::Suspend { node: who, time } if *who == node => {
+                Fault::Cut { node: who, time } | Fault::Suspend { node: who, time }
+                    if *who == node =>
+                {
                     spans.push((*at, *at + *time));
                 }
                 _ => {}
@@ -209,7 +234,11 @@ impl Plan {
         let mut open = (Duration::ZERO, Duration::ZERO);
         for (from, to) in spans {
             // Faults in quick succession add up: the answer may not have got through in between.
-            open = if from <= open.1 + GAP { (open.0, open.1.max(to)) } else { (from, to) };
+            open = if from <= open.1 + GAP {
+                (open.0, open.1.max(to))
+            } else {
+                (from, to)
+            };
             longest = longest.max(open.1 - open.0);
         }
         longest
@@ -236,7 +265,15 @@ fn drawn_agents(stream: &mut Stream, boats: usize) -> Vec<Vec<usize>> {
 }
 
 fn drawn_conditions(stream: &mut Stream) -> Conditions {
-    let damage = one(stream, &[Damage::Truncated, Damage::Truncated, Damage::BitFlip, Damage::Noise]);
+    let damage = one(
+        stream,
+        &[
+            Damage::Truncated,
+            Damage::Truncated,
+            Damage::BitFlip,
+            Damage::Noise,
+        ],
+    );
     Conditions {
         delay: Duration::from_micros(50 + stream.below(5000)),
         jitter: Duration::from_micros(one(stream, &[100, 2000, 60_000])),
@@ -245,6 +282,13 @@ fn drawn_conditions(stream: &mut Stream) -> Conditions {
         lease: LEASE,
         retry: ms(stream, 200, 2000),
         queue: one(stream, &[4, 64, 1024]),
-        pause: one(stream, &[Duration::ZERO, Duration::from_millis(2), Duration::from_millis(20)]),
+        pause: one(
+            stream,
+            &[
+                Duration::ZERO,
+                Duration::from_millis(2),
+                Duration::from_millis(20),
+            ],
+        ),
     }
 }

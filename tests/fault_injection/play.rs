@@ -53,7 +53,9 @@ struct Results {
 /// The scenarios, loaded once.
 static SCENARIOS: LazyLock<Vec<Scenario>> = LazyLock::new(|| {
     let games = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fault_injection/games");
-    let read = |game: &&str| scenario::load(&games.join(format!("{game}.toml"))).unwrap_or_else(|e| panic!("{e}"));
+    let read = |game: &&str| {
+        scenario::load(&games.join(format!("{game}.toml"))).unwrap_or_else(|e| panic!("{e}"))
+    };
     GAMES.iter().map(read).collect()
 });
 
@@ -75,9 +77,18 @@ pub(crate) fn name() -> GameName {
 
 pub(crate) fn net(listens: bool) -> Net {
     let endpoint = vec!["tcp/127.0.0.1:7447".to_owned()];
-    let (listen, connect) = if listens { (endpoint, vec![]) } else { (vec![], endpoint) };
+    let (listen, connect) = if listens {
+        (endpoint, vec![])
+    } else {
+        (vec![], endpoint)
+    };
     let token = Some("5c".repeat(32).parse().expect("a token"));
-    Net { listen, connect, token, ..Net::default() }
+    Net {
+        listen,
+        connect,
+        token,
+        ..Net::default()
+    }
 }
 
 /// Plays a game; `keeps_lines` also keeps the event log.
@@ -95,17 +106,33 @@ pub(crate) fn play(plan: &Plan, keeps_lines: bool) -> Played {
     add_sim(&network, plan, &scenario, &results, &over);
     network.node(Duration::from_millis(100), "observer", observe);
     for (i, boats) in plan.agents.iter().enumerate() {
-        let names = boats.iter().map(|boat| scenario.vehicles[*boat].name.clone()).collect();
+        let names = boats
+            .iter()
+            .map(|boat| scenario.vehicles[*boat].name.clone())
+            .collect();
         add_agent(&network, i, names, &results);
     }
     if plan.has_real_boat() {
         add_real_boat(&network, plan, &scenario, &over);
     }
-    plan.faults.iter().for_each(|(at, fault)| network.fault(*at, *fault));
+    plan.faults
+        .iter()
+        .for_each(|(at, fault)| network.fault(*at, *fault));
     let run = network.run(LIMIT);
-    let Results { sim, agents, refused } = std::mem::take(&mut *results.lock());
+    let Results {
+        sim,
+        agents,
+        refused,
+    } = std::mem::take(&mut *results.lock());
     let monitor = monitor.lock().clone();
-    Played { scenario, run, sim, agents, refused, monitor }
+    Played {
+        scenario,
+        run,
+        sim,
+        agents,
+        refused,
+        monitor,
+    }
 }
 
 /// Does this when its node exits for any reason.
@@ -118,7 +145,12 @@ impl<F: FnMut()> Drop for AtExit<F> {
 }
 
 /// Adds the boat, its gateway and an operator.
-fn add_real_boat(network: &SimulatedNetwork, plan: &Plan, scenario: &Scenario, over: &Arc<Watched<bool>>) {
+fn add_real_boat(
+    network: &SimulatedNetwork,
+    plan: &Plan,
+    scenario: &Scenario,
+    over: &Arc<Watched<bool>>,
+) {
     let vehicle = scenario.externals().next().expect("there is a real boat");
     let vehicle = scenario.vehicles[vehicle.index()].name.clone();
     let wire = Arc::new(Wire::new(plan.forges()));
@@ -127,13 +159,17 @@ fn add_real_boat(network: &SimulatedNetwork, plan: &Plan, scenario: &Scenario, o
     network.on_take(move |published| {
         if published.node == "gateway" && published.key.contains("/external/") {
             let order = codec::decode::<ExternalOrder>(published.bytes);
-            order.into_iter().for_each(|order| taken.note_order(order.given_ns, published.at));
+            order
+                .into_iter()
+                .for_each(|order| taken.note_order(order.given_ns, published.at));
         }
     });
     let to_boat = Arc::clone(&wire);
     let ends = Arc::clone(&stop);
     let name = vehicle.clone();
-    network.node(Duration::from_millis(200), "gateway", move || gateway_node::connect(&to_boat, &name, &ends));
+    network.node(Duration::from_millis(200), "gateway", move || {
+        gateway_node::connect(&to_boat, &name, &ends)
+    });
     let over_for_page = Arc::clone(over);
     let watched = Arc::clone(&wire);
     let ends = Arc::clone(&stop);
@@ -148,13 +184,17 @@ fn add_real_boat(network: &SimulatedNetwork, plan: &Plan, scenario: &Scenario, o
     let watched = Arc::clone(&wire);
     let plan_of = plan.clone();
     let over = Arc::clone(&over_for_page);
-    network.node(page::BEGINS, "page", move || page::look(&plan_of, &watched, &over));
+    network.node(page::BEGINS, "page", move || {
+        page::look(&plan_of, &watched, &over)
+    });
     let datum = scenario.field.plan.datum;
     let cuts = plan.wire_cuts.clone();
     if plan.has_stranger() {
         network.node(stranger::BEGINS, "stranger", intrude);
     }
-    network.node(Duration::ZERO, "boat", move || real_boat::sail(&wire, datum, &cuts, &stop));
+    network.node(Duration::ZERO, "boat", move || {
+        real_boat::sail(&wire, datum, &cuts, &stop)
+    });
 }
 
 fn add_sim(
@@ -173,52 +213,79 @@ fn add_sim(
     network.node(Duration::ZERO, "sim", move || {
         let _says_over = AtExit(|| over.visit(|over| *over = true));
         let stop = Arc::new(AtomicBool::new(false));
-        let settings = Settings { game: name(), net: net(true), pace, join_limit: JOIN, speed, stop };
+        let settings = Settings {
+            game: name(),
+            net: net(true),
+            pace,
+            join_limit: JOIN,
+            speed,
+            stop,
+        };
         let served = sim::node::serve(&scenario, game_seed, &settings, None, &mut |_| {});
         results.lock().sim = Some(served.map_err(|e| e.to_string()));
     });
 }
 
-fn add_agent(network: &SimulatedNetwork, i: usize, vehicles: Vec<String>, results: &Arc<Mutex<Results>>) {
+fn add_agent(
+    network: &SimulatedNetwork,
+    i: usize,
+    vehicles: Vec<String>,
+    results: &Arc<Mutex<Results>>,
+) {
     let results = Arc::clone(results);
-    network.node(Duration::from_millis(20 * i as u64), &format!("agent {i}"), move || {
-        let settings = agent::node::Settings {
-            game: None,
-            place: net(false).into(),
-            vehicles: vehicles.clone(),
-            wait: WAIT,
-            silence: SILENCE,
-            mind: None,
-            policy_wait: Duration::ZERO,
-            stop: Arc::new(AtomicBool::new(false)),
-        };
-        let mut refused = Refusals::default();
-        let served = agent::node::serve(&settings, &mut |news| {
-            if let News::Left { refused: all } = news {
-                refused = all;
-            }
-        });
-        let mut results = results.lock();
-        let before = results.refused;
-        results.refused = before + refused;
-        results.agents.push((i, served.map_err(|e| e.to_string())));
-    });
+    network.node(
+        Duration::from_millis(20 * i as u64),
+        &format!("agent {i}"),
+        move || {
+            let settings = agent::node::Settings {
+                game: None,
+                place: net(false).into(),
+                vehicles: vehicles.clone(),
+                wait: WAIT,
+                silence: SILENCE,
+                mind: None,
+                policy_wait: Duration::ZERO,
+                stop: Arc::new(AtomicBool::new(false)),
+            };
+            let mut refused = Refusals::default();
+            let served = agent::node::serve(&settings, &mut |news| {
+                if let News::Left { refused: all } = news {
+                    refused = all;
+                }
+            });
+            let mut results = results.lock();
+            let before = results.refused;
+            results.refused = before + refused;
+            results.agents.push((i, served.map_err(|e| e.to_string())));
+        },
+    );
 }
 
 /// Observes frames until the game is over or the sim is lost.
 fn observe() {
     let stop = AtomicBool::new(false);
-    let Ok((bus, game, _)) = GameSearch::new(WAIT, &stop).game(&mut |_| {}, &net(false).into(), None) else { return };
+    let Ok((bus, game, _)) =
+        GameSearch::new(WAIT, &stop).game(&mut |_| {}, &net(false).into(), None)
+    else {
+        return;
+    };
     let is_over = Arc::new(Watched::new(false));
     let over = Arc::clone(&is_over);
     let take = move |bytes: &[u8]| {
         let ends = codec::decode::<Frame>(bytes).is_ok_and(|frame| frame.over);
         over.visit(|over| *over |= ends);
     };
-    let Ok(_frames) = bus.subscribe(topic::frame(&game), take) else { return };
-    let Ok(sim) = SimWatch::open(&bus, &game, Patience::of_player(Duration::from_secs(10))) else { return };
+    let Ok(_frames) = bus.subscribe(topic::frame(&game), take) else {
+        return;
+    };
+    let Ok(sim) = SimWatch::open(&bus, &game, Patience::of_player(Duration::from_secs(10))) else {
+        return;
+    };
     while !stop.load(Ordering::Relaxed) && sim.state() == SimState::Alive {
-        stop.store(is_over.wait(Duration::from_millis(500), |over| *over), Ordering::Relaxed);
+        stop.store(
+            is_over.wait(Duration::from_millis(500), |over| *over),
+            Ordering::Relaxed,
+        );
     }
     bus.close();
 }

@@ -57,7 +57,11 @@ pub(crate) struct State {
 
 impl Wire {
     pub(crate) fn new(is_forged: bool) -> Wire {
-        let oracle = Oracle { waited_s: WAITED_S, link_up: true, ..Oracle::default() };
+        let oracle = Oracle {
+            waited_s: WAITED_S,
+            link_up: true,
+            ..Oracle::default()
+        };
         let state = State {
             start: None,
             links: 0,
@@ -72,7 +76,11 @@ impl Wire {
             page_stopped: None,
             is_releasing: false,
         };
-        Wire { state: Watched::new(state), order: Mutex::new((SimTime::LONG_AGO, SimTime::LONG_AGO)), is_forged }
+        Wire {
+            state: Watched::new(state),
+            order: Mutex::new((SimTime::LONG_AGO, SimTime::LONG_AGO)),
+            is_forged,
+        }
     }
 
     /// Reads or changes the state, with the time since first use of the wire, which is the boat's
@@ -100,7 +108,11 @@ impl Wire {
             state.oracle.judge(now, bytes);
             let drives = state.oracle.driving > before;
             let must_rest = state.must_rest.is_some_and(|since| clock::now() >= since);
-            assert!(!drives || !must_rest, "at {now}: {:?} although somebody has stopped the boat", state.oracle.last);
+            assert!(
+                !drives || !must_rest,
+                "at {now}: {:?} although somebody has stopped the boat",
+                state.oracle.last
+            );
             if state.is_whole {
                 state.to_boat.extend_from_slice(bytes);
             }
@@ -129,7 +141,10 @@ impl Wire {
     pub(crate) fn note_state(&self, from: &str, to: &str) {
         self.visit(|state, now| {
             if to == "armed" {
-                assert!(state.arms_left > 0, "at {now}: armed, and nobody asked for it");
+                assert!(
+                    state.arms_left > 0,
+                    "at {now}: armed, and nobody asked for it"
+                );
                 state.arms_left -= 1;
             }
             state.is_armed = to == "armed" || (state.is_armed && from != "armed");
@@ -148,8 +163,14 @@ impl State {
 /// which the wire is cut.
 pub(crate) fn sail(wire: &Wire, datum: LatLon, cuts: &[(Duration, Duration)], stop: &AtomicBool) {
     let plan = emulated(datum, DECLINATION_RAD);
-    let mut emulator = Emulator::new(emulator::Plan { watchdog_s: Some(WATCHDOG_S), ..plan });
-    let mut boat = Boat { at: Ned::from_xy(60.0, 40.0), ..Boat::default() };
+    let mut emulator = Emulator::new(emulator::Plan {
+        watchdog_s: Some(WATCHDOG_S),
+        ..plan
+    });
+    let mut boat = Boat {
+        at: Ned::from_xy(60.0, 40.0),
+        ..Boat::default()
+    };
     let start = clock::now();
     let mut moves = 0_u64;
     let mut steps = 0_u64;

@@ -32,14 +32,23 @@ pub(crate) fn intrude(seed: u64, game: &GameName, vehicle: &str, over: &Watched<
     let is_silent = stream.below(2) == 0;
     while !over.wait(ACTS, |over| *over) {
         // The stranger's link may be cut too, and the sim may start later.
-        if let Ok(bus) = Bus::leaf(&Net { token: None, ..net(false) }) {
+        if let Ok(bus) = Bus::leaf(&Net {
+            token: None,
+            ..net(false)
+        }) {
             stay(&bus, (game, vehicle), is_silent, stream, over);
             bus.close();
         }
     }
 }
 
-fn stay(bus: &Bus, (game, vehicle): (&GameName, &str), is_silent: bool, stream: &mut Stream, over: &Watched<bool>) {
+fn stay(
+    bus: &Bus,
+    (game, vehicle): (&GameName, &str),
+    is_silent: bool,
+    stream: &mut Stream,
+    over: &Watched<bool>,
+) {
     let operate = topic::operate(game, vehicle);
     let proofs = Arc::new(Proofs::default());
     let kept = Arc::clone(&proofs);
@@ -47,7 +56,9 @@ fn stay(bus: &Bus, (game, vehicle): (&GameName, &str), is_silent: bool, stream: 
     // An unanswered query keeps its sender waiting.
     let open = Mutex::new(Vec::new());
     let take = move |query: Query| {
-        if query.payload().windows(7).any(|word| word == b"\"proof\"") && kept.lock().len() < KEPT_MAX {
+        if query.payload().windows(7).any(|word| word == b"\"proof\"")
+            && kept.lock().len() < KEPT_MAX
+        {
             kept.lock().push((clock::now(), query.payload().to_vec()));
         }
         let mut open = open.lock();
@@ -57,19 +68,31 @@ fn stay(bus: &Bus, (game, vehicle): (&GameName, &str), is_silent: bool, stream: 
             query.answer(forged.clone());
         }
     };
-    let Ok(_answers) = bus.answer(operate.clone(), take) else { return };
-    let keys = Reported::ALL.map(|what| topic::report(game, what, vehicle)).into_iter().chain([topic::control(game)]);
-    let publishers: Vec<_> = keys.filter_map(|key| bus.publisher(key, bus::Priority::Urgent).ok()).collect();
+    let Ok(_answers) = bus.answer(operate.clone(), take) else {
+        return;
+    };
+    let keys = Reported::ALL
+        .map(|what| topic::report(game, what, vehicle))
+        .into_iter()
+        .chain([topic::control(game)]);
+    let publishers: Vec<_> = keys
+        .filter_map(|key| bus.publisher(key, bus::Priority::Urgent).ok())
+        .collect();
     let status = serde_json::to_vec(&forged_status(vehicle)).expect("JSON");
     while !over.wait(ACTS, |over| *over) {
         for publisher in &publishers {
             for _ in 0..1 + stream.below(FLOOD as u64) {
-                if publisher.send_raw(Reported::with_ticket(stream.below(1 << 20), &status)).is_err() {
+                if publisher
+                    .send_raw(Reported::with_ticket(stream.below(1 << 20), &status))
+                    .is_err()
+                {
                     return;
                 }
             }
         }
-        let late = proofs.lock().pop_if(|(heard, _)| clock::since(*heard) >= LATE);
+        let late = proofs
+            .lock()
+            .pop_if(|(heard, _)| clock::since(*heard) >= LATE);
         if let Some((_, proof)) = late {
             drop(bus.ask(&operate, proof, ACTS));
         }
@@ -77,9 +100,16 @@ fn stay(bus: &Bus, (game, vehicle): (&GameName, &str), is_silent: bool, stream: 
 }
 
 fn forged_status(vehicle: &str) -> GatewayStatus {
-    GatewayStatus { vehicle: vehicle.to_owned(), state: FORGED.to_owned(), ..GatewayStatus::default() }
+    GatewayStatus {
+        vehicle: vehicle.to_owned(),
+        state: FORGED.to_owned(),
+        ..GatewayStatus::default()
+    }
 }
 
 fn forged_reply(vehicle: &str) -> Vec<u8> {
-    bus::token::answer(&OperatorReply { refused: None, status: forged_status(vehicle) })
+    bus::token::answer(&OperatorReply {
+        refused: None,
+        status: forged_status(vehicle),
+    })
 }

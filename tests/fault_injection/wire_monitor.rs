@@ -50,7 +50,11 @@ pub(crate) struct WireMonitor {
 
 impl WireMonitor {
     pub(crate) fn new(scenario: &Scenario, plan: &Plan) -> WireMonitor {
-        let boat = Boat { ordered: SimTime::ZERO, lost_since: None, driven: SimTime::LONG_AGO };
+        let boat = Boat {
+            ordered: SimTime::ZERO,
+            lost_since: None,
+            driven: SimTime::LONG_AGO,
+        };
         WireMonitor {
             boats: vec![boat; scenario.vehicles.len()],
             order_ttl_s: scenario.order_ttl_s,
@@ -65,7 +69,9 @@ impl WireMonitor {
 
     pub(crate) fn see(&mut self, published: Published<'_>) {
         if published.key.contains("/order/") {
-            let Ok(orders) = codec::decode::<Orders>(published.bytes) else { return };
+            let Ok(orders) = codec::decode::<Orders>(published.bytes) else {
+                return;
+            };
             for order in &orders.orders {
                 if let Some(boat) = self.boats.get_mut(order.vehicle.index()) {
                     boat.ordered = boat.ordered.max(orders.stamp.valid_ns);
@@ -74,7 +80,8 @@ impl WireMonitor {
         } else if published.key.contains("/nav/") {
             self.reported = published.at;
         } else if published.key.contains("/external/") {
-            let order: ExternalOrder = codec::decode(published.bytes).expect("the sim publishes orders");
+            let order: ExternalOrder =
+                codec::decode(published.bytes).expect("the sim publishes orders");
             self.check_external_order(&order);
         } else if published.key.ends_with("/frame") {
             let frame: Frame = codec::decode(published.bytes).expect("the sim publishes frames");
@@ -84,20 +91,33 @@ impl WireMonitor {
 
     /// A real boat never gets an expired order.
     fn check_external_order(&mut self, external: &ExternalOrder) {
-        let ExternalOrder { stamp, given_ns, order } = external;
+        let ExternalOrder {
+            stamp,
+            given_ns,
+            order,
+        } = external;
         let age_s = (stamp.valid_ns - *given_ns).as_s();
         // The rules drive a boat home by themselves while its agent is connected: even then the
         // order must be fresh.
         if age_s > self.order_ttl_s && order.order() != Some(Order::Hold) {
-            self.wrong.push(format!("at {} an order {age_s:.2} s old goes to a real boat", stamp.valid_ns));
+            self.wrong.push(format!(
+                "at {} an order {age_s:.2} s old goes to a real boat",
+                stamp.valid_ns
+            ));
         }
     }
 
     fn check_frame(&mut self, at: Duration, frame: &Frame) {
         let now = frame.stamp.valid_ns;
         self.frames = Some((self.frames.map_or(at, |(first, _)| first), at));
-        if self.is_back.is_some_and(|back| at > back + UNREPORTED && at > self.reported + UNREPORTED) {
-            self.wrong.push(format!("at {at:?} the real boat is not reported since {:?}", self.reported));
+        if self
+            .is_back
+            .is_some_and(|back| at > back + UNREPORTED && at > self.reported + UNREPORTED)
+        {
+            self.wrong.push(format!(
+                "at {at:?} the real boat is not reported since {:?}",
+                self.reported
+            ));
             self.is_back = None;
         }
         for i in 0..self.boats.len() {
@@ -106,7 +126,10 @@ impl WireMonitor {
                 self.lost[i] = Some((self.lost[i].map_or(at, |(first, _)| first), at));
             }
             let boat = &mut self.boats[i];
-            boat.lost_since = boat.lost_since.filter(|_| truth.agent_lost).or(truth.agent_lost.then_some(now));
+            boat.lost_since = boat
+                .lost_since
+                .filter(|_| truth.agent_lost)
+                .or(truth.agent_lost.then_some(now));
             if truth.tagged || truth.disabled || truth.outside {
                 boat.driven = now;
             }
@@ -115,7 +138,9 @@ impl WireMonitor {
             if let Some(reason) = self.boats[i].must_rest(now, self.order_ttl_s, self.expires)
                 && !rests
             {
-                self.wrong.push(format!("at {now} boat {i} has {thrust:.1} N although {reason}"));
+                self.wrong.push(format!(
+                    "at {now} boat {i} has {thrust:.1} N although {reason}"
+                ));
             }
         }
     }
@@ -132,6 +157,7 @@ impl Boat {
             return Some(format!("its agent has been lost for {lost_s:.1} s"));
         }
         let age_s = (now - self.ordered).as_s();
-        (expires && age_s > order_ttl_s + SETTLES_S).then(|| format!("its newest order is {age_s:.1} s old"))
+        (expires && age_s > order_ttl_s + SETTLES_S)
+            .then(|| format!("its newest order is {age_s:.1} s old"))
     }
 }

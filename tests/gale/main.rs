@@ -5,7 +5,10 @@
 //! `SQUALL_HOURS=24 cargo test --locked --release --workspace --test gale -- --nocapture` simulates
 //! a day with four boats; the default is half an hour.
 
-#![expect(clippy::print_stdout, reason = "measurements are shown when it is run by hand")]
+#![expect(
+    clippy::print_stdout,
+    reason = "measurements are shown when it is run by hand"
+)]
 
 use gateway::bridge::{Bridge, Event, Input, Output, Plan, Site};
 use gateway::emulator::{self, Emulator, FrontSeat, Port};
@@ -78,7 +81,14 @@ impl Boat {
             integers: false,
             extra: vec![],
             charge: None,
-            began: (Date { year: 2026, month: 11, day: 20 }, TimeOfDay(0)),
+            began: (
+                Date {
+                    year: 2026,
+                    month: 11,
+                    day: 20,
+                },
+                TimeOfDay(0),
+            ),
         };
         let mut boat = Boat {
             emulator: Emulator::new(front_seat),
@@ -118,7 +128,10 @@ impl Boat {
         if now >= self.until {
             let stream = &mut self.stream;
             self.until = now + SimTime::from_s(stream.between(5.0, 60.0));
-            let place = Ned { north: stream.between(-REACH_M, REACH_M), east: stream.between(-REACH_M, REACH_M) };
+            let place = Ned {
+                north: stream.between(-REACH_M, REACH_M),
+                east: stream.between(-REACH_M, REACH_M),
+            };
             let speed_m_s = stream.between(0.5, 2.5);
             self.toward = None;
             match stream.below(10) {
@@ -136,7 +149,10 @@ impl Boat {
             if self.at.distance(place) < 5.0 {
                 self.until = now;
             }
-            self.order = Order::Steer { heading_rad: self.at.bearing_rad(place), speed_m_s };
+            self.order = Order::Steer {
+                heading_rad: self.at.bearing_rad(place),
+                speed_m_s,
+            };
         }
         self.give(now, &Input::Order(self.order, now));
     }
@@ -145,30 +161,55 @@ impl Boat {
 impl Voyage {
     fn new(seed: u64, sea: &str, gateway: &str, fault: (f64, Fault)) -> Voyage {
         let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
-        let overrides = Overrides { sea: Some(scenarios.join("seas").join(sea)), ..Overrides::default() };
-        let game = load_with(&scenarios.join("games/surveyor_2v2.toml"), &overrides).unwrap_or_else(|e| panic!("{e}"));
+        let overrides = Overrides {
+            sea: Some(scenarios.join("seas").join(sea)),
+            ..Overrides::default()
+        };
+        let game = load_with(&scenarios.join("games/surveyor_2v2.toml"), &overrides)
+            .unwrap_or_else(|e| panic!("{e}"));
         let mut world = World::of_game(&game, seed).expect("boats fit in");
         for i in 0..BOATS {
             let mut pose = world.state().boats[i].pose;
             pose.at = Ned::from_xy(APART_M * i as f64, 0.0);
             world.set_under_way(VehicleId::at(i), pose, sim::hull::Planar::default());
         }
-        let mut gateway = load_file::<gateway::config::Gateway>(&scenarios.join("gateways").join(gateway))
-            .unwrap_or_else(|e| panic!("{e}"));
+        let mut gateway =
+            load_file::<gateway::config::Gateway>(&scenarios.join("gateways").join(gateway))
+                .unwrap_or_else(|e| panic!("{e}"));
         gateway.geofence.margin_m = 10_000.0;
-        let site = Site { field: game.field.clone(), length_m: 1.83, declination_rad: -0.2, coasting: None };
-        let plan = Plan { site: Some(site), ..Plan::new("boat", gateway) };
-        let boats = (0..BOATS).map(|i| Boat::new(i, seed, plan.clone())).collect();
-        Voyage { world, ticks: game.ticks_per_decision, boats, fault: (SimTime::from_s(fault.0), fault.1) }
+        let site = Site {
+            field: game.field.clone(),
+            length_m: 1.83,
+            declination_rad: -0.2,
+            coasting: None,
+        };
+        let plan = Plan {
+            site: Some(site),
+            ..Plan::new("boat", gateway)
+        };
+        let boats = (0..BOATS)
+            .map(|i| Boat::new(i, seed, plan.clone()))
+            .collect();
+        Voyage {
+            world,
+            ticks: game.ticks_per_decision,
+            boats,
+            fault: (SimTime::from_s(fault.0), fault.1),
+        }
     }
 
     /// Advances to the next sensor reading.
     fn step(&mut self) {
         let now = self.world.state().now;
-        let fault = if now >= self.fault.0 { self.fault.1 } else { Fault::None };
+        let fault = if now >= self.fault.0 {
+            self.fault.1
+        } else {
+            Fault::None
+        };
         let mut orders = vec![];
         for (i, boat) in self.boats.iter_mut().enumerate() {
-            boat.emulator.observe(now, &own_boat(&self.world, VehicleId::at(i), fault));
+            boat.emulator
+                .observe(now, &own_boat(&self.world, VehicleId::at(i), fault));
             let mut bytes = vec![];
             boat.emulator.telemetry(now, &mut bytes);
             boat.give(now, &Input::Bytes(bytes));
@@ -213,13 +254,20 @@ fn own_boat(world: &World, vehicle: VehicleId, fault: Fault) -> OwnBoat {
         let body = body_from_ned(Rotation::from_heading(nav.psi_rad), velocity);
         (nav.surge_m_s, nav.sway_m_s) = (body.ahead, body.starboard);
     }
-    OwnBoat { fix_ns: reading.fix_at, imu: reading.imu.into(), ..OwnBoat::new(vehicle, nav) }
+    OwnBoat {
+        fix_ns: reading.fix_at,
+        imu: reading.imu.into(),
+        ..OwnBoat::new(vehicle, nav)
+    }
 }
 
 /// The part of an order that the thrusters carry out.
 fn effective(order: Order, fault: Fault) -> Order {
     match (order, fault) {
-        (Order::Thrust { starboard, .. }, Fault::PortLost) => Order::Thrust { port: 0.0, starboard },
+        (Order::Thrust { starboard, .. }, Fault::PortLost) => Order::Thrust {
+            port: 0.0,
+            starboard,
+        },
         (_, Fault::BothLost) => Order::Hold,
         (order, _) => order,
     }
@@ -227,7 +275,13 @@ fn effective(order: Order, fault: Fault) -> Order {
 
 /// Legitimate failsafes: those that the receiver itself reports.
 fn is_of_receiver(cause: &str) -> bool {
-    ["the fix has quality", "the last fix is", "the position jumped"].iter().any(|words| cause.contains(words))
+    [
+        "the fix has quality",
+        "the last fix is",
+        "the position jumped",
+    ]
+    .iter()
+    .any(|words| cause.contains(words))
 }
 
 fn hours() -> f64 {
@@ -241,22 +295,37 @@ fn a_gale_triggers_no_false_failsafe() {
     let voyages = (hours() * 3600.0 / VOYAGE_S).ceil() as u64;
     for seed in 0..voyages {
         let sea = ["gale.toml", "bay_gale.toml"][(seed % 2) as usize];
-        let gateway = ["surveyor.toml", "surveyor.toml", "surveyor_speed.toml"][(seed % 3) as usize];
+        let gateway =
+            ["surveyor.toml", "surveyor.toml", "surveyor_speed.toml"][(seed % 3) as usize];
         let mut voyage = Voyage::new(seed, sea, gateway, (0.0, Fault::None));
         voyage.sail(VOYAGE_S);
         for (i, boat) in voyage.boats.iter().enumerate() {
             for (at, cause) in &boat.failsafes {
                 *causes
-                    .entry(cause.split(|c: char| c.is_ascii_digit()).next().unwrap_or("").to_owned())
+                    .entry(
+                        cause
+                            .split(|c: char| c.is_ascii_digit())
+                            .next()
+                            .unwrap_or("")
+                            .to_owned(),
+                    )
                     .or_default() += 1;
                 if !is_of_receiver(cause) {
-                    alarms.push(format!("seed {seed}, {sea}, {gateway}, boat {i} at {:.1} s: {cause}", at.as_s()));
+                    alarms.push(format!(
+                        "seed {seed}, {sea}, {gateway}, boat {i} at {:.1} s: {cause}",
+                        at.as_s()
+                    ));
                 }
             }
         }
     }
     println!("{voyages} voyages of {VOYAGE_S} s with {BOATS} boats; failsafes: {causes:#?}");
-    assert!(alarms.is_empty(), "{} false alarms:\n{}", alarms.len(), alarms.join("\n"));
+    assert!(
+        alarms.is_empty(),
+        "{} false alarms:\n{}",
+        alarms.len(),
+        alarms.join("\n")
+    );
 }
 
 #[test]
@@ -274,7 +343,10 @@ fn each_fault_is_detected_within_its_deadline_even_in_a_gale() {
             let mut voyage = Voyage::new(seed, "gale.toml", "surveyor.toml", (300.0, fault));
             voyage.sail(300.0 + limit_s);
             for (i, boat) in voyage.boats.iter().enumerate() {
-                let found = boat.failsafes.iter().find(|(at, cause)| at.as_s() >= 300.0 && cause.contains(words));
+                let found = boat
+                    .failsafes
+                    .iter()
+                    .find(|(at, cause)| at.as_s() >= 300.0 && cause.contains(words));
                 match found {
                     Some((at, _)) => times.push(at.as_s() - 300.0),
                     None => late.push(format!("seed {seed}, boat {i}: {:?}", boat.failsafes)),
@@ -283,6 +355,10 @@ fn each_fault_is_detected_within_its_deadline_even_in_a_gale() {
         }
         times.sort_by(f64::total_cmp);
         println!("{fault:?}: {times:.0?}");
-        assert!(late.is_empty(), "{fault:?} is not found:\n{}", late.join("\n"));
+        assert!(
+            late.is_empty(),
+            "{fault:?} is not found:\n{}",
+            late.join("\n")
+        );
     }
 }

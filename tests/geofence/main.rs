@@ -1,9 +1,13 @@
-//! The Surveyor of the boat files approaches its geofence at every speed, in every shipped sea; the watch stops it in
-//! time: it comes to rest inside.
+//! The Surveyor of the boat files approaches its geofence at every speed, in every shipped sea; the
+//! watch stops it in time: it comes to rest inside.
 //!
-//! `SQUALL_APPROACHES=10000 cargo test --locked --release --workspace --test geofence -- --nocapture` runs more.
+//! `SQUALL_APPROACHES=10000 cargo test --locked --release --workspace --test geofence --
+//! --nocapture` runs more.
 
-#![expect(clippy::print_stdout, reason = "measurements are shown when it is run by hand")]
+#![expect(
+    clippy::print_stdout,
+    reason = "measurements are shown when it is run by hand"
+)]
 
 use gateway::config::default_gateway;
 use gateway::geofence::{Coasting, GeofenceWatch};
@@ -23,12 +27,14 @@ use trial::{Command, Sample, Start, TrialBoat, open_field};
 
 /// The simulated water's tick; the gateway runs in every second one.
 const TICK: SimTime = SimTime(50_000_000);
-/// A fix is this old when the gateway has it, and a command on its way this long, in ticks: 0.2 s and 0.1 s.
+/// A fix is this old when the gateway has it, and a command on its way this long, in ticks: 0.2 s
+/// and 0.1 s.
 const FIX_TICKS: usize = 4;
 const COMMAND_TICKS: u32 = 2;
 /// The edge of the geofence lies this far north of the middle of the field, m.
 const EDGE_M: f64 = 500.0;
-/// A boat that was stopped is watched for this long, s: on water at rest until it lies still; elsewhere it drifts on.
+/// A boat that was stopped is watched for this long, s: on water at rest until it lies still;
+/// elsewhere it drifts on.
 const STILL_S: f64 = 60.0;
 const DRIFTING_S: f64 = 20.0;
 /// An approach that has not come to the edge by then is over, s.
@@ -45,7 +51,8 @@ struct Approach {
     seed: u64,
 }
 
-/// How an approach ended: by how much the boat crossed, m (negative inside), and how far it came to rest from where it was stopped.
+/// How an approach ended: by how much the boat crossed, m (negative inside), and how far it came to
+/// rest from where it was stopped.
 struct Ended {
     crossed_m: f64,
     went_m: f64,
@@ -63,15 +70,31 @@ fn nav(sample: &Sample) -> Nav {
 }
 
 fn approach(approach: &Approach, boat: &Boat, sea: &Sea) -> Option<Ended> {
-    let &Approach { speed_m_s, heading_rad, turn_rad, from_m, seed, .. } = approach;
+    let &Approach {
+        speed_m_s,
+        heading_rad,
+        turn_rad,
+        from_m,
+        seed,
+        ..
+    } = approach;
     let mut gateway = default_gateway();
     (gateway.geofence.margin_m, gateway.limits.thrust_max_pct) = (0.0, 100.0);
     let mut watch = GeofenceWatch::new(&open_field(), &gateway.geofence, Some(Coasting::of(boat)));
     let mut set_points = SetPointMapper::new(&gateway, 0.0);
-    let start =
-        Start { psi_rad: heading_rad, nu: Planar { surge: speed_m_s, ..Planar::default() }, ..Start::default() };
+    let start = Start {
+        psi_rad: heading_rad,
+        nu: Planar {
+            surge: speed_m_s,
+            ..Planar::default()
+        },
+        ..Start::default()
+    };
     let mut afloat = TrialBoat::new(boat, sea, TICK, seed, &start);
-    let begin = Ned { north: EDGE_M - from_m, east: 0.0 };
+    let begin = Ned {
+        north: EDGE_M - from_m,
+        east: 0.0,
+    };
     let mut fixes = VecDeque::new();
     let mut farthest_m = f64::NEG_INFINITY;
     let mut command = Command::Hold;
@@ -81,11 +104,23 @@ fn approach(approach: &Approach, boat: &Boat, sea: &Sea) -> Option<Ended> {
         let at = begin + sample.at;
         if let Some((since, from)) = stopped {
             if tick >= since + COMMAND_TICKS {
-                command = Command::Thrust { port: 0.0, starboard: 0.0 };
+                command = Command::Thrust {
+                    port: 0.0,
+                    starboard: 0.0,
+                };
             }
             farthest_m = farthest_m.max(at.north - EDGE_M);
-            if f64::from(tick - since) * TICK.as_s() > if sea.is_at_rest() { STILL_S } else { DRIFTING_S } {
-                return Some(Ended { crossed_m: farthest_m, went_m: at.distance(from) });
+            if f64::from(tick - since) * TICK.as_s()
+                > if sea.is_at_rest() {
+                    STILL_S
+                } else {
+                    DRIFTING_S
+                }
+            {
+                return Some(Ended {
+                    crossed_m: farthest_m,
+                    went_m: at.distance(from),
+                });
             }
         } else if f64::from(tick) * TICK.as_s() > LONGEST_S {
             return None;
@@ -94,14 +129,36 @@ fn approach(approach: &Approach, boat: &Boat, sea: &Sea) -> Option<Ended> {
         if fixes.len() > FIX_TICKS && tick % 2 == 0 && stopped.is_none() {
             let nav = fixes[fixes.len() - 1 - FIX_TICKS];
             let now = TICK * i64::from(tick);
-            let side = if ((now.as_s() / 8.0) as u32).is_multiple_of(2) { 1.0 } else { -1.0 };
-            let order = Order::Steer { heading_rad: heading_rad + side * turn_rad, speed_m_s };
+            let side = if ((now.as_s() / 8.0) as u32).is_multiple_of(2) {
+                1.0
+            } else {
+                -1.0
+            };
+            let order = Order::Steer {
+                heading_rad: heading_rad + side * turn_rad,
+                speed_m_s,
+            };
             let set_point = set_points.map(now, order, &nav);
-            watch.note_order(now, set_points.ordered(order, set_point).ahead_m_s, (nav.psi_rad, nav.velocity_m_s()));
-            let SetPoint::Thrust { thrust_pct, difference_pct } = set_point else { panic!("it is driven by thrust") };
-            let [port, starboard] = [thrust_pct + difference_pct, thrust_pct - difference_pct].map(|pct| pct / 100.0);
+            watch.note_order(
+                now,
+                set_points.ordered(order, set_point).ahead_m_s,
+                (nav.psi_rad, nav.velocity_m_s()),
+            );
+            let SetPoint::Thrust {
+                thrust_pct,
+                difference_pct,
+            } = set_point
+            else {
+                panic!("it is driven by thrust")
+            };
+            let [port, starboard] =
+                [thrust_pct + difference_pct, thrust_pct - difference_pct].map(|pct| pct / 100.0);
             command = Command::Thrust { port, starboard };
-            if !watch.is_inside(now, begin + nav.at(), (nav.velocity_m_s(), nav.yaw_rate_rad_s)) {
+            if !watch.is_inside(
+                now,
+                begin + nav.at(),
+                (nav.velocity_m_s(), nav.yaw_rate_rad_s),
+            ) {
                 stopped = Some((tick, at));
             }
         }
@@ -112,8 +169,10 @@ fn approach(approach: &Approach, boat: &Boat, sea: &Sea) -> Option<Ended> {
 
 fn seas() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/seas");
-    let mut seas: Vec<PathBuf> =
-        std::fs::read_dir(folder).expect("there are seas").map(|entry| entry.expect("one").path()).collect();
+    let mut seas: Vec<PathBuf> = std::fs::read_dir(folder)
+        .expect("there are seas")
+        .map(|entry| entry.expect("one").path())
+        .collect();
     seas.sort();
     seas
 }
@@ -125,7 +184,11 @@ fn drawn(i: u64, seas: usize) -> Approach {
         sea: (i % seas as u64) as usize,
         speed_m_s,
         heading_rad: stream.between(-1.3, 1.3),
-        turn_rad: if stream.below(2) == 0 { 0.0 } else { stream.between(0.0, 0.8) },
+        turn_rad: if stream.below(2) == 0 {
+            0.0
+        } else {
+            stream.between(0.0, 0.8)
+        },
         from_m: 25.0 + 10.0 * speed_m_s,
         seed: i,
     }
@@ -133,36 +196,56 @@ fn drawn(i: u64, seas: usize) -> Approach {
 
 #[test]
 fn no_approach_to_the_geofence_crosses_it() {
-    let count = std::env::var("SQUALL_APPROACHES").map_or(1000, |text| text.parse().expect("a number"));
-    let boat = load_file::<Boat>(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/boats/surveyor_m1_8.toml"))
-        .unwrap_or_else(|problems| panic!("{problems}"));
+    let count =
+        std::env::var("SQUALL_APPROACHES").map_or(1000, |text| text.parse().expect("a number"));
+    let boat = load_file::<Boat>(
+        &Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/boats/surveyor_m1_8.toml"),
+    )
+    .unwrap_or_else(|problems| panic!("{problems}"));
     let seas = seas();
     let workers = std::thread::available_parallelism().map_or(1, usize::from) as u64;
     let of_worker = |worker: u64| {
         let mut ended = vec![];
         for i in (worker..count).step_by(workers as usize) {
             let drawn = drawn(i, seas.len());
-            let (sea, _) = draw_file::<Sea>(&seas[drawn.sea], i).unwrap_or_else(|problems| panic!("{problems}"));
+            let (sea, _) = draw_file::<Sea>(&seas[drawn.sea], i)
+                .unwrap_or_else(|problems| panic!("{problems}"));
             ended.push((i, approach(&drawn, &boat, &sea)));
         }
         ended
     };
     let ended: Vec<_> = std::thread::scope(|scope| {
-        let threads: Vec<_> = (0..workers).map(|worker| scope.spawn(move || of_worker(worker))).collect();
-        threads.into_iter().flat_map(|thread| thread.join().expect("no panic")).collect()
+        let threads: Vec<_> = (0..workers)
+            .map(|worker| scope.spawn(move || of_worker(worker)))
+            .collect();
+        threads
+            .into_iter()
+            .flat_map(|thread| thread.join().expect("no panic"))
+            .collect()
     });
     let mut by_sea: BTreeMap<usize, (u32, u32, f64, f64)> = BTreeMap::new();
     let mut crossings = vec![];
     for (i, end) in &ended {
         let drawn = drawn(*i, seas.len());
-        let (stopped, crossed, nearest_m, farthest_m) = by_sea.entry(drawn.sea).or_insert((0, 0, f64::MIN, 0.0));
-        let Some(Ended { crossed_m, went_m }) = end else { continue };
+        let (stopped, crossed, nearest_m, farthest_m) =
+            by_sea.entry(drawn.sea).or_insert((0, 0, f64::MIN, 0.0));
+        let Some(Ended { crossed_m, went_m }) = end else {
+            continue;
+        };
         *stopped += 1;
         (*nearest_m, *farthest_m) = (nearest_m.max(*crossed_m), farthest_m.max(*went_m));
         if *crossed_m > 0.0 {
             *crossed += 1;
-            let Approach { speed_m_s, heading_rad, turn_rad, .. } = drawn;
-            let sea = seas[drawn.sea].file_stem().unwrap_or_default().to_string_lossy();
+            let Approach {
+                speed_m_s,
+                heading_rad,
+                turn_rad,
+                ..
+            } = drawn;
+            let sea = seas[drawn.sea]
+                .file_stem()
+                .unwrap_or_default()
+                .to_string_lossy();
             crossings.push(format!(
                 "{crossed_m:.2} m: {i}, {sea}: {speed_m_s:.2} m/s, heading {heading_rad:.2} rad, turn {turn_rad:.2} rad"
             ));

@@ -37,7 +37,9 @@ impl Afloat {
     /// Sets the boat going like a back seat that then dies: it stays at 43 %.
     fn set_going(&self) {
         let mut stream = TcpStream::connect(&self.water.back_seat).expect("it accepts");
-        stream.write_all(b"$PSEAC,T,0,43,0,*3B\r\n").expect("a command");
+        stream
+            .write_all(b"$PSEAC,T,0,43,0,*3B\r\n")
+            .expect("a command");
         wait_within(LIMIT, "the boat sails", || !self.is_still());
         drop(stream);
         std::thread::sleep(Duration::from_secs(2));
@@ -56,7 +58,16 @@ impl Afloat {
 
     /// The command for a gateway whose game has no other node.
     fn command(&self) -> Command {
-        let args = ["gateway", "surveyor", "--vehicle", "blue_one", "--no-record", "--game", self.game, "--link"];
+        let args = [
+            "gateway",
+            "surveyor",
+            "--vehicle",
+            "blue_one",
+            "--no-record",
+            "--game",
+            self.game,
+            "--link",
+        ];
         squall(&[&args[..], &[&self.link]].concat())
     }
 
@@ -66,7 +77,10 @@ impl Afloat {
 
     fn gateway(&self) -> Process {
         let mut command = self.command();
-        command.env_remove(TOKEN_VARIABLE).stdout(Stdio::null()).stderr(Stdio::null());
+        command
+            .env_remove(TOKEN_VARIABLE)
+            .stdout(Stdio::null())
+            .stderr(Stdio::null());
         Process::start(command)
     }
 }
@@ -74,9 +88,15 @@ impl Afloat {
 /// Runs an operator's command on the machine of a gateway in this game.
 pub(crate) fn tell(game: &str, command: &str) -> String {
     let mut tell = squall(&["gateway", "tell", "blue_one", command, "--game", game]);
-    let output = tell.env_remove(TOKEN_VARIABLE).output().expect("the program starts");
+    let output = tell
+        .env_remove(TOKEN_VARIABLE)
+        .output()
+        .expect("the program starts");
     let told = format!("{}{}", stdout(&output), stderr(&output));
-    assert!(!told.contains('\x1b') && !told.contains("u001b"), "colours where there is no terminal: {told}");
+    assert!(
+        !told.contains('\x1b') && !told.contains("u001b"),
+        "colours where there is no terminal: {told}"
+    );
     told
 }
 
@@ -86,22 +106,36 @@ fn a_gateway_stops_its_boat_and_serves_operators_before_there_is_a_game() {
     afloat.set_going();
     let mut gateway = afloat.gateway();
     afloat.stops();
-    wait_until("it serves operators", || afloat.tell("status").contains("disarmed"));
+    wait_until("it serves operators", || {
+        afloat.tell("status").contains("disarmed")
+    });
     let status = afloat.tell("status");
-    assert!(status.contains("link        up") && status.contains("no game yet"), "{status}");
+    assert!(
+        status.contains("link        up") && status.contains("no game yet"),
+        "{status}"
+    );
     assert!(afloat.tell("arm").contains("no game yet"), "nobody arms it");
     assert!(afloat.tell("estop").contains("e-stopped"));
     let released = afloat.tell("release");
-    assert!(released.contains("disarmed"), "by the gateway's own token: {released}");
+    assert!(
+        released.contains("disarmed"),
+        "by the gateway's own token: {released}"
+    );
     // A second gateway on this machine is refused without any effect on the boat.
     let output = afloat.command().output().expect("the program starts");
     assert!(!output.status.success());
     let said = stderr(&output);
-    assert!(said.contains("another gateway on this machine has the link"), "{said}");
+    assert!(
+        said.contains("another gateway on this machine has the link"),
+        "{said}"
+    );
     assert!(afloat.tell("status").contains("disarmed"));
     // A stop over the link goes to the gateway that holds it.
     let output = run(&["gateway", "stop", &afloat.link]);
-    assert!(output.status.success() && stdout(&output).contains("the gateway of blue_one has the link: e-stopped"));
+    assert!(
+        output.status.success()
+            && stdout(&output).contains("the gateway of blue_one has the link: e-stopped")
+    );
     gateway.signal("TERM");
     assert!(gateway.wait().success());
 }
@@ -112,11 +146,22 @@ fn a_boat_can_be_stopped_over_its_link_with_nothing_else_running() {
     afloat.set_going();
     let output = run(&["gateway", "stop", &afloat.link]);
     assert!(output.status.success(), "{}", stderr(&output));
-    assert!(stdout(&output).contains("the boat reports standby"), "{}", stdout(&output));
+    assert!(
+        stdout(&output).contains("the boat reports standby"),
+        "{}",
+        stdout(&output)
+    );
     afloat.stops();
-    let nobody = format!("tcp://127.0.0.1:{}", bus::free_port(false).expect("a free port"));
+    let nobody = format!(
+        "tcp://127.0.0.1:{}",
+        bus::free_port(false).expect("a free port")
+    );
     let output = run(&["gateway", "stop", &nobody, "--wait-s", "0.5"]);
-    assert!(!output.status.success() && stderr(&output).contains("was not reached"), "{}", stderr(&output));
+    assert!(
+        !output.status.success() && stderr(&output).contains("was not reached"),
+        "{}",
+        stderr(&output)
+    );
 }
 
 #[test]
@@ -127,17 +172,26 @@ fn enter_in_the_gateways_own_terminal_triggers_an_e_stop() {
     let words: Vec<&str> = words.map(|word| word.to_str().expect("UTF-8")).collect();
     // Give it a terminal.
     let mut command = Command::new("script");
-    command.args(["-qfec", &words.join(" "), "/dev/null"]).current_dir(env!("CARGO_MANIFEST_DIR"));
+    command
+        .args(["-qfec", &words.join(" "), "/dev/null"])
+        .current_dir(env!("CARGO_MANIFEST_DIR"));
     command.stdin(Stdio::piped()).stdout(Stdio::null());
     let mut terminal = Process::start(command);
-    wait_until("it is disarmed", || afloat.tell("status").contains("blue_one: disarmed"));
+    wait_until("it is disarmed", || {
+        afloat.tell("status").contains("blue_one: disarmed")
+    });
     let Child { stdin, .. } = &mut terminal.0;
     let stdin = stdin.as_mut().expect("piped");
     std::thread::sleep(Duration::from_millis(300));
-    assert!(afloat.tell("status").contains("blue_one: disarmed"), "nothing was pressed");
+    assert!(
+        afloat.tell("status").contains("blue_one: disarmed"),
+        "nothing was pressed"
+    );
     stdin.write_all(b"\n").expect("a key");
     stdin.flush().expect("a key");
-    wait_within(Duration::from_secs(2), "it is e-stopped", || afloat.tell("status").contains("e-stopped"));
+    wait_within(Duration::from_secs(2), "it is e-stopped", || {
+        afloat.tell("status").contains("e-stopped")
+    });
     drop(terminal);
 }
 
@@ -161,7 +215,10 @@ impl Wire {
                 noted.visit(|text| text.push_str(&String::from_utf8_lossy(&bytes)));
             }
         };
-        let settings = LinkSettings { silence: None, ..LinkSettings::default() };
+        let settings = LinkSettings {
+            silence: None,
+            ..LinkSettings::default()
+        };
         let link = Arc::new(Link::open(&address, settings, take).expect("it listens"));
         let stop = Arc::<AtomicBool>::default();
         let sender = Arc::clone(&link);
@@ -172,20 +229,32 @@ impl Wire {
                 std::thread::sleep(Duration::from_millis(100));
             }
         });
-        Wire { link, received, stop }
+        Wire {
+            link,
+            received,
+            stop,
+        }
     }
 
     /// The address for a gateway.
     pub(crate) fn address(&self) -> String {
         let reach = self.link.reach();
-        if reach.starts_with('/') { format!("serial://{reach}?baud=115200") } else { reach }
+        if reach.starts_with('/') {
+            format!("serial://{reach}?baud=115200")
+        } else {
+            reach
+        }
     }
 
     /// Waits until this is received, counting from the last reset.
     pub(crate) fn wait_for(&self, what: &str, limit: Duration) -> Duration {
         let start = Instant::now();
         let came = self.received.wait(limit, |text| text.contains(what));
-        assert!(came, "{what:?} not within {limit:?}: {:?}", self.received.visit(|text| text.clone()));
+        assert!(
+            came,
+            "{what:?} not within {limit:?}: {:?}",
+            self.received.visit(|text| text.clone())
+        );
         start.elapsed()
     }
 
@@ -207,18 +276,33 @@ fn the_guard_stops_a_boat_on_every_kind_of_link_when_its_gateway_is_killed_or_su
     let standby = "$PSEAC,L,0,0,0,*";
     for listen in ["tcp://127.0.0.1:0", "udp://127.0.0.1:0", "pty"] {
         let wire = Wire::listen(listen);
-        let args = ["gateway", "surveyor", "--vehicle", "blue_one", "--no-record", "--game", "nowhere-else", "--link"];
+        let args = [
+            "gateway",
+            "surveyor",
+            "--vehicle",
+            "blue_one",
+            "--no-record",
+            "--game",
+            "nowhere-else",
+            "--link",
+        ];
         let mut command = squall(&[&args[..], &[&wire.address()]].concat());
         command.stdout(Stdio::null()).stderr(Stdio::null());
         let mut gateway = Process::start(command);
         wire.wait_for(zero, LIMIT);
         wire.wait_for(standby, LIMIT);
         let text = wire.received.visit(|text| text.clone());
-        assert!(text.trim_start().starts_with(zero), "{listen}: zero comes first: {text:?}");
+        assert!(
+            text.trim_start().starts_with(zero),
+            "{listen}: zero comes first: {text:?}"
+        );
         std::thread::sleep(Duration::from_millis(300));
         wire.forget();
         std::thread::sleep(Duration::from_secs(1));
-        assert!(!wire.received.visit(|text| text.contains(zero)), "{listen}: a guard whose gateway runs is silent");
+        assert!(
+            !wire.received.visit(|text| text.contains(zero)),
+            "{listen}: a guard whose gateway runs is silent"
+        );
         gateway.signal("STOP");
         wire.forget();
         let took = wire.wait_for(zero, GUARD_PROMISES);
@@ -229,7 +313,10 @@ fn the_guard_stops_a_boat_on_every_kind_of_link_when_its_gateway_is_killed_or_su
         std::thread::sleep(Duration::from_millis(500));
         wire.forget();
         wire.wait_for(standby, GUARD_PROMISES);
-        assert!(!wire.received.visit(|text| text.contains(zero)), "{listen}: the guard leaves it to the gateway again");
+        assert!(
+            !wire.received.visit(|text| text.contains(zero)),
+            "{listen}: the guard leaves it to the gateway again"
+        );
         wire.forget();
         let killed = Instant::now();
         gateway.kill();

@@ -24,12 +24,32 @@ impl Fleet {
     fn start() -> Fleet {
         let sim = Sim::start("two_real", &["--pace", "realtime"]);
         let wires = BOATS.map(|_| Wire::listen("tcp://127.0.0.1:0"));
-        let controls = BOATS.map(|_| SocketAddr::from(([127, 0, 0, 1], bus::free_port(false).expect("a free port"))));
-        let gateways = std::array::from_fn(|i| {
-            let args = ["gateway", "surveyor", "--vehicle", BOATS[i], "--no-record", "--control-listen"];
-            sim.quiet(&[&args[..], &[&controls[i].to_string(), "--link", &wires[i].address()]].concat())
+        let controls = BOATS.map(|_| {
+            SocketAddr::from(([127, 0, 0, 1], bus::free_port(false).expect("a free port")))
         });
-        Fleet { sim, wires, gateways, controls }
+        let gateways = std::array::from_fn(|i| {
+            let args = [
+                "gateway",
+                "surveyor",
+                "--vehicle",
+                BOATS[i],
+                "--no-record",
+                "--control-listen",
+            ];
+            sim.quiet(
+                &[
+                    &args[..],
+                    &[&controls[i].to_string(), "--link", &wires[i].address()],
+                ]
+                .concat(),
+            )
+        });
+        Fleet {
+            sim,
+            wires,
+            gateways,
+            controls,
+        }
     }
 
     fn forget(&self) {
@@ -44,8 +64,14 @@ impl Fleet {
     /// A console that has printed these lines.
     fn console_of(&self, beginnings: &[&str]) -> Console {
         let controls = self.controls.map(|at| at.to_string());
-        let mut command =
-            self.sim.squall(&["gateway", "console", "--gateway", &controls[0], "--gateway", &controls[1]]);
+        let mut command = self.sim.squall(&[
+            "gateway",
+            "console",
+            "--gateway",
+            &controls[0],
+            "--gateway",
+            &controls[1],
+        ]);
         command.stdin(Stdio::piped()).stderr(Stdio::piped());
         let (mut process, said) = Process::with_lines(command);
         let (sender, lines) = channel();
@@ -53,9 +79,17 @@ impl Fleet {
         let stderr = BufReader::new(process.0.stderr.take().expect("piped"));
         std::thread::spawn(move || said.map_while(|line| sender.send(line).ok()).for_each(drop));
         std::thread::spawn(move || {
-            stderr.lines().map_while(|line| complainer.send(line.ok()?).ok()).for_each(drop);
+            stderr
+                .lines()
+                .map_while(|line| complainer.send(line.ok()?).ok())
+                .for_each(drop);
         });
-        let console = Console { process, lines, complaints, complained: String::new() };
+        let console = Console {
+            process,
+            lines,
+            complaints,
+            complained: String::new(),
+        };
         console.wait_for(beginnings);
         console
     }
@@ -72,7 +106,9 @@ struct Console {
 impl Console {
     fn say(&mut self, line: &str) {
         let stdin = self.process.0.stdin.as_mut().expect("piped");
-        stdin.write_all(format!("{line}\n").as_bytes()).expect("it reads");
+        stdin
+            .write_all(format!("{line}\n").as_bytes())
+            .expect("it reads");
     }
 
     /// Waits for lines with these beginnings, in any order; returns their times, ms.
@@ -82,12 +118,19 @@ impl Console {
         let mut all = Vec::new();
         let start = Instant::now();
         while !left.is_empty() {
-            let line = self.lines.recv_timeout(LIMIT.saturating_sub(start.elapsed()));
+            let line = self
+                .lines
+                .recv_timeout(LIMIT.saturating_sub(start.elapsed()));
             let line = line.unwrap_or_else(|_| panic!("{left:?} is not said: {all:?}"));
-            if let Some(i) = left.iter().position(|beginning| line.starts_with(beginning)) {
+            if let Some(i) = left
+                .iter()
+                .position(|beginning| line.starts_with(beginning))
+            {
                 left.remove(i);
                 times.extend(
-                    line.split("  after ").nth(1).and_then(|time| time.trim_end_matches(" ms").parse::<u128>().ok()),
+                    line.split("  after ")
+                        .nth(1)
+                        .and_then(|time| time.trim_end_matches(" ms").parse::<u128>().ok()),
                 );
             }
             all.push(line);
@@ -99,15 +142,21 @@ impl Console {
     fn ask(&mut self, line: &str, reports: &[&str]) {
         self.say(line);
         let times = self.wait_for(reports);
-        assert!(times.len() == reports.len() && times.iter().all(|ms| *ms < PROMPT_MS), "{line}: {times:?} ms");
+        assert!(
+            times.len() == reports.len() && times.iter().all(|ms| *ms < PROMPT_MS),
+            "{line}: {times:?} ms"
+        );
     }
 
     /// Waits for a complaint that contains these words.
     fn wait_for_complaint(&mut self, words: &str) {
         let start = Instant::now();
         while !self.complained.contains(words) {
-            let line = self.complaints.recv_timeout(LIMIT.saturating_sub(start.elapsed()));
-            self.complained += &line.unwrap_or_else(|_| panic!("no {words:?}: {}", self.complained));
+            let line = self
+                .complaints
+                .recv_timeout(LIMIT.saturating_sub(start.elapsed()));
+            self.complained +=
+                &line.unwrap_or_else(|_| panic!("no {words:?}: {}", self.complained));
             self.complained.push('\n');
         }
     }
@@ -115,7 +164,11 @@ impl Console {
     fn end(mut self) -> (ExitStatus, String) {
         drop(self.process.0.stdin.take());
         let status = self.process.wait();
-        self.complained.extend(self.complaints.iter().flat_map(|line| [line, "\n".to_owned()]));
+        self.complained.extend(
+            self.complaints
+                .iter()
+                .flat_map(|line| [line, "\n".to_owned()]),
+        );
         (status, self.complained)
     }
 }
@@ -129,11 +182,14 @@ fn a_console_stops_one_boat_or_all_and_releases_them() {
     let mut console = fleet.console();
     console.ask("blue_one estop", &ALL_STOPPED[..1]);
     console.say("status");
-    console.wait_for(&["blue_one  e-stopped (by an E-stop of this boat), ", "red_one  disarmed, "]);
+    console.wait_for(&[
+        "blue_one  e-stopped (by an E-stop of this boat), ",
+        "red_one  disarmed, ",
+    ]);
     // Enter alone stops both boats.
     console.ask("", &ALL_STOPPED);
-    // A stop takes every path. On a busy machine the slowest copy arrives after the reports, and one
-    // that arrived after the release would stop the boats again, as it should.
+    // A stop takes every path. On a busy machine the slowest copy arrives after the reports, and
+    // one that arrived after the release would stop the boats again, as it should.
     std::thread::sleep(Duration::from_secs(2));
     // A stop of one boat outlasts the release of all.
     console.say("all release");
@@ -146,7 +202,10 @@ fn a_console_stops_one_boat_or_all_and_releases_them() {
     console.say("blue_one dance");
     let (status, said) = console.end();
     assert!(status.success(), "{said}");
-    assert!(said.contains("dance") && said.contains("blue_one refuses: an E-stop of this boat"), "{said}");
+    assert!(
+        said.contains("dance") && said.contains("blue_one refuses: an E-stop of this boat"),
+        "{said}"
+    );
 }
 
 #[test]
@@ -175,10 +234,15 @@ fn a_boat_that_does_not_report_its_stop_fails_the_console_and_tell() {
     console.wait_for(&["red_one  silent"]);
     console.ask("all estop", &ALL_STOPPED[..1]);
     console.wait_for(&["red_one  has not confirmed E-stop"]);
-    let told = fleet.sim.refusal_of(&["gateway", "tell", "red_one", "estop"]);
+    let told = fleet
+        .sim
+        .refusal_of(&["gateway", "tell", "red_one", "estop"]);
     assert!(told.contains("red_one"), "{told}");
     let (status, said) = console.end();
-    assert!(!status.success() && said.contains("red_one does not report that it has stopped: disarmed"), "{said}");
+    assert!(
+        !status.success() && said.contains("red_one does not report that it has stopped: disarmed"),
+        "{said}"
+    );
     // Its stop was repeated for as long as the console ran.
     fleet.gateways[1].signal("CONT");
     let mut console = fleet.console_of(&["red_one  e-stopped"]);
@@ -197,11 +261,15 @@ fn tell_stops_boats_by_way_of_the_game_alone_within_its_time() {
         command.env("XDG_RUNTIME_DIR", nothing.path());
         command
     };
-    for (name, reports) in
-        [("red_one", &["red_one: e-stopped"][..]), ("all", &["blue_one: e-stopped", "red_one: e-stopped"])]
-    {
+    for (name, reports) in [
+        ("red_one", &["red_one: e-stopped"][..]),
+        ("all", &["blue_one: e-stopped", "red_one: e-stopped"]),
+    ] {
         let said = printed_by(estop(name));
-        assert!(reports.iter().all(|report| said.contains(report)), "{name}: {said}");
+        assert!(
+            reports.iter().all(|report| said.contains(report)),
+            "{name}: {said}"
+        );
     }
     assert!(refused(estop("nobody")).contains("nobody"));
     drop(console);

@@ -39,7 +39,10 @@ fn time_to_end(words: &[&str]) -> Duration {
     command.stdin(Stdio::piped());
     let mut process = Process::quiet(command);
     std::thread::sleep(Duration::from_secs(1));
-    assert!(process.0.try_wait().expect("it can be asked").is_none(), "{words:?} has ended by itself");
+    assert!(
+        process.0.try_wait().expect("it can be asked").is_none(),
+        "{words:?} has ended by itself"
+    );
     let start = Instant::now();
     process.signal("TERM");
     process.wait();
@@ -52,7 +55,17 @@ fn sigterm_ends_every_command_within_two_seconds() {
     let folder = dir.path().display().to_string();
     let log = format!("{folder}/zigzag.csv");
     let plot = format!("{folder}/zigzag.svg");
-    let args = ["trial", "surveyor_m1_8", "--manoeuvre", "zigzag", "--with-orders", "--csv", &log, "--plot", &plot];
+    let args = [
+        "trial",
+        "surveyor_m1_8",
+        "--manoeuvre",
+        "zigzag",
+        "--with-orders",
+        "--csv",
+        &log,
+        "--plot",
+        &plot,
+    ];
     printed(&args);
     let recording = format!("{folder}/game.mcap");
     printed(&["sim", "attack_1v1", "--join-s", "0", "--record", &recording]);
@@ -65,17 +78,26 @@ fn sigterm_ends_every_command_within_two_seconds() {
         ("RECORDING", recording.clone()),
         ("SILENT", format!("--connect tcp/{silent} --game silent")),
         ("LINK", format!("tcp://{silent}")),
-        ("GAME", format!("--connect {} --game {}", sim.endpoint, sim.game)),
+        (
+            "GAME",
+            format!("--connect {} --game {}", sim.endpoint, sim.game),
+        ),
         ("LONG", own("long")),
         ("DIR", folder),
     ];
     let mut slow = vec![];
     for command in COMMANDS {
-        let text = words.iter().fold(command.to_owned(), |text, (word, value)| text.replace(word, value));
+        let text = words
+            .iter()
+            .fold(command.to_owned(), |text, (word, value)| {
+                text.replace(word, value)
+            });
         let words: Vec<&str> = text.split(' ').collect();
         // A busy machine may delay one of several attempts.
         let attempts = std::iter::repeat_with(|| time_to_end(&words)).take(3);
-        let took = attempts.inspect(|took| eprintln!("{took:.1?}: {command}")).find(|took| *took < END_MAX);
+        let took = attempts
+            .inspect(|took| eprintln!("{took:.1?}: {command}"))
+            .find(|took| *took < END_MAX);
         if took.is_none() {
             slow.push(command);
         }

@@ -33,7 +33,12 @@ pub(crate) struct Gateway {
 fn request(bus: &Bus, vehicle: &str) -> JoinRequest {
     let version = primitives::VERSION.to_owned();
     let vehicles = vec![vehicle.to_owned()];
-    JoinRequest { version, role: Role::Gateway, node: bus.id(), vehicles }
+    JoinRequest {
+        version,
+        role: Role::Gateway,
+        node: bus.id(),
+        vehicles,
+    }
 }
 
 impl Gateway {
@@ -41,21 +46,52 @@ impl Gateway {
         let (bus, name, scenario) = sim.session();
         let orders = Arc::new(Mutex::new(Vec::new()));
         let inbox = Arc::clone(&orders);
-        let take = move |bytes: &[u8]| inbox.lock().expect("whole").push(codec::decode(bytes).expect("an order"));
-        let standing = bus.subscribe(topic::external_order(&name, &scenario, ME), take).expect("the hub is there");
-        let nav = bus.publisher(topic::nav(&name, &scenario, ME), Priority::Normal).expect("the hub is there");
-        let JoinReply::Granted { ticket, vehicles, .. } = join(&bus, (&name, &scenario), &request(&bus, "blue_one"))
+        let take = move |bytes: &[u8]| {
+            inbox
+                .lock()
+                .expect("whole")
+                .push(codec::decode(bytes).expect("an order"))
+        };
+        let standing = bus
+            .subscribe(topic::external_order(&name, &scenario, ME), take)
+            .expect("the hub is there");
+        let nav = bus
+            .publisher(topic::nav(&name, &scenario, ME), Priority::Normal)
+            .expect("the hub is there");
+        let JoinReply::Granted {
+            ticket, vehicles, ..
+        } = join(&bus, (&name, &scenario), &request(&bus, "blue_one"))
         else {
             panic!("the boat is free")
         };
         assert_eq!(vehicles, [ME]);
-        let at = Nav { north_m: 40.0, east_m: 52.0, psi_rad: rad_from_compass_deg(90.0), ..Nav::default() };
-        Gateway { bus, name, scenario, _standing: standing, nav, orders, ticket, seq: 0, at, moved: Instant::now() }
+        let at = Nav {
+            north_m: 40.0,
+            east_m: 52.0,
+            psi_rad: rad_from_compass_deg(90.0),
+            ..Nav::default()
+        };
+        Gateway {
+            bus,
+            name,
+            scenario,
+            _standing: standing,
+            nav,
+            orders,
+            ticket,
+            seq: 0,
+            at,
+            moved: Instant::now(),
+        }
     }
 
     /// The reply to another node that requests a boat.
     fn join(&self, other: &Bus, vehicle: &str) -> JoinReply {
-        join(other, (&self.name, &self.scenario), &request(other, vehicle))
+        join(
+            other,
+            (&self.name, &self.scenario),
+            &request(other, vehicle),
+        )
     }
 
     fn newest(&self) -> Option<ExternalOrder> {
@@ -67,7 +103,8 @@ impl Gateway {
     }
 
     fn is_held(&self) -> bool {
-        self.newest().is_some_and(|newest| newest.order.order() == Some(Order::Hold))
+        self.newest()
+            .is_some_and(|newest| newest.order.order() == Some(Order::Hold))
     }
 
     /// Follows the last order, and reports.
@@ -76,7 +113,11 @@ impl Gateway {
         self.moved = Instant::now();
         let order = self.newest().and_then(|newest| newest.order.order());
         self.at.surge_m_s = 0.0;
-        if let Some(Order::Steer { heading_rad, speed_m_s }) = order {
+        if let Some(Order::Steer {
+            heading_rad,
+            speed_m_s,
+        }) = order
+        {
             (self.at.psi_rad, self.at.surge_m_s) = (heading_rad, speed_m_s);
         }
         let (sin, cos) = primitives::math::sin_cos(self.at.psi_rad);
@@ -87,8 +128,19 @@ impl Gateway {
 
     fn report(&mut self, ticket: u64) {
         self.seq += 1;
-        let stamp = Stamp { seq: self.seq, version: NavReport::VERSION, ..Stamp::default() };
-        let report = NavReport { stamp, ticket, vehicle: ME, valid: true, age_ns: 0, nav: self.at };
+        let stamp = Stamp {
+            seq: self.seq,
+            version: NavReport::VERSION,
+            ..Stamp::default()
+        };
+        let report = NavReport {
+            stamp,
+            ticket,
+            vehicle: ME,
+            valid: true,
+            age_ns: 0,
+            nav: self.at,
+        };
         self.nav.send(&report).expect("the hub is there");
     }
 
@@ -108,20 +160,40 @@ fn a_real_boat_has_one_gateway_and_holds_without_navigation_or_agent() {
     let sim = Sim::start("real_attacker", &["--pace", &format!("{FACTOR}x")]);
     let mut agent = sim.agent(&["blue_one"]);
     let _still = sim.agent(&["red_one"]);
-    let waiting = sim.wait_for(|t| t["kind"] == "waiting" && t["agents"].as_array().is_some_and(Vec::is_empty));
+    let waiting = sim
+        .wait_for(|t| t["kind"] == "waiting" && t["agents"].as_array().is_some_and(Vec::is_empty));
     assert_eq!(waiting["gateways"][0], "blue_one", "{waiting}");
 
     let mut gateway = Gateway::joined(&sim);
     let other = sim.bus();
-    let busy = JoinReply::Busy { vehicle: "blue_one".to_owned() };
-    assert_eq!(gateway.join(&other, "blue_one"), busy, "somebody else brings it");
-    let JoinReply::Refused { reason } = gateway.join(&other, "red_one") else { panic!("it is simulated") };
+    let busy = JoinReply::Busy {
+        vehicle: "blue_one".to_owned(),
+    };
+    assert_eq!(
+        gateway.join(&other, "blue_one"),
+        busy,
+        "somebody else brings it"
+    );
+    let JoinReply::Refused { reason } = gateway.join(&other, "red_one") else {
+        panic!("it is simulated")
+    };
     assert!(reason.contains("red_one is simulated"), "{reason}");
 
-    gateway.sail_until("its agent takes it towards the flag", |gateway| gateway.at.east_m > 70.0);
+    gateway.sail_until("its agent takes it towards the flag", |gateway| {
+        gateway.at.east_m > 70.0
+    });
     let orders = gateway.orders.lock().expect("whole").clone();
-    assert!(orders.iter().any(|order| order.given_ns > orders[0].given_ns), "its agent goes on deciding");
-    assert!(orders.iter().all(|order| order.order.vehicle == ME && order.given_ns <= order.stamp.valid_ns));
+    assert!(
+        orders
+            .iter()
+            .any(|order| order.given_ns > orders[0].given_ns),
+        "its agent goes on deciding"
+    );
+    assert!(
+        orders
+            .iter()
+            .all(|order| order.order.vehicle == ME && order.given_ns <= order.stamp.valid_ns)
+    );
 
     // The gateway stops reporting, then resumes.
     sim.wait_for_event("nav_lost", "blue_one");
@@ -129,7 +201,11 @@ fn a_real_boat_has_one_gateway_and_holds_without_navigation_or_agent() {
     gateway.sail_until("what is back is driven again", |gateway| !gateway.is_held());
     sim.wait_for_event("nav_back", "blue_one");
     let before = gateway.newest().expect("an order").given_ns;
-    gateway.sail_until("its agent goes on", |gateway| gateway.newest().is_some_and(|newest| newest.given_ns > before));
+    gateway.sail_until("its agent goes on", |gateway| {
+        gateway
+            .newest()
+            .is_some_and(|newest| newest.given_ns > before)
+    });
 
     // Its agent dies: it holds, and from now on gets no orders.
     agent.kill();
@@ -137,19 +213,37 @@ fn a_real_boat_has_one_gateway_and_holds_without_navigation_or_agent() {
     sim.wait_for_event("agent_lost", "blue_one");
     let count = gateway.received();
     let given_ns = gateway.newest().expect("an order").given_ns;
-    gateway.sail_until("it is sent the hold again", |gateway| gateway.received() > count + 3);
-    assert!(gateway.newest().is_some_and(|newest| newest.given_ns == given_ns) && gateway.is_held());
+    gateway.sail_until("it is sent the hold again", |gateway| {
+        gateway.received() > count + 3
+    });
+    assert!(
+        gateway
+            .newest()
+            .is_some_and(|newest| newest.given_ns == given_ns)
+            && gateway.is_held()
+    );
 
     // Its gateway dies: another may join, and the old one's reports are refused.
     gateway.bus.close();
-    wait_until("the boat is free again", || gateway.join(&other, "blue_one") != busy);
+    wait_until("the boat is free again", || {
+        gateway.join(&other, "blue_one") != busy
+    });
     let nav = topic::nav(&gateway.name, &gateway.scenario, ME);
-    gateway.nav = other.publisher(nav, Priority::Normal).expect("the hub is there");
+    gateway.nav = other
+        .publisher(nav, Priority::Normal)
+        .expect("the hub is there");
     gateway.report(gateway.ticket);
     sim.play_on(1.0);
     let report = sim.stop();
-    assert!(report["run"]["refused"]["ticket"].as_u64() >= Some(1), "{}", report["run"]);
-    assert_eq!(report["outcome"]["counts"]["boats"]["blue_one"]["agents_lost"], 1);
+    assert!(
+        report["run"]["refused"]["ticket"].as_u64() >= Some(1),
+        "{}",
+        report["run"]
+    );
+    assert_eq!(
+        report["outcome"]["counts"]["boats"]["blue_one"]["agents_lost"],
+        1
+    );
 }
 
 #[test]
@@ -158,6 +252,12 @@ fn a_rehearsal_is_the_game_of_simulated_boats_in_one_process_and_across() {
     let simulated = own("pav01_30s");
     let want = result_of(&[&simulated, "--in-process"])["digest"].clone();
     assert!(want.is_string());
-    assert_eq!(result_of(&[&mixed, "--rehearse", "--in-process"])["digest"], want);
-    assert_eq!(result_of(&[&mixed, "--rehearse", "--agents-per-process", "4"])["digest"], want);
+    assert_eq!(
+        result_of(&[&mixed, "--rehearse", "--in-process"])["digest"],
+        want
+    );
+    assert_eq!(
+        result_of(&[&mixed, "--rehearse", "--agents-per-process", "4"])["digest"],
+        want
+    );
 }

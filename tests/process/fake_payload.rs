@@ -19,7 +19,9 @@ pub(crate) struct FakePayload {
 
 impl FakePayload {
     /// Serves each connection on a separate thread.
-    fn start(serve: impl Fn(TcpStream, &AtomicU64) -> std::io::Result<()> + Send + Sync + 'static) -> FakePayload {
+    fn start(
+        serve: impl Fn(TcpStream, &AtomicU64) -> std::io::Result<()> + Send + Sync + 'static,
+    ) -> FakePayload {
         let listener = TcpListener::bind("127.0.0.1:0").expect("a free port");
         let address = listener.local_addr().expect("an address");
         let asked = Arc::<AtomicU64>::default();
@@ -47,7 +49,9 @@ impl FakePayload {
             asked.fetch_add(1, Ordering::Relaxed);
             stream.write_all(b"HTTP/1.0 200 OK\r\nContent-Type: multipart/x-mixed-replace; boundary=frame\r\n\r\n")?;
             for number in 0_u32.. {
-                let picture: Vec<u8> = (0..20_000_u32).map(|i| (i.wrapping_mul(number | 1) >> 5) as u8).collect();
+                let picture: Vec<u8> = (0..20_000_u32)
+                    .map(|i| (i.wrapping_mul(number | 1) >> 5) as u8)
+                    .collect();
                 stream.write_all(b"--frame\r\nContent-Type: image/jpeg\r\n\r\n\xff\xd8")?;
                 stream.write_all(&picture)?;
                 stream.write_all(b"\xff\xd9\r\n")?;
@@ -67,7 +71,10 @@ impl FakePayload {
                 (head, command) if head.starts_with("POST /data ") => answer(command),
                 _ => String::new(),
             };
-            write!(stream, "HTTP/1.0 200 OK\r\nServer: BaseHTTP/0.6\r\nContent-type: text/html\r\n\r\n{answer}")
+            write!(
+                stream,
+                "HTTP/1.0 200 OK\r\nServer: BaseHTTP/0.6\r\nContent-type: text/html\r\n\r\n{answer}"
+            )
         })
     }
 

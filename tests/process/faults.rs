@@ -24,15 +24,28 @@ fn a_killed_agents_boat_holds_until_a_new_agent_takes_over() {
         let killed = Instant::now();
         sim.wait_for_event("agent_lost", "blue_two");
         // Patience is 2 s; the rest allows for a busy machine.
-        assert!(killed.elapsed().as_secs_f64() < 12.0, "{pace}: lost after {:?}", killed.elapsed());
+        assert!(
+            killed.elapsed().as_secs_f64() < 12.0,
+            "{pace}: lost after {:?}",
+            killed.elapsed()
+        );
         sim.play_on(5.0);
         agents[1] = sim.agent(&["blue_two"]);
         sim.wait_for_event("agent_back", "blue_two");
         sim.play_on(5.0);
         let done = sim.stop();
-        assert_eq!(done["outcome"]["counts"]["boats"]["blue_two"]["agents_lost"], 1, "{pace}");
-        assert_eq!(done["outcome"]["counts"]["boats"]["blue_one"]["agents_lost"], 0, "{pace}");
-        assert!(agents.iter_mut().all(|agent| agent.wait().success()), "{pace}: they leave in peace");
+        assert_eq!(
+            done["outcome"]["counts"]["boats"]["blue_two"]["agents_lost"], 1,
+            "{pace}"
+        );
+        assert_eq!(
+            done["outcome"]["counts"]["boats"]["blue_one"]["agents_lost"], 0,
+            "{pace}"
+        );
+        assert!(
+            agents.iter_mut().all(|agent| agent.wait().success()),
+            "{pace}: they leave in peace"
+        );
     }
 }
 
@@ -44,7 +57,11 @@ fn a_hung_agent_is_dropped_after_the_patience_and_may_return() {
         agents[2].signal("STOP");
         let hung = Instant::now();
         sim.wait_for_event("agent_lost", "red_one");
-        assert!(hung.elapsed().as_secs_f64() > 1.5, "{pace}: patience was {:?}", hung.elapsed());
+        assert!(
+            hung.elapsed().as_secs_f64() > 1.5,
+            "{pace}: patience was {:?}",
+            hung.elapsed()
+        );
         sim.play_on(2.0);
         agents[2].signal("CONT");
         sim.wait_for_event("agent_back", "red_one");
@@ -61,7 +78,11 @@ fn agents_report_a_killed_sim_and_fail() {
     let killed = Instant::now();
     expect_sim_gone(&mut agents);
     // The documented limit is five seconds; the rest allows for a busy machine.
-    assert!(killed.elapsed().as_secs_f64() < 17.0, "{:?}", killed.elapsed());
+    assert!(
+        killed.elapsed().as_secs_f64() < 17.0,
+        "{:?}",
+        killed.elapsed()
+    );
 }
 
 #[test]
@@ -71,7 +92,11 @@ fn an_agent_does_not_stay_with_a_sim_that_never_let_it_in() {
     let endpoint = sim.endpoint.clone();
     let name = sim.game.clone();
     sim.process.kill();
-    let next = Sim::start_with(squall(&[]), "impatient", &["--listen", &endpoint, "--game", &name]);
+    let next = Sim::start_with(
+        squall(&[]),
+        "impatient",
+        &["--listen", &endpoint, "--game", &name],
+    );
     // Pictures resume: an agent that checks nothing else would stay.
     let _others = FOUR.map(|vehicle| next.agent(&[vehicle]));
     next.wait_for_kind("started");
@@ -86,6 +111,9 @@ fn a_taken_seat_stays_taken() {
     assert!(said.contains("blue_one has another agent"), "{said}");
     // A vehicle that is not there has none.
     let said = sim.refusal_of(&["agent", "--vehicle", "green_one"]);
-    assert!(said.contains("green_one") && said.contains("blue_one, blue_two, red_one, red_two"), "{said}");
+    assert!(
+        said.contains("green_one") && said.contains("blue_one, blue_two, red_one, red_two"),
+        "{said}"
+    );
     sim.stop();
 }

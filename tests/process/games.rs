@@ -1,8 +1,8 @@
 //! Whole games: the same bytes in one process and across processes.
 
 use crate::support::{
-    FOUR, Process, Sim, agent, all_output, assert_a_game_each, free_endpoint, game_itself, own, printed, refused,
-    result_of, squall, stdout, temporary, wait_until,
+    FOUR, Process, Sim, agent, all_output, assert_a_game_each, free_endpoint, game_itself, own,
+    printed, refused, result_of, squall, stdout, temporary, wait_until,
 };
 use serde_json::{Value, json};
 use std::net::TcpListener;
@@ -23,9 +23,13 @@ fn a_rough_game_with_lossy_links_is_the_same_over_the_network_too() {
     for (seed, sea) in [("1", &[][..]), ("2", &[]), ("1", &["--sea", bay])] {
         let words = [&[game.as_str(), "--seed", seed], sea].concat();
         let here = game_itself(result_of(&[words.as_slice(), &["--in-process"]].concat()));
-        let there = game_itself(result_of(&[words.as_slice(), &["--agents-per-process", "2"]].concat()));
+        let there = game_itself(result_of(
+            &[words.as_slice(), &["--agents-per-process", "2"]].concat(),
+        ));
         assert_eq!(here, there, "seed {seed} {sea:?}");
-        let mass_kg = here["drawn"]["blue_one/hull.mass_kg"].as_f64().expect("the mass was drawn");
+        let mass_kg = here["drawn"]["blue_one/hull.mass_kg"]
+            .as_f64()
+            .expect("the mass was drawn");
         assert!((0.9 * 52.3..1.1 * 52.3).contains(&mass_kg));
         digests.push(here["digest"].clone());
     }
@@ -36,22 +40,46 @@ fn a_rough_game_with_lossy_links_is_the_same_over_the_network_too() {
 #[test]
 fn the_first_game_of_the_readme_runs_to_its_end() {
     let result = result_of(&["scenarios/games/pav01_vs_pav01.toml"]);
-    assert_eq!((&result["duration_s"], &result["ticks"]), (&600.0.into(), &12000.into()));
+    assert_eq!(
+        (&result["duration_s"], &result["ticks"]),
+        (&600.0.into(), &12000.into())
+    );
     assert_eq!(result["digest"].as_str().map(str::len), Some(32));
-    assert!(result["score"]["teams"]["blue"].is_u64() && result["counts"]["boats"]["blue_one"]["tags"].is_u64());
+    assert!(
+        result["score"]["teams"]["blue"].is_u64()
+            && result["counts"]["boats"]["blue_one"]["tags"].is_u64()
+    );
     let events = result["events"].as_array().expect("a list");
-    assert_eq!(events.last().map(|event| &event["event"]), Some(&Value::from("ended")));
-    assert!(events.iter().all(|event| event["tick"].is_u64() && event["at_s"].is_f64()));
+    assert_eq!(
+        events.last().map(|event| &event["event"]),
+        Some(&Value::from("ended"))
+    );
+    assert!(
+        events
+            .iter()
+            .all(|event| event["tick"].is_u64() && event["at_s"].is_f64())
+    );
     // Mirrored teams give mirrored results.
-    assert_eq!(result["counts"]["teams"]["blue"], result["counts"]["teams"]["red"]);
-    assert!(result["counts"]["teams"]["blue"]["grabs"].as_u64() > Some(0), "somebody reached a flag");
+    assert_eq!(
+        result["counts"]["teams"]["blue"],
+        result["counts"]["teams"]["red"]
+    );
+    assert!(
+        result["counts"]["teams"]["blue"]["grabs"].as_u64() > Some(0),
+        "somebody reached a flag"
+    );
 }
 
 #[test]
 fn two_runs_at_once_do_not_see_each_other() {
-    let alone = game_itself(result_of(&["scenarios/games/pav01_popolopen.toml", "--in-process"]));
+    let alone = game_itself(result_of(&[
+        "scenarios/games/pav01_popolopen.toml",
+        "--in-process",
+    ]));
     let both: Vec<_> = (0..2)
-        .map(|_| std::thread::spawn(|| game_itself(result_of(&["scenarios/games/pav01_popolopen.toml"]))))
+        .map(|_| {
+            std::thread::spawn(|| game_itself(result_of(&["scenarios/games/pav01_popolopen.toml"])))
+        })
         .collect();
     for one in both {
         assert_eq!(one.join().expect("it runs"), alone);
@@ -71,15 +99,33 @@ fn a_paced_game_keeps_its_pace() {
 #[test]
 fn agents_may_come_before_the_sim_and_in_any_order() {
     let endpoint = free_endpoint();
-    let mut agents: Vec<Process> = FOUR.iter().rev().map(|name| agent(&endpoint, "early", &[name])).collect();
+    let mut agents: Vec<Process> = FOUR
+        .iter()
+        .rev()
+        .map(|name| agent(&endpoint, "early", &[name]))
+        .collect();
     std::thread::sleep(std::time::Duration::from_millis(500));
-    let sim = Sim::start_with(squall(&[]), "long", &["--game", "early", "--listen", &endpoint]);
+    let sim = Sim::start_with(
+        squall(&[]),
+        "long",
+        &["--game", "early", "--listen", &endpoint],
+    );
     sim.wait_for_kind("started");
     sim.play_on(5.0);
     let done = sim.stop();
-    assert!(done["outcome"]["events"].as_array().expect("a list").iter().all(|e| e["event"] != "agent_lost"), "{done}");
+    assert!(
+        done["outcome"]["events"]
+            .as_array()
+            .expect("a list")
+            .iter()
+            .all(|e| e["event"] != "agent_lost"),
+        "{done}"
+    );
     for agent in &mut agents {
-        assert!(agent.wait().success(), "an agent leaves in peace when the game ends");
+        assert!(
+            agent.wait().success(),
+            "an agent leaves in peace when the game ends"
+        );
     }
 }
 
@@ -97,7 +143,13 @@ fn a_mind_may_join_late() {
 #[test]
 fn a_run_that_is_ended_early_leaves_nothing_behind() {
     for signal in ["INT", "TERM", "KILL"] {
-        let mut run = Process::quiet(squall(&["run", &own("long"), "--pace", "realtime", "--no-record"]));
+        let mut run = Process::quiet(squall(&[
+            "run",
+            &own("long"),
+            "--pace",
+            "realtime",
+            "--no-record",
+        ]));
         let mut family = Vec::new();
         wait_until("sim and agents start", || {
             family = children_of(run.0.id());
@@ -105,16 +157,27 @@ fn a_run_that_is_ended_early_leaves_nothing_behind() {
         });
         run.signal(signal);
         let status = run.wait();
-        assert!(!status.success(), "{signal}: a game that was cut short is no success");
+        assert!(
+            !status.success(),
+            "{signal}: a game that was cut short is no success"
+        );
         let is_there = |pid: &u32| Path::new(&format!("/proc/{pid}/exe")).exists();
-        wait_until(&format!("after {signal} all of {family:?} end"), || !family.iter().any(is_there));
+        wait_until(&format!("after {signal} all of {family:?} end"), || {
+            !family.iter().any(is_there)
+        });
     }
 }
 
 /// The child processes of a process.
 fn children_of(pid: u32) -> Vec<u32> {
-    let output = Command::new("ps").args(["-o", "pid=", "--ppid", &pid.to_string()]).output().expect("ps is there");
-    stdout(&output).split_whitespace().filter_map(|pid| pid.parse().ok()).collect()
+    let output = Command::new("ps")
+        .args(["-o", "pid=", "--ppid", &pid.to_string()])
+        .output()
+        .expect("ps is there");
+    stdout(&output)
+        .split_whitespace()
+        .filter_map(|pid| pid.parse().ok())
+        .collect()
 }
 
 #[test]
@@ -123,8 +186,12 @@ fn games_on_this_machine_are_listed_and_can_be_watched() {
     let _agents = sim.agent(&FOUR);
     sim.play_on(1.0);
     let list = printed(&["list"]);
-    assert!(list.contains(&sim.game) && list.contains("  playing at ") && list.contains("4 boats"), "{list}");
-    let (mut watch, mut lines) = Process::with_lines(squall(&["watch", "--game", &sim.game, "--rate", "20"]));
+    assert!(
+        list.contains(&sim.game) && list.contains("  playing at ") && list.contains("4 boats"),
+        "{list}"
+    );
+    let (mut watch, mut lines) =
+        Process::with_lines(squall(&["watch", "--game", &sim.game, "--rate", "20"]));
     for _ in 0..3 {
         let line = lines.next().expect("it goes on");
         assert!(line.contains("blue") && line.contains("frames/s"), "{line}");
@@ -137,31 +204,48 @@ fn games_on_this_machine_are_listed_and_can_be_watched() {
 fn a_game_is_not_registered_in_a_folder_that_another_user_could_have_linked() {
     let dir = temporary();
     let elsewhere = dir.path().join("elsewhere");
-    std::fs::DirBuilder::new().mode(0o700).create(&elsewhere).expect("a folder");
+    std::fs::DirBuilder::new()
+        .mode(0o700)
+        .create(&elsewhere)
+        .expect("a folder");
     std::os::unix::fs::symlink(&elsewhere, dir.path().join("squall")).expect("a link");
     let mut sim = squall(&["sim", "scenarios/games/attack_1v1.toml", "--join-s", "0"]);
     sim.env("XDG_RUNTIME_DIR", dir.path());
     let said = all_output(sim);
-    assert!(said.contains("found by its address only") && said.contains("squall is a link"), "{said}");
-    assert_eq!(std::fs::read_dir(&elsewhere).expect("it is there").count(), 0);
+    assert!(
+        said.contains("found by its address only") && said.contains("squall is a link"),
+        "{said}"
+    );
+    assert_eq!(
+        std::fs::read_dir(&elsewhere).expect("it is there").count(),
+        0
+    );
 }
 
 #[test]
 fn a_release_of_all_boats_while_two_games_run_is_refused_and_reaches_no_boat() {
     let dir = temporary();
     let registry = dir.path().join("squall");
-    std::fs::DirBuilder::new().mode(0o700).create(&registry).expect("a folder");
+    std::fs::DirBuilder::new()
+        .mode(0o700)
+        .create(&registry)
+        .expect("a folder");
     let port = TcpListener::bind("127.0.0.1:0").expect("a port");
     port.set_nonblocking(true).expect("a socket");
     let control = port.local_addr().expect("it is bound");
     for (boat, game) in [("blue_one", "morning"), ("red_one", "evening")] {
-        let entry = json!({ "vehicle": boat, "game": game, "control": control, "pid": std::process::id() });
-        std::fs::write(registry.join(format!("{boat}.gateway")), entry.to_string()).expect("it is written");
+        let entry =
+            json!({ "vehicle": boat, "game": game, "control": control, "pid": std::process::id() });
+        std::fs::write(registry.join(format!("{boat}.gateway")), entry.to_string())
+            .expect("it is written");
     }
     let mut tell = squall(&["gateway", "tell", "all", "release"]);
     tell.env("XDG_RUNTIME_DIR", dir.path());
     let said = refused(tell);
-    assert!(said.contains("select one with --game: evening, morning"), "{said}");
+    assert!(
+        said.contains("select one with --game: evening, morning"),
+        "{said}"
+    );
     assert!(port.accept().is_err(), "a gateway was told");
 }
 
@@ -170,5 +254,8 @@ fn a_token_that_is_none_is_refused_before_the_game() {
     let mut run = squall(&["run", "scenarios/games/attack_1v1.toml", "--no-record"]);
     run.env(bus::token::TOKEN_VARIABLE, "abc");
     let said = refused(run);
-    assert!(said.contains("SQUALL_TOKEN: not a token (3 characters)"), "{said}");
+    assert!(
+        said.contains("SQUALL_TOKEN: not a token (3 characters)"),
+        "{said}"
+    );
 }

@@ -7,8 +7,8 @@
 use crate::boat_alone::tell;
 use crate::proxy::{PASS, Proxy, REFUSE, SWALLOW};
 use crate::support::{
-    LIMIT, Process, Sim, newest, refusal_of, result_of, run, squall, squall_on_a_disk_of, stderr, stdout, temporary,
-    wait_until, wait_within,
+    LIMIT, Process, Sim, newest, refusal_of, result_of, run, squall, squall_on_a_disk_of, stderr,
+    stdout, temporary, wait_until, wait_within,
 };
 use bus::{Bus, Declaration, Watched};
 use messages::external::{GatewayStatus, OperatorCommand, OperatorReply};
@@ -47,30 +47,56 @@ pub(crate) struct Water {
 impl Water {
     /// Starts a boat at rest, with these options of its emulator.
     pub(crate) fn start(more: &[&str]) -> Water {
-        let sim = Sim::start("real_attacker", &["--pace", "realtime", "--afloat", "blue_one"]);
-        let listen = ["gateway", "emulate", "--vehicle", "blue_one", "--listen", "tcp://127.0.0.1:0"];
+        let sim = Sim::start(
+            "real_attacker",
+            &["--pace", "realtime", "--afloat", "blue_one"],
+        );
+        let listen = [
+            "gateway",
+            "emulate",
+            "--vehicle",
+            "blue_one",
+            "--listen",
+            "tcp://127.0.0.1:0",
+        ];
         let mut command = sim.squall(&[&listen[..], more].concat());
         command.stdout(Stdio::piped()).stderr(Stdio::null());
         let mut emulator = Process::start(command);
         let mut lines = emulator.lines();
         let mut reach = |what: &str| {
-            let line = lines.find(|line| line.starts_with(what)).expect("it prints where it listens");
-            line.rsplit("tcp://").next().expect("an address").trim().to_owned()
+            let line = lines
+                .find(|line| line.starts_with(what))
+                .expect("it prints where it listens");
+            line.rsplit("tcp://")
+                .next()
+                .expect("an address")
+                .trim()
+                .to_owned()
         };
         let back_seat = reach("back seat at ");
-        let primary = more.contains(&"--primary").then(|| reach("primary operator at "));
+        let primary = more
+            .contains(&"--primary")
+            .then(|| reach("primary operator at "));
         std::thread::spawn(move || lines.for_each(drop));
         let bus = sim.bus();
         let key = topic::frame(&sim.name());
         let (frame, frames) = newest(&bus, key, |bytes| codec::decode(bytes).expect("a frame"));
-        Water { _emulator: emulator, _sim: sim, back_seat, primary, frame, _observer: (bus, frames) }
+        Water {
+            _emulator: emulator,
+            _sim: sim,
+            back_seat,
+            primary,
+            frame,
+            _observer: (bus, frames),
+        }
     }
 
     /// The boat's speed, m/s, and whether its thrusters are stopped.
     pub(crate) fn boat(&self) -> (f64, bool) {
         let boat = self.frame.visit(|frame| frame.vehicles.first().cloned());
         boat.map_or((0.0, true), |boat| {
-            let still = boat.port_newton.abs() < STILL_NEWTON && boat.starboard_newton.abs() < STILL_NEWTON;
+            let still =
+                boat.port_newton.abs() < STILL_NEWTON && boat.starboard_newton.abs() < STILL_NEWTON;
             (boat.nav.surge_m_s, still)
         })
     }
@@ -88,7 +114,10 @@ pub(crate) struct Loop {
 impl Loop {
     /// Starts a boat that is under way on its agent's orders.
     fn under_way(watchdog: &str) -> Loop {
-        Loop::of(&["--primary", "tcp://127.0.0.1:0", "--watchdog-s", watchdog], &[])
+        Loop::of(
+            &["--primary", "tcp://127.0.0.1:0", "--watchdog-s", watchdog],
+            &[],
+        )
     }
 
     /// Starts a boat that is under way, with these options of emulator and gateway.
@@ -105,7 +134,13 @@ impl Loop {
         let proxy = Proxy::start(water.back_seat.clone());
         let gateway = start_gateway(&sim, proxy.port, gateway);
         let agents = sim.agent(&["blue_one", "red_one"]);
-        Loop { sim, agents, gateway, proxy, water }
+        Loop {
+            sim,
+            agents,
+            gateway,
+            proxy,
+            water,
+        }
     }
 
     /// The boat's speed, m/s, and whether its thrusters are stopped.
@@ -119,7 +154,11 @@ impl Loop {
 
     /// Checks that the thrusters stop within this time and stay stopped.
     pub(crate) fn stops_within(&self, stated: Duration) -> Duration {
-        let took = self.wait(stated + LAG + SLACK, "the thrusters stand still", |(_, still)| still);
+        let took = self.wait(
+            stated + LAG + SLACK,
+            "the thrusters stand still",
+            |(_, still)| still,
+        );
         for _ in 0..20 {
             std::thread::sleep(Duration::from_millis(100));
             assert!(self.boat().1, "it goes on again");
@@ -134,7 +173,8 @@ impl Loop {
     pub(crate) fn try_ask(&self, command: &OperatorCommand) -> Option<OperatorReply> {
         let bus = self.sim.bus();
         let key = topic::operate(&self.sim.name(), "blue_one");
-        bus.request_node(&key, command, Duration::from_secs(10)).expect("the hub is there")
+        bus.request_node(&key, command, Duration::from_secs(10))
+            .expect("the hub is there")
     }
 
     pub(crate) fn status(&self) -> GatewayStatus {
@@ -152,14 +192,25 @@ impl Loop {
         assert!(output.status.success(), "{}", stderr(&output));
         self.stops_within(Duration::from_millis(300));
         self.wait_for_state("e-stopped");
-        assert!(self.ask(&OperatorCommand::Arm).refused.is_some_and(|reason| reason.contains("release it first")));
-        assert!(self.sim.run(&["gateway", "tell", "all", "release"]).status.success());
+        assert!(
+            self.ask(&OperatorCommand::Arm)
+                .refused
+                .is_some_and(|reason| reason.contains("release it first"))
+        );
+        assert!(
+            self.sim
+                .run(&["gateway", "tell", "all", "release"])
+                .status
+                .success()
+        );
         self.wait_for_state("disarmed");
     }
 
     /// Arms it as soon as it is ready.
     pub(crate) fn arm(&self) {
-        wait_until("it can be armed", || self.ask(&OperatorCommand::Arm).refused.is_none());
+        wait_until("it can be armed", || {
+            self.ask(&OperatorCommand::Arm).refused.is_none()
+        });
         self.wait(LIMIT, "it sails again", |boat| boat.0 > 0.6);
     }
 
@@ -176,7 +227,9 @@ impl Loop {
     }
 
     pub(crate) fn await_gateway(&self) {
-        wait_until("it is in the game", || self.try_ask(&OperatorCommand::Status).is_some());
+        wait_until("it is in the game", || {
+            self.try_ask(&OperatorCommand::Status).is_some()
+        });
     }
 
     /// Checks that a killed agent stops the boat, and that only an operator arms it again.
@@ -204,9 +257,14 @@ impl Loop {
         self.gateway.signal("STOP");
         self.stops_within(Duration::from_millis(500));
         self.gateway.signal("CONT");
-        wait_until("it says what happened", || !self.status().failsafes.is_empty());
+        wait_until("it says what happened", || {
+            !self.status().failsafes.is_empty()
+        });
         let failsafes = self.status().failsafes;
-        assert!(failsafes[0].cause.contains("the gateway hung for"), "{failsafes:?}");
+        assert!(
+            failsafes[0].cause.contains("the gateway hung for"),
+            "{failsafes:?}"
+        );
         self.stays_at_rest();
         self.arm();
     }
@@ -219,7 +277,15 @@ impl Loop {
 
 fn start_gateway(sim: &Sim, port: u16, more: &[&str]) -> Process {
     let link = format!("tcp://127.0.0.1:{port}");
-    let args = ["gateway", "surveyor", "--vehicle", "blue_one", "--link", &link, "--no-record"];
+    let args = [
+        "gateway",
+        "surveyor",
+        "--vehicle",
+        "blue_one",
+        "--link",
+        &link,
+        "--no-record",
+    ];
     sim.quiet(&[&args[..], more].concat())
 }
 
@@ -237,10 +303,18 @@ fn a_killed_sim_stops_the_boat_when_its_orders_are_too_old() {
 
 #[test]
 fn the_end_of_a_game_disarms_the_boat_without_a_failsafe() {
-    let Loop { sim, agents: _agents, gateway: _gateway, proxy: _proxy, water: _water } = Loop::under_way("none");
+    let Loop {
+        sim,
+        agents: _agents,
+        gateway: _gateway,
+        proxy: _proxy,
+        water: _water,
+    } = Loop::under_way("none");
     let game = sim.game.clone();
     sim.stop();
-    wait_until("it is disarmed", || tell(&game, "status").contains("blue_one: disarmed"));
+    wait_until("it is disarmed", || {
+        tell(&game, "status").contains("blue_one: disarmed")
+    });
     // Longer than an order is valid.
     std::thread::sleep(Duration::from_secs(2));
     let status = tell(&game, "status");
@@ -282,36 +356,81 @@ fn a_gateway_that_cannot_record_exits_with_the_reason_and_leaves_the_boat_alone(
     let boat = TcpListener::bind("127.0.0.1:0").expect("a port");
     boat.set_nonblocking(true).expect("a socket");
     let link = format!("tcp://{}", boat.local_addr().expect("it is bound"));
-    let [taken, nowhere, full] = ["taken.mcap", "nowhere/x.mcap", "full.mcap"].map(|name| dir.path().join(name));
+    let [taken, nowhere, full] =
+        ["taken.mcap", "nowhere/x.mcap", "full.mcap"].map(|name| dir.path().join(name));
     std::fs::write(&taken, "of the run before").expect("a file can be written");
-    for (path, blocks, reason) in
-        [(&taken, 2048, "File exists"), (&nowhere, 2048, "No such file"), (&full, 0, "File too large")]
-    {
+    for (path, blocks, reason) in [
+        (&taken, 2048, "File exists"),
+        (&nowhere, 2048, "No such file"),
+        (&full, 0, "File too large"),
+    ] {
         let file = path.display().to_string();
-        let args =
-            ["gateway", "surveyor", "--vehicle", "blue_one", "--game", "nobody", "--link", &link, "--record", &file];
+        let args = [
+            "gateway",
+            "surveyor",
+            "--vehicle",
+            "blue_one",
+            "--game",
+            "nobody",
+            "--link",
+            &link,
+            "--record",
+            &file,
+        ];
         let said = refusal_within(LIMIT / 4, squall_on_a_disk_of(blocks, &args));
-        assert!(said.contains(&format!("cannot record to {file}")) && said.contains(reason), "{said}");
-        assert!(!said.contains("recording to") && !said.contains("operators reach"), "{said}");
+        assert!(
+            said.contains(&format!("cannot record to {file}")) && said.contains(reason),
+            "{said}"
+        );
+        assert!(
+            !said.contains("recording to") && !said.contains("operators reach"),
+            "{said}"
+        );
         assert!(boat.accept().is_err(), "{reason}: the boat is connected to");
     }
-    assert_eq!(std::fs::read_to_string(&taken).expect("it is there"), "of the run before");
-    assert!(!full.exists(), "nothing is left of a recording that did not begin");
+    assert_eq!(
+        std::fs::read_to_string(&taken).expect("it is there"),
+        "of the run before"
+    );
+    assert!(
+        !full.exists(),
+        "nothing is left of a recording that did not begin"
+    );
 }
 
 #[test]
 fn a_gateway_that_fails_sends_its_boat_standby_first_and_ends() {
     let boat = TcpListener::bind("127.0.0.1:0").expect("a port");
     let link = format!("tcp://{}", boat.local_addr().expect("it is bound"));
-    let args = ["gateway", "surveyor", "--vehicle", "blue_one", "--game", "nobody", "--wait-s", "0.001", "--no-record"];
+    let args = [
+        "gateway",
+        "surveyor",
+        "--vehicle",
+        "blue_one",
+        "--game",
+        "nobody",
+        "--wait-s",
+        "0.001",
+        "--no-record",
+    ];
     let said = refusal_within(LIMIT / 4, squall(&[&args[..], &["--link", &link]].concat()));
     assert!(said.contains("no game to join"), "{said}");
     let mut words = String::new();
-    boat.accept().expect("it was connected to").0.read_to_string(&mut words).expect("text");
+    boat.accept()
+        .expect("it was connected to")
+        .0
+        .read_to_string(&mut words)
+        .expect("text");
     assert!(words.starts_with(STANDBY), "{words:?}");
     // Nor does it wait for a boat that does not exist.
-    let nowhere = format!("serial://{}?baud=38400", temporary().path().join("none").display());
-    refusal_within(LIMIT / 4, squall(&[&args[..], &["--link", &nowhere]].concat()));
+    let nowhere = format!(
+        "serial://{}?baud=38400",
+        temporary().path().join("none").display()
+    );
+    refusal_within(
+        LIMIT / 4,
+        squall(&[&args[..], &["--link", &nowhere]].concat()),
+    );
 }
 
 #[test]
@@ -322,8 +441,17 @@ fn gateways_that_could_not_record_begin_no_game() {
     std::fs::write(&file, "of the run before").expect("a file can be written");
     let records = dir.path().display().to_string();
     let args = ["run", MIXED, "--emulate", "--pace", "10x", "--no-record"];
-    let said = refusal_of(&[&args[..], &["--gateway", gateways, "--record-gateways", &records]].concat());
-    assert!(said.contains(&format!("cannot record to {file}")) && said.contains("File exists"), "{said}");
+    let said = refusal_of(
+        &[
+            &args[..],
+            &["--gateway", gateways, "--record-gateways", &records],
+        ]
+        .concat(),
+    );
+    assert!(
+        said.contains(&format!("cannot record to {file}")) && said.contains("File exists"),
+        "{said}"
+    );
 }
 
 #[test]
@@ -359,12 +487,21 @@ fn a_cut_half_open_or_intermittent_link_leaves_the_boat_at_rest() {
 #[test]
 fn the_primary_operator_and_an_e_stop_stop_the_boat_through_the_whole_loop() {
     let all = Loop::under_way("none");
-    let mut operator = TcpStream::connect(all.water.primary.as_deref().expect("it listens")).expect("it accepts");
-    operator.write_all(b"$PSEAC,L,0,0,0,*14\r\n").expect("a command");
+    let mut operator =
+        TcpStream::connect(all.water.primary.as_deref().expect("it listens")).expect("it accepts");
+    operator
+        .write_all(b"$PSEAC,L,0,0,0,*14\r\n")
+        .expect("a command");
     all.stops_within(Duration::from_millis(300));
     all.wait_for_state("the primary operator has taken over");
-    assert!(all.ask(&OperatorCommand::Arm).refused.is_some_and(|reason| reason.contains("secondary control")));
-    operator.write_all(b"$PSEAC,L,0,0,0,OP2_ON*67\r\n").expect("a command");
+    assert!(
+        all.ask(&OperatorCommand::Arm)
+            .refused
+            .is_some_and(|reason| reason.contains("secondary control"))
+    );
+    operator
+        .write_all(b"$PSEAC,L,0,0,0,OP2_ON*67\r\n")
+        .expect("a command");
     all.arm();
     all.e_stop_and_release();
     all.arm();
@@ -378,14 +515,29 @@ const MIXED: &str = "scenarios/games/mixed_2v2.toml";
 pub(crate) fn emulated_game(gateways: &str) -> Value {
     let dir = temporary();
     let records = dir.path().display().to_string();
-    let result =
-        result_of(&[MIXED, "--emulate", "--pace", "10x", "--gateway", gateways, "--record-gateways", &records]);
+    let result = result_of(&[
+        MIXED,
+        "--emulate",
+        "--pace",
+        "10x",
+        "--gateway",
+        gateways,
+        "--record-gateways",
+        &records,
+    ]);
     assert_no_boat_was_lost(&result);
     for name in ["blue_one", "red_one"] {
-        let file = dir.path().join(format!("{name}.mcap")).display().to_string();
+        let file = dir
+            .path()
+            .join(format!("{name}.mcap"))
+            .display()
+            .to_string();
         let output = run(&["gateway", "replay", &file]);
         let printed = stdout(&output);
-        assert!(output.status.success() && printed.contains("the recording, byte for byte"), "{printed}");
+        assert!(
+            output.status.success() && printed.contains("the recording, byte for byte"),
+            "{printed}"
+        );
     }
     result
 }
@@ -393,14 +545,20 @@ pub(crate) fn emulated_game(gateways: &str) -> Value {
 pub(crate) fn assert_no_boat_was_lost(result: &Value) {
     let events = result["events"].as_array().expect("events");
     for bad in ["nav_lost", "agent_lost", "quarantined"] {
-        assert!(!events.iter().any(|event| event["event"] == bad), "{bad}: {events:?}");
+        assert!(
+            !events.iter().any(|event| event["event"] == bad),
+            "{bad}: {events:?}"
+        );
     }
 }
 
 /// The sum of a count of all teams.
 pub(crate) fn count(result: &Value, what: &str) -> u64 {
     let teams = result["counts"]["teams"].as_object().expect("teams");
-    teams.values().map(|counts| counts[what].as_u64().expect("a count")).sum()
+    teams
+        .values()
+        .map(|counts| counts[what].as_u64().expect("a count"))
+        .sum()
 }
 
 #[test]

@@ -6,7 +6,9 @@ use std::time::Duration;
 
 #[test]
 fn two_machines_play_a_game_and_survive_a_cable_that_is_cut() {
-    let Some(hosts) = Hosts::connect() else { return };
+    let Some(hosts) = Hosts::connect() else {
+        return;
+    };
     let sim = hosts.sim("impatient", &[]);
     let mut blue = hosts.agent(0, &FOUR[..2]);
     let mut red = hosts.agent(1, &FOUR[2..]);
@@ -25,6 +27,12 @@ fn two_machines_play_a_game_and_survive_a_cable_that_is_cut() {
     }
     sim.play_on(5.0);
     let done = sim.stop();
-    assert_eq!(done["outcome"]["counts"]["boats"]["blue_one"]["agents_lost"], 0, "only the far side was cut off");
-    assert!(blue.wait().success() && red.wait().success(), "everybody leaves in peace");
+    assert_eq!(
+        done["outcome"]["counts"]["boats"]["blue_one"]["agents_lost"], 0,
+        "only the far side was cut off"
+    );
+    assert!(
+        blue.wait().success() && red.wait().success(),
+        "everybody leaves in peace"
+    );
 }

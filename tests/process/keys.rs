@@ -2,8 +2,8 @@
 
 use crate::gateway::assert_no_boat_was_lost;
 use crate::support::{
-    FOUR, LIMIT, Process, Sim, free_endpoint, game_itself, own, printed, printed_by, refusal_of, refused, result_of,
-    squall, temporary, wait_until,
+    FOUR, LIMIT, Process, Sim, free_endpoint, game_itself, own, printed, printed_by, refusal_of,
+    refused, result_of, squall, temporary, wait_until,
 };
 use bus::token::TOKEN_VARIABLE;
 use bus::{BusError, Token};
@@ -18,7 +18,15 @@ use tempfile::TempDir;
 fn keys() -> (TempDir, PathBuf) {
     let dir = temporary();
     let folder = dir.path().join("keys");
-    let words = ["--team", "blue", "--team", "red", "--gateway", "--observer", "--operator"];
+    let words = [
+        "--team",
+        "blue",
+        "--team",
+        "red",
+        "--gateway",
+        "--observer",
+        "--operator",
+    ];
     let made = printed(&[&["keys", "new", text(&folder)], &words[..]].concat());
     assert!(made.contains("team-blue, valid from"), "{made}");
     (dir, folder)
@@ -40,7 +48,13 @@ fn a_game_with_keys_is_the_game_in_one_process_byte_for_byte() {
     let game = own("seeded_3v3");
     let here = game_itself(result_of(&[&game, "--in-process"]));
     // With keys each process serves one team; four boats a process would mix teams.
-    let there = game_itself(result_of(&[&game, "--keys", text(&folder), "--agents-per-process", "4"]));
+    let there = game_itself(result_of(&[
+        &game,
+        "--keys",
+        text(&folder),
+        "--agents-per-process",
+        "4",
+    ]));
     assert_eq!(here, there);
     std::fs::remove_dir_all(folder.join("team-red")).expect("it was there");
     let refused = refusal_of(&["run", &game, "--keys", text(&folder)]);
@@ -53,14 +67,24 @@ fn sixteen_agents_with_keys_play_the_game_in_one_process() {
     let game = own("eight_a_side");
     let here = game_itself(result_of(&[&game, "--in-process"]));
     for _ in 0..2 {
-        assert_eq!(here, game_itself(result_of(&[&game, "--keys", text(&folder)])));
+        assert_eq!(
+            here,
+            game_itself(result_of(&[&game, "--keys", text(&folder)]))
+        );
     }
 }
 
 #[test]
 fn a_real_boat_plays_in_a_game_with_keys() {
     let (_dir, folder) = keys();
-    let game = [&own("mixed_30s"), "--pace", "10x", "--emulate", "--keys", text(&folder)];
+    let game = [
+        &own("mixed_30s"),
+        "--pace",
+        "10x",
+        "--emulate",
+        "--keys",
+        text(&folder),
+    ];
     assert_no_boat_was_lost(&result_of(&game));
 }
 
@@ -69,23 +93,70 @@ fn the_control_port_of_a_gateway_with_keys_has_a_token_of_its_own() {
     let (_dir, folder) = keys();
     let of = |part: &str| folder.join(part).display().to_string();
     let sim = without_token(squall(&[]));
-    let sim = Sim::start_with(sim, "mixed_60s", &["--pace", "1x", "--listen", &free_endpoint(), "--keys", &of("sim")]);
+    let sim = Sim::start_with(
+        sim,
+        "mixed_60s",
+        &[
+            "--pace",
+            "1x",
+            "--listen",
+            &free_endpoint(),
+            "--keys",
+            &of("sim"),
+        ],
+    );
     let boat = TcpListener::bind("127.0.0.1:0").expect("a port");
     let link = format!("tcp://{}", boat.local_addr().expect("an address"));
-    let port: SocketAddr = free_endpoint().trim_start_matches("tcp/").parse().expect("an address");
-    let gateway =
-        ["gateway", "surveyor", "--vehicle", "blue_one", "--no-record", "--link", &link, "--keys", &of("gateway")];
+    let port: SocketAddr = free_endpoint()
+        .trim_start_matches("tcp/")
+        .parse()
+        .expect("an address");
+    let gateway = [
+        "gateway",
+        "surveyor",
+        "--vehicle",
+        "blue_one",
+        "--no-record",
+        "--link",
+        &link,
+        "--keys",
+        &of("gateway"),
+    ];
     let gateway = sim.squall(&[&gateway[..], &["--control-listen", &port.to_string()]].concat());
     let _gateway = Process::quiet(without_token(gateway));
     let ask = |token: Option<&Token>, command: OperatorCommand| {
-        bus::ask_gateway(port, token, &GatewayCommand::Boat { name: "blue_one".to_owned(), command }, LIMIT)
+        bus::ask_gateway(
+            port,
+            token,
+            &GatewayCommand::Boat {
+                name: "blue_one".to_owned(),
+                command,
+            },
+            LIMIT,
+        )
     };
-    let is_running = || ask(None, OperatorCommand::Disarm).is_ok_and(|reply| reply.refused.is_none());
-    wait_until("the gateway has joined, and takes stops of anybody", is_running);
-    assert!(matches!(ask(None, OperatorCommand::Arm), Err(BusError::NeedsToken)));
-    assert!(matches!(ask(Some(&Token::random()), OperatorCommand::Arm), Err(BusError::WrongToken)));
-    let registered = || bus::local_gateways().into_iter().find(|entry| entry.control == port);
-    let token = registered().and_then(|entry| entry.token).expect("it is where this user finds it");
+    let is_running =
+        || ask(None, OperatorCommand::Disarm).is_ok_and(|reply| reply.refused.is_none());
+    wait_until(
+        "the gateway has joined, and takes stops of anybody",
+        is_running,
+    );
+    assert!(matches!(
+        ask(None, OperatorCommand::Arm),
+        Err(BusError::NeedsToken)
+    ));
+    assert!(matches!(
+        ask(Some(&Token::random()), OperatorCommand::Arm),
+        Err(BusError::WrongToken)
+    ));
+    let registered = || {
+        bus::local_gateways()
+            .into_iter()
+            .find(|entry| entry.control == port)
+    };
+    let token = registered()
+        .and_then(|entry| entry.token)
+        .expect("it is where this user finds it");
     let reply = ask(Some(&token.parse().expect("a token")), OperatorCommand::Arm).expect("it may");
     assert!(reply.refused.is_some(), "but the boat says nothing");
     sim.stop();
@@ -99,20 +170,48 @@ fn who_has_the_wrong_keys_is_told_so_and_everybody_with_keys_may_stop_the_boats(
     let sim = Sim::start_with(
         without_token(squall(&[])),
         "long",
-        &["--pace", "10x", "--listen", &free_endpoint(), "--keys", text(&of("sim"))],
+        &[
+            "--pace",
+            "10x",
+            "--listen",
+            &free_endpoint(),
+            "--keys",
+            text(&of("sim")),
+        ],
     );
     assert!(sim.endpoint.starts_with("tls/"), "{}", sim.endpoint);
-    let with = |args: &[&str], keys: &Path| without_token(sim.squall(&[args, &["--keys", text(keys)]].concat()));
+    let with = |args: &[&str], keys: &Path| {
+        without_token(sim.squall(&[args, &["--keys", text(keys)]].concat()))
+    };
     for (text, want) in [
-        (refused(without_token(sim.squall(&["agent", "--vehicle", "blue_one"]))), "the game has keys"),
-        (refused(with(&["agent", "--vehicle", "blue_one"], &other.join("team-blue"))), "from another authority"),
+        (
+            refused(without_token(sim.squall(&[
+                "agent",
+                "--vehicle",
+                "blue_one",
+            ]))),
+            "the game has keys",
+        ),
+        (
+            refused(with(
+                &["agent", "--vehicle", "blue_one"],
+                &other.join("team-blue"),
+            )),
+            "from another authority",
+        ),
         (
             refused(with(&["agent", "--vehicle", "blue_one"], &of("team-red"))),
             "the keys of team-red are not for the agent of blue_one",
         ),
-        (refused(with(&["agent", "--vehicle", "blue_one"], &of("observer"))), "are not for the agent of blue_one"),
+        (
+            refused(with(&["agent", "--vehicle", "blue_one"], &of("observer"))),
+            "are not for the agent of blue_one",
+        ),
         (refused(with(&["watch"], &of("sim"))), "only serve games"),
-        (refused(with(&["watch"], &folder)), "this folder contains the bundles gateway, observer, operator, sim"),
+        (
+            refused(with(&["watch"], &folder)),
+            "this folder contains the bundles gateway, observer, operator, sim",
+        ),
     ] {
         assert!(text.contains(want), "{text}");
     }
@@ -127,7 +226,10 @@ fn who_has_the_wrong_keys_is_told_so_and_everybody_with_keys_may_stop_the_boats(
     printed_by(tell("estop", "observer"));
     sim.wait_for_event("e_stopped", Value::Null);
     let said = refused(tell("release", "observer"));
-    assert!(said.contains("the keys of observer do not allow this"), "{said}");
+    assert!(
+        said.contains("the keys of observer do not allow this"),
+        "{said}"
+    );
     printed_by(tell("release", "operator"));
     sim.wait_for_event("released", Value::Null);
     sim.stop();

@@ -3,7 +3,12 @@
 use crate::gateway::{Loop, count, emulated_game};
 use std::time::Duration;
 
-const CONFIG: [&str; 4] = ["--config", "scenarios/gateways/blueboat.toml", "--without-preflight", "Ada"];
+const CONFIG: [&str; 4] = [
+    "--config",
+    "scenarios/gateways/blueboat.toml",
+    "--without-preflight",
+    "Ada",
+];
 
 fn under_way() -> Loop {
     Loop::of(&["--protocol", "mavlink"], &CONFIG)

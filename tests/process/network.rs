@@ -3,7 +3,8 @@
 use crate::external::{FACTOR, Gateway, ME};
 use crate::proxy::{Proxy, STALL};
 use crate::support::{
-    FOUR, LIMIT, Process, Sim, agent, free_endpoint, newest, own, result_of, squall, token, wait_until,
+    FOUR, LIMIT, Process, Sim, agent, free_endpoint, newest, own, result_of, squall, token,
+    wait_until,
 };
 use bus::{Bus, Net, Priority};
 use messages::external::ExternalOrder;
@@ -32,13 +33,32 @@ fn game(pace: &str) -> (Sim, Vec<Process>) {
 
 fn sim_with_few_threads(name: &str, pace: &str) -> Sim {
     let mut program = squall(&[]);
-    program.env(bus::RUNTIME_VARIABLE, if pace == "lockstep" { bus::RUNTIME } else { bus::HUB_RUNTIME });
-    Sim::start_with(program, name, &["--listen", &free_endpoint(), "--pace", pace])
+    program.env(
+        bus::RUNTIME_VARIABLE,
+        if pace == "lockstep" {
+            bus::RUNTIME
+        } else {
+            bus::HUB_RUNTIME
+        },
+    );
+    Sim::start_with(
+        program,
+        name,
+        &["--listen", &free_endpoint(), "--pace", pace],
+    )
 }
 
 /// An observer of the game at this endpoint.
 fn observer(endpoint: &str, game: &str) -> Process {
-    Process::quiet(squall(&["watch", "--connect", endpoint, "--game", game, "--rate", "30"]))
+    Process::quiet(squall(&[
+        "watch",
+        "--connect",
+        endpoint,
+        "--game",
+        game,
+        "--rate",
+        "30",
+    ]))
 }
 
 /// Checks that the game goes on without a pause and loses no more agents.
@@ -48,11 +68,18 @@ fn expect_undisturbed(sim: &Sim, what: &str) {
     while start.elapsed() < AFTERMATH {
         let message = sim.wait_for(|_| true);
         let still = since.elapsed();
-        assert!(still < STANDSTILL, "{what}: the game stands still for {still:?}");
+        assert!(
+            still < STANDSTILL,
+            "{what}: the game stands still for {still:?}"
+        );
         if message["kind"] == "progress" {
             since = Instant::now();
         }
-        assert!(message["event"] != "agent_lost", "{what}: {message} after {:?}", start.elapsed());
+        assert!(
+            message["event"] != "agent_lost",
+            "{what}: {message} after {:?}",
+            start.elapsed()
+        );
     }
 }
 
@@ -108,7 +135,11 @@ fn an_agent_whose_link_is_cut_costs_its_own_patience_once_and_nothing_after_it()
         let sim = sim_with_few_threads("impatient", pace);
         let proxy = Proxy::start(sim.endpoint.replace("tcp/", ""));
         let _agents: Vec<Process> = FOUR[1..].iter().map(|name| sim.agent(&[name])).collect();
-        let _cut = agent(&format!("tcp/127.0.0.1:{}", proxy.port), &sim.game, &FOUR[..1]);
+        let _cut = agent(
+            &format!("tcp/127.0.0.1:{}", proxy.port),
+            &sim.game,
+            &FOUR[..1],
+        );
         sim.wait_for_kind("started");
         sim.play_on(20.0);
         proxy.set(STALL);
@@ -127,8 +158,15 @@ fn a_resumed_sim_blames_no_node_and_plays_the_same_game() {
     sim.play_on(2.0);
     suspend(&sim);
     let done = sim.wait_for_kind("done");
-    assert_eq!(done["outcome"]["digest"], want, "{}", done["outcome"]["events"]);
-    assert!(agents.iter_mut().all(|agent| agent.wait().success()), "they leave in peace");
+    assert_eq!(
+        done["outcome"]["digest"], want,
+        "{}",
+        done["outcome"]["events"]
+    );
+    assert!(
+        agents.iter_mut().all(|agent| agent.wait().success()),
+        "they leave in peace"
+    );
 }
 
 #[test]
@@ -139,7 +177,11 @@ fn a_sim_that_was_suspended_in_real_time_blames_nobody() {
     let start = Instant::now();
     while start.elapsed() < AFTERMATH {
         let message = sim.wait_for(|_| true);
-        assert!(message["event"] != "agent_lost", "{message} after {:?}", start.elapsed());
+        assert!(
+            message["event"] != "agent_lost",
+            "{message} after {:?}",
+            start.elapsed()
+        );
     }
     sim.stop();
 }
@@ -154,23 +196,44 @@ fn suspend(sim: &Sim) {
 #[test]
 fn a_sim_with_unread_output_continues() {
     let endpoint = free_endpoint();
-    let mut command = squall(&["sim", &own("long"), "--for-parent", "--game", "unread", "--listen", &endpoint]);
+    let mut command = squall(&[
+        "sim",
+        &own("long"),
+        "--for-parent",
+        "--game",
+        "unread",
+        "--listen",
+        &endpoint,
+    ]);
     command.stdin(Stdio::piped()).stdout(Stdio::piped());
     let _sim = Process::start(command);
     let _agent = agent(&endpoint, "unread", &FOUR);
     let name = GameName::new("unread").expect("a name");
-    let net = Net { connect: vec![endpoint], token: Some(token()), ..Net::default() };
+    let net = Net {
+        connect: vec![endpoint],
+        token: Some(token()),
+        ..Net::default()
+    };
     let mut bus = None;
     wait_until("the hub is there", || {
         bus = Bus::leaf(&net).ok();
         bus.is_some()
     });
     let bus = bus.expect("it is there");
-    let read = |bytes: &[u8]| codec::decode::<Frame>(bytes).expect("a frame").stamp.valid_ns;
+    let read = |bytes: &[u8]| {
+        codec::decode::<Frame>(bytes)
+            .expect("a frame")
+            .stamp
+            .valid_ns
+    };
     let (now, _frames) = newest(&bus, topic::frame(&name), read);
     let play_on = || {
         let from = now.visit(|now| *now);
-        assert!(now.wait(LIMIT, |now| *now > from + SimTime::from_s(5.0)), "it stands still at {} s", from.as_s());
+        assert!(
+            now.wait(LIMIT, |now| *now > from + SimTime::from_s(5.0)),
+            "it stands still at {} s",
+            from.as_s()
+        );
     };
     play_on();
     // Every operator request is reported at once: in total more than a pipe of 64 kB holds.
@@ -191,7 +254,10 @@ fn ordered(orders: &Receiver<(Instant, bool)>, gateway: &mut Gateway, hold: bool
     loop {
         assert!(start.elapsed() < LIMIT, "never ordered: hold {hold}");
         gateway.sail();
-        let mut recent = orders.recv_timeout(Duration::from_millis(10)).into_iter().chain(orders.try_iter());
+        let mut recent = orders
+            .recv_timeout(Duration::from_millis(10))
+            .into_iter()
+            .chain(orders.try_iter());
         if let Some((at, _)) = recent.find(|(_, is_hold)| *is_hold == hold) {
             return at;
         }
@@ -203,7 +269,11 @@ fn driven(orders: &Receiver<(Instant, bool)>, gateway: &mut Gateway) {
     let mut driven = 0;
     while driven < 5 {
         ordered(orders, gateway, false);
-        driven = if orders.try_iter().all(|(_, is_hold)| !is_hold) { driven + 1 } else { 0 };
+        driven = if orders.try_iter().all(|(_, is_hold)| !is_hold) {
+            driven + 1
+        } else {
+            0
+        };
     }
 }
 
@@ -221,7 +291,9 @@ fn an_e_stop_is_obeyed_at_once_under_a_flood_of_garbage() {
     };
     let key = topic::external_order(&name, &scenario, ME);
     let _orders = bus.subscribe(key, take).expect("the hub is there");
-    let stop = operator.publisher(topic::control(&name), Priority::Urgent).expect("the hub is there");
+    let stop = operator
+        .publisher(topic::control(&name), Priority::Urgent)
+        .expect("the hub is there");
     ordered(&orders, &mut gateway, false);
     // Each flood occupies a receiving thread.
     let _floods = [flood(&sim), flood(&sim)];
@@ -254,11 +326,26 @@ const FLOODED: &str = "SQUALL_FLOODED_GAME";
 #[ignore = "the other end of a test, in a process of its own"]
 fn floods_a_game() {
     let flooded = std::env::var(FLOODED).unwrap_or_default();
-    let Some((endpoint, game)) = flooded.split_once(' ') else { return };
+    let Some((endpoint, game)) = flooded.split_once(' ') else {
+        return;
+    };
     let name = GameName::new(game).expect("a name");
-    let bus = Bus::leaf(&Net { connect: vec![endpoint.to_owned()], ..Net::default() }).expect("the hub is there");
-    let keys = [topic::matching(&name, "order/stranger"), topic::control(&name)];
-    let publishers = keys.map(|key| bus.publisher(key, Priority::Normal).expect("the hub is there"));
+    let bus = Bus::leaf(&Net {
+        connect: vec![endpoint.to_owned()],
+        ..Net::default()
+    })
+    .expect("the hub is there");
+    let keys = [
+        topic::matching(&name, "order/stranger"),
+        topic::control(&name),
+    ];
+    let publishers = keys.map(|key| {
+        bus.publisher(key, Priority::Normal)
+            .expect("the hub is there")
+    });
     // Until it is killed or the game ends.
-    while publishers.iter().all(|publisher| publisher.send_raw(vec![0xaa; 16]).is_ok()) {}
+    while publishers
+        .iter()
+        .all(|publisher| publisher.send_raw(vec![0xaa; 16]).is_ok())
+    {}
 }

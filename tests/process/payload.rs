@@ -27,25 +27,53 @@ impl Gateway {
     fn start(game: &'static str, payloads: &[String], more: &[&str]) -> Gateway {
         let wire = Wire::listen("tcp://127.0.0.1:0");
         let address = wire.address();
-        let payloads = payloads.iter().flat_map(|payload| ["--payload", payload.as_str()]);
-        let args = ["gateway", "surveyor", "--vehicle", "blue_one", "--game", game, "--link", &address];
-        let args: Vec<&str> = args.into_iter().chain(payloads).chain(more.iter().copied()).collect();
+        let payloads = payloads
+            .iter()
+            .flat_map(|payload| ["--payload", payload.as_str()]);
+        let args = [
+            "gateway",
+            "surveyor",
+            "--vehicle",
+            "blue_one",
+            "--game",
+            game,
+            "--link",
+            &address,
+        ];
+        let args: Vec<&str> = args
+            .into_iter()
+            .chain(payloads)
+            .chain(more.iter().copied())
+            .collect();
         let mut command = squall(&args);
         command.env_remove(TOKEN_VARIABLE).stderr(Stdio::piped());
         let (mut process, lines) = Process::with_lines(command);
         let printed = Arc::<Mutex<Vec<String>>>::default();
-        let said = BufReader::new(process.0.stderr.take().expect("piped")).lines().map_while(Result::ok);
+        let said = BufReader::new(process.0.stderr.take().expect("piped"))
+            .lines()
+            .map_while(Result::ok);
         let lines: [Box<dyn Iterator<Item = String> + Send>; 2] = [Box::new(said), Box::new(lines)];
         for lines in lines {
             let printed = Arc::clone(&printed);
-            std::thread::spawn(move || lines.for_each(|line| printed.lock().expect("nobody panics").push(line)));
+            std::thread::spawn(move || {
+                lines.for_each(|line| printed.lock().expect("nobody panics").push(line))
+            });
         }
-        Gateway { process, wire, printed, game }
+        Gateway {
+            process,
+            wire,
+            printed,
+            game,
+        }
     }
 
     fn printed(&self, part: &str) -> Vec<String> {
         let printed = self.printed.lock().expect("nobody panics");
-        printed.iter().filter(|line| line.contains(part)).cloned().collect()
+        printed
+            .iter()
+            .filter(|line| line.contains(part))
+            .cloned()
+            .collect()
     }
 
     /// The address of a payload for clients.
@@ -53,7 +81,8 @@ impl Gateway {
         let mut reach = None;
         wait_until("it prints where the payload is reached", || {
             let line = self.printed(&format!("payload {payload} at tcp://")).pop();
-            reach = line.and_then(|line| Some(line.split("tcp://").nth(1)?.split(' ').next()?.to_owned()));
+            reach = line
+                .and_then(|line| Some(line.split("tcp://").nth(1)?.split(' ').next()?.to_owned()));
             reach.is_some()
         });
         reach.expect("an address")
@@ -90,7 +119,10 @@ fn recorded(bag: &Bag, topic: &str, outward: bool) -> Vec<Vec<u8>> {
     for message in bag.on(topic) {
         let piece = message.read::<PayloadBytes>().expect("bytes of a payload");
         if piece.outward == outward {
-            by_connection.entry(piece.connection).or_default().extend(piece.data);
+            by_connection
+                .entry(piece.connection)
+                .or_default()
+                .extend(piece.data);
         }
     }
     by_connection.into_values().collect()
@@ -110,7 +142,9 @@ fn bytes_pass_both_ways_and_are_recorded_with_what_the_sonde_measures() {
     ];
     let mut gateway = Gateway::start("payloads", &payloads, &["--record", &file]);
     // Without a client, the gateway queries the sondes for their parameters and then for values.
-    wait_until("both sondes are asked", || sonde.asked() >= 4 && http.asked() >= 4);
+    wait_until("both sondes are asked", || {
+        sonde.asked() >= 4 && http.asked() >= 4
+    });
     let request = "GET /video_feed HTTP/1.1\r\nHost: camera\r\n\r\n";
     let mut stream = gateway.connect("camera");
     stream.write_all(request.as_bytes()).expect("it is taken");
@@ -118,15 +152,23 @@ fn bytes_pass_both_ways_and_are_recorded_with_what_the_sonde_measures() {
     stream.read_exact(&mut seen).expect("pictures");
     drop(stream);
     assert!(
-        asked(gateway.connect("dac"), "POST /data HTTP/1.0\r\nContent-Length: 4\r\n\r\npara")
-            .ends_with("\r\n\r\n1 18 212")
+        asked(
+            gateway.connect("dac"),
+            "POST /data HTTP/1.0\r\nContent-Length: 4\r\n\r\npara"
+        )
+        .ends_with("\r\n\r\n1 18 212")
     );
-    assert!(asked(gateway.connect("dac"), "GET /data HTTP/1.0\r\n\r\n").ends_with("\r\n\r\n20.5 7.25 -8.125"));
+    assert!(
+        asked(gateway.connect("dac"), "GET /data HTTP/1.0\r\n\r\n")
+            .ends_with("\r\n\r\n20.5 7.25 -8.125")
+    );
     // A client has exclusive use of the sonde, even after half a command.
     let mut client = gateway.connect("sonde");
     client.write_all(b"da").expect("it is taken");
     let mut answer = [0; 4];
-    client.read_exact(&mut answer).expect("the prompt and the echo");
+    client
+        .read_exact(&mut answer)
+        .expect("the prompt and the echo");
     assert_eq!(&answer, b"# da");
     let before = sonde.asked();
     std::thread::sleep(Duration::from_millis(2500));
@@ -134,7 +176,9 @@ fn bytes_pass_both_ways_and_are_recorded_with_what_the_sonde_measures() {
     client.write_all(b"ta\r").expect("it is taken");
     client.shutdown(Shutdown::Write).expect("it says no more");
     let mut answer = String::new();
-    client.read_to_string(&mut answer).expect("the answer arrives anyway");
+    client
+        .read_to_string(&mut answer)
+        .expect("the answer arrives anyway");
     assert_eq!(answer, "ta\r\n20.5 7.25 -8.125\r\n# ");
     wait_until("the sonde is asked again", || sonde.asked() >= before + 4);
     gateway.end();
@@ -142,15 +186,29 @@ fn bytes_pass_both_ways_and_are_recorded_with_what_the_sonde_measures() {
     let bag = Bag::open(Path::new(&file)).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(recorded(&bag, "payload/camera", true), [request.as_bytes()]);
     let pictures = recorded(&bag, "payload/camera", false);
-    assert!(pictures.len() == 1 && pictures[0].starts_with(&seen), "what the client saw was recorded");
+    assert!(
+        pictures.len() == 1 && pictures[0].starts_with(&seen),
+        "what the client saw was recorded"
+    );
     let commands = recorded(&bag, "payload/sonde", true);
-    assert!(commands[0].starts_with(b"para\rdata\r") && commands.contains(&b"data\r".to_vec()), "{commands:?}");
+    assert!(
+        commands[0].starts_with(b"para\rdata\r") && commands.contains(&b"data\r".to_vec()),
+        "{commands:?}"
+    );
     for topic in ["values/sonde", "values/dac"] {
-        let measured: Vec<Value> = bag.on(topic).map(|message| message.read_json().expect("values")).collect();
+        let measured: Vec<Value> = bag
+            .on(topic)
+            .map(|message| message.read_json().expect("values"))
+            .collect();
         assert!(measured.len() >= 4, "{topic}: {}", measured.len());
         for measured in measured {
             let column = |key: &str| -> Vec<Value> {
-                measured["values"].as_array().expect("a list").iter().map(|value| value[key].clone()).collect()
+                measured["values"]
+                    .as_array()
+                    .expect("a list")
+                    .iter()
+                    .map(|value| value[key].clone())
+                    .collect()
             };
             assert_eq!(column("name"), ["temperature", "pH", "ODO"]);
             assert_eq!(column("unit"), ["C", "", "mg/L"]);
@@ -158,10 +216,19 @@ fn bytes_pass_both_ways_and_are_recorded_with_what_the_sonde_measures() {
         }
     }
     for (args, part) in [
-        (&["gateway", "replay", &file][..], "the replay equals the recording, byte for byte"),
+        (
+            &["gateway", "replay", &file][..],
+            "the replay equals the recording, byte for byte",
+        ),
         (&["log", &file], "payload/camera"),
-        (&["log", &file, "--csv", "payload/sonde"], "from_payload,20.5 7.25 -8.125"),
-        (&["log", &file, "--csv", "payload/dac"], "to_payload,GET /data HTTP/1.0"),
+        (
+            &["log", &file, "--csv", "payload/sonde"],
+            "from_payload,20.5 7.25 -8.125",
+        ),
+        (
+            &["log", &file, "--csv", "payload/dac"],
+            "to_payload,GET /data HTTP/1.0",
+        ),
         (&["log", &file, "--csv", "values/sonde"], "values.2.value"),
     ] {
         let said = printed(args);
@@ -184,7 +251,10 @@ fn pace(wire: &Wire, over: Duration) -> (Duration, f64) {
             (longest, last, seen) = (longest.max(last.elapsed()), Instant::now(), now);
         }
     }
-    (longest.max(last.elapsed()), (seen - first) as f64 / begin.elapsed().as_secs_f64())
+    (
+        longest.max(last.elapsed()),
+        (seen - first) as f64 / begin.elapsed().as_secs_f64(),
+    )
 }
 
 #[test]
@@ -205,11 +275,17 @@ fn the_boat_is_commanded_ten_times_a_second_whatever_payloads_do() {
     // Clients that do not read, and one that writes to a payload that does not read.
     let mut stopped: Vec<TcpStream> = (0..3).map(|_| gateway.connect("camera")).collect();
     for stream in &mut stopped {
-        stream.write_all(b"GET /video_feed HTTP/1.1\r\n\r\n").expect("it is taken");
+        stream
+            .write_all(b"GET /video_feed HTTP/1.1\r\n\r\n")
+            .expect("it is taken");
     }
     let mut full = gateway.connect("silent");
-    full.set_write_timeout(Some(Duration::from_secs(1))).expect("a limit");
-    assert!(full.write_all(&vec![b'x'; 50_000_000]).is_err(), "it is held up");
+    full.set_write_timeout(Some(Duration::from_secs(1)))
+        .expect("a limit");
+    assert!(
+        full.write_all(&vec![b'x'; 50_000_000]).is_err(),
+        "it is held up"
+    );
     // A client of a missing payload is disconnected, however often it connects.
     let gone = gateway.connect("gone");
     let address = gateway.reach("gone");
@@ -221,28 +297,48 @@ fn the_boat_is_commanded_ten_times_a_second_whatever_payloads_do() {
     });
     let (longest, rate_hz) = pace(&gateway.wire, Duration::from_secs(6));
     eprintln!("under load: {rate_hz:.2} sentences a second, none for {longest:.0?} at the longest");
-    assert!(rate_hz > 9.0 && longest < Duration::from_millis(500), "{rate_hz} Hz, {longest:?}");
+    assert!(
+        rate_hz > 9.0 && longest < Duration::from_millis(500),
+        "{rate_hz} Hz, {longest:?}"
+    );
     let start = Instant::now();
     assert!(gateway.tell("estop").contains("e-stopped"));
-    assert!(start.elapsed() < Duration::from_secs(3), "an E-stop takes {:?}", start.elapsed());
+    assert!(
+        start.elapsed() < Duration::from_secs(3),
+        "an E-stop takes {:?}",
+        start.elapsed()
+    );
     // Another client receives pictures.
     let mut stream = gateway.connect("camera");
-    stream.write_all(b"GET /video_feed HTTP/1.1\r\n\r\n").expect("it is taken");
-    stream.read_exact(&mut vec![0; 1_000_000]).expect("pictures");
+    stream
+        .write_all(b"GET /video_feed HTTP/1.1\r\n\r\n")
+        .expect("it is taken");
+    stream
+        .read_exact(&mut vec![0; 1_000_000])
+        .expect("pictures");
     drop(stream);
     let limit = Duration::from_secs(30);
     wait_within(limit, "who does not read is disconnected", || {
         !gateway.printed("a client accepted no data").is_empty()
     });
-    wait_within(limit, "so is who is not read", || !gateway.printed("the payload accepted no data").is_empty());
+    wait_within(limit, "so is who is not read", || {
+        !gateway.printed("the payload accepted no data").is_empty()
+    });
     flood.join().expect("it ends");
     let remarks = gateway.printed("payload gone: ");
     let remarks_max = 1 + began.elapsed().as_secs() as usize / 10;
-    assert!((1..=remarks_max).contains(&remarks.len()), "{remarks:?} in {:?}", began.elapsed());
+    assert!(
+        (1..=remarks_max).contains(&remarks.len()),
+        "{remarks:?} in {:?}",
+        began.elapsed()
+    );
     assert!(remarks[0].contains("refused"), "{remarks:?}");
     gateway.end();
     let replayed = printed(&["gateway", "replay", &file]);
-    assert!(replayed.contains("byte for byte"), "all of the boat was recorded: {replayed}");
+    assert!(
+        replayed.contains("byte for byte"),
+        "all of the boat was recorded: {replayed}"
+    );
 }
 
 #[test]
@@ -250,10 +346,17 @@ fn a_payload_whose_port_cannot_be_opened_is_a_warning() {
     let sonde = FakePayload::sonde();
     let taken = std::net::TcpListener::bind("127.0.0.1:0").expect("a free port");
     let at = taken.local_addr().expect("an address");
-    let payloads = [format!("sonde=tcp://{},listen={at}", sonde.address), format!("other=tcp://{}", sonde.address)];
+    let payloads = [
+        format!("sonde=tcp://{},listen={at}", sonde.address),
+        format!("other=tcp://{}", sonde.address),
+    ];
     let mut gateway = Gateway::start("payloads-taken", &payloads, &["--no-record"]);
     gateway.wire.wait_for("$PSEAC,L", LIMIT);
-    wait_until("it warns", || !gateway.printed("WARNING: payload sonde is not passed through").is_empty());
+    wait_until("it warns", || {
+        !gateway
+            .printed("WARNING: payload sonde is not passed through")
+            .is_empty()
+    });
     let mut client = gateway.connect("other");
     client.write_all(b"para\r").expect("it is taken");
     let mut answer = [0; 17];
@@ -275,15 +378,24 @@ fn the_clients_of_a_serial_line_share_it_and_are_disconnected_with_it() {
         payload.wait_for(word, LIMIT);
         let mut seen = [0; 26];
         client.read_exact(&mut seen).expect("what the line says");
-        assert!(String::from_utf8_lossy(&seen).contains("$PSEAG,N*22"), "{seen:?}");
+        assert!(
+            String::from_utf8_lossy(&seen).contains("$PSEAG,N*22"),
+            "{seen:?}"
+        );
     }
     drop(payload);
     for client in &mut clients {
         // The connection is closed, with or without data in transit.
         let rest = client.read_to_end(&mut vec![]);
-        assert!(rest.as_ref().map_or_else(|e| e.kind() != ErrorKind::WouldBlock, |_| true), "{rest:?}");
+        assert!(
+            rest.as_ref()
+                .map_or_else(|e| e.kind() != ErrorKind::WouldBlock, |_| true),
+            "{rest:?}"
+        );
     }
-    wait_until("it says so", || !gateway.printed("payload probe: ").is_empty());
+    wait_until("it says so", || {
+        !gateway.printed("payload probe: ").is_empty()
+    });
     gateway.end();
     let bag = Bag::open(Path::new(&file)).unwrap_or_else(|e| panic!("{e}"));
     // Their order is random.
@@ -291,5 +403,11 @@ fn the_clients_of_a_serial_line_share_it_and_are_disconnected_with_it() {
     words.sort();
     assert_eq!(words, [b"alpha\r".to_vec(), b"beta\r".to_vec()]);
     let said = recorded(&bag, "payload/probe", false);
-    assert!(said.len() == 1 && String::from_utf8_lossy(&said[0]).matches("$PSEAG,N*22\r\n").count() >= 2);
+    assert!(
+        said.len() == 1
+            && String::from_utf8_lossy(&said[0])
+                .matches("$PSEAG,N*22\r\n")
+                .count()
+                >= 2
+    );
 }

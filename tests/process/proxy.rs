@@ -39,7 +39,9 @@ impl Proxy {
                 if now.load(Ordering::Relaxed) == REFUSE {
                     continue;
                 }
-                let Ok(outer) = TcpStream::connect(&to) else { continue };
+                let Ok(outer) = TcpStream::connect(&to) else {
+                    continue;
+                };
                 for (from, into) in [(&inner, &outer), (&outer, &inner)] {
                     let _ = SockRef::from(from).set_recv_buffer_size(BUFFER);
                     let from = from.try_clone().expect("a stream");

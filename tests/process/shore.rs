@@ -22,9 +22,19 @@ impl Shore {
     fn of(sim: &Sim) -> Shore {
         let bus = sim.bus();
         let name = sim.name();
-        let (run, runs) = newest(&bus, topic::run(&name), |bytes| serde_json::from_slice(bytes).expect("a state"));
-        let (frame, frames) = newest(&bus, topic::frame(&name), |bytes| codec::decode(bytes).expect("a frame"));
-        Shore { bus, name, run, frame, _standing: [runs, frames] }
+        let (run, runs) = newest(&bus, topic::run(&name), |bytes| {
+            serde_json::from_slice(bytes).expect("a state")
+        });
+        let (frame, frames) = newest(&bus, topic::frame(&name), |bytes| {
+            codec::decode(bytes).expect("a frame")
+        });
+        Shore {
+            bus,
+            name,
+            run,
+            frame,
+            _standing: [runs, frames],
+        }
     }
 
     fn ask(&self, control: Control) {
@@ -33,7 +43,11 @@ impl Shore {
     }
 
     fn wait_for_run(&self, what: &str, is_it: impl Fn(&RunState) -> bool) -> RunState {
-        assert!(self.run.wait(LIMIT, is_it), "{what}: {:?}", self.run.visit(|run| run.clone()));
+        assert!(
+            self.run.wait(LIMIT, is_it),
+            "{what}: {:?}",
+            self.run.visit(|run| run.clone())
+        );
         self.run.visit(|run| run.clone())
     }
 
@@ -58,19 +72,28 @@ fn a_paused_game_stands_still_is_stepped_and_goes_on_as_if_nothing_had_been() {
     // It repeats that it is paused, always at the same time.
     for _ in 0..5 {
         shore.run.visit(|run| run.now_s = -1.0);
-        assert_eq!(shore.wait_for_run("it is told", |run| run.now_s >= 0.0).now_s, paused_s);
+        assert_eq!(
+            shore
+                .wait_for_run("it is told", |run| run.now_s >= 0.0)
+                .now_s,
+            paused_s
+        );
     }
     for step in 1..=3 {
         shore.ask(Control::Step);
         let want_s = paused_s + 0.1 * f64::from(step);
-        let is_there = |run: &RunState| (run.now_s - want_s).abs() < 1e-9 && run.phase == Phase::Paused;
+        let is_there =
+            |run: &RunState| (run.now_s - want_s).abs() < 1e-9 && run.phase == Phase::Paused;
         shore.wait_for_run("it plays one decision", is_there);
     }
     shore.ask(Control::Resume);
     shore.wait_for_run("it goes on", |run| run.phase == Phase::Playing);
     shore.ask(Control::Speed(None));
     let done = sim.wait_for_kind("done");
-    assert_eq!(done["outcome"]["digest"], want, "pauses are not part of a game");
+    assert_eq!(
+        done["outcome"]["digest"], want,
+        "pauses are not part of a game"
+    );
     assert_eq!(done["run"]["refused"]["out_of_place"], 0);
 }
 
@@ -82,13 +105,18 @@ fn a_game_goes_as_fast_as_it_is_asked_to() {
         let _agent = sim.agent(&FOUR);
         sim.play_on(0.5);
         shore.ask(Control::Speed(Some(3.0)));
-        shore.wait_for_run("it goes at that speed", |run| run.speed == Some(3.0) && (2.0..4.0).contains(&run.rate));
+        shore.wait_for_run("it goes at that speed", |run| {
+            run.speed == Some(3.0) && (2.0..4.0).contains(&run.rate)
+        });
         shore.ask(Control::Speed(Some(12.0)));
-        shore.wait_for_run("it goes faster", |run| run.speed == Some(12.0) && run.rate > 6.0);
+        shore.wait_for_run("it goes faster", |run| {
+            run.speed == Some(12.0) && run.rate > 6.0
+        });
         shore.ask(Control::Speed(None));
         shore.ask(Control::Step);
         let refused = if is_lockstep { 1 } else { 2 };
-        let is_refused = |run: &RunState| run.refused == refused && run.speed.is_none() == is_lockstep;
+        let is_refused =
+            |run: &RunState| run.refused == refused && run.speed.is_none() == is_lockstep;
         shore.wait_for_run("what cannot be is refused", is_refused);
         sim.stop();
     }
@@ -100,7 +128,10 @@ fn boats_hold_for_as_long_as_an_operator_wants_it() {
     let shore = Shore::of(&sim);
     let _agent = sim.agent(&FOUR);
     let speed = |frame: &Frame| {
-        let speeds = frame.vehicles.iter().map(|boat| math::length(boat.nav.surge_m_s, boat.nav.sway_m_s));
+        let speeds = frame
+            .vehicles
+            .iter()
+            .map(|boat| math::length(boat.nav.surge_m_s, boat.nav.sway_m_s));
         speeds.fold(0.0, f64::max)
     };
     for (stop, go, stopped, gone_on) in [
@@ -119,6 +150,8 @@ fn boats_hold_for_as_long_as_an_operator_wants_it() {
         shore.ask(control);
     }
     sim.wait_for_event("went_on", Value::Null);
-    shore.wait_for_frame("they stay stopped", |frame| frame.stopped && speed(frame) < 0.1);
+    shore.wait_for_frame("they stay stopped", |frame| {
+        frame.stopped && speed(frame) < 0.1
+    });
     sim.stop();
 }

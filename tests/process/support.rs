@@ -20,7 +20,10 @@ pub(crate) const LIMIT: Duration = Duration::from_secs(60);
 /// The program, in the project folder.
 pub(crate) fn squall(args: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_squall"));
-    command.current_dir(env!("CARGO_MANIFEST_DIR")).args(args).env(TOKEN_VARIABLE, token().hex());
+    command
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .args(args)
+        .env(TOKEN_VARIABLE, token().hex());
     command
 }
 
@@ -29,7 +32,10 @@ pub(crate) fn squall(args: &[&str]) -> Command {
 pub(crate) fn squall_on_a_disk_of(blocks: u32, args: &[&str]) -> Command {
     let mut shell = Command::new("sh");
     let limited = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$0\" \"$@\"");
-    shell.current_dir(env!("CARGO_MANIFEST_DIR")).args(["-c", &limited, env!("CARGO_BIN_EXE_squall")]).args(args);
+    shell
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .args(["-c", &limited, env!("CARGO_BIN_EXE_squall")])
+        .args(args);
     shell
 }
 
@@ -73,7 +79,12 @@ pub(crate) fn printed(args: &[&str]) -> String {
 /// Runs a command, which must succeed; returns its standard output.
 pub(crate) fn printed_by(mut command: Command) -> String {
     let output = command.output().expect("the program starts");
-    assert!(output.status.success(), "{command:?}: {}{}", stdout(&output), stderr(&output));
+    assert!(
+        output.status.success(),
+        "{command:?}: {}{}",
+        stdout(&output),
+        stderr(&output)
+    );
     stdout(&output)
 }
 
@@ -94,7 +105,11 @@ pub(crate) fn wait_until(what: &str, is_so: impl FnMut() -> bool) -> Duration {
 }
 
 /// Waits until a condition is true, with its own limit.
-pub(crate) fn wait_within(limit: Duration, what: &str, mut is_so: impl FnMut() -> bool) -> Duration {
+pub(crate) fn wait_within(
+    limit: Duration,
+    what: &str,
+    mut is_so: impl FnMut() -> bool,
+) -> Duration {
     let start = Instant::now();
     while !is_so() {
         assert!(start.elapsed() < limit, "not within {limit:?}: {what}");
@@ -116,16 +131,32 @@ pub(crate) fn newest<T: Default + Send + 'static>(
 }
 
 /// The reply to a node that asks for boats.
-pub(crate) fn join(bus: &Bus, (name, scenario): (&GameName, &Scenario), request: &JoinRequest) -> JoinReply {
+pub(crate) fn join(
+    bus: &Bus,
+    (name, scenario): (&GameName, &Scenario),
+    request: &JoinRequest,
+) -> JoinReply {
     let key = topic::join(name, scenario, request.role, &request.vehicles);
-    bus.request(&key, request, LIMIT).expect("the hub is there").expect("an answer")
+    bus.request(&key, request, LIMIT)
+        .expect("the hub is there")
+        .expect("an answer")
 }
 
 /// The report of a vehicle's helm.
-pub(crate) fn helm(bus: &Bus, (name, scenario): (&GameName, &Scenario), vehicle: &str, question: &[u8]) -> HelmReport {
+pub(crate) fn helm(
+    bus: &Bus,
+    (name, scenario): (&GameName, &Scenario),
+    vehicle: &str,
+    question: &[u8],
+) -> HelmReport {
     let vehicle = scenario.vehicle_by_name(vehicle).expect("it is there");
-    let answer = bus.ask_node(&topic::helm(name, scenario, vehicle), question.to_vec(), LIMIT);
-    serde_json::from_slice(&answer.expect("the hub is there").expect("an answer")).expect("a report")
+    let answer = bus.ask_node(
+        &topic::helm(name, scenario, vehicle),
+        question.to_vec(),
+        LIMIT,
+    );
+    serde_json::from_slice(&answer.expect("the hub is there").expect("an answer"))
+        .expect("a report")
 }
 
 /// Runs a game to its end and returns its result.
@@ -133,9 +164,14 @@ pub(crate) fn result_of(args: &[&str]) -> Value {
     let dir = temporary();
     let json = dir.path().join("result.json");
     let json_text = json.display().to_string();
-    let unrecorded: &[&str] = if args.contains(&"--record") { &[] } else { &["--no-record"] };
+    let unrecorded: &[&str] = if args.contains(&"--record") {
+        &[]
+    } else {
+        &["--no-record"]
+    };
     printed(&[&["run"], args, unrecorded, &["--json", &json_text]].concat());
-    serde_json::from_str(&std::fs::read_to_string(&json).expect("a result was written")).expect("it is JSON")
+    serde_json::from_str(&std::fs::read_to_string(&json).expect("a result was written"))
+        .expect("it is JSON")
 }
 
 /// Checks that each seed gives one game, byte for byte, in one process and across processes, and
@@ -147,7 +183,11 @@ pub(crate) fn assert_a_game_each(game: &str, seeds: &[&str]) {
         // With two boats a process, one process decides for a boat of each team.
         for boats_each in ["1", "2", "6"] {
             let there = result_of(&[game, "--seed", seed, "--agents-per-process", boats_each]);
-            assert_eq!(here, game_itself(there), "seed {seed}, {boats_each} boats a process");
+            assert_eq!(
+                here,
+                game_itself(there),
+                "seed {seed}, {boats_each} boats a process"
+            );
         }
         digests.push(here["digest"].clone());
     }
@@ -181,7 +221,9 @@ impl Process {
     }
 
     /// Starts a command; returns the lines of its standard output, too.
-    pub(crate) fn with_lines(mut command: Command) -> (Process, impl Iterator<Item = String> + use<>) {
+    pub(crate) fn with_lines(
+        mut command: Command,
+    ) -> (Process, impl Iterator<Item = String> + use<>) {
         command.stdout(Stdio::piped());
         let mut process = Process::start(command);
         let lines = process.lines();
@@ -196,7 +238,9 @@ impl Process {
 
     /// Sends any signal, by name.
     pub(crate) fn signal(&self, name: &str) {
-        let sent = Command::new("kill").args([&format!("-{name}"), &self.0.id().to_string()]).status();
+        let sent = Command::new("kill")
+            .args([&format!("-{name}"), &self.0.id().to_string()])
+            .status();
         assert!(sent.expect("kill is there").success());
     }
 
@@ -218,13 +262,20 @@ impl Process {
     /// Its piped standard error, when it has ended.
     pub(crate) fn errors(&mut self) -> String {
         let mut said = String::new();
-        self.0.stderr.take().expect("piped").read_to_string(&mut said).expect("text");
+        self.0
+            .stderr
+            .take()
+            .expect("piped")
+            .read_to_string(&mut said)
+            .expect("text");
         said
     }
 
     /// The lines of its piped standard output.
     pub(crate) fn lines(&mut self) -> impl Iterator<Item = String> + use<> {
-        BufReader::new(self.0.stdout.take().expect("piped")).lines().map_while(Result::ok)
+        BufReader::new(self.0.stdout.take().expect("piped"))
+            .lines()
+            .map_while(Result::ok)
     }
 }
 
@@ -248,7 +299,11 @@ impl Sim {
     /// Serves a test scenario on a free loopback port.
     pub(crate) fn start(name: &str, args: &[&str]) -> Sim {
         let endpoint = free_endpoint();
-        Sim::start_with(squall(&[]), name, &[&["--listen", &endpoint], args].concat())
+        Sim::start_with(
+            squall(&[]),
+            name,
+            &[&["--listen", &endpoint], args].concat(),
+        )
     }
 
     /// Starts a sim and an agent process for each boat of a two-against-two game, and waits until
@@ -267,10 +322,19 @@ impl Sim {
         let (mut process, lines) = Process::with_lines(program);
         let (sender, messages) = channel();
         std::thread::spawn(move || {
-            lines.filter_map(|line| serde_json::from_str(&line).ok()).map_while(|v| sender.send(v).ok()).for_each(drop);
+            lines
+                .filter_map(|line| serde_json::from_str(&line).ok())
+                .map_while(|v| sender.send(v).ok())
+                .for_each(drop);
         });
         let stdin = process.0.stdin.take();
-        let mut sim = Sim { process, stdin, messages, game: String::new(), endpoint: String::new() };
+        let mut sim = Sim {
+            process,
+            stdin,
+            messages,
+            game: String::new(),
+            endpoint: String::new(),
+        };
         let open = sim.wait_for_kind("open");
         sim.game = open["game"].as_str().expect("a name").to_owned();
         sim.endpoint = open["endpoint"].as_str().expect("an endpoint").to_owned();
@@ -282,7 +346,10 @@ impl Sim {
         let start = Instant::now();
         loop {
             let left = LIMIT.saturating_sub(start.elapsed());
-            let message = self.messages.recv_timeout(left).expect("the sim reports it in time");
+            let message = self
+                .messages
+                .recv_timeout(left)
+                .expect("the sim reports it in time");
             if is_it(&message) {
                 return message;
             }
@@ -291,7 +358,11 @@ impl Sim {
 
     /// The newest reported progress, or else the next.
     pub(crate) fn newest_progress(&self) -> Value {
-        let newest = self.messages.try_iter().filter(|message| message["kind"] == "progress").last();
+        let newest = self
+            .messages
+            .try_iter()
+            .filter(|message| message["kind"] == "progress")
+            .last();
         newest.unwrap_or_else(|| self.wait_for_kind("progress"))
     }
 
@@ -361,7 +432,9 @@ impl Sim {
 
     /// The game's description of itself.
     pub(crate) fn info(&self, bus: &Bus) -> GameInfo {
-        let info = bus.ask(&topic::scenario(&self.name()), Vec::new(), LIMIT).expect("the hub is there");
+        let info = bus
+            .ask(&topic::scenario(&self.name()), Vec::new(), LIMIT)
+            .expect("the hub is there");
         serde_json::from_slice(&info.expect("an answer")).expect("a game")
     }
 
@@ -374,7 +447,11 @@ impl Sim {
 
     /// A session at its hub.
     pub(crate) fn bus(&self) -> Bus {
-        let net = Net { connect: vec![self.endpoint.clone()], token: Some(token()), ..Net::default() };
+        let net = Net {
+            connect: vec![self.endpoint.clone()],
+            token: Some(token()),
+            ..Net::default()
+        };
         Bus::leaf(&net).expect("the hub is there")
     }
 }
@@ -389,7 +466,10 @@ pub(crate) fn agent(endpoint: &str, game: &str, vehicles: &[&str]) -> Process {
 
 /// An endpoint with a free loopback port.
 pub(crate) fn free_endpoint() -> String {
-    format!("tcp/127.0.0.1:{}", bus::free_port(false).expect("a free port"))
+    format!(
+        "tcp/127.0.0.1:{}",
+        bus::free_port(false).expect("a free port")
+    )
 }
 
 /// All vehicles of the two-against-two game.

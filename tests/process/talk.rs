@@ -13,14 +13,21 @@ fn boats_that_talk_play_the_same_game_across_processes_as_in_one() {
 
 /// A variable of a boat, as reported by its helm.
 fn variable(report: HelmReport, variable: &str) -> String {
-    report.variables.into_iter().find(|v| v.name == variable).expect("it has it").value
+    report
+        .variables
+        .into_iter()
+        .find(|v| v.name == variable)
+        .expect("it has it")
+        .value
 }
 
 #[test]
 fn a_killed_teammate_does_not_silence_the_others_and_nonsense_is_harmless() {
     let sim = Sim::start("talking", &[]);
-    let mut agents: Vec<Process> =
-        ["blue_1", "blue_2", "blue_3", "red_1", "red_2", "red_3"].iter().map(|name| sim.agent(&[name])).collect();
+    let mut agents: Vec<Process> = ["blue_1", "blue_2", "blue_3", "red_1", "red_2", "red_3"]
+        .iter()
+        .map(|name| sim.agent(&[name]))
+        .collect();
     sim.wait_for_kind("started");
     sim.play_on(5.0);
     agents[1].kill();
@@ -29,21 +36,45 @@ fn a_killed_teammate_does_not_silence_the_others_and_nonsense_is_harmless() {
     let (bus, name, scenario) = sim.session();
     let (sender, said) = channel();
     let hear = move |bytes: &[u8]| sender.send(codec::decode::<Say>(bytes)).unwrap_or_default();
-    let _standing = bus.subscribe(topic::say(&name, &scenario, TeamId(0)), hear).expect("the hub is there");
-    let publisher =
-        bus.publisher(topic::say(&name, &scenario, TeamId(0)), bus::Priority::Normal).expect("the hub is there");
+    let _standing = bus
+        .subscribe(topic::say(&name, &scenario, TeamId(0)), hear)
+        .expect("the hub is there");
+    let publisher = bus
+        .publisher(
+            topic::say(&name, &scenario, TeamId(0)),
+            bus::Priority::Normal,
+        )
+        .expect("the hub is there");
     for vehicle in [1, 4, 5, 99] {
-        let stamp = Stamp { seq: u64::MAX, version: Say::VERSION, ..Stamp::default() };
-        let word = Word { vehicle: VehicleId(vehicle), key: 1, value: f64::NAN };
-        publisher.send(&Say { stamp, words: vec![word] }).expect("the hub is there");
-        publisher.send_raw(b"ahoy".to_vec()).expect("the hub is there");
+        let stamp = Stamp {
+            seq: u64::MAX,
+            version: Say::VERSION,
+            ..Stamp::default()
+        };
+        let word = Word {
+            vehicle: VehicleId(vehicle),
+            key: 1,
+            value: f64::NAN,
+        };
+        publisher
+            .send(&Say {
+                stamp,
+                words: vec![word],
+            })
+            .expect("the hub is there");
+        publisher
+            .send_raw(b"ahoy".to_vec())
+            .expect("the hub is there");
     }
     let mut speakers = [0, 0, 0];
     while speakers[0] < 20 || speakers[2] < 20 {
         let say = said.recv_timeout(LIMIT).expect("they go on talking");
         // Skip our own invalid messages.
         let Ok(say) = say.map_err(drop) else { continue };
-        say.words.iter().filter(|word| word.value.is_finite()).for_each(|w| speakers[w.vehicle.index()] += 1);
+        say.words
+            .iter()
+            .filter(|word| word.value.is_finite())
+            .for_each(|w| speakers[w.vehicle.index()] += 1);
     }
     assert_eq!(speakers[1], 0, "the dead do not talk");
     // The third boat's view of the first keeps changing; the second's last message stays.
@@ -52,5 +83,8 @@ fn a_killed_teammate_does_not_silence_the_others_and_nonsense_is_harmless() {
     wait_until("it hears something new", || high() != first);
     let done = sim.stop();
     let lost = |boat: &str| done["outcome"]["counts"]["boats"][boat]["agents_lost"].as_u64();
-    assert_eq!([lost("blue_1"), lost("blue_2"), lost("blue_3")], [Some(0), Some(1), Some(0)]);
+    assert_eq!(
+        [lost("blue_1"), lost("blue_2"), lost("blue_3")],
+        [Some(0), Some(1), Some(0)]
+    );
 }

@@ -17,8 +17,15 @@ pub(crate) struct Hosts {
 }
 
 fn ip(args: &str) -> Result<(), String> {
-    let output = Command::new("ip").args(args.split_whitespace()).output().map_err(|e| format!("ip: {e}"))?;
-    if output.status.success() { Ok(()) } else { Err(format!("ip {args}: {}", stderr(&output).trim())) }
+    let output = Command::new("ip")
+        .args(args.split_whitespace())
+        .output()
+        .map_err(|e| format!("ip: {e}"))?;
+    if output.status.success() {
+        Ok(())
+    } else {
+        Err(format!("ip {args}: {}", stderr(&output).trim()))
+    }
 }
 
 impl Hosts {
@@ -34,8 +41,15 @@ impl Hosts {
 
     fn try_connect() -> Result<Hosts, String> {
         static COUNT: AtomicUsize = AtomicUsize::new(0);
-        let id = format!("{}-{}", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
-        let hosts = Hosts { names: [format!("squall-a-{id}"), format!("squall-b-{id}")], id: id.clone() };
+        let id = format!(
+            "{}-{}",
+            std::process::id(),
+            COUNT.fetch_add(1, Ordering::Relaxed)
+        );
+        let hosts = Hosts {
+            names: [format!("squall-a-{id}"), format!("squall-b-{id}")],
+            id: id.clone(),
+        };
         let [a, b] = &hosts.names;
         let va = format!("sqa{id}");
         let vb = format!("sqb{id}");
@@ -56,14 +70,22 @@ impl Hosts {
     }
 
     pub(crate) fn cable(&self, state: &str) {
-        ip(&format!("-n {} link set sqb{} {state}", self.names[1], self.id)).expect("the cable is there");
+        ip(&format!(
+            "-n {} link set sqb{} {state}",
+            self.names[1], self.id
+        ))
+        .expect("the cable is there");
     }
 
     /// A command that runs on one of the hosts.
     pub(crate) fn command(&self, host: usize, program: impl AsRef<OsStr>) -> Command {
         let mut command = Command::new("ip");
-        command.args(["netns", "exec", &self.names[host]]).arg(program);
-        command.current_dir(env!("CARGO_MANIFEST_DIR")).env(TOKEN_VARIABLE, token().hex());
+        command
+            .args(["netns", "exec", &self.names[host]])
+            .arg(program);
+        command
+            .current_dir(env!("CARGO_MANIFEST_DIR"))
+            .env(TOKEN_VARIABLE, token().hex());
         command
     }
 
@@ -79,7 +101,9 @@ impl Hosts {
 
     pub(crate) fn agent(&self, host: usize, vehicles: &[&str]) -> Process {
         let mut command = self.squall(host);
-        command.args(["agent", "--connect", ENDPOINT, "--game", GAME, "--vehicle"]).args(vehicles);
+        command
+            .args(["agent", "--connect", ENDPOINT, "--game", GAME, "--vehicle"])
+            .args(vehicles);
         command.stdout(Stdio::null());
         Process::start(command)
     }

@@ -13,7 +13,12 @@ fn check_as_all_kinds(bytes: &[u8]) {
         let path = written(folder.path(), &name, bytes);
         if let Err(problems) = scenario::check_file(KINDS, &path) {
             assert!(!problems.0.is_empty());
-            assert!(problems.0.iter().all(|problem| problem.line > 0 && problem.column > 0));
+            assert!(
+                problems
+                    .0
+                    .iter()
+                    .all(|problem| problem.line > 0 && problem.column > 0)
+            );
         }
     }
 }
@@ -50,9 +55,12 @@ proptest! {
 #[test]
 fn deep_and_large_files_are_refused() {
     let deep = |open: &str, count: usize| format!("x = {}", open.repeat(count));
-    for text in
-        [deep("[", 100_000), deep("{a=", 100_000), format!("{} = 1", vec!["a"; 50_000].join(".")), "x".repeat(5 << 20)]
-    {
+    for text in [
+        deep("[", 100_000),
+        deep("{a=", 100_000),
+        format!("{} = 1", vec!["a"; 50_000].join(".")),
+        "x".repeat(5 << 20),
+    ] {
         check_as_all_kinds(text.as_bytes());
     }
 }

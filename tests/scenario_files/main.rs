@@ -13,14 +13,19 @@ use scenario::Kind;
 use std::path::{Path, PathBuf};
 
 fn shipped(path: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios").join(path)
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("scenarios")
+        .join(path)
 }
 
 /// The shipped files of a kind, in order.
 fn files(kind: Kind) -> Vec<PathBuf> {
     let folder = std::fs::read_dir(shipped(kind.folder())).unwrap();
     let mut files: Vec<PathBuf> = folder.map(|entry| entry.unwrap().path()).collect();
-    files.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
+    files.retain(|path| {
+        path.extension()
+            .is_some_and(|extension| extension == "toml")
+    });
     files.sort();
     files
 }

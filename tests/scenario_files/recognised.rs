@@ -19,8 +19,14 @@ fn a_file_outside_of_the_folders_is_told_by_its_keys() {
         (vec!["hull", "typo"], Kind::BOAT),
         (vec!["current"], Kind::SEA),
         (vec!["roles", "base"], Kind::STRATEGY),
-        (vec!["game", "entry", "sea", "seed"], Kind::of::<Tournament>()),
-        (vec!["order_ttl_s", "fence", "limits"], Kind::of::<Gateway>()),
+        (
+            vec!["game", "entry", "sea", "seed"],
+            Kind::of::<Tournament>(),
+        ),
+        (
+            vec!["order_ttl_s", "fence", "limits"],
+            Kind::of::<Gateway>(),
+        ),
         (vec!["boat", "enemy", "potential"], Kind::of::<Rewards>()),
         (vec!["stage", "observation", "seed"], Kind::of::<Training>()),
         (vec!["game", "opponent", "axis"], Kind::of::<Sweep>()),
@@ -30,13 +36,26 @@ fn a_file_outside_of_the_folders_is_told_by_its_keys() {
         let keys = keys.into_iter().map(str::to_owned).collect();
         assert_eq!(Kind::by_keys(KINDS, &keys), want, "{keys:?}");
     }
-    let keys = |keys: &[&str]| keys.iter().map(|key| (*key).to_owned()).collect::<BTreeSet<String>>();
+    let keys = |keys: &[&str]| {
+        keys.iter()
+            .map(|key| (*key).to_owned())
+            .collect::<BTreeSet<String>>()
+    };
     assert_eq!(
         Kind::GAME.other_by_keys(KINDS, &keys(&["about", "game", "opponent", "axis"])),
         Some(Kind::of::<Sweep>())
     );
-    assert_eq!(Kind::GAME.other_by_keys(KINDS, &keys(&["field", "team", "typo"])), None);
-    assert_eq!(Kind::SEA.other_by_keys(KINDS, &keys(&["typo", "other"])), None);
-    assert_eq!(Kind::by_folder(KINDS, Path::new("x/seas/calm.toml")), Some(Kind::SEA));
+    assert_eq!(
+        Kind::GAME.other_by_keys(KINDS, &keys(&["field", "team", "typo"])),
+        None
+    );
+    assert_eq!(
+        Kind::SEA.other_by_keys(KINDS, &keys(&["typo", "other"])),
+        None
+    );
+    assert_eq!(
+        Kind::by_folder(KINDS, Path::new("x/seas/calm.toml")),
+        Some(Kind::SEA)
+    );
     assert_eq!(Kind::by_folder(KINDS, Path::new("calm.toml")), None);
 }

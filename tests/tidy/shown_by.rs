@@ -17,10 +17,16 @@ pub(crate) fn shown_by(tree: &Tree) -> Breaches {
     for (path, text) in tree.files.iter().filter(|(path, _)| path.ends_with(".md")) {
         let rows = rows(text);
         if rows.is_empty() && path == FAULTS {
-            breaches.push(format!("{path}:1: has no table with a last column {HEAD:?}"));
+            breaches.push(format!(
+                "{path}:1: has no table with a last column {HEAD:?}"
+            ));
         }
         for (number, cell) in rows {
-            breaches.extend(problems(tree, cell).into_iter().map(|problem| format!("{path}:{number}: {problem}")));
+            breaches.extend(
+                problems(tree, cell)
+                    .into_iter()
+                    .map(|problem| format!("{path}:{number}: {problem}")),
+            );
         }
     }
     breaches
@@ -31,7 +37,9 @@ fn rows(text: &str) -> Vec<(usize, &str)> {
     let mut is_inside = false;
     let mut rows = vec![];
     for (i, line) in text.lines().enumerate() {
-        let cell = line.strip_prefix('|').and_then(|row| row.trim_end().strip_suffix('|')?.split('|').next_back());
+        let cell = line
+            .strip_prefix('|')
+            .and_then(|row| row.trim_end().strip_suffix('|')?.split('|').next_back());
         match cell.map(str::trim) {
             None => is_inside = false,
             Some(HEAD) => is_inside = true,
@@ -45,24 +53,44 @@ fn rows(text: &str) -> Vec<(usize, &str)> {
 fn problems(tree: &Tree, cell: &str) -> Breaches {
     let tests: Vec<String> = quoted(cell).map(|(_, test)| test).collect();
     if tests.is_empty() && cell != UNTESTED {
-        return vec![format!("names no test, expected `file::name`, or: {UNTESTED}")];
+        return vec![format!(
+            "names no test, expected `file::name`, or: {UNTESTED}"
+        )];
     }
-    tests.iter().filter(|test| !exists(tree, test)).map(|test| format!("there is no test `{test}`")).collect()
+    tests
+        .iter()
+        .filter(|test| !exists(tree, test))
+        .map(|test| format!("there is no test `{test}`"))
+        .collect()
 }
 
 fn exists(tree: &Tree, test: &str) -> bool {
-    let Some((path, name)) = test.split_once("::") else { return false };
-    let Some(text) = tree.text(path) else { return false };
+    let Some((path, name)) = test.split_once("::") else {
+        return false;
+    };
+    let Some(text) = tree.text(path) else {
+        return false;
+    };
     let lines: Vec<&str> = text.lines().map(str::trim).collect();
     match path.rsplit('.').next() {
         Some("rs") => {
             let begin = format!("fn {name}(");
-            let Some(at) = lines.iter().position(|line| line.starts_with(&begin)) else { return false };
-            lines[..at].iter().rev().take_while(|line| line.starts_with("#[")).any(|line| *line == "#[test]")
+            let Some(at) = lines.iter().position(|line| line.starts_with(&begin)) else {
+                return false;
+            };
+            lines[..at]
+                .iter()
+                .rev()
+                .take_while(|line| line.starts_with("#["))
+                .any(|line| *line == "#[test]")
         }
         // Browser tests of the page, and text scenarios.
-        Some("mjs") => lines.iter().any(|line| line.starts_with(&format!("test('{name}',"))),
-        Some("txt") => lines.iter().any(|line| line.strip_prefix("## ") == Some(name)),
+        Some("mjs") => lines
+            .iter()
+            .any(|line| line.starts_with(&format!("test('{name}',"))),
+        Some("txt") => lines
+            .iter()
+            .any(|line| line.strip_prefix("## ") == Some(name)),
         _ => false,
     }
 }

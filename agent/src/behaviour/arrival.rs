@@ -16,18 +16,27 @@ pub(super) struct Arrival {
     /// The bearing of the point and its accumulated rotation, rad.
     bearing_rad: Option<f64>,
     turned_rad: f64,
-    /// Points within this distance count as reached, because the boat has circled one this far off, m.
+    /// Points within this distance count as reached, because the boat has circled one this far off,
+    /// m.
     gone_round_m: f64,
 }
 
 impl Arrival {
     pub(super) fn new() -> Arrival {
-        Arrival { nearest_m: f64::INFINITY, bearing_rad: None, turned_rad: 0.0, gone_round_m: 0.0 }
+        Arrival {
+            nearest_m: f64::INFINITY,
+            bearing_rad: None,
+            turned_rad: 0.0,
+            gone_round_m: 0.0,
+        }
     }
 
     /// The approach to the next point.
     pub(super) fn next(self) -> Arrival {
-        Arrival { gone_round_m: self.gone_round_m, ..Arrival::new() }
+        Arrival {
+            gone_round_m: self.gone_round_m,
+            ..Arrival::new()
+        }
     }
 
     /// Whether the point is reached; `line` is its position relative to the boat.
@@ -53,7 +62,10 @@ mod tests {
 
     fn line(distance_m: f64, bearing_rad: f64) -> Ned {
         let (sin, cos) = math::sin_cos(bearing_rad);
-        Ned { north: distance_m * cos, east: distance_m * sin }
+        Ned {
+            north: distance_m * cos,
+            east: distance_m * sin,
+        }
     }
 
     #[test]
@@ -61,13 +73,18 @@ mod tests {
         for (what, distances_m, want) in [
             ("not yet", &[20.0, 10.0, 6.0][..], false),
             ("captured", &[20.0, 10.0, 2.9], true),
-            ("receding within the slip radius", &[20.0, 10.0, 6.0, 6.6], true),
+            (
+                "receding within the slip radius",
+                &[20.0, 10.0, 6.0, 6.6],
+                true,
+            ),
             ("noise", &[20.0, 10.0, 6.0, 6.3], false),
             ("receding too far away", &[20.0, 16.0, 18.0], false),
         ] {
             let mut arrival = Arrival::new();
-            let got =
-                distances_m.iter().fold(false, |_, distance_m| arrival.reaches(line(*distance_m, 1.0), 3.0, 15.0));
+            let got = distances_m.iter().fold(false, |_, distance_m| {
+                arrival.reaches(line(*distance_m, 1.0), 3.0, 15.0)
+            });
             assert_eq!(got, want, "{what}");
         }
     }
@@ -79,14 +96,28 @@ mod tests {
         for side in [1.0, -1.0] {
             let mut arrival = Arrival::new();
             let bearing_rad = |decision: u32| side * TAU * f64::from(decision) / 36.0;
-            let first = (0..100).find(|decision| arrival.reaches(line(5.0, bearing_rad(*decision)), 3.0, 15.0));
-            assert!(first.is_some_and(|decision| (36..=37).contains(&decision)), "{first:?}");
+            let first = (0..100)
+                .find(|decision| arrival.reaches(line(5.0, bearing_rad(*decision)), 3.0, 15.0));
+            assert!(
+                first.is_some_and(|decision| (36..=37).contains(&decision)),
+                "{first:?}"
+            );
             arrival = arrival.next();
-            assert!(arrival.reaches(line(4.9, 0.0), 3.0, 15.0), "as near as the previous point");
-            assert!(!arrival.next().reaches(line(5.2, 0.0), 3.0, 15.0), "farther away");
+            assert!(
+                arrival.reaches(line(4.9, 0.0), 3.0, 15.0),
+                "as near as the previous point"
+            );
+            assert!(
+                !arrival.next().reaches(line(5.2, 0.0), 3.0, 15.0),
+                "farther away"
+            );
         }
         // A weaving course does not circle the point.
         let mut arrival = Arrival::new();
-        assert!((0..1000).all(|i| !arrival.reaches(line(50.0 - 0.04 * f64::from(i), f64::from(i % 2)), 3.0, 15.0)));
+        assert!((0..1000).all(|i| !arrival.reaches(
+            line(50.0 - 0.04 * f64::from(i), f64::from(i % 2)),
+            3.0,
+            15.0
+        )));
     }
 }

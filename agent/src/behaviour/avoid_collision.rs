@@ -33,7 +33,9 @@ impl BehaviourLogic for AvoidCollision {
         // boat-hour: 0.44 without this, 0.35 with it, 0.03 with an agreed side as well (random
         // strategies in calm water, `crates/arena/examples/safety.rs`).
         let own = situation.turning_on();
-        for (distance_m, i) in Nearest::of(near.filter(|(distance_m, i)| *distance_m < outer_m && meant(*i))).iter() {
+        for (distance_m, i) in
+            Nearest::of(near.filter(|(distance_m, i)| *distance_m < outer_m && meant(*i))).iter()
+        {
             let other = &situation.others[i];
             let contact = other.turning_on();
             // The idea of reciprocal velocity obstacles (van den Berg, Lin and Manocha, ICRA 2008),
@@ -60,7 +62,11 @@ fn side(own: MovingPoint, contact: MovingPoint) -> Option<Side> {
     // The sign of the line of sight's rotation is the same from both ends, so the boats agree
     // without communication.
     let to_starboard_m = (line.north * past.east - line.east * past.north) / past_m_s;
-    Some(if to_starboard_m < PORT_TO_PORT_M { Side::Port } else { Side::Starboard })
+    Some(if to_starboard_m < PORT_TO_PORT_M {
+        Side::Port
+    } else {
+        Side::Starboard
+    })
 }
 
 /// The share of the weight that applies; 1 at the inner distance and nearer.
@@ -89,7 +95,13 @@ mod tests {
             let mut boat = || {
                 let [north, east, velocity_north, velocity_east] =
                     [30.0, 30.0, 3.0, 3.0].map(|most| stream.between(-most, most));
-                MovingPoint { at: Ned { north, east }, velocity: Ned { north: velocity_north, east: velocity_east } }
+                MovingPoint {
+                    at: Ned { north, east },
+                    velocity: Ned {
+                        north: velocity_north,
+                        east: velocity_east,
+                    },
+                }
             };
             let one = boat();
             let other = boat();
@@ -101,12 +113,30 @@ mod tests {
 
     #[test]
     fn head_on_boats_leave_each_other_to_port() {
-        let north = MovingPoint { at: Ned::default(), velocity: Ned { north: 2.0, east: 0.0 } };
-        let south = |east| MovingPoint { at: Ned { north: 30.0, east }, velocity: Ned { north: -2.0, east: 0.0 } };
+        let north = MovingPoint {
+            at: Ned::default(),
+            velocity: Ned {
+                north: 2.0,
+                east: 0.0,
+            },
+        };
+        let south = |east| MovingPoint {
+            at: Ned { north: 30.0, east },
+            velocity: Ned {
+                north: -2.0,
+                east: 0.0,
+            },
+        };
         assert_eq!(side(north, south(-4.0)), Some(Side::Port));
         assert_eq!(side(north, south(0.0)), Some(Side::Port));
         assert_eq!(side(north, south(4.0)), Some(Side::Starboard));
-        let gone = MovingPoint { velocity: Ned { north: 3.0, east: 0.0 }, ..south(4.0) };
+        let gone = MovingPoint {
+            velocity: Ned {
+                north: 3.0,
+                east: 0.0,
+            },
+            ..south(4.0)
+        };
         assert_eq!(side(north, gone), None);
     }
 }

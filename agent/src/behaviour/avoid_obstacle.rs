@@ -24,7 +24,12 @@ impl AvoidObstacleBehaviour {
     pub(super) fn new(task: AvoidObstacle) -> AvoidObstacleBehaviour {
         let table = Table::default();
         let instructions = Instructions::best();
-        AvoidObstacleBehaviour { task, outlines: Vec::new(), table, instructions }
+        AvoidObstacleBehaviour {
+            task,
+            outlines: Vec::new(),
+            table,
+            instructions,
+        }
     }
 }
 
@@ -44,15 +49,24 @@ impl BehaviourLogic for AvoidObstacleBehaviour {
             };
             self.outlines = obstacles.iter().map(corners).collect();
         }
-        let distances = obstacles.iter().enumerate().map(|(i, obstacle)| (obstacle.distance(situation.at), i));
-        for (distance_m, i) in Nearest::of(distances.filter(|(distance_m, _)| *distance_m < outer_m)).iter() {
+        let distances = obstacles
+            .iter()
+            .enumerate()
+            .map(|(i, obstacle)| (obstacle.distance(situation.at), i));
+        for (distance_m, i) in
+            Nearest::of(distances.filter(|(distance_m, _)| *distance_m < outer_m)).iter()
+        {
             let share = nearness(distance_m, inner_m, outer_m);
             match &obstacles[i] {
                 Obstacle::Circle { centre, radius_m } => {
-                    let disc = MovingPoint { at: *centre, velocity: Ned::default() };
+                    let disc = MovingPoint {
+                        at: *centre,
+                        velocity: Ned::default(),
+                    };
                     // A circle is a stationary contact that touches at its radius, so the closed
                     // form applies. A polygon has no closed form and needs a table.
-                    let function = keep_clear(situation, disc, *radius_m, (min_m, max_m), horizon_s, None);
+                    let function =
+                        keep_clear(situation, disc, *radius_m, (min_m, max_m), horizon_s, None);
                     output.add_share(share, None, &function);
                 }
                 Obstacle::Polygon { .. } => {

@@ -45,7 +45,11 @@ impl Kernel for Clearance<'_> {
     fn run(mut self) {
         let mut seen = [Edge::default(); 4];
         let mut count = 0;
-        for edge in self.edges.iter().filter(|(_, inside_m)| *inside_m <= self.reach_m) {
+        for edge in self
+            .edges
+            .iter()
+            .filter(|(_, inside_m)| *inside_m <= self.reach_m)
+        {
             seen[count] = self.seen(*edge);
             count += 1;
         }
@@ -68,7 +72,13 @@ impl Clearance<'_> {
         let (sin_from, cos_from) = math::sin_cos(from_rad);
         let start_m = (inside_m - self.handling.reaction_s * self.surge_m_s * cos_from) as f32;
         let drift_m = (self.lookahead_s * self.drift.dot(normal)) as f32;
-        Edge { normal, from_rad, sin_from, start_m, drift_m }
+        Edge {
+            normal,
+            from_rad,
+            sin_from,
+            start_m,
+            drift_m,
+        }
     }
 
     /// Whether any of the courses may come near the edge; cheap for courses that lead away.
@@ -77,10 +87,12 @@ impl Clearance<'_> {
         let least_m = self.save_m + f64::from(edge.drift_m).max(0.0) + f64::from(ROUNDING_M);
         // At the larger of the old speed and the top speed. Courses that lead away from an edge, or
         // cannot reach it, are skipped 16 at a time: most are, even near an edge.
-        let out_s = (f64::from(edge.start_m) - least_m) / self.surge_m_s.max(self.grid.speed_max_m_s());
+        let out_s =
+            (f64::from(edge.start_m) - least_m) / self.surge_m_s.max(self.grid.speed_max_m_s());
         let mut may_be_low = false;
         for i in 0..LANES {
-            let cos_to = courses.north.0[i] * edge.normal.north + courses.east.0[i] * edge.normal.east;
+            let cos_to =
+                courses.north.0[i] * edge.normal.north + courses.east.0[i] * edge.normal.east;
             let straight_s = turns.straight_s.0[i] * cos_to;
             // The turn goes out by at most its length.
             let most_s = turns.duration_s.0[i] + if straight_s > 0.0 { straight_s } else { 0.0 };
@@ -142,7 +154,11 @@ impl Turn {
     #[inline(always)]
     fn new(by_rad: f64, handling: &Handling) -> Turn {
         let turn_rad_s = handling.mean_turn_rad_s(by_rad);
-        Turn { by_rad, turn_rad_s, duration_s: by_rad.abs() / turn_rad_s }
+        Turn {
+            by_rad,
+            turn_rad_s,
+            duration_s: by_rad.abs() / turn_rad_s,
+        }
     }
 }
 
@@ -179,7 +195,11 @@ impl Turns {
             let turn = Turn::new(turns.by_rad.0[i], handling);
             let straight_s = clearance.lookahead_s - handling.reaction_s - turn.duration_s;
             let straight_s = if straight_s > 0.0 { straight_s } else { 0.0 };
-            let within = reached(clearance.surge_m_s, turn.duration_s + 0.5 * straight_s, handling);
+            let within = reached(
+                clearance.surge_m_s,
+                turn.duration_s + 0.5 * straight_s,
+                handling,
+            );
             turns.turn_rad_s.0[i] = turn.turn_rad_s;
             turns.duration_s.0[i] = turn.duration_s;
             turns.straight_s.0[i] = straight_s;
@@ -191,7 +211,11 @@ impl Turns {
 
     #[inline(always)]
     fn at(&self, i: usize) -> Turn {
-        Turn { by_rad: self.by_rad.0[i], turn_rad_s: self.turn_rad_s.0[i], duration_s: self.duration_s.0[i] }
+        Turn {
+            by_rad: self.by_rad.0[i],
+            turn_rad_s: self.turn_rad_s.0[i],
+            duration_s: self.duration_s.0[i],
+        }
     }
 }
 
@@ -199,7 +223,10 @@ impl Turns {
 #[inline(always)]
 fn reached(old_m_s: f64, after_s: f64, handling: &Handling) -> (f32, f32) {
     let slowest_m_s = old_m_s - handling.deceleration_m_s2 * after_s;
-    (slowest_m_s as f32, (old_m_s + handling.acceleration_m_s2 * after_s) as f32)
+    (
+        slowest_m_s as f32,
+        (old_m_s + handling.acceleration_m_s2 * after_s) as f32,
+    )
 }
 
 /// A turn relative to an edge: outward distances per m/s of speed.
@@ -226,7 +253,11 @@ impl Outward {
         let end_s = side * (sin_to - sin_from) / turn.turn_rad_s;
         let to_parallel_rad = (side * FRAC_PI_2 - from_rad) * side;
         // Both angles are within half a turn, so no division is needed.
-        let to_parallel_rad = if to_parallel_rad < 0.0 { to_parallel_rad + TAU } else { to_parallel_rad };
+        let to_parallel_rad = if to_parallel_rad < 0.0 {
+            to_parallel_rad + TAU
+        } else {
+            to_parallel_rad
+        };
         let parallel_s = (1.0 - side * sin_from) / turn.turn_rad_s;
         let parallel_after_s = to_parallel_rad / turn.turn_rad_s;
         // All cases are computed without branches, so that this vectorises over a group of courses.
@@ -238,7 +269,11 @@ impl Outward {
         let is_parallel = (to_parallel_rad < turn.by_rad.abs()) & (parallel_s > end_s);
         Outward {
             farthest_s: if is_parallel { parallel_s } else { end_out_s },
-            farthest_after_s: if is_parallel { parallel_after_s } else { end_after_s },
+            farthest_after_s: if is_parallel {
+                parallel_after_s
+            } else {
+                end_after_s
+            },
             end_s,
         }
     }
@@ -271,8 +306,8 @@ impl Way {
         // The arc is run at the mean of old and new speed and the rest at the new speed, both
         // within the acceleration limits.
         let farthest_m = self.start_m - self.out_s * held(0.5 * (old_m_s + new_m_s), out);
-        let end_m =
-            farthest_m - self.drift_m + self.back_s * held(new_m_s, back) - self.straight_s * held(new_m_s, straight);
+        let end_m = farthest_m - self.drift_m + self.back_s * held(new_m_s, back)
+            - self.straight_s * held(new_m_s, straight);
         let least_m = smaller(farthest_m, end_m);
         // The nearest point and the end count half each: of two courses that come equally near, the
         // one that then leads away is better, even for a boat that is already outside.
@@ -311,8 +346,12 @@ impl Ways {
             let sin_to = normal.north * courses.east.0[i] - normal.east * courses.north.0[i];
             let cos_to = courses.north.0[i] * normal.north + courses.east.0[i] * normal.east;
             let outward = Outward::new(&turn, (edge.from_rad, edge.sin_from), sin_to);
-            let after_s = [0.5 * outward.farthest_after_s, 0.5 * (outward.farthest_after_s + turn.duration_s)];
-            let [out, back] = after_s.map(|after_s| reached(clearance.surge_m_s, after_s, &clearance.handling));
+            let after_s = [
+                0.5 * outward.farthest_after_s,
+                0.5 * (outward.farthest_after_s + turn.duration_s),
+            ];
+            let [out, back] =
+                after_s.map(|after_s| reached(clearance.surge_m_s, after_s, &clearance.handling));
             ways.out_s.0[i] = outward.farthest_s as f32;
             ways.back_s.0[i] = (outward.farthest_s - outward.end_s) as f32;
             ways.straight_s.0[i] = (turns.straight_s.0[i] * cos_to) as f32;
@@ -344,7 +383,8 @@ impl Ways {
         let mut bits = 0;
         for i in 0..LANES {
             // Mean speeds are non-negative and at most the larger of old and new speed.
-            let least_m = begins_m - (self.out_s.0[i] + larger(self.straight_s.0[i], 0.0)) * most_m_s;
+            let least_m =
+                begins_m - (self.out_s.0[i] + larger(self.straight_s.0[i], 0.0)) * most_m_s;
             bits |= u32::from(least_m < save_m) << i;
         }
         bits
@@ -394,14 +434,21 @@ mod tests {
                 let by_rad = f64::from(by_deg).to_radians();
                 let turn = Turn::new(by_rad, &HANDLING);
                 let sine = |angle_rad| math::sin_cos(angle_rad).0;
-                let outward = Outward::new(&turn, (from_rad, sine(from_rad)), sine(from_rad + by_rad));
+                let outward =
+                    Outward::new(&turn, (from_rad, sine(from_rad)), sine(from_rad + by_rad));
                 let (farthest_m, out_m) = stepped(from_rad, by_rad);
                 let farthest_s = outward.farthest_s;
                 let after_s = outward.farthest_after_s;
                 let end_s = outward.end_s;
-                assert!((0.0..=turn.duration_s + 1e-9).contains(&after_s), "{after_s}");
+                assert!(
+                    (0.0..=turn.duration_s + 1e-9).contains(&after_s),
+                    "{after_s}"
+                );
                 let what = format!("from {from_deg} by {by_deg} degrees");
-                assert!((farthest_s - farthest_m).abs() < 1e-4, "{what}: {farthest_s} m, {farthest_m}");
+                assert!(
+                    (farthest_s - farthest_m).abs() < 1e-4,
+                    "{what}: {farthest_s} m, {farthest_m}"
+                );
                 assert!((end_s - out_m).abs() < 1e-4, "{what}: {end_s} m, {out_m}");
             }
         }
@@ -417,10 +464,19 @@ mod tests {
             let heading_rad = stream.between(-4.0, 4.0);
             let edges = [0.0, 1.6, 3.1, -1.6].map(|rad| {
                 let (sin, cos) = math::sin_cos(rad);
-                (Ned { north: cos, east: sin }, stream.between(-2.0, 60.0))
+                (
+                    Ned {
+                        north: cos,
+                        east: sin,
+                    },
+                    stream.between(-2.0, 60.0),
+                )
             });
             let surge_m_s = stream.between(0.0, 4.0);
-            let drift = Ned { north: stream.between(-1.0, 1.0), east: 0.3 };
+            let drift = Ned {
+                north: stream.between(-1.0, 1.0),
+                east: 0.3,
+            };
             let bits = |instructions: &Instructions| {
                 let mut table = Table::default();
                 table.clear(&grid);
@@ -437,11 +493,16 @@ mod tests {
                     save_m: 6.0,
                     bend: 0.4,
                 });
-                grid.points().map(|(k, j)| table.utility(k, j).to_bits()).collect::<Vec<u32>>()
+                grid.points()
+                    .map(|(k, j)| table.utility(k, j).to_bits())
+                    .collect::<Vec<u32>>()
             };
             let all: Vec<Vec<u32>> = Instructions::of_this_machine().iter().map(bits).collect();
             assert!(all.iter().all(|bits| *bits == all[0]), "seed {seed}");
-            lowered += all[0].iter().filter(|bits| **bits != 100.0_f32.to_bits()).count();
+            lowered += all[0]
+                .iter()
+                .filter(|bits| **bits != 100.0_f32.to_bits())
+                .count();
         }
         assert!(lowered > 100_000, "{lowered} points");
     }
@@ -463,13 +524,23 @@ mod tests {
             let within = [0; 3].map(|_| reached(old_m_s, stream.between(0.0, 9.0), &HANDLING));
             let slowest_m_s = within.map(|(slowest_m_s, _)| Lanes::splat(slowest_m_s));
             let fastest = within.map(|(_, fastest_m_s)| Lanes::splat(fastest_m_s));
-            let ways = Ways { start_m, drift_m, out_s, back_s, straight_s, slowest_m_s, fastest_m_s: fastest };
+            let ways = Ways {
+                start_m,
+                drift_m,
+                out_s,
+                back_s,
+                straight_s,
+                slowest_m_s,
+                fastest_m_s: fastest,
+            };
             if ways.low(fastest_m_s.max(old_m_s as f32), save_m) != 0 {
                 continue;
             }
             left_out += 1;
             for j in 0..36 {
-                let utility = ways.at(3).utility(old_m_s as f32, 0.1 * j as f32, (50.0 / save_m, 0.4));
+                let utility =
+                    ways.at(3)
+                        .utility(old_m_s as f32, 0.1 * j as f32, (50.0 / save_m, 0.4));
                 assert_eq!(utility, 100.0, "seed {seed}, speed {j}");
             }
         }

@@ -26,25 +26,46 @@ enum Halt {
 
 impl HaltingAvoidance {
     pub(super) fn new(avoidance: AvoidCollision) -> HaltingAvoidance {
-        HaltingAvoidance { avoidance, halt: Halt::Clear }
+        HaltingAvoidance {
+            avoidance,
+            halt: Halt::Clear,
+        }
     }
 
     fn next(&self, situation: &Situation) -> Halt {
-        let value = |parameter: &Option<Parameter>| parameter.as_ref().map(|parameter| parameter.value(situation));
-        let AvoidCollision { halt_m, release_m, release_s, .. } = &self.avoidance;
-        let Some(halt_m) = value(halt_m) else { return Halt::Clear };
+        let value = |parameter: &Option<Parameter>| {
+            parameter
+                .as_ref()
+                .map(|parameter| parameter.value(situation))
+        };
+        let AvoidCollision {
+            halt_m,
+            release_m,
+            release_s,
+            ..
+        } = &self.avoidance;
+        let Some(halt_m) = value(halt_m) else {
+            return Halt::Clear;
+        };
         // Three times the halt distance by default: if a halt ended at the distance at which it
         // begins, it would begin again at once.
         let release_m = value(release_m).unwrap_or(3.0 * halt_m);
         let release_s = value(release_s);
-        let distances = situation.others.iter().map(|other| situation.at.distance(other.at));
+        let distances = situation
+            .others
+            .iter()
+            .map(|other| situation.at.distance(other.at));
         // All boats, including those that `contacts` excludes: the halt is about hulls, not tags.
         let nearest_m = distances.fold(f64::INFINITY, f64::min);
         let is_clear = nearest_m >= release_m.max(halt_m);
         match self.halt {
-            Halt::Clear if nearest_m < halt_m => Halt::Halted { since: situation.now },
+            Halt::Clear if nearest_m < halt_m => Halt::Halted {
+                since: situation.now,
+            },
             Halt::Halted { .. } | Halt::Released if is_clear => Halt::Clear,
-            Halt::Halted { since } if release_s.is_some_and(|limit_s| (situation.now - since).as_s() >= limit_s) => {
+            Halt::Halted { since }
+                if release_s.is_some_and(|limit_s| (situation.now - since).as_s() >= limit_s) =>
+            {
                 Halt::Released
             }
             halt => halt,

@@ -26,7 +26,10 @@ impl BehaviourLogic for ConstantSpeed {
         output.add(&Objective::speed(Peak {
             // A summit beyond the top speed would lower the utility of the top speed, and the
             // course would outweigh it.
-            summit: self.speed_m_s.value(situation).min(situation.model.speed_max_m_s),
+            summit: self
+                .speed_m_s
+                .value(situation)
+                .min(situation.model.speed_max_m_s),
             peak_width: self.peak_width_m_s.value(situation),
             base_width: self.base_width_m_s.value(situation),
             summit_delta: SUMMIT_DELTA,
@@ -39,7 +42,10 @@ impl BehaviourLogic for FullStop {
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
         // A preference, not a command: a stationary boat cannot avoid an approaching one. It has no
         // preference for a course.
-        output.add(&Objective::speed(Peak::tent(0.0, situation.model.speed_max_m_s)));
+        output.add(&Objective::speed(Peak::tent(
+            0.0,
+            situation.model.speed_max_m_s,
+        )));
     }
 }
 

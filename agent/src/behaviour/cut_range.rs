@@ -7,7 +7,9 @@ use scenario::strategy::CutRange;
 
 impl BehaviourLogic for CutRange {
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
-        let Some(contact) = situation.boat(self.contact).copied() else { return };
+        let Some(contact) = situation.boat(self.contact).copied() else {
+            return;
+        };
         let line = contact.at - situation.at;
         let distance_m = line.length();
         let giveup_m = self.giveup_m.value(situation);
@@ -17,7 +19,10 @@ impl BehaviourLogic for CutRange {
         let patience = self.patience.value(situation) / 100.0;
         // Candidates are relative to the water, so the contact's velocity is too.
         let velocity = contact.velocity() - situation.motion.drift();
-        let closing = Closing { offset: line, velocity };
+        let closing = Closing {
+            offset: line,
+            velocity,
+        };
         let closest = Closest {
             offset: line,
             velocity,
@@ -31,7 +36,15 @@ impl BehaviourLogic for CutRange {
         };
         // As in MOOS-IvP's CutRange, patience 0 closes in as fast as it can now, and patience 1
         // heads for the meeting point.
-        output.add_share(1.0 - patience, Some(contact.vehicle), &Objective::Closing(closing));
-        output.add_share(patience, Some(contact.vehicle), &Objective::Closest(closest));
+        output.add_share(
+            1.0 - patience,
+            Some(contact.vehicle),
+            &Objective::Closing(closing),
+        );
+        output.add_share(
+            patience,
+            Some(contact.vehicle),
+            &Objective::Closest(closest),
+        );
     }
 }

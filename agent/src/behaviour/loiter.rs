@@ -21,7 +21,13 @@ pub(super) struct LoiterBehaviour {
 
 impl LoiterBehaviour {
     pub(super) fn new(task: Loiter) -> LoiterBehaviour {
-        LoiterBehaviour { task, corners: Vec::new(), target: None, clockwise: true, arrival: Arrival::new() }
+        LoiterBehaviour {
+            task,
+            corners: Vec::new(),
+            target: None,
+            clockwise: true,
+            arrival: Arrival::new(),
+        }
     }
 
     /// Chooses the first corner and the direction, by the corners ahead in that direction.
@@ -40,7 +46,13 @@ impl LoiterBehaviour {
         };
         let count = self.corners.len();
         let distance = |i: usize| situation.at.distance_squared(self.corners[i]);
-        let nearest = (1..count).fold(0, |best, i| if distance(i) < distance(best) { i } else { best });
+        let nearest = (1..count).fold(0, |best, i| {
+            if distance(i) < distance(best) {
+                i
+            } else {
+                best
+            }
+        });
         // The corner after the nearest one, which may be behind the boat.
         self.target = Some(self.after(nearest));
         self.arrival = self.arrival.next();
@@ -48,7 +60,11 @@ impl LoiterBehaviour {
 
     fn after(&self, corner: usize) -> usize {
         let count = self.corners.len();
-        if self.clockwise { (corner + 1) % count } else { (corner + count - 1) % count }
+        if self.clockwise {
+            (corner + 1) % count
+        } else {
+            (corner + count - 1) % count
+        }
     }
 }
 
@@ -68,23 +84,33 @@ impl BehaviourLogic for LoiterBehaviour {
         }
         // A boat driven off by an evasion or a tag rejoins the nearest part of the polygon, not its
         // previous target corner.
-        let far = distance_to_outline(&self.corners, situation.at) > self.task.acquire_m.value(situation);
+        let far =
+            distance_to_outline(&self.corners, situation.at) > self.task.acquire_m.value(situation);
         if self.target.is_none() || far {
             self.choose(situation);
         }
-        let Some(mut target) = self.target else { return };
+        let Some(mut target) = self.target else {
+            return;
+        };
         let capture_m = self.task.capture_radius_m.value(situation);
         let slip_m = self.task.slip_radius_m.value(situation);
         // On a small polygon several corners may be behind the boat at once, but never all of them.
         for _ in 1..self.corners.len() {
-            if !self.arrival.reaches(self.corners[target] - situation.at, capture_m, slip_m) {
+            if !self
+                .arrival
+                .reaches(self.corners[target] - situation.at, capture_m, slip_m)
+            {
                 break;
             }
             (output.reached, self.arrival) = (true, self.arrival.next());
             target = self.after(target);
         }
         self.target = Some(target);
-        output.add(&toward(situation, self.corners[target], self.task.speed_m_s.value(situation)));
+        output.add(&toward(
+            situation,
+            self.corners[target],
+            self.task.speed_m_s.value(situation),
+        ));
     }
 }
 
@@ -99,12 +125,21 @@ pub(crate) fn corners_of(shape: &Shape, situation: &Situation, corners: &mut Vec
                 corners.clear();
             }
         }
-        Shape::Ellipse(Ellipse { centre, along_m, across_m, corners: count }) => {
-            let Some(centre) = situation.locate(centre) else { return };
+        Shape::Ellipse(Ellipse {
+            centre,
+            along_m,
+            across_m,
+            corners: count,
+        }) => {
+            let Some(centre) = situation.locate(centre) else {
+                return;
+            };
             let field = &situation.model.field;
             corners.extend((0..*count).map(|i| {
                 let (sin, cos) = math::sin_cos(TAU * i as f64 / *count as f64);
-                centre.at + field.along.scaled(0.5 * along_m * cos) + field.across.scaled(0.5 * across_m * sin)
+                centre.at
+                    + field.along.scaled(0.5 * along_m * cos)
+                    + field.across.scaled(0.5 * across_m * sin)
             }));
         }
     }
@@ -116,11 +151,15 @@ pub(crate) fn corners_of(shape: &Shape, situation: &Situation, corners: &mut Vec
 
 /// Twice the signed area of the polygon, m²; positive if its corners are in clockwise order.
 fn turns_clockwise(corners: &[Ned]) -> f64 {
-    sides(corners).map(|(a, b)| a.north * b.east - a.east * b.north).sum()
+    sides(corners)
+        .map(|(a, b)| a.north * b.east - a.east * b.north)
+        .sum()
 }
 
 fn centre_of(corners: &[Ned]) -> Ned {
-    let sum = corners.iter().fold(Ned::default(), |sum, corner| sum + *corner);
+    let sum = corners
+        .iter()
+        .fold(Ned::default(), |sum, corner| sum + *corner);
     sum.scaled(1.0 / corners.len() as f64)
 }
 
@@ -130,8 +169,12 @@ mod tests {
 
     #[test]
     fn corners_are_told_clockwise_from_the_other_way() {
-        let square = [(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0)].map(|(north, east)| Ned { north, east });
-        assert!((turns_clockwise(&square) - 200.0).abs() < 1e-9, "north, then east: clockwise");
+        let square = [(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0)]
+            .map(|(north, east)| Ned { north, east });
+        assert!(
+            (turns_clockwise(&square) - 200.0).abs() < 1e-9,
+            "north, then east: clockwise"
+        );
         let mut other = square;
         other.reverse();
         assert!((turns_clockwise(&other) + 200.0).abs() < 1e-9);

@@ -10,11 +10,20 @@ use scenario::strategy::MaxSpeed;
 impl BehaviourLogic for MaxSpeed {
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
         let always = self.range_m.value(situation) <= 0.0;
-        if always || situation.others.iter().any(|other| is_near(self, situation, other)) {
+        if always
+            || situation
+                .others
+                .iter()
+                .any(|other| is_near(self, situation, other))
+        {
             let peak_width = self.speed_m_s.value(situation);
             let base_width = self.tolerance_m_s.value(situation);
-            // Half of a peak around rest: full utility up to the limit, as in MOOS-IvP's `ZAIC_LEQ`.
-            output.add(&Objective::speed(Peak { peak_width, ..Peak::tent(0.0, base_width) }));
+            // Half of a peak around rest: full utility up to the limit, as in MOOS-IvP's
+            // `ZAIC_LEQ`.
+            output.add(&Objective::speed(Peak {
+                peak_width,
+                ..Peak::tent(0.0, base_width)
+            }));
         }
     }
 }

@@ -18,7 +18,10 @@ pub(super) struct MemoryTurnLimitBehaviour {
 
 impl MemoryTurnLimitBehaviour {
     pub(super) fn new(task: MemoryTurnLimit) -> MemoryTurnLimitBehaviour {
-        MemoryTurnLimitBehaviour { task, headings: VecDeque::with_capacity(MOST) }
+        MemoryTurnLimitBehaviour {
+            task,
+            headings: VecDeque::with_capacity(MOST),
+        }
     }
 
     /// The mean of the remembered headings, rad, as a mean of directions.
@@ -41,13 +44,23 @@ impl BehaviourLogic for MemoryTurnLimitBehaviour {
 
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
         let memory = SimTime::from_s(self.task.memory_s.value(situation));
-        while self.headings.front().is_some_and(|(at, _)| *at + memory < situation.now) {
+        while self
+            .headings
+            .front()
+            .is_some_and(|(at, _)| *at + memory < situation.now)
+        {
             self.headings.pop_front();
         }
         // Evenly spaced if the memory is too long to store every decision.
         let spacing = SimTime::from_s(memory.as_s() / (MOST - 1) as f64);
-        if self.headings.back().is_none_or(|(at, _)| *at + spacing <= situation.now) && self.headings.len() < MOST {
-            self.headings.push_back((situation.now, situation.own.nav.psi_rad));
+        if self
+            .headings
+            .back()
+            .is_none_or(|(at, _)| *at + spacing <= situation.now)
+            && self.headings.len() < MOST
+        {
+            self.headings
+                .push_back((situation.now, situation.own.nav.psi_rad));
         }
         let range_rad = self.task.turn_range_deg.value(situation).to_radians();
         output.add(&Objective::course(Peak {

@@ -67,7 +67,9 @@ pub(crate) fn logic_of(task: &Task) -> Box<dyn BehaviourLogic> {
         Task::MaxSpeed(task) => Box::new(task),
         Task::ConstantHeading(task) => Box::new(task),
         Task::ConstantSpeed(task) => Box::new(task),
-        Task::MemoryTurnLimit(task) => Box::new(memory_turn_limit::MemoryTurnLimitBehaviour::new(task)),
+        Task::MemoryTurnLimit(task) => {
+            Box::new(memory_turn_limit::MemoryTurnLimitBehaviour::new(task))
+        }
         Task::Timer(task) => Box::new(task),
         Task::FullStop(task) => Box::new(task),
         Task::Shield(task) => Box::new(task),

@@ -15,9 +15,13 @@ pub(super) struct Nearest {
 
 impl Nearest {
     pub(super) fn of(those: impl Iterator<Item = (f64, usize)>) -> Nearest {
-        let mut nearest = Nearest { entries: [(f64::INFINITY, 0); NEAREST_MAX], count: 0 };
+        let mut nearest = Nearest {
+            entries: [(f64::INFINITY, 0); NEAREST_MAX],
+            count: 0,
+        };
         for entry in those {
-            let place = nearest.entries[..nearest.count].partition_point(|known| known.0 <= entry.0);
+            let place =
+                nearest.entries[..nearest.count].partition_point(|known| known.0 <= entry.0);
             // At most sixteen, so that the cost of a decision is bounded for any fleet; the
             // nearest, so that the order of the list drops none of them.
             if place < NEAREST_MAX {
@@ -56,14 +60,17 @@ pub(super) fn is_meant(contacts: Contacts, situation: &Situation, other: &OtherB
         // possible.
         Contacts::NoTag => !other.is_enemy || other.tagged || situation.own.tagged,
         Contacts::Opponent => {
-            let opponent = situation.boat(Boat::Opponent).map(|opponent| opponent.vehicle);
+            let opponent = situation
+                .boat(Boat::Opponent)
+                .map(|opponent| opponent.vehicle);
             opponent == Some(other.vehicle) && is_meant(Contacts::Taggers, situation, other)
         }
         Contacts::Taggers => {
             // An enemy tags only on its own side; it already counts when this boat is about to
             // enter that side.
             let soon = situation.at + situation.velocity.scaled(TAG_FORESIGHT_S);
-            let exposed = !situation.model.is_own_side(situation.at) || !situation.model.is_own_side(soon);
+            let exposed =
+                !situation.model.is_own_side(situation.at) || !situation.model.is_own_side(soon);
             other.is_enemy && !other.tagged && !other.intrudes && exposed && !situation.own.tagged
         }
     }
@@ -75,19 +82,38 @@ mod tests {
 
     #[test]
     fn the_nearest_of_many_come_in_order() {
-        let many: Vec<(f64, usize)> = (0..100).map(|i| (f64::from((i * 37) % 50), i as usize)).collect();
+        let many: Vec<(f64, usize)> = (0..100)
+            .map(|i| (f64::from((i * 37) % 50), i as usize))
+            .collect();
         let mut sorted = many.clone();
         sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
         sorted.truncate(NEAREST_MAX);
         assert!(Nearest::of(many.into_iter()).iter().eq(sorted));
-        assert_eq!(Nearest::of([(2.0, 0), (1.0, 1)].into_iter()).iter().collect::<Vec<_>>(), [(1.0, 1), (2.0, 0)]);
+        assert_eq!(
+            Nearest::of([(2.0, 0), (1.0, 1)].into_iter())
+                .iter()
+                .collect::<Vec<_>>(),
+            [(1.0, 1), (2.0, 0)]
+        );
     }
 
     #[test]
     fn a_weight_falls_from_inner_to_outer_and_never_exceeds_itself() {
-        for (distance_m, want) in [(0.0, 1.0), (10.0, 1.0), (15.0, 0.5), (20.0, 0.0), (90.0, 0.0)] {
-            assert!((nearness(distance_m, 10.0, 20.0) - want).abs() < 1e-12, "{distance_m} m");
+        for (distance_m, want) in [
+            (0.0, 1.0),
+            (10.0, 1.0),
+            (15.0, 0.5),
+            (20.0, 0.0),
+            (90.0, 0.0),
+        ] {
+            assert!(
+                (nearness(distance_m, 10.0, 20.0) - want).abs() < 1e-12,
+                "{distance_m} m"
+            );
         }
-        assert!(nearness(5.0, 5.0, 5.0) == 1.0 && nearness(5.1, 5.0, 5.0) == 0.0, "a step");
+        assert!(
+            nearness(5.0, 5.0, 5.0) == 1.0 && nearness(5.1, 5.0, 5.0) == 0.0,
+            "a step"
+        );
     }
 }

@@ -41,7 +41,13 @@ impl OpRegionBehaviour {
     pub(super) fn new(task: OpRegion) -> OpRegionBehaviour {
         let table = Table::default();
         let instructions = Instructions::best();
-        OpRegionBehaviour { task, side: Side::In, crossed: None, table, instructions }
+        OpRegionBehaviour {
+            task,
+            side: Side::In,
+            crossed: None,
+            table,
+            instructions,
+        }
     }
 
     /// A boat counts as outside, or as inside again, once it has been there for a while.
@@ -58,7 +64,11 @@ impl OpRegionBehaviour {
         // Seconds are rounded, nanoseconds are not: without this tolerance a wait may last one
         // decision longer.
         if (situation.now - since).as_s() + 1e-9 >= wait_s {
-            self.side = if self.side == Side::In { Side::Out } else { Side::In };
+            self.side = if self.side == Side::In {
+                Side::Out
+            } else {
+                Side::In
+            };
             self.crossed = None;
         }
     }
@@ -74,7 +84,9 @@ impl BehaviourLogic for OpRegionBehaviour {
         let inside_m = region.inside_m();
         self.debounce(situation, inside_m);
         if self.side == Side::Out {
-            if self.task.beyond_halt == BeyondHalt::Stops && -inside_m > self.task.halt_m.value(situation) {
+            if self.task.beyond_halt == BeyondHalt::Stops
+                && -inside_m > self.task.halt_m.value(situation)
+            {
                 output.stop();
                 return;
             }
@@ -158,15 +170,23 @@ impl Region {
 
     /// The boat's distance inside the region, m; negative outside.
     fn inside_m(&self) -> f64 {
-        self.edges.iter().map(|(_, inside_m)| *inside_m).fold(f64::INFINITY, f64::min)
+        self.edges
+            .iter()
+            .map(|(_, inside_m)| *inside_m)
+            .fold(f64::INFINITY, f64::min)
     }
 
     /// The distance inside from which on no candidate comes near an edge, m.
     fn reach_m(&self, situation: &Situation, lookahead_s: f64, save_m: f64) -> f64 {
-        let fastest_m_s = situation.model.speed_max_m_s.max(situation.own.nav.surge_m_s);
+        let fastest_m_s = situation
+            .model
+            .speed_max_m_s
+            .max(situation.own.nav.surge_m_s);
         // The widest turn goes out by twice its radius.
         let turn_s = 2.0 / self.handling.mean_turn_rad_s(PI);
-        save_m + (lookahead_s.max(turn_s) + self.handling.reaction_s) * (fastest_m_s + self.drift.length())
+        save_m
+            + (lookahead_s.max(turn_s) + self.handling.reaction_s)
+                * (fastest_m_s + self.drift.length())
     }
 
     /// The nearest point well inside.

@@ -60,7 +60,10 @@ struct Places {
 impl Places {
     #[inline(always)]
     fn splat(place: Ned) -> Places {
-        Places { north: Lanes::splat(place.north), east: Lanes::splat(place.east) }
+        Places {
+            north: Lanes::splat(place.north),
+            east: Lanes::splat(place.east),
+        }
     }
 
     /// The places after this time at a velocity.
@@ -96,7 +99,15 @@ impl Outline {
         let side = |(corner, next): (Ned, Ned)| {
             let along = next - corner;
             let squared_m2 = along.dot(along);
-            Side { corner, along, per_m2: if squared_m2 > 0.0 { 1.0 / squared_m2 } else { 0.0 } }
+            Side {
+                corner,
+                along,
+                per_m2: if squared_m2 > 0.0 {
+                    1.0 / squared_m2
+                } else {
+                    0.0
+                },
+            }
         };
         let sides: Vec<Side> = sides(corners).map(side).collect();
         let mut half_planes: Vec<HalfPlane> = Vec::new();
@@ -105,10 +116,19 @@ impl Outline {
             // A half plane that contains all corners is a valid bound on either side of a side's
             // line, even for a concave polygon.
             for out in [1.0, -1.0] {
-                let normal = Ned { north: out * unit.east, east: -out * unit.north };
+                let normal = Ned {
+                    north: out * unit.east,
+                    east: -out * unit.north,
+                };
                 // Parallel sides share a half plane, because each is tested for all courses.
-                if half_planes.iter().all(|known| known.normal.dot(normal) < 1.0 - 1e-9) {
-                    let reach_m = corners.iter().map(|corner| corner.dot(normal)).fold(f64::NEG_INFINITY, f64::max);
+                if half_planes
+                    .iter()
+                    .all(|known| known.normal.dot(normal) < 1.0 - 1e-9)
+                {
+                    let reach_m = corners
+                        .iter()
+                        .map(|corner| corner.dot(normal))
+                        .fold(f64::NEG_INFINITY, f64::max);
                     half_planes.push(HalfPlane { normal, reach_m });
                 }
             }
@@ -116,7 +136,14 @@ impl Outline {
         let facing = Vec::new();
         let feet = Vec::new();
         let utilities = Vec::new();
-        Outline { corners: corners.to_vec(), sides, half_planes, facing, feet, utilities }
+        Outline {
+            corners: corners.to_vec(),
+            sides,
+            half_planes,
+            facing,
+            feet,
+            utilities,
+        }
     }
 
     /// The least squared distance to any side, m².
@@ -148,7 +175,10 @@ impl Outline {
         }
         self.feet.clear();
         for side in &self.sides {
-            let mut foot = Foot { after_s: per_m2_s2, squared_m2: per_m2_s2 };
+            let mut foot = Foot {
+                after_s: per_m2_s2,
+                squared_m2: per_m2_s2,
+            };
             for i in 0..LANES {
                 let run_north = along.north.0[i];
                 let run_east = along.east.0[i];
@@ -160,17 +190,28 @@ impl Outline {
                 let squared_m2 = off_north * off_north + off_east * off_east;
                 foot.after_s.0[i] = after_s;
                 // No run passes a corner behind it, however long it is.
-                foot.squared_m2.0[i] = if after_s >= 0.0 { squared_m2 } else { f64::INFINITY };
+                foot.squared_m2.0[i] = if after_s >= 0.0 {
+                    squared_m2
+                } else {
+                    f64::INFINITY
+                };
                 // Line intersection by Cramer's rule; for parallel lines the corners suffice.
                 let per = 1.0 / (run_north * side.along.east - run_east * side.along.north);
                 let when_s = (north * side.along.east - east * side.along.north) * per;
                 let share = (north * run_east - east * run_north) * per;
                 let crosses = (0.0..=1.0).contains(&share) & (when_s >= 0.0);
-                crossing_s.0[i] = smaller(if crosses { when_s } else { f64::INFINITY }, crossing_s.0[i]);
+                crossing_s.0[i] = smaller(
+                    if crosses { when_s } else { f64::INFINITY },
+                    crossing_s.0[i],
+                );
             }
             self.feet.push(foot);
         }
-        Runs { from, along, crossing_s }
+        Runs {
+            from,
+            along,
+            crossing_s,
+        }
     }
 
     /// The least squared distance of runs of this duration, or `before_m2` if that is less, m².
@@ -181,11 +222,19 @@ impl Outline {
         for foot in &self.feet {
             for i in 0..LANES {
                 let squared_m2 = smaller(foot.squared_m2.0[i], least.0[i]);
-                least.0[i] = if foot.after_s.0[i] <= after_s.0[i] { squared_m2 } else { least.0[i] };
+                least.0[i] = if foot.after_s.0[i] <= after_s.0[i] {
+                    squared_m2
+                } else {
+                    least.0[i]
+                };
             }
         }
         for i in 0..LANES {
-            let squared_m2 = if runs.crossing_s.0[i] <= after_s.0[i] { 0.0 } else { least.0[i] };
+            let squared_m2 = if runs.crossing_s.0[i] <= after_s.0[i] {
+                0.0
+            } else {
+                least.0[i]
+            };
             least.0[i] = smaller(squared_m2, before_m2.0[i]);
         }
         least
@@ -224,9 +273,17 @@ impl Kernel for Passes<'_> {
             return;
         }
         let at = self.at;
-        let Outline { half_planes, facing, .. } = &mut *self.outline;
+        let Outline {
+            half_planes,
+            facing,
+            ..
+        } = &mut *self.outline;
         facing.clear();
-        facing.extend(half_planes.iter().filter(|half_plane| half_plane.out_m(at.north, at.east) > 0.0));
+        facing.extend(
+            half_planes
+                .iter()
+                .filter(|half_plane| half_plane.out_m(at.north, at.east) > 0.0),
+        );
         for (block, courses) in self.grid.courses_side_by_side().iter().enumerate() {
             self.pass(LANES * block, courses);
         }
@@ -237,7 +294,10 @@ impl Passes<'_> {
     /// Lowers the utilities of a group of courses.
     #[inline(always)]
     fn pass(&mut self, first: usize, courses: &Courses) {
-        let along = Places { north: courses.north, east: courses.east };
+        let along = Places {
+            north: courses.north,
+            east: courses.east,
+        };
         let duration_s = self.turns_s(courses);
         let horizon_s = Lanes::splat(self.horizon_s);
         let velocity = Places::splat(self.velocity);
@@ -263,14 +323,23 @@ impl Passes<'_> {
         let before = self.worth(&before_m2);
         let least = self.run_straight(begin, along, &before_m2);
         for i in 0..LANES.min(self.grid.courses() - first) {
-            let last = self.outline.utilities.last().map_or(before.0[i], |last| last.0[i]);
+            let last = self
+                .outline
+                .utilities
+                .last()
+                .map_or(before.0[i], |last| last.0[i]);
             if last < 100.0 {
                 let row = self.table.lowered_mut(first + i);
                 row.fill(Lanes::splat(last));
                 // By rising speed: first those that come no nearer than the turn, then the computed
                 // ones, then the last value for all faster ones.
                 let known = std::iter::repeat_n(before.0[i], least);
-                let known = known.chain(self.outline.utilities.iter().map(|by_course| by_course.0[i]));
+                let known = known.chain(
+                    self.outline
+                        .utilities
+                        .iter()
+                        .map(|by_course| by_course.0[i]),
+                );
                 for (j, utility) in known.enumerate() {
                     row[j / LANES].0[j % LANES] = utility;
                 }
@@ -283,7 +352,10 @@ impl Passes<'_> {
     fn turns_s(&self, courses: &Courses) -> Lanes<f64> {
         let mut duration_s = Lanes::splat(0.0);
         for i in 0..LANES {
-            duration_s.0[i] = self.lag.duration_s(Ned { north: courses.north.0[i], east: courses.east.0[i] });
+            duration_s.0[i] = self.lag.duration_s(Ned {
+                north: courses.north.0[i],
+                east: courses.east.0[i],
+            });
         }
         duration_s
     }
@@ -319,8 +391,14 @@ impl Passes<'_> {
     fn run_straight(&mut self, begin: Places, along: Places, before_m2: &Lanes<f64>) -> usize {
         let speeds_m_s = self.grid.speeds_m_s();
         let max_m2 = self.max_m * self.max_m;
-        let clear_m = self.clear_m(&begin, &along, smaller(before_m2.reduced(larger), max_m2).sqrt() + ROUNDING_M);
-        let first = speeds_m_s.partition_point(|speed_m_s| speed_m_s * self.horizon_s <= clear_m).max(1);
+        let clear_m = self.clear_m(
+            &begin,
+            &along,
+            smaller(before_m2.reduced(larger), max_m2).sqrt() + ROUNDING_M,
+        );
+        let first = speeds_m_s
+            .partition_point(|speed_m_s| speed_m_s * self.horizon_s <= clear_m)
+            .max(1);
         self.outline.utilities.clear();
         if first >= speeds_m_s.len() {
             return first;
@@ -332,7 +410,9 @@ impl Passes<'_> {
         }
         for speed_m_s in &speeds_m_s[first..] {
             let run_m = speed_m_s * self.horizon_s;
-            let least_m2 = self.outline.passed_m2(&runs, &Lanes::splat(run_m), before_m2);
+            let least_m2 = self
+                .outline
+                .passed_m2(&runs, &Lanes::splat(run_m), before_m2);
             self.outline.utilities.push(self.worth(&least_m2));
             // All corners are behind.
             // A longer run adds nothing: from here on all speeds have the last utility.
@@ -351,9 +431,18 @@ impl Passes<'_> {
             let mut clear_m = Lanes::splat(0.0);
             for i in 0..LANES {
                 let out_m = half_plane.out_m(begin.north.0[i], begin.east.0[i]) - near_m;
-                let nearing = -(half_plane.normal.north * along.north.0[i] + half_plane.normal.east * along.east.0[i]);
-                let until_m = if nearing > 0.0 { out_m / nearing } else { f64::INFINITY };
-                clear_m.0[i] = if out_m > 0.0 { until_m } else { f64::NEG_INFINITY };
+                let nearing = -(half_plane.normal.north * along.north.0[i]
+                    + half_plane.normal.east * along.east.0[i]);
+                let until_m = if nearing > 0.0 {
+                    out_m / nearing
+                } else {
+                    f64::INFINITY
+                };
+                clear_m.0[i] = if out_m > 0.0 {
+                    until_m
+                } else {
+                    f64::NEG_INFINITY
+                };
             }
             most_m = larger(most_m, clear_m.reduced(smaller));
         }
@@ -364,7 +453,8 @@ impl Passes<'_> {
     #[inline(always)]
     fn worth(&self, squared_m2: &Lanes<f64>) -> Lanes<f32> {
         let low_per_m = CPA_MIN_UTILITY / larger(self.min_m, f64::MIN_POSITIVE);
-        let high_per_m = (100.0 - CPA_MIN_UTILITY) / larger(self.max_m - self.min_m, f64::MIN_POSITIVE);
+        let high_per_m =
+            (100.0 - CPA_MIN_UTILITY) / larger(self.max_m - self.min_m, f64::MIN_POSITIVE);
         let mut utilities = Lanes::splat(0.0);
         for i in 0..LANES {
             let pass_m = squared_m2.0[i].sqrt();
@@ -396,7 +486,10 @@ mod tests {
     const HORIZON_S: f64 = 12.0;
 
     fn within(stream: &mut Stream, most: f64) -> Ned {
-        Ned { north: stream.between(-most, most), east: stream.between(-most, most) }
+        Ned {
+            north: stream.between(-most, most),
+            east: stream.between(-most, most),
+        }
     }
 
     /// A boat near a polygon of any shape, including self-intersecting ones; also without drift.
@@ -448,18 +541,25 @@ mod tests {
 
         /// The utilities of a course by speed, leg by leg.
         fn worth(&self, grid: &Grid, k: usize) -> Vec<f64> {
-            let course = Ned { north: grid.direction(k).0.into(), east: grid.direction(k).1.into() };
+            let course = Ned {
+                north: grid.direction(k).0.into(),
+                east: grid.direction(k).1.into(),
+            };
             let start = self.at + self.velocity.scaled(self.lag.duration_s(course));
             let mut pass_m = distance_to_line(&self.corners, (self.at, start));
             let mut from = start;
             let leg = |speed_m_s: &f64| {
-                let to = start + self.drift.scaled(HORIZON_S) + course.scaled(speed_m_s * HORIZON_S);
+                let to =
+                    start + self.drift.scaled(HORIZON_S) + course.scaled(speed_m_s * HORIZON_S);
                 pass_m = pass_m.min(distance_to_line(&self.corners, (from, to)));
                 from = to;
                 match pass_m {
                     _ if pass_m <= MIN_M => CPA_MIN_UTILITY * pass_m / MIN_M,
                     _ if pass_m >= MAX_M => 100.0,
-                    _ => CPA_MIN_UTILITY + (100.0 - CPA_MIN_UTILITY) * (pass_m - MIN_M) / (MAX_M - MIN_M),
+                    _ => {
+                        CPA_MIN_UTILITY
+                            + (100.0 - CPA_MIN_UTILITY) * (pass_m - MIN_M) / (MAX_M - MIN_M)
+                    }
                 }
             };
             grid.speeds_m_s().iter().map(leg).collect()
@@ -474,17 +574,33 @@ mod tests {
         let mut near = 0;
         for seed in 0..2_000 {
             let scene = Scene::new(seed);
-            let tables = Instructions::of_this_machine().into_iter().map(|set| scene.table(&grid, set));
+            let tables = Instructions::of_this_machine()
+                .into_iter()
+                .map(|set| scene.table(&grid, set));
             let tables: Vec<Table> = tables.collect();
             for k in 0..grid.courses() {
                 for (j, want) in scene.worth(&grid, k).into_iter().enumerate() {
                     let got = tables[0].utility(k, j);
-                    assert!((f64::from(got) - want).abs() < 1e-5, "seed {seed}, {k}, {j}: {got}, want {want}");
-                    assert!(tables.iter().all(|table| table.utility(k, j).to_bits() == got.to_bits()), "seed {seed}");
-                    (clear, near) = (clear + usize::from(want == 100.0), near + usize::from(want < 100.0));
+                    assert!(
+                        (f64::from(got) - want).abs() < 1e-5,
+                        "seed {seed}, {k}, {j}: {got}, want {want}"
+                    );
+                    assert!(
+                        tables
+                            .iter()
+                            .all(|table| table.utility(k, j).to_bits() == got.to_bits()),
+                        "seed {seed}"
+                    );
+                    (clear, near) = (
+                        clear + usize::from(want == 100.0),
+                        near + usize::from(want < 100.0),
+                    );
                 }
             }
         }
-        assert!(clear > 300_000 && near > 300_000, "{clear} points clear, {near} near");
+        assert!(
+            clear > 300_000 && near > 300_000,
+            "{clear} points clear, {near} near"
+        );
     }
 }

@@ -25,7 +25,11 @@ pub(crate) struct Functions {
 
 impl Functions {
     pub(crate) fn new(grid: Grid) -> Functions {
-        Functions { problem: Problem::new(grid), list: Vec::new(), shown: false }
+        Functions {
+            problem: Problem::new(grid),
+            list: Vec::new(),
+            shown: false,
+        }
     }
 
     pub(crate) fn clear(&mut self) {
@@ -48,8 +52,20 @@ pub(crate) struct BehaviourOutput<'a> {
 }
 
 impl<'a> BehaviourOutput<'a> {
-    pub(crate) fn new(functions: &'a mut Functions, behaviour: usize, weight: f64) -> BehaviourOutput<'a> {
-        BehaviourOutput { functions, behaviour, weight, active: false, reached: false, complete: false, stop: false }
+    pub(crate) fn new(
+        functions: &'a mut Functions,
+        behaviour: usize,
+        weight: f64,
+    ) -> BehaviourOutput<'a> {
+        BehaviourOutput {
+            functions,
+            behaviour,
+            weight,
+            active: false,
+            reached: false,
+            complete: false,
+            stop: false,
+        }
     }
 
     /// Adds a function at the behaviour's full weight.
@@ -58,7 +74,12 @@ impl<'a> BehaviourOutput<'a> {
     }
 
     /// Adds a function at a share (0 to 1) of the behaviour's weight; larger shares are clamped.
-    pub(crate) fn add_share(&mut self, share: f64, contact: Option<VehicleId>, objective: &Objective<'_>) {
+    pub(crate) fn add_share(
+        &mut self,
+        share: f64,
+        contact: Option<VehicleId>,
+        objective: &Objective<'_>,
+    ) {
         let weight = self.weight * share.clamp(0.0, 1.0);
         if weight <= 0.0 {
             return;
@@ -72,7 +93,12 @@ impl<'a> BehaviourOutput<'a> {
             let grid = self.grid();
             utilities.extend(grid.points().map(|(k, j)| objective.utility(grid, k, j)));
         }
-        self.functions.list.push(WeightedFunction { behaviour: self.behaviour, contact, weight, utilities });
+        self.functions.list.push(WeightedFunction {
+            behaviour: self.behaviour,
+            contact,
+            weight,
+            utilities,
+        });
     }
 
     /// Requires the boat to stop.

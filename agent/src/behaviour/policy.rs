@@ -33,8 +33,12 @@ impl PolicyBehaviour {
                 let proposal = situation.proposed?;
                 // A proposal expires after `ttl_s`: if the program dies, the other behaviours keep
                 // the boat safe.
-                let is_fresh = (situation.now - proposal.at).as_s() <= self.task.ttl_s.value(situation);
-                is_fresh.then_some(SetPoint { course_rad: proposal.course_rad, speed_m_s: proposal.speed_m_s })
+                let is_fresh =
+                    (situation.now - proposal.at).as_s() <= self.task.ttl_s.value(situation);
+                is_fresh.then_some(SetPoint {
+                    course_rad: proposal.course_rad,
+                    speed_m_s: proposal.speed_m_s,
+                })
             }
         }
     }
@@ -59,7 +63,13 @@ impl BehaviourLogic for PolicyBehaviour {
         if self.task.sets.is_some() {
             return;
         }
-        let Some(SetPoint { course_rad, speed_m_s }) = self.proposed(situation) else { return };
+        let Some(SetPoint {
+            course_rad,
+            speed_m_s,
+        }) = self.proposed(situation)
+        else {
+            return;
+        };
         // A policy proposes and the helm decides: external proposals are only weighed, and limited
         // to what the boat can do.
         let speed_m_s = speed_m_s.clamp(0.0, situation.model.speed_max_m_s);

@@ -18,7 +18,10 @@ pub(super) struct StationKeepBehaviour {
 
 impl StationKeepBehaviour {
     pub(super) fn new(task: StationKeep) -> StationKeepBehaviour {
-        StationKeepBehaviour { task, anchor: Ned::default() }
+        StationKeepBehaviour {
+            task,
+            anchor: Ned::default(),
+        }
     }
 
     fn speed_m_s(&self, situation: &Situation, distance_m: f64) -> f64 {
@@ -27,7 +30,8 @@ impl StationKeepBehaviour {
         if distance_m <= inner_m {
             0.0
         } else if distance_m < outer_m {
-            self.task.outer_speed_m_s.value(situation) * (distance_m - inner_m) / (outer_m - inner_m)
+            self.task.outer_speed_m_s.value(situation) * (distance_m - inner_m)
+                / (outer_m - inner_m)
         } else {
             self.task.transit_speed_m_s.value(situation)
         }
@@ -40,15 +44,29 @@ impl BehaviourLogic for StationKeepBehaviour {
     }
 
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
-        let here = Some(MovingPoint { at: self.anchor, velocity: Ned::default() });
-        let Some(point) = self.task.at.as_ref().map_or(here, |place| situation.locate(place)) else { return };
+        let here = Some(MovingPoint {
+            at: self.anchor,
+            velocity: Ned::default(),
+        });
+        let Some(point) = self
+            .task
+            .at
+            .as_ref()
+            .map_or(here, |place| situation.locate(place))
+        else {
+            return;
+        };
         let distance_m = situation.at.distance(point.at);
-        let speed_m_s = self.speed_m_s(situation, distance_m).min(situation.model.speed_max_m_s);
+        let speed_m_s = self
+            .speed_m_s(situation, distance_m)
+            .min(situation.model.speed_max_m_s);
         // At the station itself every heading is as good as the present one.
         let (heading_rad, speed_m_s) = if speed_m_s > 0.0 {
             // Through the water against the drift: the boat may need full speed ahead to hold the
             // station.
-            situation.motion.steer(situation.at.bearing_rad(point.at), speed_m_s)
+            situation
+                .motion
+                .steer(situation.at.bearing_rad(point.at), speed_m_s)
         } else {
             (situation.own.nav.psi_rad, 0.0)
         };

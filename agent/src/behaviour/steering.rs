@@ -37,18 +37,31 @@ pub(super) fn toward(situation: &Situation, to: Ned, speed_m_s: f64) -> Objectiv
 
 /// A course, rad, and a speed over the ground, limited to the boat's maximum, with the course's
 /// share of the utility.
-pub(super) fn steer(situation: &Situation, course_rad: f64, speed_m_s: f64, course_share: f64) -> Objective<'static> {
+pub(super) fn steer(
+    situation: &Situation,
+    course_rad: f64,
+    speed_m_s: f64,
+    course_share: f64,
+) -> Objective<'static> {
     let (heading_rad, summit) = situation.motion.steer(course_rad, speed_m_s);
     steer_heading(heading_rad, summit, course_share)
 }
 
 /// A heading, rad, and a speed through the water, with the heading's share of the utility.
-pub(super) fn steer_heading(heading_rad: f64, summit: f64, course_share: f64) -> Objective<'static> {
+pub(super) fn steer_heading(
+    heading_rad: f64,
+    summit: f64,
+    course_share: f64,
+) -> Objective<'static> {
     let peak_width = 0.5 * summit;
     let summit_delta = SPEED_SUMMIT_DELTA;
     Objective::Coupled {
         course: Peak::tent(angle::wrap_pi(heading_rad), PI),
-        speed: Peak { peak_width, summit_delta, ..Peak::tent(summit, SPEED_BASE_M_S) },
+        speed: Peak {
+            peak_width,
+            summit_delta,
+            ..Peak::tent(summit, SPEED_BASE_M_S)
+        },
         course_share,
     }
 }
@@ -57,7 +70,8 @@ pub(super) fn steer_heading(heading_rad: f64, summit: f64, course_share: f64) ->
 /// circle that begins along the bow and passes through the place has a diameter of the distance
 /// over the sine of the bearing.
 pub(super) fn speed_to_turn_onto(situation: &Situation, to: Ned) -> f64 {
-    let off_bow_rad = angle::wrap_pi(situation.at.bearing_rad(to) - situation.own.nav.psi_rad).abs();
+    let off_bow_rad =
+        angle::wrap_pi(situation.at.bearing_rad(to) - situation.own.nav.psi_rad).abs();
     let (sin, _) = math::sin_cos(off_bow_rad.min(FRAC_PI_2));
     0.5 * situation.motion.handling().turn_rad_s * situation.at.distance(to) / sin
 }
@@ -84,7 +98,10 @@ pub(super) fn keep_clear(
         // is too close does not care about coming closer, so that the smallest preference to pursue
         // decides. With the slope, hulls touched a sixth as often in 150 games.
         touch_m: radius_m,
-        approach: Approach::Avoid { at_min: CPA_MIN_UTILITY, leave_to },
+        approach: Approach::Avoid {
+            at_min: CPA_MIN_UTILITY,
+            leave_to,
+        },
         lag: Some(lag(situation)),
     })
 }

@@ -11,7 +11,9 @@ const CATCH_UP_PER_S: f64 = 0.2;
 
 impl BehaviourLogic for Trail {
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
-        let Some(contact) = situation.boat(self.contact).copied() else { return };
+        let Some(contact) = situation.boat(self.contact).copied() else {
+            return;
+        };
         let direction_rad = contact.psi_rad + self.angle_deg.value(situation).to_radians();
         let (east, north) = math::sin_cos(direction_rad);
         let place = contact.at + Ned { north, east }.scaled(self.range_m.value(situation));
@@ -23,7 +25,10 @@ impl BehaviourLogic for Trail {
         let (course_rad, speed_m_s) = if distance_m <= self.radius_m.value(situation) {
             (contact.psi_rad, contact_m_s)
         } else {
-            (situation.at.bearing_rad(place), contact_m_s + CATCH_UP_PER_S * distance_m)
+            (
+                situation.at.bearing_rad(place),
+                contact_m_s + CATCH_UP_PER_S * distance_m,
+            )
         };
         let objective = steer(situation, course_rad, speed_m_s.min(fastest_m_s), 0.5);
         output.add_share(1.0, Some(contact.vehicle), &objective);

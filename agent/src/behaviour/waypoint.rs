@@ -19,7 +19,13 @@ pub(super) struct WaypointBehaviour {
 
 impl WaypointBehaviour {
     pub(super) fn new(task: Waypoint) -> WaypointBehaviour {
-        WaypointBehaviour { task, reached: 0, rounds: 0, arrival: Arrival::new(), from: Ned::default() }
+        WaypointBehaviour {
+            task,
+            reached: 0,
+            rounds: 0,
+            arrival: Arrival::new(),
+            from: Ned::default(),
+        }
     }
 
     /// The point to steer for on the way from `from` to `to`.
@@ -33,7 +39,11 @@ impl WaypointBehaviour {
         // A point on the leg ahead of the boat, like MOOS-IvP's `lead`: a boat that was pushed off
         // returns to the line, not only to its end.
         let along_m = (situation.at - self.from).dot(leg) / length_m + lead_m;
-        if along_m >= length_m { to } else { self.from + leg.scaled(along_m.max(0.0) / length_m) }
+        if along_m >= length_m {
+            to
+        } else {
+            self.from + leg.scaled(along_m.max(0.0) / length_m)
+        }
     }
 }
 
@@ -44,11 +54,20 @@ impl BehaviourLogic for WaypointBehaviour {
 
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
         let count = self.task.points.len();
-        let index = if self.task.reverse { count - 1 - self.reached } else { self.reached };
-        let Some(point) = situation.locate(&self.task.points[index]) else { return };
+        let index = if self.task.reverse {
+            count - 1 - self.reached
+        } else {
+            self.reached
+        };
+        let Some(point) = situation.locate(&self.task.points[index]) else {
+            return;
+        };
         let capture_m = self.task.capture_radius_m.value(situation);
         let slip_m = self.task.slip_radius_m.value(situation);
-        if self.arrival.reaches(point.at - situation.at, capture_m, slip_m) {
+        if self
+            .arrival
+            .reaches(point.at - situation.at, capture_m, slip_m)
+        {
             output.reached = true;
             (self.arrival, self.from) = (self.arrival.next(), point.at);
             self.reached += 1;
@@ -60,6 +79,11 @@ impl BehaviourLogic for WaypointBehaviour {
         }
         let speed_m_s = self.task.speed_m_s.value(situation);
         let course_rad = situation.at.bearing_rad(self.aim(situation, point.at));
-        output.add(&steer(situation, course_rad, speed_m_s, self.task.course_share.value(situation)));
+        output.add(&steer(
+            situation,
+            course_rad,
+            speed_m_s,
+            self.task.course_share.value(situation),
+        ));
     }
 }

@@ -60,10 +60,22 @@ impl HelmMind {
     /// The helm of a vehicle that follows `program`.
     pub fn new(scenario: &Scenario, vehicle: VehicleId, program: &Program) -> HelmMind {
         let situation = Situation::new(scenario, vehicle, program, program.helm.compensates_drift);
-        let grid = Grid::new(program.helm.courses, program.helm.speeds, situation.model.speed_max_m_s);
-        let instance = |task| BehaviourInstance { run: BehaviourRun::new(), logic: logic_of(task), weight: 0.0 };
+        let grid = Grid::new(
+            program.helm.courses,
+            program.helm.speeds,
+            situation.model.speed_max_m_s,
+        );
+        let instance = |task| BehaviourInstance {
+            run: BehaviourRun::new(),
+            logic: logic_of(task),
+            weight: 0.0,
+        };
         HelmMind {
-            instances: program.behaviours.iter().map(|behaviour| instance(&behaviour.task)).collect(),
+            instances: program
+                .behaviours
+                .iter()
+                .map(|behaviour| instance(&behaviour.task))
+                .collect(),
             situation,
             mode: None,
             functions: Functions::new(grid),
@@ -74,17 +86,24 @@ impl HelmMind {
         }
     }
 
-    /// Like [`HelmMind::new`], but loses its memory at each fault of the scenario that kills the vehicle's
-    /// agent, as a restarted process does.
-    pub(crate) fn restarting(scenario: &Scenario, vehicle: VehicleId, program: &Program) -> HelmMind {
+    /// Like [`HelmMind::new`], but loses its memory at each fault of the scenario that kills the
+    /// vehicle's agent, as a restarted process does.
+    pub(crate) fn restarting(
+        scenario: &Scenario,
+        vehicle: VehicleId,
+        program: &Program,
+    ) -> HelmMind {
         let mut helm = HelmMind::new(scenario, vehicle, program);
-        let is_killed = |fault: &Fault| fault.kind == FaultKind::AgentLost && fault.vehicles.contains(&vehicle);
-        // Only if a fault requires it: a copy of the scenario for each boat would be too expensive in a
-        // fleet.
+        let is_killed =
+            |fault: &Fault| fault.kind == FaultKind::AgentLost && fault.vehicles.contains(&vehicle);
+        // Only if a fault requires it: a copy of the scenario for each boat would be too expensive
+        // in a fleet.
         if scenario.faults.iter().any(is_killed) {
             let scenario = scenario.clone();
             let program = program.clone();
-            helm.restarted = Some(Box::new(move || HelmMind::new(&scenario, vehicle, &program)));
+            helm.restarted = Some(Box::new(move || {
+                HelmMind::new(&scenario, vehicle, &program)
+            }));
         }
         helm
     }
@@ -92,8 +111,12 @@ impl HelmMind {
     /// Starts afresh if the picture says that its agent is back.
     fn restart_if_back(&mut self, picture: &Picture) {
         let back = Event::AgentBack(self.situation.model.me);
-        let is_back = |record: &EventRecord| record.logged().is_some_and(|logged| logged.event == back);
-        if let Some(restarted) = self.restarted.take_if(|_| picture.events.iter().any(is_back)) {
+        let is_back =
+            |record: &EventRecord| record.logged().is_some_and(|logged| logged.event == back);
+        if let Some(restarted) = self
+            .restarted
+            .take_if(|_| picture.events.iter().any(is_back))
+        {
             // The arena kills no process, and its result must match that of separate processes, so
             // the mind forgets what a process would.
             let shown = self.functions.shown;
@@ -110,7 +133,11 @@ impl HelmMind {
 
     /// Selects the option requested from outside, if the program has options.
     pub(crate) fn choose(&mut self, option: usize) {
-        if let Some(variable) = self.program.options().filter(|variable| option < self.program.texts(*variable).len()) {
+        if let Some(variable) = self
+            .program
+            .options()
+            .filter(|variable| option < self.program.texts(*variable).len())
+        {
             self.situation.variables[usize::from(variable)] = option as f64;
         }
     }
@@ -148,7 +175,9 @@ impl HelmMind {
         self.situation.mode_since = self.situation.now;
         // Modes that begin, outermost first: parents precede their children.
         for (i, entered) in self.program.modes.iter().enumerate() {
-            if is_within(&self.program, mode, i) && !before.is_some_and(|before| is_within(&self.program, before, i)) {
+            if is_within(&self.program, mode, i)
+                && !before.is_some_and(|before| is_within(&self.program, before, i))
+            {
                 set(&mut self.situation, &entered.enter, &mut self.posted);
             }
         }
@@ -160,13 +189,23 @@ impl HelmMind {
         let posted = &mut self.posted;
         let mut stop = false;
         self.functions.clear();
-        for (i, (behaviour, instance)) in self.program.behaviours.iter().zip(&mut self.instances).enumerate() {
+        for (i, (behaviour, instance)) in self
+            .program
+            .behaviours
+            .iter()
+            .zip(&mut self.instances)
+            .enumerate()
+        {
             let mut post = |moment: Moment| {
                 let due = behaviour.posts.iter().filter(|post| post.at == moment);
                 posted.extend(due.map(|post| (post.variable, post.value.value(situation))));
             };
             let BehaviourInstance { run, logic, weight } = instance;
-            let may_run = behaviour.modes[mode] && behaviour.when.as_ref().is_none_or(|when| when.is_true(situation));
+            let may_run = behaviour.modes[mode]
+                && behaviour
+                    .when
+                    .as_ref()
+                    .is_none_or(|when| when.is_true(situation));
             if run.allow(may_run, situation.now, &mut post) {
                 logic.begin(situation);
             }
@@ -178,9 +217,16 @@ impl HelmMind {
             let mut output = BehaviourOutput::new(&mut self.functions, i, *weight);
             logic.run(situation, &mut output);
             stop |= output.stop;
-            let BehaviourOutput { active, reached, complete, .. } = output;
+            let BehaviourOutput {
+                active,
+                reached,
+                complete,
+                ..
+            } = output;
             run.produced(active, &mut post);
-            let is_over = |duration: &Parameter| run.running_s(situation.now) + 1e-9 >= duration.value(situation);
+            let is_over = |duration: &Parameter| {
+                run.running_s(situation.now) + 1e-9 >= duration.value(situation)
+            };
             let time_is_up = behaviour.duration_s.as_ref().is_some_and(is_over);
             if reached || time_is_up {
                 post(Moment::Reach);
@@ -216,14 +262,26 @@ impl HelmMind {
         };
         // A share of all weights, at most a tenth (checked when the file is loaded): it can delay a
         // change of mind, but not outweigh safety.
-        let weights: f64 = self.functions.list.iter().map(|function| function.weight).sum();
-        let steadiness = last.and_then(|last| Steadiness::new(problem, last, self.program.helm.hysteresis * weights));
+        let weights: f64 = self
+            .functions
+            .list
+            .iter()
+            .map(|function| function.weight)
+            .sum();
+        let steadiness = last.and_then(|last| {
+            Steadiness::new(problem, last, self.program.helm.hysteresis * weights)
+        });
         let nav = &self.situation.own.nav;
         let speed_m_s = nav.surge_m_s - self.situation.motion.drift().dot(self.situation.ahead);
         // Ties go to the course and speed nearest to the boat's present motion, so that nothing
         // depends on where the grid begins.
-        let choice = problem.solve(Preference { course_rad: nav.psi_rad, speed_m_s });
-        Decided::Steer(steadiness.map_or(choice, |steadiness| steadiness.without(problem.grid(), choice)))
+        let choice = problem.solve(Preference {
+            course_rad: nav.psi_rad,
+            speed_m_s,
+        });
+        Decided::Steer(steadiness.map_or(choice, |steadiness| {
+            steadiness.without(problem.grid(), choice)
+        }))
     }
 
     fn order(&mut self) -> Order {
@@ -233,7 +291,10 @@ impl HelmMind {
                 self.situation.motion.hold();
                 Order::Hold
             }
-            Decided::Steer(Choice { decision: Decision { course, speed }, .. }) => {
+            Decided::Steer(Choice {
+                decision: Decision { course, speed },
+                ..
+            }) => {
                 let grid = self.functions.problem.grid();
                 let heading_rad = grid.course_rad(course);
                 let speed_m_s = grid.speed_m_s(speed);
@@ -250,7 +311,9 @@ impl Mind for HelmMind {
             self.decided = Decided::Hold("the picture does not show this boat");
             self.situation.motion.hold();
             self.functions.clear();
-            self.instances.iter_mut().for_each(|instance| instance.weight = 0.0);
+            self.instances
+                .iter_mut()
+                .for_each(|instance| instance.weight = 0.0);
             return Order::Hold;
         }
         self.observe_situation();
@@ -270,7 +333,11 @@ impl Mind for HelmMind {
     }
 
     fn send(&self, messages: &mut Vec<Word>) {
-        self.situation.team_messages.send(self.situation.model.me, &self.situation.variables, messages);
+        self.situation.team_messages.send(
+            self.situation.model.me,
+            &self.situation.variables,
+            messages,
+        );
     }
 
     fn receive(&mut self, messages: &[Word]) {
@@ -292,13 +359,20 @@ impl Mind for HelmMind {
 
 /// Whether `mode` is `whole` or a part of it.
 fn is_within(program: &Program, mode: usize, whole: usize) -> bool {
-    mode == whole || program.modes[mode].parent.is_some_and(|parent| is_within(program, parent, whole))
+    mode == whole
+        || program.modes[mode]
+            .parent
+            .is_some_and(|parent| is_within(program, parent, whole))
 }
 
 /// Assigns values to variables. Evaluates all expressions before the first assignment.
 fn set(situation: &mut Situation, values: &[(u16, Expression)], scratch: &mut Vec<(u16, f64)>) {
     scratch.clear();
-    scratch.extend(values.iter().map(|(variable, value)| (*variable, value.value(situation))));
+    scratch.extend(
+        values
+            .iter()
+            .map(|(variable, value)| (*variable, value.value(situation))),
+    );
     for (variable, value) in scratch.drain(..) {
         situation.variables[usize::from(variable)] = value;
     }
@@ -314,7 +388,11 @@ fn is_due(rule: &Rule, situation: &Situation, picture: &Picture) -> bool {
             .flatten()
             .any(|vehicle| who(situation, vehicle) == trigger.who)
     });
-    happened && rule.when.as_ref().is_none_or(|when| when.is_true(situation))
+    happened
+        && rule
+            .when
+            .as_ref()
+            .is_none_or(|when| when.is_true(situation))
 }
 
 /// The boats involved in this event, if it is of this kind.

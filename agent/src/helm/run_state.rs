@@ -14,11 +14,19 @@ pub(crate) struct BehaviourRun {
 
 impl BehaviourRun {
     pub(crate) fn new() -> BehaviourRun {
-        BehaviourRun { state: RunState::Idle, since: SimTime::ZERO }
+        BehaviourRun {
+            state: RunState::Idle,
+            since: SimTime::ZERO,
+        }
     }
 
     /// Allows or forbids running. Returns whether the behaviour starts running now.
-    pub(crate) fn allow(&mut self, may_run: bool, now: SimTime, mut post: impl FnMut(Moment)) -> bool {
+    pub(crate) fn allow(
+        &mut self,
+        may_run: bool,
+        now: SimTime,
+        mut post: impl FnMut(Moment),
+    ) -> bool {
         match (self.state, may_run) {
             (RunState::Idle, true) => {
                 (self.state, self.since) = (RunState::Running, now);
@@ -68,7 +76,11 @@ impl BehaviourRun {
             post(Moment::Inactive);
         }
         post(Moment::Complete);
-        self.state = if perpetual { RunState::Idle } else { RunState::Complete };
+        self.state = if perpetual {
+            RunState::Idle
+        } else {
+            RunState::Complete
+        };
     }
 }
 
@@ -95,14 +107,43 @@ mod tests {
     #[test]
     fn every_change_of_run_state_is_posted_once() {
         use Moment::{Active, Complete, Idle, Inactive, Run};
-        let steps = [(false, true, false), (true, false, false), (true, true, false), (true, true, false)];
+        let steps = [
+            (false, true, false),
+            (true, false, false),
+            (true, true, false),
+            (true, true, false),
+        ];
         assert_eq!(posted(false, &steps), (vec![Run, Active], RunState::Active));
         assert_eq!(
-            posted(false, &[(true, true, false), (false, true, false), (true, true, false)]),
-            (vec![Run, Active, Inactive, Idle, Run, Active], RunState::Active)
+            posted(
+                false,
+                &[
+                    (true, true, false),
+                    (false, true, false),
+                    (true, true, false)
+                ]
+            ),
+            (
+                vec![Run, Active, Inactive, Idle, Run, Active],
+                RunState::Active
+            )
         );
-        let done = [(true, true, true), (true, true, false), (false, true, false), (true, true, false)];
-        assert_eq!(posted(false, &done), (vec![Run, Active, Inactive, Complete], RunState::Complete));
-        assert_eq!(posted(true, &done[..2]), (vec![Run, Active, Inactive, Complete, Run, Active], RunState::Active));
+        let done = [
+            (true, true, true),
+            (true, true, false),
+            (false, true, false),
+            (true, true, false),
+        ];
+        assert_eq!(
+            posted(false, &done),
+            (vec![Run, Active, Inactive, Complete], RunState::Complete)
+        );
+        assert_eq!(
+            posted(true, &done[..2]),
+            (
+                vec![Run, Active, Inactive, Complete, Run, Active],
+                RunState::Active
+            )
+        );
     }
 }

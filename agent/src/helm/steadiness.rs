@@ -29,7 +29,13 @@ impl Steadiness {
         }
         // Near the last decision rather than exactly there: a bonus for that made a boat lag behind
         // moving targets.
-        let near = |summit, peak_width| Peak { summit, peak_width, base_width: STEP, summit_delta: 0.0, height: 100.0 };
+        let near = |summit, peak_width| Peak {
+            summit,
+            peak_width,
+            base_width: STEP,
+            summit_delta: 0.0,
+            height: 100.0,
+        };
         let grid = problem.grid();
         let objective = Objective::Coupled {
             course: near(grid.course_rad(last.course), NEAR_RAD),
@@ -43,7 +49,13 @@ impl Steadiness {
     /// A choice with the value that behaviours alone give it.
     pub(super) fn without(&self, grid: &Grid, choice: Choice) -> Choice {
         let Decision { course, speed } = choice.decision;
-        let extra = f64::from(self.objective.contribution(grid, self.weight, course, speed)) * crate::ivp::QUANTUM;
-        Choice { value: choice.value - extra, ..choice }
+        let extra = f64::from(
+            self.objective
+                .contribution(grid, self.weight, course, speed),
+        ) * crate::ivp::QUANTUM;
+        Choice {
+            value: choice.value - extra,
+            ..choice
+        }
     }
 }

@@ -42,7 +42,12 @@ impl Cell {
         // products as a ring segment, so that no lane branches.
         let slow = if self.is_disc { -self.slow } else { self.slow };
         let fast = self.stretch * self.fast;
-        [at(self.first, slow), at(self.last, slow), at(self.first, fast), at(self.last, fast)]
+        [
+            at(self.first, slow),
+            at(self.last, slow),
+            at(self.first, fast),
+            at(self.last, fast),
+        ]
     }
 }
 
@@ -81,7 +86,10 @@ impl CellSize {
     /// A cell of `side` courses by `side` speeds.
     pub(super) fn new(grid: &Grid, side: usize) -> CellSize {
         let half_rad = 0.5 * (side - 1) as f64 * TAU / grid.courses() as f64;
-        CellSize { side, half_rad: (half_rad <= WIDEST_RAD).then_some(half_rad) }
+        CellSize {
+            side,
+            half_rad: (half_rad <= WIDEST_RAD).then_some(half_rad),
+        }
     }
 
     /// The courses of a group of cells; `number` maps each lane to a cell index along the courses.
@@ -98,7 +106,10 @@ impl CellSize {
             half: self.half_rad.unwrap_or(std::f64::consts::PI) as f32,
             // The chord between two corners at the fastest speed lies inside the arc by this
             // factor. Extended by it, the polygon contains every velocity of the cell.
-            stretch: self.half_rad.map_or(1.0, |half_rad| 1.0 / primitives::math::sin_cos(half_rad).1) as f32,
+            stretch: self
+                .half_rad
+                .map_or(1.0, |half_rad| 1.0 / primitives::math::sin_cos(half_rad).1)
+                as f32,
             is_disc: self.half_rad.is_none(),
         }
     }
@@ -107,7 +118,11 @@ impl CellSize {
     pub(super) fn speeds(self, grid: &Grid, number: impl Fn(usize) -> usize) -> SpeedSpans {
         let spans: [[f32; 3]; LANES] = std::array::from_fn(|i| self.speed(grid, number(i)));
         let part = |part: usize| Lanes::each(|i| spans[i][part]);
-        SpeedSpans { slow: part(0), fast: part(1), mean: part(2) }
+        SpeedSpans {
+            slow: part(0),
+            fast: part(1),
+            mean: part(2),
+        }
     }
 
     /// First, last and middle course; beyond the grid, its last course.
@@ -121,7 +136,8 @@ impl CellSize {
             // The square around all speeds; `speed` gives half a side.
             return [1.0, 1.0, 1.0, -1.0, 1.0, 0.0];
         }
-        let (east, north) = primitives::math::sin_cos(0.5 * (grid.course_rad(first) + grid.course_rad(last)));
+        let (east, north) =
+            primitives::math::sin_cos(0.5 * (grid.course_rad(first) + grid.course_rad(last)));
         let first = grid.direction(first);
         let last = grid.direction(last);
         [first.0, first.1, last.0, last.1, north as f32, east as f32]
@@ -132,7 +148,11 @@ impl CellSize {
         let of = |i: usize| grid.speed_m_s((self.side * number + i).min(grid.speeds() - 1)) as f32;
         let slow = of(0);
         let fast = of(self.side - 1);
-        if self.half_rad.is_some() { [slow, fast, 0.5 * (slow + fast)] } else { [fast, fast, 0.0] }
+        if self.half_rad.is_some() {
+            [slow, fast, 0.5 * (slow + fast)]
+        } else {
+            [fast, fast, 0.0]
+        }
     }
 }
 
@@ -184,15 +204,30 @@ impl Cells {
             let courses = sector.courses(grid, |i| number(i) % sector_courses);
             (courses, sector.speeds(grid, |i| number(i) / sector_courses))
         };
-        let direction = |tile: usize, i: usize| grid.direction((SIDE * tile + i / SIDE).min(grid.courses() - 1));
-        let speed = |tile: usize, i: usize| grid.speed_m_s((SIDE * tile + i % SIDE).min(grid.speeds() - 1)) as f32;
-        let points = |tile| (Lanes::each(|i| direction(tile, i).0), Lanes::each(|i| direction(tile, i).1));
+        let direction = |tile: usize, i: usize| {
+            grid.direction((SIDE * tile + i / SIDE).min(grid.courses() - 1))
+        };
+        let speed = |tile: usize, i: usize| {
+            grid.speed_m_s((SIDE * tile + i % SIDE).min(grid.speeds() - 1)) as f32
+        };
+        let points = |tile| {
+            (
+                Lanes::each(|i| direction(tile, i).0),
+                Lanes::each(|i| direction(tile, i).1),
+            )
+        };
         Cells {
             sectors: (0..chunks).map(sectors).collect(),
-            tile_courses: (0..sector_courses).map(|at| tile.courses(grid, |i| SIDE * at + i % SIDE)).collect(),
-            tile_speeds: (0..sector_speeds).map(|at| tile.speeds(grid, |i| SIDE * at + i / SIDE)).collect(),
+            tile_courses: (0..sector_courses)
+                .map(|at| tile.courses(grid, |i| SIDE * at + i % SIDE))
+                .collect(),
+            tile_speeds: (0..sector_speeds)
+                .map(|at| tile.speeds(grid, |i| SIDE * at + i / SIDE))
+                .collect(),
             points: (0..SIDE * sector_courses).map(points).collect(),
-            point_speeds: (0..SIDE * sector_speeds).map(|tile| Lanes::each(|i| speed(tile, i))).collect(),
+            point_speeds: (0..SIDE * sector_speeds)
+                .map(|tile| Lanes::each(|i| speed(tile, i)))
+                .collect(),
             sector_courses,
             sector_speeds,
         }
@@ -210,7 +245,10 @@ mod tests {
     use primitives::stream::Stream;
 
     fn within(stream: &mut Stream, most: f64) -> Ned {
-        Ned { north: stream.between(-most, most), east: stream.between(-most, most) }
+        Ned {
+            north: stream.between(-most, most),
+            east: stream.between(-most, most),
+        }
     }
 
     /// A random formula of any kind.
@@ -241,13 +279,16 @@ mod tests {
                 } else {
                     Approach::Avoid {
                         at_min: 50.0,
-                        leave_to: [None, Some(Side::Port), Some(Side::Starboard)][stream.below(3) as usize],
+                        leave_to: [None, Some(Side::Port), Some(Side::Starboard)]
+                            [stream.below(3) as usize],
                     }
                 },
                 lag: (kind % 2 == 0).then(|| lag(stream)),
             }),
         };
-        let Parts::Field(field) = objective.parts(grid) else { panic!("{objective:?} is a formula") };
+        let Parts::Field(field) = objective.parts(grid) else {
+            panic!("{objective:?} is a formula")
+        };
         field
     }
 
@@ -274,7 +315,11 @@ mod tests {
         for seed in 0..2_000 {
             let mut stream = Stream::new(seed, "ivp/cell");
             let courses = [5, 12, 36, 47, 90, 360][stream.below(6) as usize];
-            let grid = Grid::new(courses, [2, 9, 21, 36][stream.below(4) as usize], stream.between(0.5, 8.0));
+            let grid = Grid::new(
+                courses,
+                [2, 9, 21, 36][stream.below(4) as usize],
+                stream.between(0.5, 8.0),
+            );
             let cells = Cells::new(&grid);
             let field = field(&mut stream, &grid);
             for (k, j) in grid.points() {
@@ -287,15 +332,24 @@ mod tests {
                 let utility = field.utility(north, east, grid.speed_m_s(j) as f32);
                 for (what, cell) in [
                     ("sector", cell(of_courses, of_speeds, sector % LANES)),
-                    ("tile", cell(&cells.tile_courses[across], &cells.tile_speeds[along], tile)),
+                    (
+                        "tile",
+                        cell(&cells.tile_courses[across], &cells.tile_speeds[along], tile),
+                    ),
                 ] {
                     let (most, least) = bounds(&field, &cell);
                     let is_within = (least..=most).contains(&utility);
-                    assert!(is_within, "seed {seed}, {what} of {k}, {j}: {utility}, {least} to {most}: {field:?}");
+                    assert!(
+                        is_within,
+                        "seed {seed}, {what} of {k}, {j}: {utility}, {least} to {most}: {field:?}"
+                    );
                     clear += u32::from(least > 0.0);
                 }
             }
         }
-        assert!(clear > 1000, "only {clear} points in cells far from contacts");
+        assert!(
+            clear > 1000,
+            "only {clear} points in cells far from contacts"
+        );
     }
 }

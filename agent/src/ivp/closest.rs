@@ -99,7 +99,11 @@ impl Closest {
         let lag = self.lag.as_ref();
         let vectors = [self.offset, self.velocity].map(|v| [v.north, v.east]);
         let limits = [self.horizon_s, self.min_m, self.max_m, self.touch_m, at_min];
-        let sound = vectors.as_flattened().iter().chain(&limits).all(|x| x.is_finite() && x.abs() < 1e7)
+        let sound = vectors
+            .as_flattened()
+            .iter()
+            .chain(&limits)
+            .all(|x| x.is_finite() && x.abs() < 1e7)
             && self.horizon_s >= 0.0
             && lag.is_none_or(Lag::is_sound);
         // Incoming pictures are validated, so this is a bug: tests stop, and a boat on the water
@@ -111,13 +115,22 @@ impl Closest {
         let at_min = at_min.clamp(0.0, 100.0);
         let width_m = self.max_m - self.min_m;
         // Least and largest distance may be equal, which would divide by zero.
-        let slope = |rise: f64, width_m: f64| if width_m > 0.0 { (rise / width_m).min(STEP) } else { STEP };
+        let slope = |rise: f64, width_m: f64| {
+            if width_m > 0.0 {
+                (rise / width_m).min(STEP)
+            } else {
+                STEP
+            }
+        };
         let contact_m_s = self.velocity.length();
-        let own_m_s = lag.map_or(0.0, |lag| lag.velocity.length()).max(speed_max_m_s);
+        let own_m_s = lag
+            .map_or(0.0, |lag| lag.velocity.length())
+            .max(speed_max_m_s);
         let most_s = self.horizon_s + lag.map_or(0.0, Lag::most_s);
         let scale_m = self.offset.length() + (contact_m_s + own_m_s) * most_s;
         let single = |v: Ned| (v.north as f32, v.east as f32);
-        let (reaction_s, own) = lag.map_or((0.0, Ned::default()), |lag| (lag.reaction_s, lag.velocity));
+        let (reaction_s, own) =
+            lag.map_or((0.0, Ned::default()), |lag| (lag.reaction_s, lag.velocity));
         let offset = single(self.offset);
         let present = single(self.velocity - own);
         let reaction = reaction_s as f32;
@@ -131,7 +144,10 @@ impl Closest {
         // no longer be a parabola.
         let meeting_s = f64::from(time(offset, present, self.horizon_s as f32)).max(MEETING_MIN_S);
         Some(Ready {
-            start: (offset.0 + present.0 * reaction, offset.1 + present.1 * reaction),
+            start: (
+                offset.0 + present.0 * reaction,
+                offset.1 + present.1 * reaction,
+            ),
             // Motion within the reaction time is the same for all candidates, so it is computed
             // once.
             least_before: square(offset, present, time(offset, present, reaction)),
@@ -219,12 +235,24 @@ impl Ready {
         // Reports and tests use the same arithmetic as the search, lane by lane, so the displayed
         // value is the one that decided.
         let distance = self.distance(&self.turning.to(course), course, speed);
-        if self.seek { self.worth_near(distance) } else { self.worth_far(distance) }
+        if self.seek {
+            self.worth_near(distance)
+        } else {
+            self.worth_far(distance)
+        }
     }
 
     /// Whether another function has the same distances.
     pub(super) fn has_distances_of(&self, other: &Ready) -> bool {
-        let ways = |ready: &Ready| (ready.start, ready.least_before, ready.velocity, ready.horizon, ready.seek);
+        let ways = |ready: &Ready| {
+            (
+                ready.start,
+                ready.least_before,
+                ready.velocity,
+                ready.horizon,
+                ready.seek,
+            )
+        };
         let sides = |ready: &Ready| (ready.beside, ready.other_side);
         // Two behaviours may avoid the same boats at different distances. Distances are expensive;
         // their utilities are not.
@@ -247,7 +275,11 @@ impl Ready {
         let straight = square(at, w, t);
         // The contact's position when it is nearest, to see whether the line of sight has turned to
         // the wrong side by then.
-        let share = if dot(self.beside, (at.0 + w.0 * t, at.1 + w.1 * t)) < 0.0 { self.other_side } else { 1.0 };
+        let share = if dot(self.beside, (at.0 + w.0 * t, at.1 + w.1 * t)) < 0.0 {
+            self.other_side
+        } else {
+            1.0
+        };
         // One square root for all three legs: the least distance has the least square.
         smaller(smaller(straight, turning), self.least_before).sqrt() * share
     }
@@ -264,7 +296,10 @@ impl Ready {
         Ways {
             first,
             last,
-            from_first: [self.passing(cell.first, slow), self.passing(cell.first, fast)],
+            from_first: [
+                self.passing(cell.first, slow),
+                self.passing(cell.first, fast),
+            ],
             from_last: [self.passing(cell.last, slow), self.passing(cell.last, fast)],
             middle,
             past,
@@ -291,16 +326,25 @@ impl Ready {
     /// Lower bound of the least distances on ways of a cell, m.
     #[inline(always)]
     pub(super) fn least(&self, ways: &Ways) -> f32 {
-        let nearest = (self.start.0 + ways.share * ways.past.0, self.start.1 + ways.share * ways.past.1);
+        let nearest = (
+            self.start.0 + ways.share * ways.past.0,
+            self.start.1 + ways.share * ways.past.1,
+        );
         let extent = smaller(dot(ways.first, nearest), dot(ways.last, nearest));
         let turning = smaller(dot(self.start, nearest), extent) * per_length(nearest);
-        let nearest = (ways.middle.0 + ways.t * ways.w.0, ways.middle.1 + ways.t * ways.w.1);
+        let nearest = (
+            ways.middle.0 + ways.t * ways.w.0,
+            ways.middle.1 + ways.t * ways.w.1,
+        );
         let [a, b] = ways.from_first.map(|w| dot(w, nearest));
         let [c, d] = ways.from_last.map(|w| dot(w, nearest));
         let slowest = smaller(smaller(smaller(a, b), smaller(c, d)), 0.0);
-        let extent = smaller(dot(ways.first, nearest), dot(ways.last, nearest)) + slowest * self.horizon;
+        let extent =
+            smaller(dot(ways.first, nearest), dot(ways.last, nearest)) + slowest * self.horizon;
         let straight = extent * per_length(nearest);
-        let least = smaller(smaller(straight, turning), self.least_before.sqrt()) - ways.off - ways.bend * self.horizon;
+        let least = smaller(smaller(straight, turning), self.least_before.sqrt())
+            - ways.off
+            - ways.bend * self.horizon;
         // As if all of them passed on the wrong side.
         smaller(least * self.other_side, least)
     }
@@ -308,14 +352,20 @@ impl Ready {
     /// The contact's position when the own ship is on its course.
     #[inline(always)]
     fn after(&self, turn: &Turn) -> Vector {
-        let past = (self.velocity.0 * turn.duration - turn.by.0, self.velocity.1 * turn.duration - turn.by.1);
+        let past = (
+            self.velocity.0 * turn.duration - turn.by.0,
+            self.velocity.1 * turn.duration - turn.by.1,
+        );
         (self.start.0 + past.0, self.start.1 + past.1)
     }
 
     /// The contact's velocity relative to the own ship on a course, a unit vector, at a speed, m/s.
     #[inline(always)]
     fn passing(&self, course: Vector, speed: f32) -> Vector {
-        (self.velocity.0 - speed * course.0, self.velocity.1 - speed * course.1)
+        (
+            self.velocity.0 - speed * course.0,
+            self.velocity.1 - speed * course.1,
+        )
     }
 
     /// Utility of a distance to a contact to approach.
@@ -329,7 +379,10 @@ impl Ready {
     #[inline(always)]
     pub(super) fn worth_far(&self, distance: f32) -> f32 {
         let rise = (distance - self.min) * self.slope;
-        let inside = smaller(larger((distance - self.touch) * self.inner_slope, 0.0), self.at_min);
+        let inside = smaller(
+            larger((distance - self.touch) * self.inner_slope, 0.0),
+            self.at_min,
+        );
         let outside = smaller(self.at_min + rise, 100.0);
         if distance > self.min { outside } else { inside }
     }

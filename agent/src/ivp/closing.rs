@@ -20,15 +20,23 @@ pub struct Closing {
 impl Closing {
     /// The function in single precision; `None` if a number is non-finite.
     pub(super) fn ready(&self, speed_max_m_s: f64) -> Option<Ready> {
-        let numbers = [self.offset.north, self.offset.east, self.velocity.north, self.velocity.east];
+        let numbers = [
+            self.offset.north,
+            self.offset.east,
+            self.velocity.north,
+            self.velocity.east,
+        ];
         let sound = numbers.iter().all(|x| x.is_finite() && x.abs() < 1e7);
         debug_assert!(sound, "{self:?}");
         if !sound {
             return None;
         }
         let range_m = self.offset.length();
-        let (sight_north, sight_east) =
-            if range_m > 0.0 { (self.offset.north / range_m, self.offset.east / range_m) } else { (0.0, 0.0) };
+        let (sight_north, sight_east) = if range_m > 0.0 {
+            (self.offset.north / range_m, self.offset.east / range_m)
+        } else {
+            (0.0, 0.0)
+        };
         let contact_m_s = self.velocity.length();
         let towards_m_s = -(sight_north * self.velocity.north + sight_east * self.velocity.east);
         // Both at top speed, so that the utility uses its full range for any contact.
@@ -68,7 +76,8 @@ impl Ready {
     /// Upper bound over a cell: utility is linear in velocity, so it is largest at a corner.
     #[inline(always)]
     pub(super) fn bound(&self, cell: &Cell) -> f32 {
-        let along = |(north, east): (f32, f32)| (self.north * north + self.east * east) * self.slope;
+        let along =
+            |(north, east): (f32, f32)| (self.north * north + self.east * east) * self.slope;
         let [a, b, c, d] = cell.corners().map(along);
         let most = larger(larger(a, b), larger(c, d));
         smaller(larger(self.rest + most + ROUNDING, 0.0), 100.0)

@@ -36,7 +36,11 @@ impl Weight {
     pub(super) fn new(weight: f64) -> Weight {
         debug_assert!(weight.is_finite(), "weight {weight}");
         // Weights may be expressions of a strategy, so their values are known only now.
-        let weight = if weight.is_finite() { weight.clamp(0.0, WEIGHT_MAX) } else { 0.0 };
+        let weight = if weight.is_finite() {
+            weight.clamp(0.0, WEIGHT_MAX)
+        } else {
+            0.0
+        };
         // Single precision here and in the bounds: with two different roundings a bound could fall
         // below its points.
         Weight((weight / QUANTUM) as f32)
@@ -67,7 +71,11 @@ pub(super) fn utility(utility: f64) -> f32 {
     debug_assert!(utility.is_finite(), "utility {utility}");
     let within = if utility < 0.0 { 0.0 } else { utility };
     let within = if within > 100.0 { 100.0 } else { within };
-    (if utility.abs() < f64::INFINITY { within } else { 0.0 }) as f32
+    (if utility.abs() < f64::INFINITY {
+        within
+    } else {
+        0.0
+    }) as f32
 }
 
 /// A utility in single precision clamped to 0 to 100; 0 for a non-finite one. Same result as
@@ -76,7 +84,11 @@ pub(super) fn utility(utility: f64) -> f32 {
 pub(super) fn single(utility: f32) -> f32 {
     debug_assert!(utility.is_finite(), "utility {utility}");
     let within = larger(0.0, smaller(100.0, utility));
-    if utility.abs() < f32::INFINITY { within } else { 0.0 }
+    if utility.abs() < f32::INFINITY {
+        within
+    } else {
+        0.0
+    }
 }
 
 #[cfg(test)]
@@ -86,24 +98,48 @@ mod tests {
     #[test]
     fn products_are_rounded_to_nearest_half_to_even() {
         let weight = |quanta: f32| Weight::new(f64::from(quanta) * QUANTUM);
-        for (factor, utility, want) in
-            [(1.0, 0.0, 0), (1.0, 0.5, 0), (1.0, 1.5, 2), (1.0, 2.5, 2), (3.0, 0.75, 2), (64_000.0, 100.0, 6_400_000)]
-        {
-            assert_eq!(weight(factor).quanta(utility), want, "{factor} times {utility}");
+        for (factor, utility, want) in [
+            (1.0, 0.0, 0),
+            (1.0, 0.5, 0),
+            (1.0, 1.5, 2),
+            (1.0, 2.5, 2),
+            (3.0, 0.75, 2),
+            (64_000.0, 100.0, 6_400_000),
+        ] {
+            assert_eq!(
+                weight(factor).quanta(utility),
+                want,
+                "{factor} times {utility}"
+            );
         }
         let mut stream = primitives::stream::Stream::new(1, "fixed");
         for _ in 0..100_000 {
             let factor = stream.between(0.0, 64_000.0) as f32;
             let utility = stream.between(0.0, 100.0) as f32;
             let want = (f64::from(utility * factor)).round_ties_even() as i32;
-            assert_eq!(Weight(factor).quanta(utility), want, "{factor} times {utility}");
+            assert_eq!(
+                Weight(factor).quanta(utility),
+                want,
+                "{factor} times {utility}"
+            );
         }
     }
 
     #[test]
     fn utilities_are_brought_into_range_alike_in_both_precisions() {
-        for (given, want) in [(-5.0, 0.0), (-0.0, 0.0), (0.0, 0.0), (50.5, 50.5), (100.0, 100.0), (1e30, 100.0)] {
-            assert_eq!((utility(given), single(given as f32)), (want, want), "{given}");
+        for (given, want) in [
+            (-5.0, 0.0),
+            (-0.0, 0.0),
+            (0.0, 0.0),
+            (50.5, 50.5),
+            (100.0, 100.0),
+            (1e30, 100.0),
+        ] {
+            assert_eq!(
+                (utility(given), single(given as f32)),
+                (want, want),
+                "{given}"
+            );
         }
     }
 }

@@ -39,8 +39,14 @@ impl Grid {
     /// With less than one course or two speeds, more than 65,536 of either, or a top speed that is
     /// not positive and finite.
     pub fn new(courses: usize, speeds: usize, speed_max_m_s: f64) -> Grid {
-        assert!((1..=1 << 16).contains(&courses), "{courses} courses, expected 1 to 65536");
-        assert!((2..=1 << 16).contains(&speeds), "{speeds} speeds, expected 2 to 65536");
+        assert!(
+            (1..=1 << 16).contains(&courses),
+            "{courses} courses, expected 1 to 65536"
+        );
+        assert!(
+            (2..=1 << 16).contains(&speeds),
+            "{speeds} speeds, expected 2 to 65536"
+        );
         assert!(
             speed_max_m_s.is_finite() && speed_max_m_s > 0.0,
             "top speed is {speed_max_m_s} m/s, expected a positive number"
@@ -55,11 +61,23 @@ impl Grid {
                 east: Lanes::each(|i| directions[of(first, i)].1.into()),
             })
             .collect();
-        let speed_m_s: Vec<f64> = (0..speeds).map(|j| j as f64 * speed_max_m_s / (speeds - 1) as f64).collect();
+        let speed_m_s: Vec<f64> = (0..speeds)
+            .map(|j| j as f64 * speed_max_m_s / (speeds - 1) as f64)
+            .collect();
         let of = |first: usize, i: usize| (first + i).min(speeds - 1);
-        let speeds_side_by_side =
-            (0..speeds).step_by(LANES).map(|first| Lanes::each(|i| speed_m_s[of(first, i)] as f32)).collect();
-        Grid { courses, speeds, speed_max_m_s, directions, speed_m_s, side_by_side, speeds_side_by_side }
+        let speeds_side_by_side = (0..speeds)
+            .step_by(LANES)
+            .map(|first| Lanes::each(|i| speed_m_s[of(first, i)] as f32))
+            .collect();
+        Grid {
+            courses,
+            speeds,
+            speed_max_m_s,
+            directions,
+            speed_m_s,
+            side_by_side,
+            speeds_side_by_side,
+        }
     }
 
     /// The number of courses.
@@ -132,7 +150,11 @@ impl Grid {
         let circle = self.circle();
         let ahead = f64::from(k as i32) * TICKS - from;
         let ahead = if ahead < 0.0 { ahead + circle } else { ahead };
-        if 2.0 * ahead > circle { ahead - circle } else { ahead }
+        if 2.0 * ahead > circle {
+            ahead - circle
+        } else {
+            ahead
+        }
     }
 
     pub(super) fn tick_rad(&self) -> f64 {
@@ -168,7 +190,10 @@ fn direction(k: usize, n: usize) -> (f32, f32) {
         return (east, north);
     }
     if 8 * k == n {
-        return (std::f32::consts::FRAC_1_SQRT_2, std::f32::consts::FRAC_1_SQRT_2);
+        return (
+            std::f32::consts::FRAC_1_SQRT_2,
+            std::f32::consts::FRAC_1_SQRT_2,
+        );
     }
     let (sin, cos) = primitives::math::sin_cos(k as f64 * TAU / n as f64);
     (cos as f32, sin as f32)

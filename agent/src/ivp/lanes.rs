@@ -69,7 +69,10 @@ impl Lanes<i32> {
         let mut fours = [0; SIDE];
         for (four, most) in fours.iter_mut().enumerate() {
             let of = SIDE * four;
-            *most = larger(larger(self.0[of], self.0[of + 1]), larger(self.0[of + 2], self.0[of + 3]));
+            *most = larger(
+                larger(self.0[of], self.0[of + 1]),
+                larger(self.0[of + 2], self.0[of + 3]),
+            );
         }
         fours
     }

@@ -15,7 +15,11 @@ struct Turns {
 impl Turns {
     #[inline(always)]
     fn new() -> Turns {
-        Turns { duration: Lanes::splat(0.0), by_north: Lanes::splat(0.0), by_east: Lanes::splat(0.0) }
+        Turns {
+            duration: Lanes::splat(0.0),
+            by_north: Lanes::splat(0.0),
+            by_east: Lanes::splat(0.0),
+        }
     }
 
     #[inline(always)]
@@ -26,7 +30,10 @@ impl Turns {
 
     #[inline(always)]
     fn at(&self, i: usize) -> Turn {
-        Turn { duration: self.duration.0[i], by: (self.by_north.0[i], self.by_east.0[i]) }
+        Turn {
+            duration: self.duration.0[i],
+            by: (self.by_north.0[i], self.by_east.0[i]),
+        }
     }
 }
 
@@ -41,12 +48,20 @@ pub(super) struct Distances<'a> {
 impl<'a> Distances<'a> {
     #[inline(always)]
     pub(super) fn new() -> Distances<'a> {
-        Distances { known: None, turns: Turns::new(), distances: Lanes::splat(0.0) }
+        Distances {
+            known: None,
+            turns: Turns::new(),
+            distances: Lanes::splat(0.0),
+        }
     }
 
     /// For courses, as north and east components of unit vectors, at speeds.
     #[inline(always)]
-    pub(super) fn measure(&mut self, ready: &'a Ready, (north, east, speed): (&Lanes<f32>, &Lanes<f32>, &Lanes<f32>)) {
+    pub(super) fn measure(
+        &mut self,
+        ready: &'a Ready,
+        (north, east, speed): (&Lanes<f32>, &Lanes<f32>, &Lanes<f32>),
+    ) {
         // Functions of a group are stored consecutively, so only the last distances need caching.
         if self.known.is_some_and(|known| ready.group == known.group) {
             return;
@@ -60,7 +75,8 @@ impl<'a> Distances<'a> {
         }
         self.known = Some(ready);
         for i in 0..LANES {
-            self.distances.0[i] = ready.distance(&self.turns.at(i), (north.0[i], east.0[i]), speed.0[i]);
+            self.distances.0[i] =
+                ready.distance(&self.turns.at(i), (north.0[i], east.0[i]), speed.0[i]);
         }
     }
 }
@@ -83,7 +99,15 @@ impl<'a> Bounded<'a> {
         let zeros = Lanes::splat(0.0);
         let first = Turns::new();
         let last = Turns::new();
-        Bounded { known: None, first, last, off: zeros, off_s: zeros, least: zeros, most: zeros }
+        Bounded {
+            known: None,
+            first,
+            last,
+            off: zeros,
+            off_s: zeros,
+            least: zeros,
+            most: zeros,
+        }
     }
 
     /// Computes both bounds.
@@ -105,7 +129,8 @@ impl<'a> Bounded<'a> {
         }
         if ready.seek {
             for i in 0..LANES {
-                self.least.0[i] = ready.least(&ready.ways(&self.fan(i), &cell(cells.0, cells.1, i)));
+                self.least.0[i] =
+                    ready.least(&ready.ways(&self.fan(i), &cell(cells.0, cells.1, i)));
             }
         } else {
             for i in 0..LANES {
@@ -136,6 +161,11 @@ impl<'a> Bounded<'a> {
 
     #[inline(always)]
     fn fan(&self, i: usize) -> Fan {
-        Fan { first: self.first.at(i), last: self.last.at(i), off: self.off.0[i], off_s: self.off_s.0[i] }
+        Fan {
+            first: self.first.at(i),
+            last: self.last.at(i),
+            off: self.off.0[i],
+            off_s: self.off_s.0[i],
+        }
     }
 }

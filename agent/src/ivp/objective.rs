@@ -9,8 +9,8 @@ use super::table::Table;
 
 /// A utility of 0 to 100 for each course and speed.
 ///
-/// Non-finite numbers count as no utility (a debug build panics). `Coupled` is almost free; the others
-/// are evaluated point by point.
+/// Non-finite numbers count as no utility (a debug build panics). `Coupled` is almost free; the
+/// others are evaluated point by point.
 #[derive(Clone, Copy, Debug)]
 pub enum Objective<'a> {
     /// A sum of course and speed.
@@ -33,12 +33,20 @@ pub enum Objective<'a> {
 impl Objective<'_> {
     /// A function of the course only.
     pub fn course(course: Peak) -> Objective<'static> {
-        Objective::Coupled { course, speed: Peak::default(), course_share: 1.0 }
+        Objective::Coupled {
+            course,
+            speed: Peak::default(),
+            course_share: 1.0,
+        }
     }
 
     /// A function of the speed only.
     pub fn speed(speed: Peak) -> Objective<'static> {
-        Objective::Coupled { course: Peak::default(), speed, course_share: 0.0 }
+        Objective::Coupled {
+            course: Peak::default(),
+            speed,
+            course_share: 0.0,
+        }
     }
 
     /// Whether it distinguishes courses.
@@ -62,9 +70,16 @@ impl Objective<'_> {
     /// # Panics
     /// Beyond the grid, or with a table of another size.
     pub fn utility(&self, grid: &Grid, k: usize, j: usize) -> f32 {
-        assert!(k < grid.courses() && j < grid.speeds(), "course {k}, speed {j}");
+        assert!(
+            k < grid.courses() && j < grid.speeds(),
+            "course {k}, speed {j}"
+        );
         match self.parts(grid) {
-            Parts::Separable(Separable { course, speed, share }) => {
+            Parts::Separable(Separable {
+                course,
+                speed,
+                share,
+            }) => {
                 let course = course.of_course(grid, k);
                 let speed = speed.of_speed(grid, j);
                 // For display: the search adds the two parts as integers, each with its own weight,
@@ -100,9 +115,21 @@ impl Objective<'_> {
         let field = |field: Option<Field>| field.map_or(Parts::Nothing, Parts::Field);
         let fastest_m_s = grid.speed_max_m_s();
         match self {
-            Objective::Coupled { course, speed, course_share } => {
-                let share = if course_share.is_finite() { course_share.clamp(0.0, 1.0) } else { 0.0 };
-                Parts::Separable(Separable { course, speed, share })
+            Objective::Coupled {
+                course,
+                speed,
+                course_share,
+            } => {
+                let share = if course_share.is_finite() {
+                    course_share.clamp(0.0, 1.0)
+                } else {
+                    0.0
+                };
+                Parts::Separable(Separable {
+                    course,
+                    speed,
+                    share,
+                })
             }
             Objective::Closest(closest) => field(closest.ready(fastest_m_s).map(Field::Closest)),
             Objective::Closing(closing) => field(closing.ready(fastest_m_s).map(Field::Closing)),
@@ -111,7 +138,10 @@ impl Objective<'_> {
                 let size = (grid.courses(), grid.speeds());
                 // A bug of the caller, not a fault of a file: a table of another grid would be read
                 // beyond its end.
-                assert!(found == size, "table of {found:?} courses and speeds, expected {size:?}");
+                assert!(
+                    found == size,
+                    "table of {found:?} courses and speeds, expected {size:?}"
+                );
                 Parts::Table(table)
             }
         }

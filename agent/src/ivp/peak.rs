@@ -35,7 +35,12 @@ pub struct Peak {
 impl Peak {
     /// A plain tent of full height.
     pub fn tent(summit: f64, base_width: f64) -> Peak {
-        Peak { summit, base_width, height: 100.0, ..Peak::default() }
+        Peak {
+            summit,
+            base_width,
+            height: 100.0,
+            ..Peak::default()
+        }
     }
 
     /// Utility of speed `j`.
@@ -52,8 +57,16 @@ impl Peak {
     pub(super) fn on_courses(&self, grid: &Grid) -> CoursePeak {
         // Ticks make the angle between a summit and a course an integer, the same in a turned or
         // mirrored scene. A non-finite summit must not count as north.
-        let summit = if self.summit.is_finite() { grid.ticks_of(self.summit) } else { f64::NAN };
-        CoursePeak { peak: *self, summit, tick_rad: grid.tick_rad() }
+        let summit = if self.summit.is_finite() {
+            grid.ticks_of(self.summit)
+        } else {
+            f64::NAN
+        };
+        CoursePeak {
+            peak: *self,
+            summit,
+            tick_rad: grid.tick_rad(),
+        }
     }
 
     /// Utility at this distance from the summit; 0 for a non-finite distance.
@@ -63,11 +76,27 @@ impl Peak {
         let has_width = self.peak_width > 0.0;
         let delta = if has_width { self.summit_delta } else { 0.0 };
         // All cases are computed without branches, so that this vectorises.
-        let within = if has_width { 100.0 - delta * (distance / self.peak_width) } else { 100.0 };
+        let within = if has_width {
+            100.0 - delta * (distance / self.peak_width)
+        } else {
+            100.0
+        };
         let beside = (100.0 - delta) * (1.0 - (distance - self.peak_width) / self.base_width);
-        let outside = if distance < self.peak_width + self.base_width { beside } else { 0.0 };
-        let shape = if distance <= self.peak_width { within } else { outside };
-        let shape = if distance < f64::INFINITY { shape } else { f64::NAN };
+        let outside = if distance < self.peak_width + self.base_width {
+            beside
+        } else {
+            0.0
+        };
+        let shape = if distance <= self.peak_width {
+            within
+        } else {
+            outside
+        };
+        let shape = if distance < f64::INFINITY {
+            shape
+        } else {
+            f64::NAN
+        };
         fixed::utility(shape * (self.height / 100.0))
     }
 }
@@ -84,6 +113,7 @@ impl CoursePeak {
     /// Utility of course `k`.
     #[inline(always)]
     pub(super) fn at(&self, grid: &Grid, k: usize) -> f32 {
-        self.peak.at(grid.ticks_between(self.summit, k) * self.tick_rad)
+        self.peak
+            .at(grid.ticks_between(self.summit, k) * self.tick_rad)
     }
 }

@@ -95,7 +95,10 @@ impl Problem {
     /// # Panics
     /// Beyond [`FUNCTIONS_MAX`] functions, or with a table of another size than the grid.
     pub fn add(&mut self, weight: f64, objective: &Objective) {
-        assert!(self.functions < FUNCTIONS_MAX, "more than {FUNCTIONS_MAX} functions");
+        assert!(
+            self.functions < FUNCTIONS_MAX,
+            "more than {FUNCTIONS_MAX} functions"
+        );
         let weight = Weight::new(weight);
         self.functions += 1;
         // Counted anyway: whether a helm has a preference does not depend on weights that
@@ -105,7 +108,8 @@ impl Problem {
         }
         self.decides_course |= objective.decides_course();
         self.decides_speed |= objective.decides_speed();
-        self.sums.add(&self.grid, self.instructions, weight, objective);
+        self.sums
+            .add(&self.grid, self.instructions, weight, objective);
     }
 
     /// The number of functions.
@@ -128,13 +132,20 @@ impl Problem {
             cells: &self.cells,
             sums: &self.sums,
             bounds: &mut self.bounds,
-            present: Present { course: self.grid.ticks_of(preference.course_rad), speed_m_s: preference.speed_m_s },
+            present: Present {
+                course: self.grid.ticks_of(preference.course_rad),
+                speed_m_s: preference.speed_m_s,
+            },
             // A good first guess lets most cells be skipped at once. It changes how many points are
             // evaluated, but never the result.
             guess: self.found,
         };
         let (best, evaluated) = self.instructions.run(search);
         self.found = Some(best.decision);
-        Choice { decision: best.decision, value: f64::from(best.value) * QUANTUM, evaluated }
+        Choice {
+            decision: best.decision,
+            value: f64::from(best.value) * QUANTUM,
+            evaluated,
+        }
     }
 }

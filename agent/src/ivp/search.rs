@@ -74,7 +74,13 @@ impl Kernel for Search<'_> {
         self.bound_lists();
         self.bound_sectors();
         // Above the mark of finished places, so that none of them is taken, and below every sum.
-        let mut best = Best { value: DONE + 1, decision: Decision { course: 0, speed: 0 } };
+        let mut best = Best {
+            value: DONE + 1,
+            decision: Decision {
+                course: 0,
+                speed: 0,
+            },
+        };
         let mut evaluated = 0;
         if let Some(Decision { course, speed }) = self.guess {
             self.evaluate((course / SIDE, speed / SIDE), &mut best);
@@ -86,7 +92,10 @@ impl Kernel for Search<'_> {
             let along = sector / self.cells.sector_courses;
             let mut tiles = [self.tiles(sector)];
             while let Some(tile) = take_most(&mut tiles, best.value) {
-                self.evaluate((SIDE * across + tile % SIDE, SIDE * along + tile / SIDE), &mut best);
+                self.evaluate(
+                    (SIDE * across + tile % SIDE, SIDE * along + tile / SIDE),
+                    &mut best,
+                );
                 evaluated += LANES;
             }
         }
@@ -126,7 +135,8 @@ impl Search<'_> {
         let courses = self.sums.courses.len();
         for along in 0..self.sums.speeds.len() {
             for across in 0..courses {
-                self.bounds.lists[along * courses + across] = self.sums.most_in_lists(across, along);
+                self.bounds.lists[along * courses + across] =
+                    self.sums.most_in_lists(across, along);
             }
         }
     }
@@ -134,7 +144,11 @@ impl Search<'_> {
     /// Computes the upper bounds of sectors, and the formulas with full utility in them.
     #[inline(always)]
     fn bound_sectors(&mut self) {
-        let Bounds { lists, sectors, clear } = &mut *self.bounds;
+        let Bounds {
+            lists,
+            sectors,
+            clear,
+        } = &mut *self.bounds;
         let formulas = self.sums.fields.len();
         clear.resize(formulas * sectors.len(), 0);
         for (chunk, bounds) in sectors.iter_mut().enumerate() {
@@ -143,7 +157,9 @@ impl Search<'_> {
             for (sum, tiles) in sums.0.iter_mut().zip(&lists[LANES * chunk..]) {
                 *sum = tiles.most();
             }
-            *bounds = self.sums.bound_sectors(sums, cells, &mut clear[formulas * chunk..][..formulas]);
+            *bounds =
+                self.sums
+                    .bound_sectors(sums, cells, &mut clear[formulas * chunk..][..formulas]);
         }
     }
 
@@ -162,14 +178,20 @@ impl Search<'_> {
     fn tiles(&self, sector: usize) -> Lanes<i32> {
         let courses = &self.cells.tile_courses[sector % self.cells.sector_courses];
         let speeds = &self.cells.tile_speeds[sector / self.cells.sector_courses];
-        self.sums.add_bounds(self.bounds.lists[sector], (courses, speeds), self.clear(sector))
+        self.sums.add_bounds(
+            self.bounds.lists[sector],
+            (courses, speeds),
+            self.clear(sector),
+        )
     }
 
     /// Evaluates a tile. Keeps its best point if that beats the best so far.
     #[inline(always)]
     fn evaluate(&self, (course_tile, speed_tile): (usize, usize), best: &mut Best) {
         let sector = speed_tile / SIDE * self.cells.sector_courses + course_tile / SIDE;
-        let sums = self.sums.tile(self.cells, (course_tile, speed_tile), self.clear(sector));
+        let sums = self
+            .sums
+            .tile(self.cells, (course_tile, speed_tile), self.clear(sector));
         let value = sums.most();
         // Most tiles end here, after one comparison; only equal or better ones are checked point by
         // point.
@@ -180,9 +202,18 @@ impl Search<'_> {
 
     /// Keeps the best of the points that equal or beat the best so far.
     #[inline(never)]
-    fn keep_best(&self, sums: &Lanes<i32>, value: i32, (course, speed): (usize, usize), best: &mut Best) {
+    fn keep_best(
+        &self,
+        sums: &Lanes<i32>,
+        value: i32,
+        (course, speed): (usize, usize),
+        best: &mut Best,
+    ) {
         for (lane, &sum) in sums.0.iter().enumerate() {
-            let decision = Decision { course: course + lane / SIDE, speed: speed + lane % SIDE };
+            let decision = Decision {
+                course: course + lane / SIDE,
+                speed: speed + lane % SIDE,
+            };
             if sum == value && (value > best.value || self.is_nearer(decision, best.decision)) {
                 *best = Best { value, decision };
             }
@@ -241,14 +272,28 @@ impl Sums {
 
     /// Adds the formulas' bounds to the tiles' sums. Formulas in `clear` add their full utility.
     #[inline(always)]
-    fn add_bounds(&self, mut sums: Lanes<i32>, cells: (&CourseSpans, &SpeedSpans), clear: Clear<'_>) -> Lanes<i32> {
+    fn add_bounds(
+        &self,
+        mut sums: Lanes<i32>,
+        cells: (&CourseSpans, &SpeedSpans),
+        clear: Clear<'_>,
+    ) -> Lanes<i32> {
         let mut bounded = Bounded::new();
         for (i, (weight, field)) in self.fields.iter().enumerate() {
             match field {
                 _ if clear.is_so(i) => add_full(&mut sums, *weight),
                 Field::Closest(ready) => {
                     bounded.measure_best(ready, cells);
-                    add_worth(&mut sums, *weight, ready, if ready.seek { &bounded.least } else { &bounded.most });
+                    add_worth(
+                        &mut sums,
+                        *weight,
+                        ready,
+                        if ready.seek {
+                            &bounded.least
+                        } else {
+                            &bounded.most
+                        },
+                    );
                 }
                 Field::Closing(ready) => add_closing_bounds(&mut sums, *weight, ready, cells),
             }
@@ -259,7 +304,12 @@ impl Sums {
     /// The same for sectors. Also sets a bit in `clear` for each sector in which a formula has full
     /// utility.
     #[inline(always)]
-    fn bound_sectors(&self, mut sums: Lanes<i32>, cells: (&CourseSpans, &SpeedSpans), clear: &mut [u16]) -> Lanes<i32> {
+    fn bound_sectors(
+        &self,
+        mut sums: Lanes<i32>,
+        cells: (&CourseSpans, &SpeedSpans),
+        clear: &mut [u16],
+    ) -> Lanes<i32> {
         let mut bounded = Bounded::new();
         // A contact that stays far away in a whole sector adds its full weight there. Most contacts
         // do, and their points need no distance.
@@ -283,7 +333,12 @@ impl Sums {
 
     /// The weighted sums of a tile's points, in quanta.
     #[inline(always)]
-    fn tile(&self, cells: &Cells, (course_tile, speed_tile): (usize, usize), clear: Clear<'_>) -> Lanes<i32> {
+    fn tile(
+        &self,
+        cells: &Cells,
+        (course_tile, speed_tile): (usize, usize),
+        clear: Clear<'_>,
+    ) -> Lanes<i32> {
         let of_courses = &self.courses[course_tile / SIDE].0[SIDE * (course_tile % SIDE)..][..SIDE];
         let first_speed = SIDE * (speed_tile % SIDE);
         let of_speeds = &self.speeds[speed_tile / SIDE].0[first_speed..][..SIDE];
@@ -309,7 +364,8 @@ impl Sums {
                 }
                 Field::Closing(ready) => {
                     for i in 0..LANES {
-                        sums.0[i] += weight.quanta(ready.utility(north.0[i], east.0[i], speed.0[i]));
+                        sums.0[i] +=
+                            weight.quanta(ready.utility(north.0[i], east.0[i], speed.0[i]));
                     }
                 }
             }
@@ -341,7 +397,12 @@ impl Clear<'_> {
 
 /// Adds the utilities of distances.
 #[inline(always)]
-fn add_worth(sums: &mut Lanes<i32>, weight: Weight, ready: &closest::Ready, distances: &Lanes<f32>) {
+fn add_worth(
+    sums: &mut Lanes<i32>,
+    weight: Weight,
+    ready: &closest::Ready,
+    distances: &Lanes<f32>,
+) {
     if ready.seek {
         for i in 0..LANES {
             sums.0[i] += weight.quanta(ready.worth_near(distances.0[i]));
@@ -372,7 +433,11 @@ fn add_closing_bounds(
 fn clear_bits(ready: &closest::Ready, least: &Lanes<f32>) -> u16 {
     let mut bits = Lanes::splat(0);
     for i in 0..LANES {
-        bits.0[i] = if ready.worth_far(least.0[i]) >= 100.0 { 1 << i } else { 0 };
+        bits.0[i] = if ready.worth_far(least.0[i]) >= 100.0 {
+            1 << i
+        } else {
+            0
+        };
     }
     bits.0.iter().fold(0, |all, bit| all | bit) as u16
 }
@@ -388,7 +453,12 @@ fn add_full(sums: &mut Lanes<i32>, weight: Weight) {
 
 /// The upper bounds of lists and a table on the courses of one tile, for the speeds of each tile.
 #[inline(always)]
-fn most_of_rows(rows: &[Lanes<i32>], of_courses: &Lanes<i32>, of_speeds: &Lanes<i32>, tile: usize) -> Lanes<i32> {
+fn most_of_rows(
+    rows: &[Lanes<i32>],
+    of_courses: &Lanes<i32>,
+    of_speeds: &Lanes<i32>,
+    tile: usize,
+) -> Lanes<i32> {
     let k = SIDE * tile;
     let mut most = Lanes::splat(DONE);
     let mut pairs = Lanes::splat(DONE);

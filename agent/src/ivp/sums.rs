@@ -34,8 +34,13 @@ impl Sums {
         let lowered = vec![false; courses.len()];
         // Programs have up to one table per obstacle and one formula per contact, so no list grows
         // later.
-        let mut sums =
-            Sums { courses, speeds, fields: Vec::with_capacity(FUNCTIONS_MAX / 8), table: Vec::new(), lowered };
+        let mut sums = Sums {
+            courses,
+            speeds,
+            fields: Vec::with_capacity(FUNCTIONS_MAX / 8),
+            table: Vec::new(),
+            lowered,
+        };
         sums.clear(grid);
         sums
     }
@@ -49,14 +54,33 @@ impl Sums {
     }
 
     /// Adds a function.
-    pub(super) fn add(&mut self, grid: &Grid, instructions: Instructions, weight: Weight, objective: &Objective) {
+    pub(super) fn add(
+        &mut self,
+        grid: &Grid,
+        instructions: Instructions,
+        weight: Weight,
+        objective: &Objective,
+    ) {
         match objective.parts(grid) {
-            Parts::Separable(separable) => instructions.run(AddSeparable { sums: self, grid, weight, separable }),
+            Parts::Separable(separable) => instructions.run(AddSeparable {
+                sums: self,
+                grid,
+                weight,
+                separable,
+            }),
             Parts::Field(field) => self.add_field(weight, field),
             Parts::Table(table) => {
                 // The first table allocates for all; later decisions allocate nothing.
-                self.table.resize(self.speeds.len() * LANES * self.courses.len(), Lanes::splat(0));
-                instructions.run(AddTable { sums: self, grid, weight, table });
+                self.table.resize(
+                    self.speeds.len() * LANES * self.courses.len(),
+                    Lanes::splat(0),
+                );
+                instructions.run(AddTable {
+                    sums: self,
+                    grid,
+                    weight,
+                    table,
+                });
             }
             Parts::Nothing => {}
         }
@@ -102,7 +126,12 @@ impl Kernel for AddSeparable<'_> {
 
     #[inline(always)]
     fn run(self) {
-        let AddSeparable { sums, grid, weight, separable } = self;
+        let AddSeparable {
+            sums,
+            grid,
+            weight,
+            separable,
+        } = self;
         let (of_course, of_speed) = separable.weights(weight);
         if !of_course.is_zero() {
             let peak = separable.course.on_courses(grid);
@@ -129,7 +158,11 @@ impl Kernel for AddSeparable<'_> {
 fn add_peak(sums: &mut Lanes<i32>, first: usize, weight: Weight, peak: &CoursePeak, grid: &Grid) {
     for i in 0..LANES {
         let quanta = weight.quanta(peak.at(grid, first + i));
-        sums.0[i] += if first + i < grid.courses() { quanta } else { 0 };
+        sums.0[i] += if first + i < grid.courses() {
+            quanta
+        } else {
+            0
+        };
     }
 }
 
@@ -155,7 +188,12 @@ impl Kernel for AddTable<'_> {
 
     #[inline(always)]
     fn run(self) {
-        let AddTable { sums, grid, weight, table } = self;
+        let AddTable {
+            sums,
+            grid,
+            weight,
+            table,
+        } = self;
         for (across, lowered) in table.lowered.iter().enumerate() {
             let first = LANES * across;
             let count = (grid.courses() - first).min(LANES);
@@ -163,7 +201,11 @@ impl Kernel for AddTable<'_> {
                 // Courses that nothing lowers get 100 at all speeds, so most of 360 courses by 36
                 // speeds need no work. Skipping them took a game of `surveyor_2v2` from 1,220 to
                 // 2,600 times real time.
-                *sum += if lowered >> i & 1 == 0 { weight.quanta(100.0) } else { 0 };
+                *sum += if lowered >> i & 1 == 0 {
+                    weight.quanta(100.0)
+                } else {
+                    0
+                };
             }
             // Cleared on first use in a decision, not before each: most of the table stays unused.
             if *lowered != 0 && !sums.lowered[across] {

@@ -21,9 +21,14 @@ impl Table {
     pub fn of(grid: &Grid, utility: impl Fn(usize, usize) -> f32) -> Table {
         let mut table = Table::default();
         table.clear(grid);
-        for k in (0..grid.courses()).filter(|k| (0..grid.speeds()).any(|j| utility(*k, j) != 100.0)) {
-            for (j, lowered) in
-                table.lowered_mut(k).iter_mut().flat_map(|lanes| &mut lanes.0).enumerate().take(grid.speeds())
+        for k in (0..grid.courses()).filter(|k| (0..grid.speeds()).any(|j| utility(*k, j) != 100.0))
+        {
+            for (j, lowered) in table
+                .lowered_mut(k)
+                .iter_mut()
+                .flat_map(|lanes| &mut lanes.0)
+                .enumerate()
+                .take(grid.speeds())
             {
                 *lowered = utility(k, j);
             }
@@ -34,7 +39,8 @@ impl Table {
     /// Resets all utilities to 100 on a grid.
     pub fn clear(&mut self, grid: &Grid) {
         (self.courses, self.speeds) = (grid.courses(), grid.speeds());
-        self.rows.resize(self.courses * self.lanes(), Lanes::splat(100.0));
+        self.rows
+            .resize(self.courses * self.lanes(), Lanes::splat(100.0));
         self.lowered.clear();
         self.lowered.resize(self.courses.div_ceil(LANES), 0);
     }
@@ -61,7 +67,11 @@ impl Table {
 
     /// The utility of course `k` at speed `j`.
     pub fn utility(&self, k: usize, j: usize) -> f32 {
-        if self.lowered[k / LANES] >> (k % LANES) & 1 == 0 { 100.0 } else { self.row(k)[j / LANES].0[j % LANES] }
+        if self.lowered[k / LANES] >> (k % LANES) & 1 == 0 {
+            100.0
+        } else {
+            self.row(k)[j / LANES].0[j % LANES]
+        }
     }
 
     /// The number of groups that hold all speeds.

@@ -53,10 +53,22 @@ impl Lag {
 
     /// Whether all numbers are valid for computing.
     pub(super) fn is_sound(&self) -> bool {
-        let rates = [self.turn_rad_s, self.acceleration_m_s2, self.deceleration_m_s2];
-        let numbers = [self.velocity.north, self.velocity.east, self.heading.north, self.heading.east, self.reaction_s];
+        let rates = [
+            self.turn_rad_s,
+            self.acceleration_m_s2,
+            self.deceleration_m_s2,
+        ];
+        let numbers = [
+            self.velocity.north,
+            self.velocity.east,
+            self.heading.north,
+            self.heading.east,
+            self.reaction_s,
+        ];
         let sound = |x: &f64| x.is_finite() && x.abs() < 1e7;
-        numbers.iter().all(sound) && self.reaction_s >= 0.0 && rates.iter().all(|rate| sound(rate) && *rate > 1e-4)
+        numbers.iter().all(sound)
+            && self.reaction_s >= 0.0
+            && rates.iter().all(|rate| sound(rate) && *rate > 1e-4)
     }
 
     /// The longest time until the own ship is on its course, s.
@@ -98,7 +110,11 @@ pub(super) struct Fan {
 
 impl Turning {
     /// For a ship that follows decisions at once.
-    const NONE: Turning = Turning { heading: (1.0, 0.0), s_per_rad: 0.0, radius: 0.0 };
+    const NONE: Turning = Turning {
+        heading: (1.0, 0.0),
+        s_per_rad: 0.0,
+        radius: 0.0,
+    };
 
     pub(super) fn new(lag: Option<&Lag>) -> Turning {
         lag.map_or(Turning::NONE, |lag| Turning {
@@ -123,7 +139,10 @@ impl Turning {
         let middle = (middle_north * middle_north + middle_east * middle_east).sqrt();
         // For the course straight back, the middle of both headings is zero and has no direction.
         let scale = self.radius * chord / larger(middle, 1e-3);
-        Turn { duration: chord * arc_of_chord * self.s_per_rad, by: (scale * middle_north, scale * middle_east) }
+        Turn {
+            duration: chord * arc_of_chord * self.s_per_rad,
+            by: (scale * middle_north, scale * middle_east),
+        }
     }
 
     /// Turns onto the courses of a cell.
@@ -141,7 +160,8 @@ impl Turning {
         let mut off = bend + ROUNDING_RAD;
         let mut off_s = 2.4 * bend + ROUNDING_RAD;
         let cosine = self.heading.0 * cell.north + self.heading.1 * cell.east;
-        let within = 1.0 - larger(cosine, -cosine) < 0.55 * (cell.half + ROUNDING_RAD) * (cell.half + ROUNDING_RAD);
+        let within = 1.0 - larger(cosine, -cosine)
+            < 0.55 * (cell.half + ROUNDING_RAD) * (cell.half + ROUNDING_RAD);
         // Between two courses on either side of the bow the arcs bend to both sides, and near
         // straight back they end far apart. The four corners do not enclose them there, so the
         // bound is widened by the largest deviation.
@@ -150,7 +170,12 @@ impl Turning {
         off += if at_bow { 1.1 * cell.half } else { 0.0 } + if at_back { 4.0 } else { 0.0 };
         off_s += if at_bow { 1.3 * cell.half } else { 0.0 } + if at_back { 3.2 } else { 0.0 };
         let whole = if cell.is_disc { 1e6 } else { 0.0 };
-        Fan { first, last, off: off * self.radius + whole, off_s: off_s * self.s_per_rad }
+        Fan {
+            first,
+            last,
+            off: off * self.radius + whole,
+            off_s: off_s * self.s_per_rad,
+        }
     }
 }
 
@@ -169,7 +194,11 @@ impl MeanSpeed {
     /// Any speed at once. A power of two, so that nothing is rounded.
     const NONE: MeanSpeed = {
         let much = (1_u64 << 60) as f32;
-        MeanSpeed { ahead: 0.0, gain: (much, 1.0 / much), loss: (much, 1.0 / much) }
+        MeanSpeed {
+            ahead: 0.0,
+            gain: (much, 1.0 / much),
+            loss: (much, 1.0 / much),
+        }
     };
 
     /// The mean speed until `until_s` from now.
@@ -187,7 +216,11 @@ impl MeanSpeed {
     /// - y^2 / 2` of the largest possible.
     #[inline(always)]
     pub(super) fn of(&self, speed: f32) -> f32 {
-        let (most, per_most) = if speed > self.ahead { self.gain } else { self.loss };
+        let (most, per_most) = if speed > self.ahead {
+            self.gain
+        } else {
+            self.loss
+        };
         let share = smaller(larger((speed - self.ahead) * per_most, -1.0), 1.0);
         self.ahead + most * (share * (1.0 - 0.5 * share.abs()))
     }
@@ -198,8 +231,14 @@ mod tests {
     use super::*;
 
     const LAG: Lag = Lag {
-        velocity: Ned { north: 0.0, east: 2.0 },
-        heading: Ned { north: 0.0, east: 1.0 },
+        velocity: Ned {
+            north: 0.0,
+            east: 2.0,
+        },
+        heading: Ned {
+            north: 0.0,
+            east: 1.0,
+        },
         reaction_s: 0.7,
         turn_rad_s: 0.35,
         acceleration_m_s2: 1.2,
@@ -215,16 +254,26 @@ mod tests {
             let duration_s = by_rad.abs() / LAG.turn_rad_s;
             let way_m = LAG.velocity.east * duration_s / f64::from(steps);
             let course = |share: f64| {
-                let (sin, cos) = primitives::math::sin_cos(std::f64::consts::FRAC_PI_2 + share * by_rad);
-                Ned { north: cos, east: sin }
+                let (sin, cos) =
+                    primitives::math::sin_cos(std::f64::consts::FRAC_PI_2 + share * by_rad);
+                Ned {
+                    north: cos,
+                    east: sin,
+                }
             };
             let way = |step: i32| course((f64::from(step) + 0.5) / f64::from(steps)).scaled(way_m);
             let at = (0..steps).map(way).fold(Ned::default(), |at, way| at + way);
             let to = course(1.0);
             let turn = turning.to((to.north as f32, to.east as f32));
-            let end = Ned { north: f64::from(turn.by.0), east: f64::from(turn.by.1) };
+            let end = Ned {
+                north: f64::from(turn.by.0),
+                east: f64::from(turn.by.1),
+            };
             let what = format!("by {by_deg} degrees: {turn:?}, {at:?} after {duration_s} s");
-            assert!((f64::from(turn.duration) - duration_s).abs() <= 0.06 * duration_s + 1e-3, "{what}");
+            assert!(
+                (f64::from(turn.duration) - duration_s).abs() <= 0.06 * duration_s + 1e-3,
+                "{what}"
+            );
             assert!(end.distance(at) <= 2e-3, "{what}");
         }
     }
@@ -245,7 +294,10 @@ mod tests {
                     way_m += dt_s * speed_m_s;
                 }
                 let got = f64::from(mean.of(wanted as f32));
-                assert!((got - way_m / until_s).abs() < 1e-3, "{wanted} m/s within {until_s} s: {got}");
+                assert!(
+                    (got - way_m / until_s).abs() < 1e-3,
+                    "{wanted} m/s within {until_s} s: {got}"
+                );
             }
         }
         for wanted in [0.0_f32, 0.3, 1.0 / 3.0, 7.77] {

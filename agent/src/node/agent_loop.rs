@@ -65,20 +65,36 @@ impl AgentLoop {
             None => mind_of(scenario, vehicle),
         };
         // The sim rejects unknown names.
-        let known = settings.vehicles.iter().filter_map(|name| scenario.vehicle_by_name(name));
+        let known = settings
+            .vehicles
+            .iter()
+            .filter_map(|name| scenario.vehicle_by_name(name));
         let runner = MindRunner::new(known.map(|vehicle| (vehicle, mind(vehicle))));
         // The sim waits `patience_s` before it drops an agent. Waits for mates use at most half of
         // it, so that a late mate cannot cost this agent the game.
         let half_patience = Duration::from_secs_f64(0.5 * scenario.patience_s);
         let is_lockstep = info.pace == "lockstep";
         let delivery = Delivery::per_decision(is_lockstep);
-        let limit = |wait: Duration| if is_lockstep { wait.min(half_patience) } else { Duration::ZERO };
-        let mut teams: Vec<TeamId> = runner.minds().map(|(vehicle, _)| scenario.team_of(vehicle)).collect();
+        let limit = |wait: Duration| {
+            if is_lockstep {
+                wait.min(half_patience)
+            } else {
+                Duration::ZERO
+            }
+        };
+        let mut teams: Vec<TeamId> = runner
+            .minds()
+            .map(|(vehicle, _)| scenario.team_of(vehicle))
+            .collect();
         teams.sort_unstable();
         teams.dedup();
         let unread = Arc::new(Latest::new(scenario.teams.len()));
-        let subscribe =
-            |team: &TeamId| bus.subscribe(topic::picture(game, scenario, *team), keep(&unread, team.index()));
+        let subscribe = |team: &TeamId| {
+            bus.subscribe(
+                topic::picture(game, scenario, *team),
+                keep(&unread, team.index()),
+            )
+        };
         let declarations = teams.iter().map(subscribe).collect::<Result<Vec<_>, _>>()?;
         let sim = SimWatch::open(bus, game, Patience::of_player(settings.silence))?;
         let orders = topic::orders(game, scenario, &teams, &bus.id());
@@ -108,8 +124,15 @@ impl AgentLoop {
     ) -> Result<(), NodeError> {
         // Orders name the vehicle: with boats other than the requested ones, the minds would steer
         // boats that they do not know.
-        if !self.runner.minds().map(|(vehicle, _)| vehicle).eq(joined.vehicles) {
-            return Err(NodeError::Refused("it granted boats that were not requested".to_owned()));
+        if !self
+            .runner
+            .minds()
+            .map(|(vehicle, _)| vehicle)
+            .eq(joined.vehicles)
+        {
+            return Err(NodeError::Refused(
+                "it granted boats that were not requested".to_owned(),
+            ));
         }
         self.ticket = joined.ticket;
         self.helm_queries = Some(HelmQueries::open(bus, game, scenario, &self.runner)?);
@@ -129,7 +152,10 @@ impl AgentLoop {
                 let Some(unread) = unread else { continue };
                 self.sim.hears();
                 unread.iter().try_for_each(|bytes| self.see(cell, bytes))?;
-                if self.pictures[cell].as_ref().is_some_and(|picture| picture.over) {
+                if self.pictures[cell]
+                    .as_ref()
+                    .is_some_and(|picture| picture.over)
+                {
                     return Ok(());
                 }
                 // Only the newest picture: a queue would make a slow agent work on outdated ones.
@@ -154,11 +180,16 @@ impl AgentLoop {
     fn see(&mut self, cell: usize, bytes: &[u8]) -> Result<(), NodeError> {
         let mut picture: Picture = match codec::decode(bytes) {
             Ok(picture) => picture,
-            Err(e @ DecodeError::Version { .. }) => return Err(NodeError::Version { theirs: e.to_string() }),
+            Err(e @ DecodeError::Version { .. }) => {
+                return Err(NodeError::Version {
+                    theirs: e.to_string(),
+                });
+            }
             // Damaged in transit; the sim sends it again.
             Err(_) => return Ok(()),
         };
-        self.refusals.add(Refusal::BadNumber, picture.remove_bad_numbers());
+        self.refusals
+            .add(Refusal::BadNumber, picture.remove_bad_numbers());
         let before = self.pictures[cell].take();
         self.pictures[cell] = Some(with_missed_events(picture, before, self.runner.decided()));
         Ok(())
@@ -167,8 +198,14 @@ impl AgentLoop {
     /// Decides when the pictures of all teams have the same tick. Answers a repeated tick with the
     /// same orders. Returns whether the minds have decided.
     fn decide(&mut self) -> Result<bool, NodeError> {
-        let stamp_of = |team: &TeamId| self.pictures[team.index()].as_ref().map(|picture| picture.stamp);
-        let Some(stamp) = self.teams.first().and_then(stamp_of) else { return Ok(false) };
+        let stamp_of = |team: &TeamId| {
+            self.pictures[team.index()]
+                .as_ref()
+                .map(|picture| picture.stamp)
+        };
+        let Some(stamp) = self.teams.first().and_then(stamp_of) else {
+            return Ok(false);
+        };
         // Boats of several teams decide on the same tick: with pictures of different ticks the
         // result would depend on their order of arrival.
         if self.teams.iter().any(|team| stamp_of(team) != Some(stamp)) {
@@ -181,7 +218,9 @@ impl AgentLoop {
             self.talk.hear(&mut self.runner, stamp.seq);
             self.policies.give(&mut self.runner, stamp);
             let pictures = &self.pictures;
-            self.runner.decide(stamp, |vehicle| pictures.iter().flatten().find(|p| p.own(vehicle).is_some()));
+            self.runner.decide(stamp, |vehicle| {
+                pictures.iter().flatten().find(|p| p.own(vehicle).is_some())
+            });
             self.talk.publish_words(self.runner.sent(), stamp);
         }
         // Messages to mates before orders: the sim advances once it has the orders, and then the
@@ -196,9 +235,14 @@ impl AgentLoop {
 
 /// A picture with the events of the previous one added if no decision was made on that one.
 /// `decided` is the number of the last decision. Each event is in one picture only.
-fn with_missed_events(mut picture: Picture, before: Option<Picture>, decided: Option<u64>) -> Picture {
-    let is_missed =
-        |old: &Picture| old.stamp.seq < picture.stamp.seq && decided.is_none_or(|decided| decided < old.stamp.seq);
+fn with_missed_events(
+    mut picture: Picture,
+    before: Option<Picture>,
+    decided: Option<u64>,
+) -> Picture {
+    let is_missed = |old: &Picture| {
+        old.stamp.seq < picture.stamp.seq && decided.is_none_or(|decided| decided < old.stamp.seq)
+    };
     if let Some(old) = before.filter(is_missed) {
         picture.events.splice(0..0, old.events);
         let surplus = picture.events.len().saturating_sub(EVENTS_MAX);
@@ -230,13 +274,30 @@ mod tests {
     /// A picture in which boat `seq` left the field.
     fn picture(seq: u64) -> Picture {
         let event = Event::LeftField(VehicleId(seq as u16));
-        let events = vec![EventRecord::from(Logged { tick: seq, at: SimTime::ZERO, event })];
-        Picture { stamp: Stamp { seq, ..Stamp::default() }, events, ..Picture::default() }
+        let events = vec![EventRecord::from(Logged {
+            tick: seq,
+            at: SimTime::ZERO,
+            event,
+        })];
+        Picture {
+            stamp: Stamp {
+                seq,
+                ..Stamp::default()
+            },
+            events,
+            ..Picture::default()
+        }
     }
 
     #[test]
     fn events_of_pictures_on_which_nobody_decided_come_with_the_next() {
-        let subjects = |picture: &Picture| picture.events.iter().map(|event| event.subject).collect::<Vec<_>>();
+        let subjects = |picture: &Picture| {
+            picture
+                .events
+                .iter()
+                .map(|event| event.subject)
+                .collect::<Vec<_>>()
+        };
         let late = with_missed_events(picture(4), Some(picture(3)), Some(2));
         assert_eq!(subjects(&late), [3, 4]);
         let later = with_missed_events(picture(5), Some(late.clone()), Some(2));
@@ -246,8 +307,20 @@ mod tests {
             [5],
             "there was a decision on it"
         );
-        assert_eq!(subjects(&with_missed_events(picture(4), Some(late), None)), [4], "the same picture again");
-        let many = (0..3000).fold(picture(0), |last, seq| with_missed_events(picture(seq + 1), Some(last), None));
-        assert_eq!((many.events.len(), many.events.last().map(|event| event.subject)), (EVENTS_MAX, Some(3000)));
+        assert_eq!(
+            subjects(&with_missed_events(picture(4), Some(late), None)),
+            [4],
+            "the same picture again"
+        );
+        let many = (0..3000).fold(picture(0), |last, seq| {
+            with_missed_events(picture(seq + 1), Some(last), None)
+        });
+        assert_eq!(
+            (
+                many.events.len(),
+                many.events.last().map(|event| event.subject)
+            ),
+            (EVENTS_MAX, Some(3000))
+        );
     }
 }

@@ -53,7 +53,12 @@ impl HelmQueries {
             let take = move |query| inbox_sender.put((vehicle, query));
             declarations.push(bus.answer(topic::helm(game, scenario, vehicle), take)?);
         }
-        Ok(HelmQueries { inbox, waiting: Vec::new(), looked: Vec::new(), _declarations: declarations })
+        Ok(HelmQueries {
+            inbox,
+            waiting: Vec::new(),
+            looked: Vec::new(),
+            _declarations: declarations,
+        })
     }
 
     /// Answers pending queries. `decided` is whether the minds have decided since the last call.
@@ -67,7 +72,9 @@ impl HelmQueries {
             }
         }
         for _ in 0..ANSWERS {
-            let Some((vehicle, query)) = self.inbox.take_now() else { break };
+            let Some((vehicle, query)) = self.inbox.take_now() else {
+                break;
+            };
             self.answer_query(runner, vehicle, query);
         }
         self.looked.retain(|(vehicle, at)| {
@@ -80,12 +87,21 @@ impl HelmQueries {
     fn answer_query(&mut self, runner: &mut MindRunner, vehicle: VehicleId, query: Query) {
         // A query without a payload requests the short answer.
         let wants: HelmQuestion = serde_json::from_slice(query.payload()).unwrap_or_default();
-        let asked = Asked { vehicle, wants, query, at: clock::now() };
+        let asked = Asked {
+            vehicle,
+            wants,
+            query,
+            at: clock::now(),
+        };
         if !wants.functions {
             // Modes and weights need no inspection, so a list of boats costs a helm nothing.
             return reply(runner, asked);
         }
-        match self.looked.iter_mut().find(|(looked, _)| *looked == vehicle) {
+        match self
+            .looked
+            .iter_mut()
+            .find(|(looked, _)| *looked == vehicle)
+        {
             Some((_, at)) => *at = asked.at,
             None => {
                 self.looked.push((vehicle, asked.at));
@@ -93,7 +109,11 @@ impl HelmQueries {
                 return self.postpone(asked);
             }
         }
-        if self.waiting.iter().any(|waiting| waiting.vehicle == vehicle) {
+        if self
+            .waiting
+            .iter()
+            .any(|waiting| waiting.vehicle == vehicle)
+        {
             self.postpone(asked);
         } else {
             reply(runner, asked);
@@ -117,7 +137,12 @@ fn show(runner: &mut MindRunner, vehicle: VehicleId, shown: bool) {
 fn reply(runner: &MindRunner, asked: Asked) {
     let mut report = runner.mind(asked.vehicle).and_then(Mind::report);
     if let Some(report) = report.as_mut().filter(|_| !asked.wants.functions) {
-        report.functions.iter_mut().for_each(|function| function.utilities.clear());
+        report
+            .functions
+            .iter_mut()
+            .for_each(|function| function.utilities.clear());
     }
-    asked.query.answer(serde_json::to_vec(&report).expect("a report can be encoded"));
+    asked
+        .query
+        .answer(serde_json::to_vec(&report).expect("a report can be encoded"));
 }

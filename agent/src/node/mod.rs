@@ -49,12 +49,17 @@ pub fn serve(settings: &Settings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), 
     let mut agent = AgentLoop::open(&bus, &game, &info, settings)?;
     let place = &settings.place;
     let names = &settings.vehicles;
-    let joined =
-        search.until(&mut report, || game_search::join(&bus, place, (&game, &info.scenario), Role::Agent, names))?;
+    let joined = search.until(&mut report, || {
+        game_search::join(&bus, place, (&game, &info.scenario), Role::Agent, names)
+    })?;
     agent.join(&bus, &game, &info.scenario, joined)?;
-    tell(News::Joined { game: game.as_str() });
+    tell(News::Joined {
+        game: game.as_str(),
+    });
     let played = agent.play(&settings.stop);
-    tell(News::Left { refused: agent.refusals() });
+    tell(News::Left {
+        refused: agent.refusals(),
+    });
     // Closing the link tells the sim at once that the agent has left; its boats hold from the next
     // decision on.
     bus.close();

@@ -47,17 +47,32 @@ impl PolicyInbox {
         runner: &MindRunner,
         patience: Duration,
     ) -> Result<PolicyInbox, NodeError> {
-        let minds = runner.minds().filter_map(|(vehicle, mind)| Some((vehicle, mind.proposer()?)));
-        let boat = |(vehicle, proposer)| Boat { vehicle, is_awaited: proposer == Proposer::Program, newest: None };
+        let minds = runner
+            .minds()
+            .filter_map(|(vehicle, mind)| Some((vehicle, mind.proposer()?)));
+        let boat = |(vehicle, proposer)| Boat {
+            vehicle,
+            is_awaited: proposer == Proposer::Program,
+            newest: None,
+        };
         let boats: Vec<Boat> = minds.map(boat).collect();
-        let proposals = Arc::new(Watched::new(Proposals { boats: boats.clone(), refusals: Refusals::default() }));
+        let proposals = Arc::new(Watched::new(Proposals {
+            boats: boats.clone(),
+            refusals: Refusals::default(),
+        }));
         let mut declarations = Vec::new();
         for (i, boat) in boats.iter().enumerate() {
             let inbox = Arc::clone(&proposals);
             let take = move |bytes: &[u8]| inbox.visit(|proposals| proposals.receive(i, bytes));
-            declarations.push(bus.subscribe_remote(topic::policy(game, scenario, boat.vehicle), take)?);
+            declarations
+                .push(bus.subscribe_remote(topic::policy(game, scenario, boat.vehicle), take)?);
         }
-        Ok(PolicyInbox { proposals, patience, is_wanted: !boats.is_empty(), _declarations: declarations })
+        Ok(PolicyInbox {
+            proposals,
+            patience,
+            is_wanted: !boats.is_empty(),
+            _declarations: declarations,
+        })
     }
 
     /// Passes the newest proposals to the minds that decide on the picture with this stamp.
@@ -70,8 +85,13 @@ impl PolicyInbox {
             // depend on process speed.
             self.patience.is_zero() || self.proposals.wait(self.patience, |proposals| proposals.is_for(stamp.seq));
         self.proposals.visit(|proposals| {
-            proposals.refusals.add(Refusal::ProposalMissing, u64::from(!is_complete));
-            let newest = proposals.boats.iter().filter_map(|boat| boat.newest.as_ref());
+            proposals
+                .refusals
+                .add(Refusal::ProposalMissing, u64::from(!is_complete));
+            let newest = proposals
+                .boats
+                .iter()
+                .filter_map(|boat| boat.newest.as_ref());
             newest.for_each(|proposal| runner.propose(proposal, stamp));
         });
     }
@@ -83,7 +103,9 @@ impl PolicyInbox {
 
 impl Proposals {
     fn receive(&mut self, i: usize, bytes: &[u8]) {
-        let Some(proposal) = self.refusals.decode::<PolicyProposal>(bytes) else { return };
+        let Some(proposal) = self.refusals.decode::<PolicyProposal>(bytes) else {
+            return;
+        };
         // Access control is by key, so a message whose vehicle contradicts its key is rejected.
         if proposal.vehicle != self.boats[i].vehicle {
             self.refusals.count(Refusal::NotYours);
@@ -97,13 +119,17 @@ impl Proposals {
     /// Whether all awaited proposals for decision `seq` have arrived.
     fn is_for(&self, seq: u64) -> bool {
         let is_for = |proposal: &PolicyProposal| proposal.stamp.seq >= seq;
-        self.boats.iter().all(|boat| !boat.is_awaited || boat.newest.as_ref().is_some_and(is_for))
+        self.boats
+            .iter()
+            .all(|boat| !boat.is_awaited || boat.newest.as_ref().is_some_and(is_for))
     }
 }
 
 /// Whether its values are finite and its time is within the game.
 fn is_sound(proposal: &PolicyProposal) -> bool {
-    proposal.course_rad.is_finite() && proposal.speed_m_s.is_finite() && proposal.stamp.valid_ns >= SimTime::ZERO
+    proposal.course_rad.is_finite()
+        && proposal.speed_m_s.is_finite()
+        && proposal.stamp.valid_ns >= SimTime::ZERO
 }
 
 #[cfg(test)]
@@ -113,14 +139,30 @@ mod tests {
     use primitives::codec;
 
     fn proposal(vehicle: u16, seq: u64, speed_m_s: f64) -> PolicyProposal {
-        let stamp = Stamp { seq, version: PolicyProposal::VERSION, ..Stamp::default() };
-        PolicyProposal { stamp, vehicle: VehicleId(vehicle), course_rad: 0.5, speed_m_s }
+        let stamp = Stamp {
+            seq,
+            version: PolicyProposal::VERSION,
+            ..Stamp::default()
+        };
+        PolicyProposal {
+            stamp,
+            vehicle: VehicleId(vehicle),
+            course_rad: 0.5,
+            speed_m_s,
+        }
     }
 
     #[test]
     fn the_newest_good_proposal_stands_and_others_are_counted() {
-        let boat = |v: u16| Boat { vehicle: VehicleId(v), is_awaited: v < 2, newest: None };
-        let mut proposals = Proposals { boats: vec![boat(0), boat(1), boat(2)], refusals: Refusals::default() };
+        let boat = |v: u16| Boat {
+            vehicle: VehicleId(v),
+            is_awaited: v < 2,
+            newest: None,
+        };
+        let mut proposals = Proposals {
+            boats: vec![boat(0), boat(1), boat(2)],
+            refusals: Refusals::default(),
+        };
         proposals.receive(0, &codec::encode(&proposal(0, 4, 1.0)));
         assert!(!proposals.is_for(4), "the other proposal is missing");
         proposals.receive(1, &codec::encode(&proposal(1, 4, 1.0)));
@@ -128,14 +170,28 @@ mod tests {
         proposals.receive(1, &codec::encode(&proposal(1, 5, 2.0)));
         proposals.receive(1, &codec::encode(&proposal(0, 6, 9.0)));
         proposals.receive(1, &codec::encode(&proposal(1, 6, f64::NAN)));
-        let early = Stamp { valid_ns: SimTime(i64::MIN), ..proposal(1, 6, 9.0).stamp };
-        proposals.receive(1, &codec::encode(&PolicyProposal { stamp: early, ..proposal(1, 6, 9.0) }));
+        let early = Stamp {
+            valid_ns: SimTime(i64::MIN),
+            ..proposal(1, 6, 9.0).stamp
+        };
+        proposals.receive(
+            1,
+            &codec::encode(&PolicyProposal {
+                stamp: early,
+                ..proposal(1, 6, 9.0)
+            }),
+        );
         proposals.receive(1, b"ahoy");
         let mut other = proposal(1, 6, 9.0);
         other.stamp.version += 1;
         proposals.receive(1, &codec::encode(&other));
         assert_eq!(proposals.boats[1].newest, Some(proposal(1, 5, 2.0)));
-        let want = [(Refusal::NotYours, 1), (Refusal::BadNumber, 2), (Refusal::Garbage, 1), (Refusal::Version, 1)];
+        let want = [
+            (Refusal::NotYours, 1),
+            (Refusal::BadNumber, 2),
+            (Refusal::Garbage, 1),
+            (Refusal::Version, 1),
+        ];
         assert_eq!(proposals.refusals, Refusals::from(want));
     }
 }

@@ -40,31 +40,55 @@ impl Talk {
         runner: &MindRunner,
         patience: Duration,
     ) -> Result<Talk, NodeError> {
-        let teams: Vec<TeamId> = (0..scenario.vehicles.len()).map(|i| scenario.team_of(VehicleId::at(i))).collect();
-        let mut talking: Vec<TeamId> =
-            runner.minds().filter(|(_, mind)| mind.shares()).map(|(vehicle, _)| scenario.team_of(vehicle)).collect();
+        let teams: Vec<TeamId> = (0..scenario.vehicles.len())
+            .map(|i| scenario.team_of(VehicleId::at(i)))
+            .collect();
+        let mut talking: Vec<TeamId> = runner
+            .minds()
+            .filter(|(_, mind)| mind.shares())
+            .map(|(vehicle, _)| scenario.team_of(vehicle))
+            .collect();
         talking.sort_unstable();
         talking.dedup();
         let own: Vec<VehicleId> = runner.minds().map(|(vehicle, _)| vehicle).collect();
         // By the scenario's strategies: a mate with another one from `--strategy` may be awaited
         // once at most.
-        let talks = |vehicle| roles::role_of(scenario, vehicle).variables.iter().any(|variable| variable.shared);
-        let boats =
-            teams.iter().enumerate().map(|(i, team)| (*team, talking.contains(team) && talks(VehicleId::at(i))));
+        let talks = |vehicle| {
+            roles::role_of(scenario, vehicle)
+                .variables
+                .iter()
+                .any(|variable| variable.shared)
+        };
+        let boats = teams
+            .iter()
+            .enumerate()
+            .map(|(i, team)| (*team, talking.contains(team) && talks(VehicleId::at(i))));
         let team_inbox = Arc::new(Watched::new(TeamInbox::new(boats, &own)));
         let mut outgoing = Vec::new();
         let mut declarations = Vec::new();
         for team in talking {
             let inbox = Arc::clone(&team_inbox);
-            let take = move |bytes: &[u8]| inbox.visit(|team_inbox| team_inbox.receive(team, bytes));
+            let take =
+                move |bytes: &[u8]| inbox.visit(|team_inbox| team_inbox.receive(team, bytes));
             // From agent to agent, past the sim's loop, because the sim neither needs nor checks
             // these messages. As part of orders they would slow lockstep for all, and on the water
             // no sim can relay them.
             declarations.push(bus.subscribe_remote(topic::say(game, scenario, team), take)?);
             let publisher = bus.publisher(topic::say(game, scenario, team), Priority::Normal)?;
-            outgoing.push(Outgoing { team, publisher, last: None });
+            outgoing.push(Outgoing {
+                team,
+                publisher,
+                last: None,
+            });
         }
-        Ok(Talk { outgoing, team_inbox, teams, patience, words: Vec::new(), _declarations: declarations })
+        Ok(Talk {
+            outgoing,
+            team_inbox,
+            teams,
+            patience,
+            words: Vec::new(),
+            _declarations: declarations,
+        })
     }
 
     /// Passes to the minds what mates elsewhere sent after the previous decision.
@@ -75,12 +99,15 @@ impl Talk {
         // Real-time games neither wait nor count: mates decide at their own times.
         let waits = !self.patience.is_zero();
         if waits {
-            self.team_inbox.wait(self.patience, |team_inbox| team_inbox.is_complete(seq));
+            self.team_inbox
+                .wait(self.patience, |team_inbox| team_inbox.is_complete(seq));
         }
         self.words.clear();
         self.team_inbox.visit(|team_inbox| {
             let missed = team_inbox.deliver(seq, &mut self.words);
-            team_inbox.refusals.add(Refusal::TeamMessageMissing, if waits { missed } else { 0 });
+            team_inbox
+                .refusals
+                .add(Refusal::TeamMessageMissing, if waits { missed } else { 0 });
         });
         runner.receive(&self.words);
     }
@@ -92,7 +119,13 @@ impl Talk {
             let words: Vec<Word> = said.iter().filter(ours).copied().collect();
             // Kept, because a repeated picture is answered with the same messages, so that lost
             // ones are sent again.
-            to.last = (!words.is_empty()).then_some(Say { stamp: Stamp { version: Say::VERSION, ..stamp }, words });
+            to.last = (!words.is_empty()).then_some(Say {
+                stamp: Stamp {
+                    version: Say::VERSION,
+                    ..stamp
+                },
+                words,
+            });
         }
     }
 

@@ -47,15 +47,28 @@ impl TeamInbox {
     pub fn new(boats: impl Iterator<Item = (TeamId, bool)>, own: &[VehicleId]) -> TeamInbox {
         let sender = |(i, (team, talks))| {
             let is_mate = !own.contains(&VehicleId::at(i));
-            Sender { team, is_mate, talks: talks && is_mate, newest: None, before: None, awaited_at: None }
+            Sender {
+                team,
+                is_mate,
+                talks: talks && is_mate,
+                newest: None,
+                before: None,
+                awaited_at: None,
+            }
         };
         let senders = boats.enumerate().map(sender).collect();
-        TeamInbox { senders, has_begun: false, refusals: Refusals::default() }
+        TeamInbox {
+            senders,
+            has_begun: false,
+            refusals: Refusals::default(),
+        }
     }
 
     /// Receives a message on a team's topic.
     pub fn receive(&mut self, team: TeamId, bytes: &[u8]) {
-        let Some(say) = self.refusals.decode::<Say>(bytes) else { return };
+        let Some(say) = self.refusals.decode::<Say>(bytes) else {
+            return;
+        };
         for word in say.words {
             // Messages identify boats, not processes: the name stays when another process takes
             // over a boat.
@@ -68,7 +81,10 @@ impl TeamInbox {
                 self.refusals.count(Refusal::BadNumber);
                 continue;
             }
-            self.refusals.add(Refusal::Surplus, u64::from(!sender.note(say.stamp.seq, word)));
+            self.refusals.add(
+                Refusal::Surplus,
+                u64::from(!sender.note(say.stamp.seq, word)),
+            );
         }
     }
 
@@ -76,7 +92,10 @@ impl TeamInbox {
     /// before the last are expected to send after the last one too; talking mates are expected to
     /// send after the first.
     pub fn is_complete(&self, seq: u64) -> bool {
-        !self.senders.iter().any(|sender| sender.is_awaited(seq) && !sender.is_past(seq))
+        !self
+            .senders
+            .iter()
+            .any(|sender| sender.is_awaited(seq) && !sender.is_past(seq))
     }
 
     /// Adds the messages due at decision `seq`: each boat's newest from an earlier decision.
@@ -114,7 +133,10 @@ impl Sender {
     fn note(&mut self, seq: u64, word: Word) -> bool {
         let Some(newest) = self.newest.as_mut().filter(|newest| newest.seq == seq) else {
             // By arrival, not by stamp: a wrong stamp displaces at most one message.
-            self.before = self.newest.replace(Sent { seq, words: vec![word] });
+            self.before = self.newest.replace(Sent {
+                seq,
+                words: vec![word],
+            });
             return true;
         };
         let known = newest.words.iter().position(|known| known.key == word.key);
@@ -133,7 +155,10 @@ impl Sender {
 
     /// Whether its message for decision `seq` has arrived or can no longer arrive.
     fn is_past(&self, seq: u64) -> bool {
-        [&self.newest, &self.before].into_iter().flatten().any(|sent| sent.seq >= seq.saturating_sub(1))
+        [&self.newest, &self.before]
+            .into_iter()
+            .flatten()
+            .any(|sent| sent.seq >= seq.saturating_sub(1))
     }
 }
 
@@ -147,12 +172,26 @@ mod tests {
 
     /// Two teams of two boats that may or may not talk; the first boat belongs to this process.
     fn team_inbox() -> TeamInbox {
-        TeamInbox::new([0, 0, 1, 1].into_iter().map(|team| (TeamId(team), false)), &[VehicleId(0)])
+        TeamInbox::new(
+            [0, 0, 1, 1].into_iter().map(|team| (TeamId(team), false)),
+            &[VehicleId(0)],
+        )
     }
 
     fn say(seq: u64, words: &[(u16, f64)]) -> Say {
-        let words = words.iter().map(|(vehicle, value)| Word { vehicle: VehicleId(*vehicle), key: 7, value: *value });
-        Say { stamp: Stamp { seq, version: Say::VERSION, ..Stamp::default() }, words: words.collect() }
+        let words = words.iter().map(|(vehicle, value)| Word {
+            vehicle: VehicleId(*vehicle),
+            key: 7,
+            value: *value,
+        });
+        Say {
+            stamp: Stamp {
+                seq,
+                version: Say::VERSION,
+                ..Stamp::default()
+            },
+            words: words.collect(),
+        }
     }
 
     fn receive(inbox: &mut TeamInbox, say: &Say) {
@@ -201,13 +240,20 @@ mod tests {
     #[test]
     fn the_first_message_of_a_mate_that_talks_is_waited_for_once() {
         for first in [0, 7] {
-            let mut inbox = TeamInbox::new([0, 0].into_iter().map(|team| (TeamId(team), true)), &[VehicleId(0)]);
+            let mut inbox = TeamInbox::new(
+                [0, 0].into_iter().map(|team| (TeamId(team), true)),
+                &[VehicleId(0)],
+            );
             let mut words = Vec::new();
             assert!(inbox.is_complete(first));
             assert_eq!(inbox.deliver(first, &mut words), 0);
             assert!(!inbox.is_complete(first + 1));
             let mut lost = inbox.clone();
-            assert_eq!(lost.deliver(first + 1, &mut words), 1, "the message was lost");
+            assert_eq!(
+                lost.deliver(first + 1, &mut words),
+                1,
+                "the message was lost"
+            );
             assert!(lost.is_complete(first + 2), "it may be silent");
             receive(&mut inbox, &say(first, &[(1, 10.0)]));
             assert!(inbox.is_complete(first + 1));
@@ -237,17 +283,43 @@ mod tests {
         let mut inbox = team_inbox();
         receive(
             &mut inbox,
-            &say(0, &[(9, 1.0), (u16::MAX, 1.0), (2, 1.0), (0, 1.0), (1, f64::NAN), (1, f64::INFINITY)]),
+            &say(
+                0,
+                &[
+                    (9, 1.0),
+                    (u16::MAX, 1.0),
+                    (2, 1.0),
+                    (0, 1.0),
+                    (1, f64::NAN),
+                    (1, f64::INFINITY),
+                ],
+            ),
         );
         inbox.receive(TeamId(1), &codec::encode(&say(0, &[(1, 1.0)])));
-        assert_eq!(inbox.refusals, Refusals::from([(Refusal::NotYours, 5), (Refusal::BadNumber, 2)]));
+        assert_eq!(
+            inbox.refusals,
+            Refusals::from([(Refusal::NotYours, 5), (Refusal::BadNumber, 2)])
+        );
         let mut other = say(0, &[(1, 1.0)]);
         other.stamp.version += 1;
         receive(&mut inbox, &other);
         inbox.receive(BLUE, b"ahoy");
-        assert_eq!([Refusal::Version, Refusal::Garbage].map(|refusal| inbox.refusals.of(refusal)), [1, 1]);
-        let key = |key| Word { vehicle: VehicleId(1), key, value: 1.0 };
-        receive(&mut inbox, &Say { words: (0..300).map(key).collect(), ..say(0, &[]) });
+        assert_eq!(
+            [Refusal::Version, Refusal::Garbage].map(|refusal| inbox.refusals.of(refusal)),
+            [1, 1]
+        );
+        let key = |key| Word {
+            vehicle: VehicleId(1),
+            key,
+            value: 1.0,
+        };
+        receive(
+            &mut inbox,
+            &Say {
+                words: (0..300).map(key).collect(),
+                ..say(0, &[])
+            },
+        );
         assert_eq!(inbox.refusals.of(Refusal::Surplus), 300 - SHARED_MAX as u64);
         assert_eq!(delivered(&mut inbox, 1).len(), SHARED_MAX);
         // The number of a decision that never comes hides earlier messages, but not for long.

@@ -24,22 +24,38 @@ pub(crate) struct Observer {
 impl Observer {
     pub(crate) fn new(space: ObservationSpace, situation: &Situation) -> Observer {
         let size = space.size(situation.model.mates.len(), situation.model.enemies.len());
-        Observer { space, frames: vec![0.0; size], begun: false }
+        Observer {
+            space,
+            frames: vec![0.0; size],
+            begun: false,
+        }
     }
 
     /// The observation at this decision of the policy.
     pub(crate) fn observe(&mut self, situation: &Situation) -> &[f32] {
         match self.space {
-            ObservationSpace::Pyquaticus => pyquaticus::write(situation, &mut Numbers::new(&mut self.frames)),
-            ObservationSpace::Squall { mates, enemies, frames } => {
+            ObservationSpace::Pyquaticus => {
+                pyquaticus::write(situation, &mut Numbers::new(&mut self.frames))
+            }
+            ObservationSpace::Squall {
+                mates,
+                enemies,
+                frames,
+            } => {
                 let size = self.frames.len() / usize::from(frames.max(1));
                 let kept = self.frames.len() - size;
                 self.frames.copy_within(..kept, size);
                 let (newest, older) = self.frames.split_at_mut(size);
-                squall::write(situation, (usize::from(mates), usize::from(enemies)), &mut Numbers::new(newest));
+                squall::write(
+                    situation,
+                    (usize::from(mates), usize::from(enemies)),
+                    &mut Numbers::new(newest),
+                );
                 if !self.begun {
                     // At the first decision all older frames repeat the current one.
-                    older.chunks_exact_mut(size).for_each(|frame| frame.copy_from_slice(newest));
+                    older
+                        .chunks_exact_mut(size)
+                        .for_each(|frame| frame.copy_from_slice(newest));
                 }
             }
         }

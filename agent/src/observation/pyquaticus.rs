@@ -24,7 +24,9 @@ use std::f64::consts::PI;
 pub(super) fn write(situation: &Situation, out: &mut Numbers<'_>) {
     let model = &situation.model;
     for mark in [Mark::EnemyFlag, Mark::OwnFlag] {
-        let place = situation.locate(&Place::Mark(mark)).map_or(situation.at, |point| point.at);
+        let place = situation
+            .locate(&Place::Mark(mark))
+            .map_or(situation.at, |point| point.at);
         toward(situation, place, out);
     }
     // Corner 0 is to starboard of the first team's end, and corners continue clockwise: the walls
@@ -39,14 +41,21 @@ pub(super) fn write(situation: &Situation, out: &mut Numbers<'_>) {
     let own = &situation.own;
     out.push(unit(own.nav.speed_m_s(), fastest_m_s(situation)));
     truth(own.carried_flag().is_some(), out);
-    truth(is_own_side(situation, situation.at, model.team.index()), out);
+    truth(
+        is_own_side(situation, situation.at, model.team.index()),
+        out,
+    );
     out.push(since_tag(situation, own.tag_ready_ns));
     truth(own.tagged, out);
     for score in [Fact::Score, Fact::EnemyScore] {
         out.push(unit(situation.fact(score), model.score_max));
     }
     for vehicle in model.mates.iter().chain(&model.enemies) {
-        match situation.others.iter().find(|other| other.vehicle == *vehicle) {
+        match situation
+            .others
+            .iter()
+            .find(|other| other.vehicle == *vehicle)
+        {
             Some(other) => other_boat(situation, other, out),
             None => out.skip(OTHER),
         }
@@ -59,7 +68,11 @@ fn other_boat(situation: &Situation, other: &OtherBoat, out: &mut Numbers<'_>) {
     out.push(wrap_pi(other.psi_rad - other.at.bearing_rad(situation.at)) / PI);
     out.push(unit(other.velocity().length(), fastest_m_s(situation)));
     truth(other.carrying.is_some(), out);
-    let team = if other.is_enemy { 1 - model.team.index() } else { model.team.index() };
+    let team = if other.is_enemy {
+        1 - model.team.index()
+    } else {
+        model.team.index()
+    };
     truth(is_own_side(situation, other.at, team), out);
     out.push(since_tag(situation, other.tag_ready));
     truth(other.tagged, out);
@@ -79,7 +92,11 @@ fn is_own_side(situation: &Situation, at: Ned, team: usize) -> bool {
     let field = &situation.model.field;
     let beyond_m = (at - field.middle()).dot(field.along);
     // A boat on the line counts as on its own side for both teams.
-    if team == 0 { beyond_m <= 0.0 } else { beyond_m >= 0.0 }
+    if team == 0 {
+        beyond_m <= 0.0
+    } else {
+        beyond_m >= 0.0
+    }
 }
 
 /// The point of a line segment that is nearest to a place.
@@ -97,12 +114,21 @@ fn since_tag(situation: &Situation, ready: SimTime) -> f64 {
 
 /// The top speed of the game's fastest boat, m/s.
 fn fastest_m_s(situation: &Situation) -> f64 {
-    situation.model.boat_speeds_m_s.iter().copied().fold(0.0, f64::max)
+    situation
+        .model
+        .boat_speeds_m_s
+        .iter()
+        .copied()
+        .fold(0.0, f64::max)
 }
 
 /// Maps 0 to `most` onto -1 to 1.
 fn unit(number: f64, most: f64) -> f64 {
-    if most > 0.0 { (2.0 * number / most - 1.0).clamp(-1.0, 1.0) } else { 1.0 }
+    if most > 0.0 {
+        (2.0 * number / most - 1.0).clamp(-1.0, 1.0)
+    } else {
+        1.0
+    }
 }
 
 fn truth(is: bool, out: &mut Numbers<'_>) {

@@ -31,12 +31,21 @@ const FAR_M: f64 = 20.0;
 const POINTS: f64 = 10.0;
 
 /// Writes all values.
-pub(super) fn write(situation: &Situation, (mates, enemies): (usize, usize), out: &mut Numbers<'_>) {
+pub(super) fn write(
+    situation: &Situation,
+    (mates, enemies): (usize, usize),
+    out: &mut Numbers<'_>,
+) {
     own_boat(situation, out);
     edges(situation, out);
     goals(situation, out);
     game(situation, out);
-    let others = |is_enemy: bool| situation.others.iter().filter(move |other| other.is_enemy == is_enemy);
+    let others = |is_enemy: bool| {
+        situation
+            .others
+            .iter()
+            .filter(move |other| other.is_enemy == is_enemy)
+    };
     slots(situation, others(false), mates, out);
     let mut nearest: Vec<&OtherBoat> = others(true).collect();
     let distance = |other: &OtherBoat| situation.at.distance_squared(other.at);
@@ -49,7 +58,11 @@ pub(super) fn write(situation: &Situation, (mates, enemies): (usize, usize), out
 /// Unit vectors ahead of the team and to its port.
 fn team_axes(situation: &Situation) -> (Ned, Ned) {
     let field = &situation.model.field;
-    let sign = if situation.model.team.index() == 0 { 1.0 } else { -1.0 };
+    let sign = if situation.model.team.index() == 0 {
+        1.0
+    } else {
+        -1.0
+    };
     (field.along.scaled(sign), field.across.scaled(sign))
 }
 
@@ -82,7 +95,10 @@ fn edges(situation: &Situation, out: &mut Numbers<'_>) {
         let along_m = from_middle.dot(axis);
         out.extend([half_m - along_m, half_m + along_m].map(|m| (1.0 - m / FAR_M).clamp(0.0, 2.0)));
     }
-    let obstacles = plan.obstacles.iter().map(|obstacle| obstacle.distance(situation.at));
+    let obstacles = plan
+        .obstacles
+        .iter()
+        .map(|obstacle| obstacle.distance(situation.at));
     let nearest_m = obstacles.fold(f64::INFINITY, f64::min);
     out.push((1.0 - nearest_m / FAR_M).max(0.0));
     out.push((situation.own.nav.speed_m_s() / situation.model.speed_max_m_s.max(0.1)).min(2.0));
@@ -91,7 +107,11 @@ fn edges(situation: &Situation, out: &mut Numbers<'_>) {
 /// 16 values: the enemies' flag, the team's own flag, the place for capturing or untagging, and the
 /// current goal among them.
 fn goals(situation: &Situation, out: &mut Numbers<'_>) {
-    let at = |mark| situation.locate(&Place::Mark(mark)).map_or(situation.at, |point| point.at);
+    let at = |mark| {
+        situation
+            .locate(&Place::Mark(mark))
+            .map_or(situation.at, |point| point.at)
+    };
     let enemy_flag = at(Mark::EnemyFlag);
     let own_flag = at(Mark::OwnFlag);
     let capture = at(Mark::CapturePlace);
@@ -111,7 +131,12 @@ fn goals(situation: &Situation, out: &mut Numbers<'_>) {
 
 /// 7 values: flags, points, time, and the boat's index in its team.
 fn game(situation: &Situation, out: &mut Numbers<'_>) {
-    for fact in [Fact::OwnSide, Fact::FlagTaken, Fact::EnemyFlagTaken, Fact::MateHasFlag] {
+    for fact in [
+        Fact::OwnSide,
+        Fact::FlagTaken,
+        Fact::EnemyFlagTaken,
+        Fact::MateHasFlag,
+    ] {
         out.push(situation.fact(fact));
     }
     let ahead = situation.fact(Fact::Score) - situation.fact(Fact::EnemyScore);
@@ -122,7 +147,12 @@ fn game(situation: &Situation, out: &mut Numbers<'_>) {
 }
 
 /// One entry per slot; unused slots are zeros.
-fn slots<'a>(situation: &Situation, others: impl Iterator<Item = &'a OtherBoat>, count: usize, out: &mut Numbers<'_>) {
+fn slots<'a>(
+    situation: &Situation,
+    others: impl Iterator<Item = &'a OtherBoat>,
+    count: usize,
+    out: &mut Numbers<'_>,
+) {
     let mut empty = count;
     for other in others.take(count) {
         other_boat(situation, other, out);
@@ -142,7 +172,12 @@ fn other_boat(situation: &Situation, other: &OtherBoat, out: &mut Numbers<'_>) {
     out.flag(other.carrying.is_some());
     out.flag(other.intrudes);
     out.flag(situation.model.is_own_side(other.at));
-    out.push(situation.model.rules.tag_wait_share(other.tag_ready, situation.now));
+    out.push(
+        situation
+            .model
+            .rules
+            .tag_wait_share(other.tag_ready, situation.now),
+    );
     out.push((other.age_s / AGE_S).min(1.0));
     let home = situation.model.own_flag_near(other.at);
     out.push(NEAR_M / (NEAR_M + other.at.distance(home)));
@@ -155,7 +190,11 @@ fn toward(situation: &Situation, place: Ned, out: &mut Numbers<'_>) {
     let distance_m = math::length(ahead_m, starboard_m);
     // A direction as two components, not as an angle, which jumps from half a turn to minus half a
     // turn astern.
-    let per_m = if distance_m > 1e-6 { 1.0 / distance_m } else { 0.0 };
+    let per_m = if distance_m > 1e-6 {
+        1.0 / distance_m
+    } else {
+        0.0
+    };
     out.extend([ahead_m * per_m, starboard_m * per_m]);
     out.push((distance_m / LENGTH_M).min(LENGTHS_MAX));
     // In addition to the distance in hundreds of metres: the last ten metres, in which boats tag
@@ -166,5 +205,8 @@ fn toward(situation: &Situation, place: Ned, out: &mut Numbers<'_>) {
 /// A vector's components ahead of the boat and to starboard.
 fn along_axes(situation: &Situation, vector: Ned) -> [f64; 2] {
     let ahead = situation.ahead;
-    [vector.dot(ahead), vector.east * ahead.north - vector.north * ahead.east]
+    [
+        vector.dot(ahead),
+        vector.east * ahead.north - vector.north * ahead.east,
+    ]
 }

@@ -79,15 +79,20 @@ impl DriftEstimate {
         let north = grown(north);
         let east = grown(east);
         let (sin, cos) = math::sin_cos(nav.psi_rad);
-        let starboard = Ned { north: -sin, east: cos };
+        let starboard = Ned {
+            north: -sin,
+            east: cos,
+        };
         let of_starboard = Ned {
             north: north * starboard.north + both * starboard.east,
             east: both * starboard.north + east * starboard.east,
         };
         let sliding_m_s = -handling.slide_s * nav.yaw_rate_rad_s * nav.surge_m_s;
-        self.slide_m_s += step_s / (handling.slide_decay_s + step_s) * (sliding_m_s - self.slide_m_s);
+        self.slide_m_s +=
+            step_s / (handling.slide_decay_s + step_s) * (sliding_m_s - self.slide_m_s);
         let error_m_s = SLIDE_ERROR * self.slide_m_s;
-        let density = 2.0 * (self.square_m2_s2 * WAVE_TIME_S + error_m_s * error_m_s * SLIDE_TIME_S);
+        let density =
+            2.0 * (self.square_m2_s2 * WAVE_TIME_S + error_m_s * error_m_s * SLIDE_TIME_S);
         let expected = of_starboard.dot(starboard) + density / step_s;
         let surprise_m_s = nav.sway_m_s - self.slide_m_s - self.drift.dot(starboard);
         let gain = of_starboard.scaled(1.0 / expected);
@@ -98,7 +103,8 @@ impl DriftEstimate {
             both - gain.north * of_starboard.east,
         );
         // In a turn the slide causes the innovation.
-        let own_m2_s2 = (surprise_m_s * surprise_m_s - error_m_s * error_m_s).max(NOISE_M_S * NOISE_M_S);
+        let own_m2_s2 =
+            (surprise_m_s * surprise_m_s - error_m_s * error_m_s).max(NOISE_M_S * NOISE_M_S);
         self.square_m2_s2 += (step_s / SPREAD_TIME_S).min(1.0) * (own_m2_s2 - self.square_m2_s2);
     }
 

@@ -44,7 +44,10 @@ impl Handling {
     /// The handling that a boat file defines.
     pub(crate) fn of(boat: &Boat) -> Handling {
         match &boat.drive {
-            Drive::Thrusters { thruster, autopilot } => of_thrusters(&boat.hull, thruster, autopilot),
+            Drive::Thrusters {
+                thruster,
+                autopilot,
+            } => of_thrusters(&boat.hull, thruster, autopilot),
             Drive::Kinematic(kinematic) => of_kinematic(kinematic),
         }
     }
@@ -65,7 +68,11 @@ impl Handling {
 
     /// The same handling at this share of its yaw rates.
     pub(crate) fn turning(self, share: f64) -> Handling {
-        Handling { turn_rad_s: share * self.turn_rad_s, turn_per_rad_s: share * self.turn_per_rad_s, ..self }
+        Handling {
+            turn_rad_s: share * self.turn_rad_s,
+            turn_per_rad_s: share * self.turn_per_rad_s,
+            ..self
+        }
     }
 
     /// The initial yaw rate at a heading error, rad/s.
@@ -78,8 +85,16 @@ impl Handling {
     pub(crate) fn mean_turn_rad_s(&self, by_rad: f64) -> f64 {
         let first_rad_s = MEAN_OF_FIRST * self.turn_per_rad_s * by_rad.abs();
         let least_rad_s = LEAST_OF_MOST * self.turn_rad_s;
-        let rad_s = if first_rad_s > least_rad_s { first_rad_s } else { least_rad_s };
-        if rad_s < self.turn_rad_s { rad_s } else { self.turn_rad_s }
+        let rad_s = if first_rad_s > least_rad_s {
+            first_rad_s
+        } else {
+            least_rad_s
+        };
+        if rad_s < self.turn_rad_s {
+            rad_s
+        } else {
+            self.turn_rad_s
+        }
     }
 }
 
@@ -88,9 +103,10 @@ impl Handling {
 /// first-order one with w / (2 z).
 fn of_thrusters(hull: &Hull, thruster: &Thruster, autopilot: &Autopilot) -> Handling {
     let (ahead_newton, astern_newton) = match &thruster.curve {
-        ThrustCurve::Propeller(p) => {
-            (p.k_ahead * p.n_max_rad_s * p.n_max_rad_s, p.k_astern * p.n_min_rad_s * p.n_min_rad_s)
-        }
+        ThrustCurve::Propeller(p) => (
+            p.k_ahead * p.n_max_rad_s * p.n_max_rad_s,
+            p.k_astern * p.n_min_rad_s * p.n_min_rad_s,
+        ),
         ThrustCurve::Table { points } => {
             let newton = |of: Option<&(f64, f64)>| of.map_or(0.0, |(_, newton)| newton.abs());
             (newton(points.last()), newton(points.first()))
@@ -107,7 +123,8 @@ fn of_thrusters(hull: &Hull, thruster: &Thruster, autopilot: &Autopilot) -> Hand
     } else {
         moment_newton_m / linear.max(1e-6)
     };
-    let sway_kg_s = (hull.sway_linear_kg_s + 0.5 * hull.sway_lift_kg_m * autopilot.speed_max_m_s).max(1e-6);
+    let sway_kg_s =
+        (hull.sway_linear_kg_s + 0.5 * hull.sway_lift_kg_m * autopilot.speed_max_m_s).max(1e-6);
     let mass_kg = hull.mass_kg + hull.added_surge_kg;
     Handling {
         reaction_s: DECISION_S + thruster.lag_s + thruster.flaws.latency_s,
@@ -127,7 +144,13 @@ fn of_thrusters(hull: &Hull, thruster: &Thruster, autopilot: &Autopilot) -> Hand
 fn of_kinematic(kinematic: &Kinematic) -> Handling {
     let per_rudder_rad_s = kinematic.turn_rate.to_radians() / 100.0 * (kinematic.thrust_max / 50.0);
     let rudder_per_rad = kinematic.heading_pid.p.abs().to_degrees();
-    let limit = |configured_m_s2: f64| if configured_m_s2 > 0.0 { 0.5 * configured_m_s2 } else { AT_ONCE_M_S2 };
+    let limit = |configured_m_s2: f64| {
+        if configured_m_s2 > 0.0 {
+            0.5 * configured_m_s2
+        } else {
+            AT_ONCE_M_S2
+        }
+    };
     Handling {
         reaction_s: DECISION_S,
         turn_rad_s: MEAN_OF_STEADY * per_rudder_rad_s * kinematic.rudder_max,
@@ -153,9 +176,16 @@ pub(crate) struct SeenTurn {
 
 impl SeenTurn {
     /// Takes in the yaw rate measured after `step_s` with this heading error.
-    pub(crate) fn observe(&mut self, error_rad: f64, yaw_rate_rad_s: f64, handling: &Handling, step_s: f64) {
+    pub(crate) fn observe(
+        &mut self,
+        error_rad: f64,
+        yaw_rate_rad_s: f64,
+        handling: &Handling,
+        step_s: f64,
+    ) {
         let wanted_rad_s = handling.yaw_rate_rad_s(error_rad);
-        self.rate_rad_s += (step_s / (handling.reaction_s + step_s)) * (wanted_rad_s - self.rate_rad_s);
+        self.rate_rad_s +=
+            (step_s / (handling.reaction_s + step_s)) * (wanted_rad_s - self.rate_rad_s);
         if error_rad.abs() < ERROR_MIN_RAD || self.rate_rad_s * error_rad <= 0.0 {
             return;
         }

@@ -36,16 +36,25 @@ pub(crate) struct HeadingOffset {
 
 impl HeadingOffset {
     /// Takes in the heading measured after `step_s` under a steering order.
-    pub(crate) fn observe(&mut self, ordered_rad: f64, heading_rad: f64, handling: &Handling, step_s: f64) {
+    pub(crate) fn observe(
+        &mut self,
+        ordered_rad: f64,
+        heading_rad: f64,
+        handling: &Handling,
+        step_s: f64,
+    ) {
         let model_rad = self.model_rad.get_or_insert(heading_rad);
         let error_rad = wrap_pi(ordered_rad - *model_rad);
         let surprise_rad = wrap_pi(heading_rad - *model_rad - self.offset_rad);
         // The model never turns past the order, whatever the length of a decision.
-        let turn_rad = (handling.yaw_rate_rad_s(error_rad) * step_s).clamp(-error_rad.abs(), error_rad.abs());
-        *model_rad = wrap_pi(*model_rad + turn_rad + (MODEL_GAIN_PER_S * step_s).min(1.0) * surprise_rad);
+        let turn_rad =
+            (handling.yaw_rate_rad_s(error_rad) * step_s).clamp(-error_rad.abs(), error_rad.abs());
+        *model_rad =
+            wrap_pi(*model_rad + turn_rad + (MODEL_GAIN_PER_S * step_s).min(1.0) * surprise_rad);
         if error_rad.abs() < TURNING_RAD {
             let learned_rad = (OFFSET_GAIN_PER_S * step_s).min(1.0) * surprise_rad;
-            self.offset_rad = (self.offset_rad + learned_rad).clamp(-OFFSET_MAX_RAD, OFFSET_MAX_RAD);
+            self.offset_rad =
+                (self.offset_rad + learned_rad).clamp(-OFFSET_MAX_RAD, OFFSET_MAX_RAD);
         }
     }
 

@@ -47,7 +47,8 @@ pub(crate) struct OwnMotion {
     file: Handling,
     reference: SpeedReference,
     speed_max_m_s: f64,
-    /// Whether orders compensate for drift and offset; if not, both estimates stay at their defaults.
+    /// Whether orders compensate for drift and offset; if not, both estimates stay at their
+    /// defaults.
     compensates: bool,
     drift: DriftEstimate,
     offset: HeadingOffset,
@@ -69,7 +70,9 @@ impl OwnMotion {
             Drive::Thrusters { .. } => SpeedReference::Ground,
             Drive::Kinematic(point) => {
                 let brakes = point.speed_factor > 0.0 && point.deceleration_max_m_s2 > 0.0;
-                SpeedReference::Water { brakes_by_m_s: brakes.then_some(BRAKES_S * point.deceleration_max_m_s2) }
+                SpeedReference::Water {
+                    brakes_by_m_s: brakes.then_some(BRAKES_S * point.deceleration_max_m_s2),
+                }
             }
         };
         OwnMotion {
@@ -98,14 +101,20 @@ impl OwnMotion {
         // A repeated velocity carries no new information.
         if own.fix_ns > self.fix_at {
             // At most a second: after a gap in navigation one velocity must not count as many.
-            self.drift.observe(&own.nav, &self.file, (own.fix_ns - self.fix_at).as_s().min(1.0));
+            self.drift.observe(
+                &own.nav,
+                &self.file,
+                (own.fix_ns - self.fix_at).as_s().min(1.0),
+            );
             self.fix_at = own.fix_ns;
         }
         match self.ordered.filter(|_| obeys) {
             Some((_, ordered_rad)) => {
-                self.offset.observe(ordered_rad, own.nav.psi_rad, &self.file, step_s);
+                self.offset
+                    .observe(ordered_rad, own.nav.psi_rad, &self.file, step_s);
                 let error_rad = wrap_pi(ordered_rad + self.offset.offset_rad - own.nav.psi_rad);
-                self.turn.observe(error_rad, own.nav.yaw_rate_rad_s, &self.file, step_s);
+                self.turn
+                    .observe(error_rad, own.nav.yaw_rate_rad_s, &self.file, step_s);
             }
             None => self.offset.forget(),
         }
@@ -119,7 +128,11 @@ impl OwnMotion {
     /// The velocity to add to a decision's, m/s: the estimated drift, or the boat's present sway if
     /// drift is not estimated.
     pub(crate) fn drift_now(&self, nav: &Nav) -> Ned {
-        if self.compensates { self.drift.drift } else { nav.pose().rotation().starboard().scaled(nav.sway_m_s) }
+        if self.compensates {
+            self.drift.drift
+        } else {
+            nav.pose().rotation().starboard().scaled(nav.sway_m_s)
+        }
     }
 
     /// Standard deviation of the velocity around the drift, m/s.
@@ -161,14 +174,20 @@ impl OwnMotion {
         if through_m_s < 1e-6 {
             return (wrap_pi(course_rad), 0.0);
         }
-        (math::atan2(way.east, way.north), through_m_s.min(self.speed_max_m_s))
+        (
+            math::atan2(way.east, way.north),
+            through_m_s.min(self.speed_max_m_s),
+        )
     }
 
     /// The order for a heading, rad, at a speed through the water.
     pub(crate) fn order(&mut self, heading_rad: f64, speed_m_s: f64) -> Order {
         let heading_rad = wrap_pi(heading_rad);
         if !self.compensates {
-            return Order::Steer { heading_rad, speed_m_s };
+            return Order::Steer {
+                heading_rad,
+                speed_m_s,
+            };
         }
         if let Some((wanted_rad, _)) = self.ordered {
             self.offset.turn(wrap_pi(heading_rad - wanted_rad));
@@ -185,7 +204,10 @@ impl OwnMotion {
                 brakes_by_m_s.map_or(speed_m_s, |by| speed_m_s.max(self.surge_m_s - by))
             }
         };
-        Order::Steer { heading_rad: ordered_rad, speed_m_s: ahead_m_s }
+        Order::Steer {
+            heading_rad: ordered_rad,
+            speed_m_s: ahead_m_s,
+        }
     }
 
     /// The heading to order: the desired one or, for nearly half a turn, an intermediate one,
@@ -199,7 +221,11 @@ impl OwnMotion {
         if self.side == 0.0 {
             self.side = turn_rad.signum();
         }
-        let to_side_rad = if turn_rad * self.side > 0.0 { turn_rad.abs() } else { PI };
+        let to_side_rad = if turn_rad * self.side > 0.0 {
+            turn_rad.abs()
+        } else {
+            PI
+        };
         self.psi_rad + self.side * to_side_rad.min(TURN_MAX_RAD)
     }
 
@@ -217,7 +243,8 @@ mod tests {
     use std::path::Path;
 
     fn motion(boat: &str) -> OwnMotion {
-        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../scenarios/boats/{boat}.toml"));
+        let file =
+            Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../scenarios/boats/{boat}.toml"));
         let boat = scenario::load_file::<scenario::Boat>(&file).unwrap_or_else(|e| panic!("{e}"));
         OwnMotion::new(&boat, boat.speed_max_m_s(), true)
     }
@@ -236,15 +263,37 @@ mod tests {
     fn a_course_over_the_ground_is_kept_with_a_crab_angle() {
         let mut motion = motion("surveyor_m1_8");
         // Northward with an eastward drift of 0.5 m/s.
-        show(&mut motion, 0.0, 60.0, Nav { surge_m_s: 2.0, sway_m_s: 0.5, ..Nav::default() });
-        assert!(motion.drift().distance(Ned { north: 0.0, east: 0.5 }) < 0.01, "{:?}", motion.drift());
+        show(
+            &mut motion,
+            0.0,
+            60.0,
+            Nav {
+                surge_m_s: 2.0,
+                sway_m_s: 0.5,
+                ..Nav::default()
+            },
+        );
+        assert!(
+            motion.drift().distance(Ned {
+                north: 0.0,
+                east: 0.5
+            }) < 0.01,
+            "{:?}",
+            motion.drift()
+        );
         let drift_m_s = motion.drift().length();
         let (heading_rad, speed_m_s) = motion.steer(0.0, 1.5);
-        assert!((heading_rad + libm::asin(drift_m_s / speed_m_s)).abs() < 0.01, "the sine of the crab angle is d / V");
+        assert!(
+            (heading_rad + libm::asin(drift_m_s / speed_m_s)).abs() < 0.01,
+            "the sine of the crab angle is d / V"
+        );
         assert!((speed_m_s - math::length(1.5, drift_m_s)).abs() < 0.01);
         // A speed beyond the boat's capability becomes its maximum on that course.
         let (heading_rad, speed_m_s) = motion.steer(0.0, 5.0);
-        assert!((speed_m_s - 3.0).abs() < 1e-9 && (heading_rad + libm::asin(drift_m_s / 3.0)).abs() < 0.01);
+        assert!(
+            (speed_m_s - 3.0).abs() < 1e-9
+                && (heading_rad + libm::asin(drift_m_s / 3.0)).abs() < 0.01
+        );
         // To stop over the ground, it points against the drift.
         let (heading_rad, speed_m_s) = motion.steer(0.0, 0.0);
         assert!((heading_rad + 0.5 * PI).abs() < 0.03 && (speed_m_s - drift_m_s).abs() < 1e-9);
@@ -256,25 +305,53 @@ mod tests {
         let mut ordered_rad = 0.0;
         for i in 0..600 {
             // A lasting moment holds it 0.3 rad to starboard of its order.
-            show(&mut motion, 0.1 * f64::from(i), 0.1, Nav { psi_rad: ordered_rad + 0.3, ..Nav::default() });
+            show(
+                &mut motion,
+                0.1 * f64::from(i),
+                0.1,
+                Nav {
+                    psi_rad: ordered_rad + 0.3,
+                    ..Nav::default()
+                },
+            );
             if let Order::Steer { heading_rad, .. } = motion.order(1.0, 2.0) {
                 ordered_rad = heading_rad;
             }
         }
-        assert!((ordered_rad + 0.3 - 1.0).abs() < 0.02, "heading {} rad, want 1", ordered_rad + 0.3);
+        assert!(
+            (ordered_rad + 0.3 - 1.0).abs() < 0.02,
+            "heading {} rad, want 1",
+            ordered_rad + 0.3
+        );
     }
 
     #[test]
     fn a_boat_that_steers_by_its_thrust_keeps_some_while_it_brakes() {
-        for (boat, speed_m_s, want_m_s) in
-            [("large_usv_kinematic", 0.3, 5.5), ("large_usv_kinematic", 7.0, 7.0), ("surveyor_kinematic", 0.3, 0.3)]
-        {
+        for (boat, speed_m_s, want_m_s) in [
+            ("large_usv_kinematic", 0.3, 5.5),
+            ("large_usv_kinematic", 7.0, 7.0),
+            ("surveyor_kinematic", 0.3, 0.3),
+        ] {
             let mut motion = motion(boat);
-            show(&mut motion, 0.0, 1.0, Nav { surge_m_s: 6.0, ..Nav::default() });
-            let Order::Steer { speed_m_s: got_m_s, .. } = motion.order(1.0, speed_m_s) else {
+            show(
+                &mut motion,
+                0.0,
+                1.0,
+                Nav {
+                    surge_m_s: 6.0,
+                    ..Nav::default()
+                },
+            );
+            let Order::Steer {
+                speed_m_s: got_m_s, ..
+            } = motion.order(1.0, speed_m_s)
+            else {
                 panic!("expected a steer order")
             };
-            assert!((got_m_s - want_m_s).abs() < 1e-9, "{boat} at {speed_m_s}: ordered {got_m_s}, want {want_m_s}");
+            assert!(
+                (got_m_s - want_m_s).abs() < 1e-9,
+                "{boat} at {speed_m_s}: ordered {got_m_s}, want {want_m_s}"
+            );
         }
     }
 
@@ -284,7 +361,15 @@ mod tests {
         let mut sides = vec![];
         // The heading wavers about the opposite of the desired one.
         for (i, psi_rad) in [0.1, -0.1, 0.2, -0.3, 0.1].into_iter().enumerate() {
-            show(&mut motion, i as f64, 0.1, Nav { psi_rad, ..Nav::default() });
+            show(
+                &mut motion,
+                i as f64,
+                0.1,
+                Nav {
+                    psi_rad,
+                    ..Nav::default()
+                },
+            );
             if let Order::Steer { heading_rad, .. } = motion.order(PI, 2.0) {
                 sides.push(wrap_pi(heading_rad - psi_rad).signum());
             }
@@ -297,22 +382,35 @@ mod tests {
         // Reaction, s, and yaw rate, rad/s: constants once used for all boats, measured on this
         // one.
         let surveyor = motion("surveyor_m1_8").handling();
-        assert!((surveyor.reaction_s - 0.7).abs() < 0.1 && (surveyor.turn_rad_s - 0.35).abs() < 0.05, "{surveyor:?}");
+        assert!(
+            (surveyor.reaction_s - 0.7).abs() < 0.1 && (surveyor.turn_rad_s - 0.35).abs() < 0.05,
+            "{surveyor:?}"
+        );
         // The point boat reaches half of the 0.5 m/s² in its file: from 12 m/s it takes 48 s to
         // stop.
         let large = motion("large_usv_kinematic").handling();
         assert!((large.deceleration_m_s2 - 0.25).abs() < 1e-9, "{large:?}");
         // An error of half a radian sets a rudder of 0.35 % per degree, which at 70 % thrust turns
         // it at 0.12 rad/s.
-        assert!((large.yaw_rate_rad_s(0.5) - 0.1225).abs() < 0.001, "{large:?}");
+        assert!(
+            (large.yaw_rate_rad_s(0.5) - 0.1225).abs() < 0.001,
+            "{large:?}"
+        );
         let mut motion = motion("surveyor_m1_8");
         let before_rad_s = motion.handling().turn_rad_s;
         for i in 0..200 {
             motion.order(2.0, 2.0);
-            let nav = Nav { psi_rad: 0.0, yaw_rate_rad_s: 0.4 * before_rad_s, ..Nav::default() };
+            let nav = Nav {
+                psi_rad: 0.0,
+                yaw_rate_rad_s: 0.4 * before_rad_s,
+                ..Nav::default()
+            };
             show(&mut motion, 0.1 * f64::from(i), 0.1, nav);
         }
         let seen = motion.handling().turn_rad_s / before_rad_s;
-        assert!((0.35..0.65).contains(&seen), "observed turn rate is {seen} of that in its file");
+        assert!(
+            (0.35..0.65).contains(&seen),
+            "observed turn rate is {seen} of that in its file"
+        );
     }
 }

@@ -45,11 +45,19 @@ impl GameModel {
             vehicles.filter(move |vehicle| (scenario.team_of(*vehicle) == team) == wanted)
         };
         let flags = |wanted: bool| {
-            let flags = field.flags.iter().enumerate().filter(move |(_, flag)| (flag.team == team) == wanted);
-            flags.map(|(i, flag)| (FlagId(i as u8), flag.home)).collect::<Vec<_>>()
+            let flags = field
+                .flags
+                .iter()
+                .enumerate()
+                .filter(move |(_, flag)| (flag.team == team) == wanted);
+            flags
+                .map(|(i, flag)| (FlagId(i as u8), flag.home))
+                .collect::<Vec<_>>()
         };
-        let mut points: Vec<(String, Ned)> =
-            Field::point_names().into_iter().filter_map(|name| field.point(team, &name).map(|at| (name, at))).collect();
+        let mut points: Vec<(String, Ned)> = Field::point_names()
+            .into_iter()
+            .filter_map(|name| field.point(team, &name).map(|at| (name, at)))
+            .collect();
         // Sorted once for binary search: expressions look points up by name at every decision.
         points.sort_by(|a, b| a.0.cmp(&b.0));
         let speed_m_s = |i: usize| scenario.boat_of(VehicleId::at(i)).speed_max_m_s();
@@ -63,9 +71,15 @@ impl GameModel {
             mates: of(true).filter(|vehicle| *vehicle != me).collect(),
             targets: flags(false),
             own_flags: flags(true),
-            score_max: scenario.rules.win_score.map_or(PYQUATICUS_SCORE_MAX, f64::from),
+            score_max: scenario
+                .rules
+                .win_score
+                .map_or(PYQUATICUS_SCORE_MAX, f64::from),
             boat_speeds_m_s,
-            speed_max_m_s: program.helm.speed_max_m_s.map_or(own_m_s, |most_m_s| most_m_s.min(own_m_s)),
+            speed_max_m_s: program
+                .helm
+                .speed_max_m_s
+                .map_or(own_m_s, |most_m_s| most_m_s.min(own_m_s)),
             points,
             field: field.clone(),
             rules: scenario.rules.clone(),
@@ -79,23 +93,31 @@ impl GameModel {
 
     /// A named point of the team.
     pub(crate) fn point(&self, name: &str) -> Option<Ned> {
-        let found = self.points.binary_search_by(|(known, _)| known.as_str().cmp(name));
+        let found = self
+            .points
+            .binary_search_by(|(known, _)| known.as_str().cmp(name));
         found.ok().map(|i| self.points[i].1)
     }
 
     /// The place to bring a flag to, from here.
     pub(crate) fn capture_place(&self, at: Ned) -> Ned {
-        self.rules.capture_place(&self.field, self.team, at).expect(HAS_ALL)
+        self.rules
+            .capture_place(&self.field, self.team, at)
+            .expect(HAS_ALL)
     }
 
     /// The place to steer a tagged boat to, from here.
     pub(crate) fn untag_place(&self, at: Ned) -> Ned {
-        self.rules.untag_place(&self.field, self.team, at).expect(HAS_ALL)
+        self.rules
+            .untag_place(&self.field, self.team, at)
+            .expect(HAS_ALL)
     }
 
     /// The centre of the untagging circle, from here.
     pub(crate) fn untag_centre(&self, at: Ned) -> Ned {
-        self.rules.untag_centre(&self.field, self.team, at).expect(HAS_ALL)
+        self.rules
+            .untag_centre(&self.field, self.team, at)
+            .expect(HAS_ALL)
     }
 
     /// Whether `at` is on the team's own side.

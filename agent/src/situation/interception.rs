@@ -41,16 +41,30 @@ pub(super) struct Pair {
 
 /// Assigns to each intruder, in order, the remaining boat that meets it soonest; ties go to the
 /// first boat.
-pub(super) fn assign(interceptors: &[Interceptor], intruders: &[Intruder], before: &[Pair]) -> Vec<Pair> {
+pub(super) fn assign(
+    interceptors: &[Interceptor],
+    intruders: &[Intruder],
+    before: &[Pair],
+) -> Vec<Pair> {
     // Greedy, not the best sum over all pairs: the intruder nearest to the flag matters most, and a
     // distant boat does not change the result.
     let mut left: Vec<&Interceptor> = interceptors.iter().collect();
     let mut pairs = Vec::with_capacity(intruders.len().min(left.len()));
     for intruder in intruders {
-        let kept = before.iter().find(|pair| pair.intruder == intruder.vehicle).map(|pair| pair.interceptor);
+        let kept = before
+            .iter()
+            .find(|pair| pair.intruder == intruder.vehicle)
+            .map(|pair| pair.interceptor);
         let cost_s = |interceptor: &Interceptor| {
-            let kept_s = if kept == Some(interceptor.vehicle) { KEPT_S } else { 0.0 };
-            interceptor.unready_s.max(time_to_meet_s(interceptor, intruder)) - kept_s
+            let kept_s = if kept == Some(interceptor.vehicle) {
+                KEPT_S
+            } else {
+                0.0
+            };
+            interceptor
+                .unready_s
+                .max(time_to_meet_s(interceptor, intruder))
+                - kept_s
         };
         let intruder_m_s = intruder.velocity.length();
         let mut soonest_s = f64::INFINITY;
@@ -68,7 +82,10 @@ pub(super) fn assign(interceptors: &[Interceptor], intruders: &[Intruder], befor
             }
         }
         let Some(i) = soonest else { break };
-        pairs.push(Pair { interceptor: left.remove(i).vehicle, intruder: intruder.vehicle });
+        pairs.push(Pair {
+            interceptor: left.remove(i).vehicle,
+            intruder: intruder.vehicle,
+        });
     }
     pairs
 }
@@ -95,7 +112,9 @@ pub(crate) fn meeting_time_s(line: Ned, velocity: Ned, speed_m_s: f64) -> Option
     let under_root = half_b * half_b - a * c;
     let root = under_root.max(0.0).sqrt();
     let both = [(-half_b - root) / a, (-half_b + root) / a];
-    both.into_iter().filter(|t| under_root >= 0.0 && *t > 0.0).reduce(f64::min)
+    both.into_iter()
+        .filter(|t| under_root >= 0.0 && *t > 0.0)
+        .reduce(f64::min)
 }
 
 #[cfg(test)]
@@ -103,28 +122,57 @@ mod tests {
     use super::*;
 
     fn interceptor(vehicle: u16, east: f64) -> Interceptor {
-        Interceptor { vehicle: VehicleId(vehicle), at: Ned { north: 0.0, east }, speed_m_s: 2.0, unready_s: 0.0 }
+        Interceptor {
+            vehicle: VehicleId(vehicle),
+            at: Ned { north: 0.0, east },
+            speed_m_s: 2.0,
+            unready_s: 0.0,
+        }
     }
 
     fn intruder(vehicle: u16, east: f64) -> Intruder {
-        Intruder { vehicle: VehicleId(vehicle), at: Ned { north: 0.0, east }, velocity: Ned::default() }
+        Intruder {
+            vehicle: VehicleId(vehicle),
+            at: Ned { north: 0.0, east },
+            velocity: Ned::default(),
+        }
     }
 
     fn numbers(pairs: &[Pair]) -> Vec<(u16, u16)> {
-        pairs.iter().map(|pair| (pair.interceptor.0, pair.intruder.0)).collect()
+        pairs
+            .iter()
+            .map(|pair| (pair.interceptor.0, pair.intruder.0))
+            .collect()
     }
 
     #[test]
     fn each_intruder_has_the_boat_that_meets_it_soonest_and_no_boat_has_two() {
-        let boats = [interceptor(0, 0.0), interceptor(1, 10.0), interceptor(2, 40.0)];
+        let boats = [
+            interceptor(0, 0.0),
+            interceptor(1, 10.0),
+            interceptor(2, 40.0),
+        ];
         for (intruders, want) in [
             (vec![], vec![]),
             (vec![intruder(7, 9.0)], vec![(1, 7)]),
-            (vec![intruder(7, 9.0), intruder(8, 11.0)], vec![(1, 7), (0, 8)]),
-            (vec![intruder(8, 11.0), intruder(7, 9.0)], vec![(1, 8), (0, 7)]),
-            ((5..9).map(|i| intruder(i, 30.0)).collect(), vec![(2, 5), (1, 6), (0, 7)]),
+            (
+                vec![intruder(7, 9.0), intruder(8, 11.0)],
+                vec![(1, 7), (0, 8)],
+            ),
+            (
+                vec![intruder(8, 11.0), intruder(7, 9.0)],
+                vec![(1, 8), (0, 7)],
+            ),
+            (
+                (5..9).map(|i| intruder(i, 30.0)).collect(),
+                vec![(2, 5), (1, 6), (0, 7)],
+            ),
         ] {
-            assert_eq!(numbers(&assign(&boats, &intruders, &[])), want, "{intruders:?}");
+            assert_eq!(
+                numbers(&assign(&boats, &intruders, &[])),
+                want,
+                "{intruders:?}"
+            );
         }
         assert!(assign(&[], &[intruder(7, 9.0)], &[]).is_empty());
     }
@@ -136,12 +184,19 @@ mod tests {
         let meets = |near| numbers(&assign(&[near, quick], &[intruder(7, 0.0)], &[]));
         assert_eq!(meets(near), [(0, 7)]);
         near.unready_s = 20.0;
-        assert_eq!(meets(near), [(1, 7)], "15 s to get there, but 20 s until it can tag");
+        assert_eq!(
+            meets(near),
+            [(1, 7)],
+            "15 s to get there, but 20 s until it can tag"
+        );
     }
 
     #[test]
     fn noise_does_not_change_who_meets_whom_and_what_is_better_does() {
-        let before = [Pair { interceptor: VehicleId(0), intruder: VehicleId(7) }];
+        let before = [Pair {
+            interceptor: VehicleId(0),
+            intruder: VehicleId(7),
+        }];
         for (east, want) in [(10.0, 0), (12.0, 0), (15.9, 0), (16.1, 1)] {
             // The other boat is 10 m away on the other side; each further metre takes half a
             // second.
@@ -152,7 +207,11 @@ mod tests {
     }
 
     fn plain_cost_s(boat: &Interceptor, intruder: &Intruder, kept: Pair) -> f64 {
-        let is_kept = kept == Pair { interceptor: boat.vehicle, intruder: intruder.vehicle };
+        let is_kept = kept
+            == Pair {
+                interceptor: boat.vehicle,
+                intruder: intruder.vehicle,
+            };
         boat.unready_s.max(time_to_meet_s(boat, intruder)) - if is_kept { KEPT_S } else { 0.0 }
     }
 
@@ -160,31 +219,70 @@ mod tests {
     fn boats_that_are_too_far_off_to_be_sooner_change_nothing() {
         for seed in 0..500 {
             let mut stream = primitives::stream::Stream::new(seed, "interception");
-            let mut place = |most_m: f64| Ned { north: stream.between(0.0, most_m), east: stream.between(0.0, most_m) };
+            let mut place = |most_m: f64| Ned {
+                north: stream.between(0.0, most_m),
+                east: stream.between(0.0, most_m),
+            };
             let boats: Vec<Interceptor> = (0..20)
-                .map(|i| Interceptor { at: place(300.0), unready_s: place(9.0).north, ..interceptor(i, 0.0) })
+                .map(|i| Interceptor {
+                    at: place(300.0),
+                    unready_s: place(9.0).north,
+                    ..interceptor(i, 0.0)
+                })
                 .collect();
-            let intruders: Vec<Intruder> =
-                (20..30).map(|i| Intruder { at: place(300.0), velocity: place(3.0), ..intruder(i, 0.0) }).collect();
-            let before = [Pair { interceptor: VehicleId(3), intruder: VehicleId(20) }];
+            let intruders: Vec<Intruder> = (20..30)
+                .map(|i| Intruder {
+                    at: place(300.0),
+                    velocity: place(3.0),
+                    ..intruder(i, 0.0)
+                })
+                .collect();
+            let before = [Pair {
+                interceptor: VehicleId(3),
+                intruder: VehicleId(20),
+            }];
             let mut left = boats.clone();
             let mut want = Vec::new();
             for intruder in &intruders {
                 let cost_s = |boat: &Interceptor| plain_cost_s(boat, intruder, before[0]);
-                let soonest = (0..left.len()).min_by(|a, b| cost_s(&left[*a]).total_cmp(&cost_s(&left[*b])));
-                want.push((left.remove(soonest.expect("20 boats for 10")).vehicle.0, intruder.vehicle.0));
+                let soonest =
+                    (0..left.len()).min_by(|a, b| cost_s(&left[*a]).total_cmp(&cost_s(&left[*b])));
+                want.push((
+                    left.remove(soonest.expect("20 boats for 10")).vehicle.0,
+                    intruder.vehicle.0,
+                ));
             }
-            assert_eq!(numbers(&assign(&boats, &intruders, &before)), want, "seed {seed}");
+            assert_eq!(
+                numbers(&assign(&boats, &intruders, &before)),
+                want,
+                "seed {seed}"
+            );
         }
     }
 
     #[test]
     fn one_that_comes_on_is_met_sooner_than_one_that_flees() {
         let boat = interceptor(0, 0.0);
-        let time_s = |velocity| time_to_meet_s(&boat, &Intruder { velocity, ..intruder(7, 30.0) });
+        let time_s = |velocity| {
+            time_to_meet_s(
+                &boat,
+                &Intruder {
+                    velocity,
+                    ..intruder(7, 30.0)
+                },
+            )
+        };
         let going = |east| Ned { north: 0.0, east };
-        assert!((time_s(going(-1.0)) - 10.0).abs() < 1e-9 && (time_s(going(1.0)) - 30.0).abs() < 1e-9);
-        assert!((time_s(going(-2.0)) - 7.5).abs() < 1e-9, "as fast as the boat");
-        assert!((time_s(going(3.0)) - 30.0).abs() < 1e-9, "never: twice the time to its present position");
+        assert!(
+            (time_s(going(-1.0)) - 10.0).abs() < 1e-9 && (time_s(going(1.0)) - 30.0).abs() < 1e-9
+        );
+        assert!(
+            (time_s(going(-2.0)) - 7.5).abs() < 1e-9,
+            "as fast as the boat"
+        );
+        assert!(
+            (time_s(going(3.0)) - 30.0).abs() < 1e-9,
+            "never: twice the time to its present position"
+        );
     }
 }

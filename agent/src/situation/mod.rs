@@ -72,13 +72,21 @@ impl OtherBoat {
     pub(crate) fn velocity(&self) -> Ned {
         match self.velocity {
             Velocity::Ned(velocity) => velocity,
-            Velocity::Body(velocity) => ned_from_body(Rotation::from_heading(self.psi_rad), velocity),
+            Velocity::Body(velocity) => {
+                ned_from_body(Rotation::from_heading(self.psi_rad), velocity)
+            }
         }
     }
 
     /// Its position and velocity extrapolated through a brief continued turn.
     pub(crate) fn turning_on(&self) -> MovingPoint {
-        turning_on(MovingPoint { at: self.at, velocity: self.velocity() }, self.yaw_rate_rad_s)
+        turning_on(
+            MovingPoint {
+                at: self.at,
+                velocity: self.velocity(),
+            },
+            self.yaw_rate_rad_s,
+        )
     }
 }
 
@@ -126,7 +134,12 @@ pub(crate) struct Situation {
 
 impl Situation {
     /// Before the first picture. `compensates` is whether the drift is estimated.
-    pub(crate) fn new(scenario: &Scenario, vehicle: VehicleId, program: &Program, compensates: bool) -> Situation {
+    pub(crate) fn new(
+        scenario: &Scenario,
+        vehicle: VehicleId,
+        program: &Program,
+        compensates: bool,
+    ) -> Situation {
         let model = GameModel::new(scenario, vehicle, program);
         Situation {
             own: OwnBoat::new(model.me, messages::picture::Nav::default()),
@@ -144,7 +157,11 @@ impl Situation {
             others: Vec::new(),
             turns: Vec::new(),
             tag_ready: Vec::new(),
-            variables: program.variables.iter().map(|variable| variable.initial).collect(),
+            variables: program
+                .variables
+                .iter()
+                .map(|variable| variable.initial)
+                .collect(),
             proposed: None,
             carriers: Vec::new(),
             score: 0.0,
@@ -162,15 +179,23 @@ impl Situation {
 
     /// Takes in the newest picture unless a preview has. Returns whether it shows the boat itself.
     pub(crate) fn update(&mut self, picture: &Picture) -> bool {
-        self.is_seen.take().unwrap_or_else(|| self.apply_picture(picture))
+        self.is_seen
+            .take()
+            .unwrap_or_else(|| self.apply_picture(picture))
     }
 
     fn apply_picture(&mut self, picture: &Picture) -> bool {
-        let Some(own) = picture.own(self.model.me) else { return false };
+        let Some(own) = picture.own(self.model.me) else {
+            return false;
+        };
         let now = picture.stamp.valid_ns;
         // By the pictures' own time, so that a lost one means a longer step and a repeated one a
         // step of zero.
-        self.step_s = if self.begun { (now - self.now).as_s().max(0.0) } else { 0.0 };
+        self.step_s = if self.begun {
+            (now - self.now).as_s().max(0.0)
+        } else {
+            0.0
+        };
         (self.now, self.begun) = (now, true);
         self.own = *own;
         self.at = own.nav.at();
@@ -183,7 +208,11 @@ impl Situation {
         );
         self.note_tags(picture);
         self.others.clear();
-        for mate in picture.own.iter().filter(|boat| boat.vehicle != self.model.me) {
+        for mate in picture
+            .own
+            .iter()
+            .filter(|boat| boat.vehicle != self.model.me)
+        {
             let at = mate.nav.at();
             self.others.push(OtherBoat {
                 vehicle: mate.vehicle,
@@ -191,7 +220,10 @@ impl Situation {
                 at,
                 // In games of 20 against 20 and more, rotating all of them to the field's frame
                 // measurably slowed decisions, and few are needed.
-                velocity: Velocity::Body(Body { ahead: mate.nav.surge_m_s, starboard: mate.nav.sway_m_s }),
+                velocity: Velocity::Body(Body {
+                    ahead: mate.nav.surge_m_s,
+                    starboard: mate.nav.sway_m_s,
+                }),
                 psi_rad: mate.nav.psi_rad,
                 yaw_rate_rad_s: mate.nav.yaw_rate_rad_s,
                 tagged: mate.tagged,
@@ -226,22 +258,34 @@ impl Situation {
             self.interception_before = pairs;
         }
         self.carriers.clear();
-        self.carriers.extend(picture.flags.iter().map(|flag| u16::try_from(flag.carrier).ok().map(VehicleId)));
+        self.carriers.extend(
+            picture
+                .flags
+                .iter()
+                .map(|flag| u16::try_from(flag.carrier).ok().map(VehicleId)),
+        );
         let ours = picture.score.get(self.model.team.index()).copied();
         self.score = f64::from(ours.unwrap_or(0));
         self.enemy_score = picture.score.iter().copied().map(f64::from).sum::<f64>() - self.score;
         // With hysteresis: at a single limit, position noise would toggle the state.
-        let from_home = self.at.distance(self.model.untag_centre(self.at)) / self.model.rules.untag_radius_m;
-        self.leaving = own.tagged && (from_home < WELL_INSIDE || self.leaving && from_home <= WELL_OUTSIDE);
+        let from_home =
+            self.at.distance(self.model.untag_centre(self.at)) / self.model.rules.untag_radius_m;
+        self.leaving =
+            own.tagged && (from_home < WELL_INSIDE || self.leaving && from_home <= WELL_OUTSIDE);
         true
     }
 
     /// Enemies that have tagged a boat of the team cannot tag again for a while.
     fn note_tags(&mut self, picture: &Picture) {
         for logged in picture.events.iter().filter_map(EventRecord::logged) {
-            if let Event::Tagged { cause: TagCause::Opponent(by), .. } = logged.event {
+            if let Event::Tagged {
+                cause: TagCause::Opponent(by),
+                ..
+            } = logged.event
+            {
                 let i = by.index();
-                self.tag_ready.resize(self.tag_ready.len().max(i + 1), SimTime::ZERO);
+                self.tag_ready
+                    .resize(self.tag_ready.len().max(i + 1), SimTime::ZERO);
                 self.tag_ready[i] = self.model.rules.tag_ready_after(logged.at);
             }
         }
@@ -249,7 +293,13 @@ impl Situation {
 
     /// The boat extrapolated through a brief continued turn.
     pub(crate) fn turning_on(&self) -> MovingPoint {
-        turning_on(MovingPoint { at: self.at, velocity: self.velocity }, self.own.nav.yaw_rate_rad_s)
+        turning_on(
+            MovingPoint {
+                at: self.at,
+                velocity: self.velocity,
+            },
+            self.own.nav.yaw_rate_rad_s,
+        )
     }
 
     pub(crate) fn enemies(&self) -> impl Iterator<Item = &OtherBoat> {
@@ -258,7 +308,8 @@ impl Situation {
 
     /// The enemies on the team's own side that are not tagged.
     fn intruders(&self) -> impl Iterator<Item = &OtherBoat> {
-        self.enemies().filter(|enemy| !enemy.tagged && enemy.intrudes)
+        self.enemies()
+            .filter(|enemy| !enemy.tagged && enemy.intrudes)
     }
 
     fn mates(&self) -> impl Iterator<Item = &OtherBoat> {
@@ -267,28 +318,37 @@ impl Situation {
 
     /// The boat that `boat` currently refers to.
     pub(crate) fn boat(&self, boat: Boat) -> Option<&OtherBoat> {
-        let of_ours = |other: &&OtherBoat| other.carrying.is_some_and(|flag| self.is_own_flag(flag));
+        let of_ours =
+            |other: &&OtherBoat| other.carrying.is_some_and(|flag| self.is_own_flag(flag));
         match boat {
             Boat::NearestEnemy => nearest(self.at, self.enemies().filter(|enemy| !enemy.tagged)),
             Boat::NearestIntruder => nearest(self.at, self.intruders()),
             Boat::NearestAttacker => {
                 let attackers = self.enemies().filter(|enemy| !enemy.tagged);
-                attackers.min_by(|a, b| self.flag_distance_squared(a.at).total_cmp(&self.flag_distance_squared(b.at)))
+                attackers.min_by(|a, b| {
+                    self.flag_distance_squared(a.at)
+                        .total_cmp(&self.flag_distance_squared(b.at))
+                })
             }
             Boat::NearestDefender => nearest(self.enemy_flag(), self.enemies()),
             Boat::AssignedIntruder => {
                 let pairs = self.interception.get_or_init(|| self.intercepted());
-                let mine = pairs.iter().find(|pair| pair.interceptor == self.model.me)?;
+                let mine = pairs
+                    .iter()
+                    .find(|pair| pair.interceptor == self.model.me)?;
                 self.enemies().find(|enemy| enemy.vehicle == mine.intruder)
             }
             Boat::FlagCarrier => nearest(self.at, self.enemies().filter(of_ours)),
             Boat::Opponent => {
                 let enemies = &self.model.enemies;
-                let assigned = (!enemies.is_empty()).then(|| enemies[self.model.rank % enemies.len()]);
+                let assigned =
+                    (!enemies.is_empty()).then(|| enemies[self.model.rank % enemies.len()]);
                 self.enemies().find(|enemy| Some(enemy.vehicle) == assigned)
             }
             Boat::NearestMate => nearest(self.at, self.mates()),
-            Boat::MateCarrier => nearest(self.at, self.mates().filter(|mate| mate.carrying.is_some())),
+            Boat::MateCarrier => {
+                nearest(self.at, self.mates().filter(|mate| mate.carrying.is_some()))
+            }
         }
     }
 
@@ -299,12 +359,19 @@ impl Situation {
 
     /// Computes the interception pairs.
     fn intercepted(&self) -> Vec<Pair> {
-        let intruder = |boat: &OtherBoat| Intruder { vehicle: boat.vehicle, at: boat.at, velocity: boat.velocity() };
+        let intruder = |boat: &OtherBoat| Intruder {
+            vehicle: boat.vehicle,
+            at: boat.at,
+            velocity: boat.velocity(),
+        };
         let mut intruders: Vec<Intruder> = self.intruders().map(intruder).collect();
         // By the flag nearest to each intruder, not the one nearest to this boat, so that all boats
         // of the team find the same order. By their distance to the flag in the whole team's
         // knowledge, so that every mate computes the same pairs.
-        intruders.sort_by(|a, b| self.flag_distance_squared(a.at).total_cmp(&self.flag_distance_squared(b.at)));
+        intruders.sort_by(|a, b| {
+            self.flag_distance_squared(a.at)
+                .total_cmp(&self.flag_distance_squared(b.at))
+        });
         let boat = |vehicle: VehicleId, at: Ned, tag_ready: SimTime| Interceptor {
             vehicle,
             at,
@@ -313,7 +380,9 @@ impl Situation {
         };
         let is_free = !self.own.tagged && self.own.carried_flag().is_none();
         let own = is_free.then(|| boat(self.model.me, self.at, self.own.tag_ready_ns));
-        let mates = self.free_mates().map(|mate| boat(mate.vehicle, mate.at, mate.tag_ready));
+        let mates = self
+            .free_mates()
+            .map(|mate| boat(mate.vehicle, mate.at, mate.tag_ready));
         let mut interceptors: Vec<Interceptor> = mates.chain(own).collect();
         interceptors.sort_by_key(|boat| boat.vehicle);
         interception::assign(&interceptors, &intruders, &self.interception_before)
@@ -321,17 +390,26 @@ impl Situation {
 
     /// The untagged mates without a flag.
     fn free_mates(&self) -> impl Iterator<Item = &OtherBoat> {
-        self.mates().filter(|mate| !mate.tagged && mate.carrying.is_none())
+        self.mates()
+            .filter(|mate| !mate.tagged && mate.carrying.is_none())
     }
 
     /// The present position and velocity of a place.
     pub(crate) fn locate(&self, place: &Place) -> Option<MovingPoint> {
-        let still = |at: Ned| Some(MovingPoint { at, velocity: Ned::default() });
+        let still = |at: Ned| {
+            Some(MovingPoint {
+                at,
+                velocity: Ned::default(),
+            })
+        };
         match place {
             Place::At(at) => still(*at),
             Place::Point(name) => self.model.point(name).and_then(still),
             Place::Mark(mark) => still(self.mark(*mark)),
-            Place::Boat(boat) => self.boat(*boat).map(|other| MovingPoint { at: other.at, velocity: other.velocity() }),
+            Place::Boat(boat) => self.boat(*boat).map(|other| MovingPoint {
+                at: other.at,
+                velocity: other.velocity(),
+            }),
         }
     }
 
@@ -348,7 +426,12 @@ impl Situation {
     /// The nearest flag to attack that is home, or else the nearest of all.
     fn enemy_flag(&self) -> Ned {
         let targets = self.model.targets.iter();
-        let key = |(flag, home): &&(FlagId, Ned)| (self.carried(*flag).is_some(), self.at.distance_squared(*home));
+        let key = |(flag, home): &&(FlagId, Ned)| {
+            (
+                self.carried(*flag).is_some(),
+                self.at.distance_squared(*home),
+            )
+        };
         let best = targets.min_by(|a, b| {
             let a = key(a);
             let b = key(b);
@@ -378,10 +461,23 @@ impl Values for Situation {
             Fact::Outside => truth(self.own.outside),
             Fact::Disabled => truth(self.own.disabled),
             Fact::CanTag => truth(Ability::from(&self.own).may_tag(self.now)),
-            Fact::FlagTaken => truth(self.model.own_flags.iter().any(|(flag, _)| self.carried(*flag).is_some())),
-            Fact::EnemyFlagTaken => truth(self.model.targets.iter().any(|(flag, _)| self.carried(*flag).is_some())),
+            Fact::FlagTaken => truth(
+                self.model
+                    .own_flags
+                    .iter()
+                    .any(|(flag, _)| self.carried(*flag).is_some()),
+            ),
+            Fact::EnemyFlagTaken => truth(
+                self.model
+                    .targets
+                    .iter()
+                    .any(|(flag, _)| self.carried(*flag).is_some()),
+            ),
             Fact::MateHasFlag => {
-                let by_mate = |flag: FlagId| self.carried(flag).is_some_and(|carrier| carrier != self.model.me);
+                let by_mate = |flag: FlagId| {
+                    self.carried(flag)
+                        .is_some_and(|carrier| carrier != self.model.me)
+                };
                 truth(self.model.targets.iter().any(|(flag, _)| by_mate(*flag)))
             }
             Fact::EnemyInZone => truth(self.intruders().next().is_some()),
@@ -402,7 +498,10 @@ impl Values for Situation {
     }
 
     fn variable(&self, index: u16) -> f64 {
-        self.variables.get(usize::from(index)).copied().unwrap_or(0.0)
+        self.variables
+            .get(usize::from(index))
+            .copied()
+            .unwrap_or(0.0)
     }
 
     fn measure(&self, measure: Measure, place: &Place) -> f64 {
@@ -410,19 +509,26 @@ impl Values for Situation {
         let truth = |is: bool| f64::from(u8::from(is));
         match measure {
             Measure::Distance | Measure::Closing => {
-                let own = MovingPoint { at: self.at, velocity: self.velocity };
+                let own = MovingPoint {
+                    at: self.at,
+                    velocity: self.velocity,
+                };
                 between(measure, Some(own), point)
             }
             Measure::Speed => point.map_or(0.0, |point| point.velocity.length()),
             Measure::Known => truth(point.is_some()),
-            Measure::OnOwnSide => truth(point.is_some_and(|point| self.model.is_own_side(point.at))),
+            Measure::OnOwnSide => {
+                truth(point.is_some_and(|point| self.model.is_own_side(point.at)))
+            }
             Measure::IsTagged => match place {
                 Place::Boat(boat) => truth(self.boat(*boat).is_some_and(|boat| boat.tagged)),
                 _ => 0.0,
             },
             Measure::MatesNearer => point.map_or(0.0, |point| {
                 let own = self.at.distance_squared(point.at);
-                self.free_mates().filter(|mate| mate.at.distance_squared(point.at) < own).count() as f64
+                self.free_mates()
+                    .filter(|mate| mate.at.distance_squared(point.at) < own)
+                    .count() as f64
             }),
         }
     }
@@ -459,8 +565,14 @@ fn closing_m_s(from: MovingPoint, to: MovingPoint) -> f64 {
 /// The estimated position and velocity of a contact now: constant velocity, then slowing down, then
 /// at rest.
 fn dead_reckoned(contact: &Contact, now: SimTime) -> (Ned, Ned) {
-    let seen = Ned { north: contact.north_m, east: contact.east_m };
-    let velocity = Ned { north: contact.velocity_north_m_s, east: contact.velocity_east_m_s };
+    let seen = Ned {
+        north: contact.north_m,
+        east: contact.east_m,
+    };
+    let velocity = Ned {
+        north: contact.velocity_north_m_s,
+        east: contact.velocity_east_m_s,
+    };
     let age_s = (now - contact.seen_ns).as_s().max(0.0);
     let slowing_s = (age_s - KEEPS_ON_S).clamp(0.0, STILL_AFTER_S - KEEPS_ON_S);
     let left = 1.0 - slowing_s / (STILL_AFTER_S - KEEPS_ON_S);
@@ -471,5 +583,8 @@ fn dead_reckoned(contact: &Contact, now: SimTime) -> (Ned, Ned) {
 
 /// The boat nearest to `at`; ties go to the first.
 fn nearest<'a>(at: Ned, others: impl Iterator<Item = &'a OtherBoat>) -> Option<&'a OtherBoat> {
-    others.min_by(|a, b| at.distance_squared(a.at).total_cmp(&at.distance_squared(b.at)))
+    others.min_by(|a, b| {
+        at.distance_squared(a.at)
+            .total_cmp(&at.distance_squared(b.at))
+    })
 }

@@ -23,10 +23,19 @@ pub(crate) struct TeamMessages {
 
 impl TeamMessages {
     pub(crate) fn new(program: &Program, mates: &[VehicleId]) -> TeamMessages {
-        let keys: Vec<Option<u64>> =
-            program.variables.iter().map(|variable| variable.shared.then(|| key_of(variable))).collect();
-        let of = |mate: &VehicleId| MateVariables { mate: *mate, values: vec![None; keys.len()] };
-        TeamMessages { mates: mates.iter().map(of).collect(), keys }
+        let keys: Vec<Option<u64>> = program
+            .variables
+            .iter()
+            .map(|variable| variable.shared.then(|| key_of(variable)))
+            .collect();
+        let of = |mate: &VehicleId| MateVariables {
+            mate: *mate,
+            values: vec![None; keys.len()],
+        };
+        TeamMessages {
+            mates: mates.iter().map(of).collect(),
+            keys,
+        }
     }
 
     /// Whether anything is shared.
@@ -39,7 +48,9 @@ impl TeamMessages {
         for word in messages.iter().filter(|word| word.value.is_finite()) {
             let variable = self.keys.iter().position(|key| *key == Some(word.key));
             // Mates are in the scenario's order.
-            let mate = self.mates.binary_search_by_key(&word.vehicle, |from| from.mate);
+            let mate = self
+                .mates
+                .binary_search_by_key(&word.vehicle, |from| from.mate);
             if let (Some(variable), Ok(mate)) = (variable, mate) {
                 self.mates[mate].values[variable] = Some(word.value);
             }
@@ -48,8 +59,16 @@ impl TeamMessages {
 
     /// Adds the values of all shared variables.
     pub(crate) fn send(&self, me: VehicleId, variables: &[f64], messages: &mut Vec<Word>) {
-        let shared = self.keys.iter().zip(variables).filter_map(|(key, value)| key.map(|key| (key, *value)));
-        messages.extend(shared.map(|(key, value)| Word { vehicle: me, key, value }));
+        let shared = self
+            .keys
+            .iter()
+            .zip(variables)
+            .filter_map(|(key, value)| key.map(|key| (key, *value)));
+        messages.extend(shared.map(|(key, value)| Word {
+            vehicle: me,
+            key,
+            value,
+        }));
     }
 
     /// The number of mates for which `condition` holds. A mate without all required values does not
@@ -58,7 +77,11 @@ impl TeamMessages {
         let holds = |from: &&MateVariables| {
             let mut complete = true;
             condition.walk(&mut |part| {
-                let is_known = |index: u16| from.values.get(usize::from(index)).is_some_and(Option::is_some);
+                let is_known = |index: u16| {
+                    from.values
+                        .get(usize::from(index))
+                        .is_some_and(Option::is_some)
+                };
                 complete &= part.as_variable().is_none_or(is_known);
             });
             complete && condition.is_true(*from)
@@ -82,6 +105,10 @@ fn key_of(variable: &Variable) -> u64 {
 /// Only the shared variables of mates are known.
 impl Values for MateVariables {
     fn variable(&self, index: u16) -> f64 {
-        self.values.get(usize::from(index)).copied().flatten().unwrap_or(0.0)
+        self.values
+            .get(usize::from(index))
+            .copied()
+            .flatten()
+            .unwrap_or(0.0)
     }
 }

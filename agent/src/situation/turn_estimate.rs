@@ -26,7 +26,13 @@ impl TurnEstimate {
     pub(super) fn seen(before: Option<TurnEstimate>, contact: &Contact) -> TurnEstimate {
         let seen = contact.seen_ns;
         let psi_rad = contact.psi_rad;
-        let Some(before) = before else { return TurnEstimate { seen, psi_rad, yaw_rate_rad_s: 0.0 } };
+        let Some(before) = before else {
+            return TurnEstimate {
+                seen,
+                psi_rad,
+                yaw_rate_rad_s: 0.0,
+            };
+        };
         // A contact shown again unchanged was not observed again: it would appear to have stopped
         // turning.
         if seen <= before.seen {
@@ -45,7 +51,11 @@ impl TurnEstimate {
     /// The yaw rate, rad/s clockwise; 0 if the contact has not been seen for longer than the
     /// assumed turn.
     pub(super) fn yaw_rate_rad_s(&self, now: SimTime) -> f64 {
-        if (now - self.seen).as_s() > TURNS_ON_S { 0.0 } else { self.yaw_rate_rad_s }
+        if (now - self.seen).as_s() > TURNS_ON_S {
+            0.0
+        } else {
+            self.yaw_rate_rad_s
+        }
     }
 }
 
@@ -57,10 +67,25 @@ pub(super) fn turning_on(boat: MovingPoint, yaw_rate_rad_s: f64) -> MovingPoint 
     let half = Rotation::from_heading(half_rad);
     // The ratio of an arc's chord to its length: the sine of half the angle over half the angle,
     // which is 1 for a straight line.
-    let chord = if half_rad.abs() > 1e-6 { half.ahead().east / half_rad } else { 1.0 };
-    let clockwise = |by| ned_from_body(by, Body { ahead: boat.velocity.north, starboard: boat.velocity.east });
+    let chord = if half_rad.abs() > 1e-6 {
+        half.ahead().east / half_rad
+    } else {
+        1.0
+    };
+    let clockwise = |by| {
+        ned_from_body(
+            by,
+            Body {
+                ahead: boat.velocity.north,
+                starboard: boat.velocity.east,
+            },
+        )
+    };
     let velocity = clockwise(Rotation::from_heading(turn_rad));
-    MovingPoint { at: boat.at + clockwise(half).scaled(chord * TURNS_ON_S) - velocity.scaled(TURNS_ON_S), velocity }
+    MovingPoint {
+        at: boat.at + clockwise(half).scaled(chord * TURNS_ON_S) - velocity.scaled(TURNS_ON_S),
+        velocity,
+    }
 }
 
 #[cfg(test)]
@@ -73,19 +98,38 @@ mod tests {
     #[test]
     fn a_boat_on_a_circle_is_where_the_circle_leads() {
         // 2 m/s north at 0.4 rad/s: a circle of radius 5 m around a point 5 m to the east.
-        let boat = MovingPoint { at: Ned { north: 10.0, east: 20.0 }, velocity: Ned { north: 2.0, east: 0.0 } };
+        let boat = MovingPoint {
+            at: Ned {
+                north: 10.0,
+                east: 20.0,
+            },
+            velocity: Ned {
+                north: 2.0,
+                east: 0.0,
+            },
+        };
         for yaw_rate_rad_s in [0.4, -0.4] {
             let turned = turning_on(boat, yaw_rate_rad_s);
             let (sin, cos) = primitives::math::sin_cos(0.4 * TURNS_ON_S);
             let side = f64::signum(yaw_rate_rad_s);
-            let want = boat.at + Ned { north: 5.0 * sin, east: side * 5.0 * (1.0 - cos) };
+            let want = boat.at
+                + Ned {
+                    north: 5.0 * sin,
+                    east: side * 5.0 * (1.0 - cos),
+                };
             let got = turned.at + turned.velocity.scaled(TURNS_ON_S);
             assert!(got.distance(want) < 1e-9, "{got:?}, {want:?}");
-            let goes = Ned { north: 2.0 * cos, east: side * 2.0 * sin };
+            let goes = Ned {
+                north: 2.0 * cos,
+                east: side * 2.0 * sin,
+            };
             assert!(turned.velocity.distance(goes) < 1e-9, "{turned:?}");
         }
         let straight = turning_on(boat, 0.0);
-        assert!(straight.at.distance(boat.at) < 1e-12 && straight.velocity.distance(boat.velocity) < 1e-12);
+        assert!(
+            straight.at.distance(boat.at) < 1e-12
+                && straight.velocity.distance(boat.velocity) < 1e-12
+        );
     }
 
     #[test]

@@ -14,7 +14,10 @@ fn asking(expression: &str) -> HelmMind {
 
 /// The value of the expression in this scene.
 fn answer(helm: &mut HelmMind, picture: &Picture) -> f64 {
-    decided(helm, picture).variables[0].value.parse().expect("a number")
+    decided(helm, picture).variables[0]
+        .value
+        .parse()
+        .expect("a number")
 }
 
 #[test]
@@ -43,7 +46,10 @@ fn measures_are_of_one_place_or_between_two() {
         ("mates_nearer(mate_carrier)", 0.0),
     ] {
         let got = answer(&mut asking(expression), &scene);
-        assert!((got - want).abs() < 1e-9, "{expression} is {got}, want {want}");
+        assert!(
+            (got - want).abs() < 1e-9,
+            "{expression} is {got}, want {want}"
+        );
     }
     // A mate that is tagged, or on its way home with a flag, does not count.
     let changes: [fn(&mut OwnBoat); 2] = [|boat| boat.tagged = true, |boat| boat.carrying = 1];
@@ -54,7 +60,10 @@ fn measures_are_of_one_place_or_between_two() {
     }
     // A tagged enemy returns home to play again, so it counts as a defender too.
     scene.contacts[1].east_m = 50.0;
-    assert_eq!(answer(&mut asking("is_tagged(nearest_defender) ? 1 : 0"), &scene), 1.0);
+    assert_eq!(
+        answer(&mut asking("is_tagged(nearest_defender) ? 1 : 0"), &scene),
+        1.0
+    );
 }
 
 #[test]
@@ -62,11 +71,24 @@ fn an_intruder_is_assigned_to_one_boat_and_to_the_same_by_everybody() {
     let own_x = |x: f64| [Boat::at(x, 0.0), Boat::at(-70.0, 0.0)];
     let mut mine = asking("known(assigned_intruder) ? distance(assigned_intruder) : -1");
     let intruders = |x: f64| [Boat::at(x, 0.0), Boat::at(50.0, 0.0)];
-    assert_eq!(answer(&mut mine, &picture(0.0, own_x(-20.0), intruders(10.0))), -1.0, "no intruder");
-    assert_eq!(answer(&mut mine, &picture(0.1, own_x(-20.0), intruders(-10.0))), 10.0);
+    assert_eq!(
+        answer(&mut mine, &picture(0.0, own_x(-20.0), intruders(10.0))),
+        -1.0,
+        "no intruder"
+    );
+    assert_eq!(
+        answer(&mut mine, &picture(0.1, own_x(-20.0), intruders(-10.0))),
+        10.0
+    );
     // The mate is closer by a little, which may be noise; then by a lot.
-    assert_eq!(answer(&mut mine, &picture(0.2, own_x(-20.0), intruders(-46.0))), 26.0);
-    assert_eq!(answer(&mut mine, &picture(0.3, own_x(-20.0), intruders(-60.0))), -1.0);
+    assert_eq!(
+        answer(&mut mine, &picture(0.2, own_x(-20.0), intruders(-46.0))),
+        26.0
+    );
+    assert_eq!(
+        answer(&mut mine, &picture(0.3, own_x(-20.0), intruders(-60.0))),
+        -1.0
+    );
     // The mate is busy: it has just tagged, is tagged, or carries a flag.
     let busy: [fn(&mut Picture); 3] = [
         |scene| scene.own[1].tag_ready_ns = primitives::SimTime::from_s(60.0),
@@ -93,9 +115,14 @@ fn a_boat_may_keep_out_of_the_reach_of_its_own_opponent_alone() {
              [behaviour.go]\nkind = \"waypoint\"\npoints = [[60, 0]]\n"
         );
         // Boat 2 is the opponent, boat 3 its mate: both are near, and could tag the boat.
-        let enemies = [own, own].map(|own| Boat { y: own.y + 5.0, ..own });
-        let report =
-            decided(&mut helm(&without_safety(&program)), &picture(0.0, [own, Boat::at(-75.0, -35.0)], enemies));
+        let enemies = [own, own].map(|own| Boat {
+            y: own.y + 5.0,
+            ..own
+        });
+        let report = decided(
+            &mut helm(&without_safety(&program)),
+            &picture(0.0, [own, Boat::at(-75.0, -35.0)], enemies),
+        );
         report
             .functions
             .iter()
@@ -106,5 +133,8 @@ fn a_boat_may_keep_out_of_the_reach_of_its_own_opponent_alone() {
     let beyond = Boat::at(20.0, 0.0);
     assert_eq!(avoids("taggers", beyond).len(), 2);
     assert_eq!(avoids("opponent", beyond), [primitives::VehicleId(2)]);
-    assert!(avoids("opponent", Boat::at(-40.0, 0.0)).is_empty(), "at home it cannot be tagged");
+    assert!(
+        avoids("opponent", Boat::at(-40.0, 0.0)).is_empty(),
+        "at home it cannot be tagged"
+    );
 }

@@ -14,7 +14,8 @@ const ROUNDING_M: f64 = 1e-3;
 
 /// A shipped game in which all boats compute their distance to these places.
 fn scenario(game: &str) -> Scenario {
-    let teams = ["blue", "red"].map(|team| format!("[[team]]\nname = \"{team}\"\nstrategy = \"strategy.toml\"\n"));
+    let teams = ["blue", "red"]
+        .map(|team| format!("[[team]]\nname = \"{team}\"\nstrategy = \"strategy.toml\"\n"));
     let game = format!("base = 'SCENARIOS/games/{game}.toml'\n{}", teams.concat());
     let program = "[variables]\ncapture_m = 0\nown_flag_m = 0\nuntag_m = 0\n[[rule]]\nwhen = \"true\"\n\
                    set = { capture_m = \"distance(capture_place)\", own_flag_m = \"distance(own_flag)\", \
@@ -24,7 +25,11 @@ fn scenario(game: &str) -> Scenario {
 
 /// The picture of a boat alone at this position.
 fn alone(scenario: &Scenario, at: Ned) -> Picture {
-    let nav = Nav { north_m: at.north, east_m: at.east, ..Nav::default() };
+    let nav = Nav {
+        north_m: at.north,
+        east_m: at.east,
+        ..Nav::default()
+    };
     Picture {
         own: vec![OwnBoat::new(VehicleId(0), nav)],
         flags: vec![FlagView { carrier: -1 }; scenario.field.flags.len()],
@@ -35,7 +40,11 @@ fn alone(scenario: &Scenario, at: Ned) -> Picture {
 
 #[test]
 fn a_boat_makes_for_the_nearest_place_that_the_referee_takes() {
-    for (game, flags) in [("surveyor_2v2", 1), ("fleet_20v20", 3), ("fleet_100v100", 5)] {
+    for (game, flags) in [
+        ("surveyor_2v2", 1),
+        ("fleet_20v20", 3),
+        ("fleet_100v100", 5),
+    ] {
         let scenario = scenario(game);
         let field = &scenario.field;
         let rules = &scenario.rules;
@@ -43,8 +52,20 @@ fn a_boat_makes_for_the_nearest_place_that_the_referee_takes() {
         for (along, across) in [(0.1, 0.05), (0.3, 0.2), (0.4, 0.5), (0.6, 0.8), (0.9, 0.95)] {
             let at = field.at(along * field.plan.width_m, across * field.plan.depth_m);
             let homes = field.own_flags(BLUE).map(|(_, home)| home);
-            let home = homes.min_by(|a, b| at.distance(*a).total_cmp(&at.distance(*b))).expect("blue has a flag");
-            assert!(rules.is_capture_place(field, BLUE, Leg { from: home, to: home }), "{game}");
+            let home = homes
+                .min_by(|a, b| at.distance(*a).total_cmp(&at.distance(*b)))
+                .expect("blue has a flag");
+            assert!(
+                rules.is_capture_place(
+                    field,
+                    BLUE,
+                    Leg {
+                        from: home,
+                        to: home
+                    }
+                ),
+                "{game}"
+            );
             assert!(rules.is_untag_place(field, BLUE, home), "{game}");
             let mut helm = helm(&scenario);
             helm.decide(&alone(&scenario, at));

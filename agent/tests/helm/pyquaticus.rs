@@ -52,14 +52,21 @@ fn scenario(team_size: usize) -> Scenario {
         )
     };
     let base = "base = \"SCENARIOS/games/pyquaticus_2v2.toml\"\nvehicle = []\n";
-    loaded(&[("game.toml", &format!("{base}{}{}", fleet("blue"), fleet("red")))])
+    loaded(&[(
+        "game.toml",
+        &format!("{base}{}{}", fleet("blue"), fleet("red")),
+    )])
 }
 
 /// The knowledge of a boat's team in a state.
 fn picture(state: &State, team: usize) -> Picture {
     let team_size = state.boats.len() / 2;
     let now = SimTime::from_s(NOW_S);
-    let mut picture = Picture { team: team as u8, score: state.captures.to_vec(), ..Picture::default() };
+    let mut picture = Picture {
+        team: team as u8,
+        score: state.captures.to_vec(),
+        ..Picture::default()
+    };
     picture.stamp.valid_ns = now;
     picture.flags = vec![FlagView { carrier: -1 }; 2];
     for (i, boat) in state.boats.iter().enumerate() {
@@ -67,19 +74,40 @@ fn picture(state: &State, team: usize) -> Picture {
         let of = i / team_size;
         let tagged = boat.tagged == 1;
         let here = scene::Boat::at(boat.x, boat.y).going(boat.heading_deg, boat.speed_m_s);
-        let carrying = if boat.has_flag == 1 { 1 - of as i16 } else { -1 };
+        let carrying = if boat.has_flag == 1 {
+            1 - of as i16
+        } else {
+            -1
+        };
         if of == team {
             let tag_ready_ns = SimTime::from_s(NOW_S + COOLDOWN_S - boat.since_tag_s);
-            picture.own.push(OwnBoat { tagged, carrying, tag_ready_ns, ..here.own(vehicle) });
+            picture.own.push(OwnBoat {
+                tagged,
+                carrying,
+                tag_ready_ns,
+                ..here.own(vehicle)
+            });
             continue;
         }
         let team_of = TeamId(of as u8);
-        picture.contacts.push(Contact { team: team_of, tagged, carrying, ..here.contact(vehicle, now) });
+        picture.contacts.push(Contact {
+            team: team_of,
+            tagged,
+            carrying,
+            ..here.contact(vehicle, now)
+        });
         if boat.since_tag_s < COOLDOWN_S {
             let cause = TagCause::Opponent(VehicleId(vehicle));
-            let tagged = Event::Tagged { vehicle: VehicleId::at(team * team_size), cause };
+            let tagged = Event::Tagged {
+                vehicle: VehicleId::at(team * team_size),
+                cause,
+            };
             let at = SimTime::from_s(NOW_S - boat.since_tag_s);
-            picture.events.push(EventRecord::from(Logged { tick: 0, at, event: tagged }));
+            picture.events.push(EventRecord::from(Logged {
+                tick: 0,
+                at,
+                event: tagged,
+            }));
         }
     }
     picture
@@ -87,10 +115,15 @@ fn picture(state: &State, team: usize) -> Picture {
 
 #[test]
 fn observations_are_those_of_the_program() {
-    let spaces = Spaces { observation: ObservationSpace::Pyquaticus, action: ActionSpace::Pyquaticus };
+    let spaces = Spaces {
+        observation: ObservationSpace::Pyquaticus,
+        action: ActionSpace::Pyquaticus,
+    };
     for file in ["1v1", "3v3"] {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/helm/pyquaticus/{file}.json"));
-        let reference: Reference = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
+        let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join(format!("tests/helm/pyquaticus/{file}.json"));
+        let reference: Reference =
+            serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
         let team_size = reference.states[0].boats.len() / 2;
         let scenario = scenario(team_size);
         for (s, state) in reference.states.iter().enumerate() {
@@ -101,7 +134,10 @@ fn observations_are_those_of_the_program() {
                 let numbers = got.iter().zip(&boat.observation).zip(&reference.names);
                 numbers.for_each(|((got, want), name)| {
                     let off = off(name, *got, *want);
-                    assert!(off < TOLERANCE, "{file} state {s} boat {i} {name}: {got}, want {want}");
+                    assert!(
+                        off < TOLERANCE,
+                        "{file} state {s} boat {i} {name}: {got}, want {want}"
+                    );
                 });
             }
         }
@@ -111,5 +147,9 @@ fn observations_are_those_of_the_program() {
 /// The absolute error of a value. Half a turn to either side is the same bearing.
 fn off(name: &str, got: f32, want: f32) -> f32 {
     let off = (got - want).abs();
-    if name.ends_with("bearing") || name.ends_with("heading") { off.min((2.0 - off).abs()) } else { off }
+    if name.ends_with("bearing") || name.ends_with("heading") {
+        off.min((2.0 - off).abs())
+    } else {
+        off
+    }
 }

@@ -13,13 +13,21 @@ use std::path::Path;
 pub(crate) fn scenario(strategy: &str) -> Scenario {
     let game = include_str!("game.toml");
     let field = include_str!("field.toml");
-    loaded(&[("game.toml", game), ("field.toml", field), ("strategy.toml", strategy)])
+    loaded(&[
+        ("game.toml", game),
+        ("field.toml", field),
+        ("strategy.toml", strategy),
+    ])
 }
 
-/// The scenario of `game.toml` among these files. `SCENARIOS` in them is the folder of the shipped files.
+/// The scenario of `game.toml` among these files. `SCENARIOS` in them is the folder of the shipped
+/// files.
 pub(crate) fn loaded(files: &[(&str, &str)]) -> Scenario {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios").display().to_string();
+    let scenarios = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../scenarios")
+        .display()
+        .to_string();
     for (name, text) in files {
         let text = text.replace("SCENARIOS", &scenarios);
         std::fs::write(folder.path().join(name), text).expect("the file can be written");
@@ -57,11 +65,20 @@ pub(crate) struct Boat {
 
 impl Boat {
     pub(crate) fn at(x: f64, y: f64) -> Boat {
-        Boat { x, y, heading_deg: 0.0, speed_m_s: 0.0 }
+        Boat {
+            x,
+            y,
+            heading_deg: 0.0,
+            speed_m_s: 0.0,
+        }
     }
 
     pub(crate) fn going(self, heading_deg: f64, speed_m_s: f64) -> Boat {
-        Boat { heading_deg, speed_m_s, ..self }
+        Boat {
+            heading_deg,
+            speed_m_s,
+            ..self
+        }
     }
 
     fn nav(self) -> Nav {
@@ -111,12 +128,20 @@ pub(crate) fn picture(at_s: f64, [one, two]: [Boat; 2], [three, four]: [Boat; 2]
 
 /// Far from all other boats.
 pub(crate) fn alone(at_s: f64, own: Boat) -> Picture {
-    picture(at_s, [own, Boat::at(-75.0, -35.0)], [Boat::at(75.0, 35.0), Boat::at(75.0, -35.0)])
+    picture(
+        at_s,
+        [own, Boat::at(-75.0, -35.0)],
+        [Boat::at(75.0, 35.0), Boat::at(75.0, -35.0)],
+    )
 }
 
 /// The helm of boat 0.
 pub(crate) fn helm(scenario: &Scenario) -> HelmMind {
-    HelmMind::new(scenario, VehicleId(0), agent::roles::role_of(scenario, VehicleId(0)))
+    HelmMind::new(
+        scenario,
+        VehicleId(0),
+        agent::roles::role_of(scenario, VehicleId(0)),
+    )
 }
 
 /// The helm's report after this picture.
@@ -124,12 +149,22 @@ pub(crate) fn decided(helm: &mut HelmMind, picture: &Picture) -> HelmReport {
     let order = helm.decide(picture);
     let report = helm.report().expect("a helm has a report");
     match (order, report.course_deg.zip(report.speed_m_s)) {
-        (Order::Steer { heading_rad, speed_m_s }, Some((course_deg, reported_m_s))) => {
-            let off_deg = wrap_180(heading_rad.to_degrees() + report.heading_offset_deg - course_deg);
+        (
+            Order::Steer {
+                heading_rad,
+                speed_m_s,
+            },
+            Some((course_deg, reported_m_s)),
+        ) => {
+            let off_deg =
+                wrap_180(heading_rad.to_degrees() + report.heading_offset_deg - course_deg);
             // For nearly half a turn an intermediate heading is ordered.
             let psi_deg = picture.own[0].nav.psi_rad.to_degrees();
             let is_large = wrap_180(course_deg - psi_deg).abs() > 120.0;
-            assert!(is_large || off_deg.abs() < 1e-6 && speed_m_s == reported_m_s, "{order:?}, {report:?}");
+            assert!(
+                is_large || off_deg.abs() < 1e-6 && speed_m_s == reported_m_s,
+                "{order:?}, {report:?}"
+            );
         }
         (Order::Hold, None) => assert!(report.hold.is_some(), "{report:?}"),
         _ => panic!("{order:?}, but the report says {report:?}"),
@@ -140,7 +175,10 @@ pub(crate) fn decided(helm: &mut HelmMind, picture: &Picture) -> HelmReport {
 /// The course, degrees, and the speed, m/s, that the helm decides on.
 pub(crate) fn steered(helm: &mut HelmMind, picture: &Picture) -> (f64, f64) {
     let report = decided(helm, picture);
-    report.course_deg.zip(report.speed_m_s).expect("the helm steers")
+    report
+        .course_deg
+        .zip(report.speed_m_s)
+        .expect("the helm steers")
 }
 
 fn wrap_180(angle_deg: f64) -> f64 {

@@ -28,7 +28,11 @@ fn turned(picture: &Picture) -> Picture {
     }
     other.flags.reverse();
     for flag in &mut other.flags {
-        flag.carrier = if flag.carrier < 0 { -1 } else { (flag.carrier + 2) % 4 };
+        flag.carrier = if flag.carrier < 0 {
+            -1
+        } else {
+            (flag.carrier + 2) % 4
+        };
     }
     other.score.reverse();
     other
@@ -53,8 +57,15 @@ fn random(stream: &mut Stream) -> Picture {
 #[test]
 fn a_scene_turned_by_half_a_turn_gives_a_decision_turned_by_half_a_turn() {
     let mut stream = Stream::new(4, "symmetry");
-    for strategy in ["strategy_4", "medium_attacker", "medium_defender", "easy_defender"] {
-        let scenario = scenario(&format!("base = \"SCENARIOS/strategies/{strategy}.toml\"\n"));
+    for strategy in [
+        "strategy_4",
+        "medium_attacker",
+        "medium_defender",
+        "easy_defender",
+    ] {
+        let scenario = scenario(&format!(
+            "base = \"SCENARIOS/strategies/{strategy}.toml\"\n"
+        ));
         let decide = |vehicle: u16, picture: &Picture| {
             let vehicle = VehicleId(vehicle);
             HelmMind::new(&scenario, vehicle, roles::role_of(&scenario, vehicle)).decide(picture)
@@ -65,8 +76,19 @@ fn a_scene_turned_by_half_a_turn_gives_a_decision_turned_by_half_a_turn() {
             let there = decide(2, &turned(&picture));
             match (here, there) {
                 (Order::Hold, Order::Hold) => {}
-                (Order::Steer { heading_rad: a, speed_m_s: u }, Order::Steer { heading_rad: b, speed_m_s: v }) => {
-                    let off_deg = primitives::angle::wrap_pi(b - a - std::f64::consts::PI).to_degrees().abs();
+                (
+                    Order::Steer {
+                        heading_rad: a,
+                        speed_m_s: u,
+                    },
+                    Order::Steer {
+                        heading_rad: b,
+                        speed_m_s: v,
+                    },
+                ) => {
+                    let off_deg = primitives::angle::wrap_pi(b - a - std::f64::consts::PI)
+                        .to_degrees()
+                        .abs();
                     assert!(
                         off_deg < 1e-6 && u == v,
                         "{strategy}, scene {scene}: {here:?}, and turned {there:?}: {picture:#?}"

@@ -10,9 +10,19 @@ use primitives::stream::Stream;
 pub(crate) fn random_table(stream: &mut Stream, grid: &Grid) -> Table {
     // Multiples of ten, for ties; every second course with full utility, or almost none.
     let most = [2, 20][stream.below(2) as usize];
-    let is_full: Vec<bool> = (0..grid.courses()).map(|_| stream.below(most) == 0).collect();
-    let tens: Vec<u64> = (0..grid.courses() * grid.speeds()).map(|_| stream.below(11)).collect();
-    Table::of(grid, |k, j| if is_full[k] { 100.0 } else { 10.0 * tens[k * grid.speeds() + j] as f32 })
+    let is_full: Vec<bool> = (0..grid.courses())
+        .map(|_| stream.below(most) == 0)
+        .collect();
+    let tens: Vec<u64> = (0..grid.courses() * grid.speeds())
+        .map(|_| stream.below(11))
+        .collect();
+    Table::of(grid, |k, j| {
+        if is_full[k] {
+            100.0
+        } else {
+            10.0 * tens[k * grid.speeds() + j] as f32
+        }
+    })
 }
 
 /// A small grid, of any shape.
@@ -25,7 +35,11 @@ pub(crate) fn grid(stream: &mut Stream) -> Grid {
 }
 
 /// One to five functions with their weights.
-pub(crate) fn functions<'a>(stream: &mut Stream, grid: &Grid, table: &'a Table) -> Vec<(f64, Objective<'a>)> {
+pub(crate) fn functions<'a>(
+    stream: &mut Stream,
+    grid: &Grid,
+    table: &'a Table,
+) -> Vec<(f64, Objective<'a>)> {
     let count = 1 + stream.below(5);
     let weight = |stream: &mut Stream| match stream.below(8) {
         0 => 0.0,
@@ -33,7 +47,9 @@ pub(crate) fn functions<'a>(stream: &mut Stream, grid: &Grid, table: &'a Table) 
         2 | 3 => 100.0,
         _ => stream.between(0.01, 900.0),
     };
-    (0..count).map(|_| (weight(stream), function(stream, grid, table))).collect()
+    (0..count)
+        .map(|_| (weight(stream), function(stream, grid, table)))
+        .collect()
 }
 
 fn function<'a>(stream: &mut Stream, grid: &Grid, table: &'a Table) -> Objective<'a> {
@@ -50,7 +66,10 @@ fn function<'a>(stream: &mut Stream, grid: &Grid, table: &'a Table) -> Objective
             let high = stream.between(0.0, 1.1);
             let base = [0.0, stream.between(0.0, 1.1)][stream.below(2) as usize];
             let fastest_m_s = grid.speed_max_m_s();
-            Objective::speed(Peak { peak_width: high * fastest_m_s, ..Peak::tent(0.0, base * fastest_m_s) })
+            Objective::speed(Peak {
+                peak_width: high * fastest_m_s,
+                ..Peak::tent(0.0, base * fastest_m_s)
+            })
         }
         5..=8 => Objective::Closest(closest(stream, grid)),
         9 | 10 => Objective::Closing(closing(stream)),
@@ -93,9 +112,18 @@ pub(crate) fn closest(stream: &mut Stream, grid: &Grid) -> Closest {
         max_m: min_m + [0.0, 0.3, 1.0][stream.below(3) as usize] * range,
         touch_m: 0.0,
         approach: match stream.below(4) {
-            0 => Approach::Avoid { at_min: 25.0, leave_to: None },
-            1 => Approach::Avoid { at_min: 0.0, leave_to: Some(Side::Port) },
-            2 => Approach::Avoid { at_min: 25.0, leave_to: Some(Side::Starboard) },
+            0 => Approach::Avoid {
+                at_min: 25.0,
+                leave_to: None,
+            },
+            1 => Approach::Avoid {
+                at_min: 0.0,
+                leave_to: Some(Side::Port),
+            },
+            2 => Approach::Avoid {
+                at_min: 25.0,
+                leave_to: Some(Side::Starboard),
+            },
             _ => Approach::Seek,
         },
         lag: (stream.below(2) == 0).then(|| lag(stream, grid)),
@@ -106,7 +134,10 @@ fn lag(stream: &mut Stream, grid: &Grid) -> Lag {
     let (heading_east, heading_north) = primitives::math::sin_cos(stream.between(-4.0, 4.0));
     Lag {
         velocity: within(stream, grid.speed_max_m_s()),
-        heading: Ned { north: heading_north, east: heading_east },
+        heading: Ned {
+            north: heading_north,
+            east: heading_east,
+        },
         reaction_s: stream.between(0.0, 2.0),
         turn_rad_s: stream.between(0.1, 2.0),
         acceleration_m_s2: stream.between(0.1, 3.0),
@@ -115,21 +146,34 @@ fn lag(stream: &mut Stream, grid: &Grid) -> Lag {
 }
 
 fn closing(stream: &mut Stream) -> Closing {
-    Closing { offset: within(stream, 300.0), velocity: within(stream, 3.0) }
+    Closing {
+        offset: within(stream, 300.0),
+        velocity: within(stream, 3.0),
+    }
 }
 
 /// A vector with components up to `most`.
 pub(crate) fn within(stream: &mut Stream, most: f64) -> Ned {
-    Ned { north: stream.between(-most, most), east: stream.between(-most, most) }
+    Ned {
+        north: stream.between(-most, most),
+        east: stream.between(-most, most),
+    }
 }
 
 /// The own ship's present motion.
 pub(crate) fn preference(stream: &mut Stream, grid: &Grid) -> Preference {
-    Preference { course_rad: stream.between(-7.0, 7.0), speed_m_s: stream.between(-0.1, 1.1) * grid.speed_max_m_s() }
+    Preference {
+        course_rad: stream.between(-7.0, 7.0),
+        speed_m_s: stream.between(-0.1, 1.1) * grid.speed_max_m_s(),
+    }
 }
 
 /// The solver's choice: identical with all instruction sets of this machine.
-pub(crate) fn solved(grid: &Grid, functions: &[(f64, Objective)], preference: Preference) -> Choice {
+pub(crate) fn solved(
+    grid: &Grid,
+    functions: &[(f64, Objective)],
+    preference: Preference,
+) -> Choice {
     let with = |instructions| {
         let mut problem = Problem::with_instructions(grid.clone(), instructions);
         for (weight, objective) in functions {
@@ -140,7 +184,11 @@ pub(crate) fn solved(grid: &Grid, functions: &[(f64, Objective)], preference: Pr
     let sets = Instructions::of_this_machine();
     let plainest = with(sets[0]);
     for set in &sets[1..] {
-        assert_eq!(with(*set), plainest, "{set:?}: {functions:?} {preference:?}");
+        assert_eq!(
+            with(*set),
+            plainest,
+            "{set:?}: {functions:?} {preference:?}"
+        );
     }
     plainest
 }

@@ -17,8 +17,14 @@ enum Motion {
 impl Motion {
     fn vector(self, Ned { north, east }: Ned) -> Ned {
         match self {
-            Motion::HalfTurn => Ned { north: -north, east: -east },
-            Motion::QuarterTurn => Ned { north: -east, east: north },
+            Motion::HalfTurn => Ned {
+                north: -north,
+                east: -east,
+            },
+            Motion::QuarterTurn => Ned {
+                north: -east,
+                east: north,
+            },
             Motion::Mirror => Ned { north, east: -east },
         }
     }
@@ -37,9 +43,10 @@ impl Motion {
             Side::Starboard => Side::Port,
         };
         match (self, approach) {
-            (Motion::Mirror, Approach::Avoid { at_min, leave_to }) => {
-                Approach::Avoid { at_min, leave_to: leave_to.map(mirrored) }
-            }
+            (Motion::Mirror, Approach::Avoid { at_min, leave_to }) => Approach::Avoid {
+                at_min,
+                leave_to: leave_to.map(mirrored),
+            },
             _ => approach,
         }
     }
@@ -62,25 +69,44 @@ impl Motion {
     }
 
     fn peak(self, peak: Peak) -> Peak {
-        Peak { summit: self.angle(peak.summit), ..peak }
+        Peak {
+            summit: self.angle(peak.summit),
+            ..peak
+        }
     }
 
     fn objective<'a>(self, objective: &Objective<'a>, table: &'a Table) -> Objective<'a> {
         match *objective {
-            Objective::Coupled { course, speed, course_share } => {
-                Objective::Coupled { course: self.peak(course), speed, course_share }
-            }
+            Objective::Coupled {
+                course,
+                speed,
+                course_share,
+            } => Objective::Coupled {
+                course: self.peak(course),
+                speed,
+                course_share,
+            },
             Objective::Closest(c) => {
-                let turned =
-                    |lag: Lag| Lag { velocity: self.vector(lag.velocity), heading: self.vector(lag.heading), ..lag };
+                let turned = |lag: Lag| Lag {
+                    velocity: self.vector(lag.velocity),
+                    heading: self.vector(lag.heading),
+                    ..lag
+                };
                 let offset = self.vector(c.offset);
                 let velocity = self.vector(c.velocity);
                 let lag = c.lag.map(turned);
-                Objective::Closest(Closest { offset, velocity, lag, approach: self.approach(c.approach), ..c })
+                Objective::Closest(Closest {
+                    offset,
+                    velocity,
+                    lag,
+                    approach: self.approach(c.approach),
+                    ..c
+                })
             }
-            Objective::Closing(Closing { offset, velocity }) => {
-                Objective::Closing(Closing { offset: self.vector(offset), velocity: self.vector(velocity) })
-            }
+            Objective::Closing(Closing { offset, velocity }) => Objective::Closing(Closing {
+                offset: self.vector(offset),
+                velocity: self.vector(velocity),
+            }),
             Objective::Table(_) => Objective::Table(table),
         }
     }
@@ -91,10 +117,22 @@ fn holds_under(motion: Motion, grid: &Grid, seed: u64) {
     let table = random_table(&mut stream, grid);
     let functions = scene::functions(&mut stream, grid, &table);
     let preference = scene::preference(&mut stream, grid);
-    let moved_table = Table::of(grid, |k, j| table.utility(motion.back(k, grid.courses()), j));
-    let moved: Vec<(f64, Objective)> = functions.iter().map(|(w, f)| (*w, motion.objective(f, &moved_table))).collect();
+    let moved_table = Table::of(grid, |k, j| {
+        table.utility(motion.back(k, grid.courses()), j)
+    });
+    let moved: Vec<(f64, Objective)> = functions
+        .iter()
+        .map(|(w, f)| (*w, motion.objective(f, &moved_table)))
+        .collect();
     let mut want = solved(grid, &functions, preference);
-    let got = solved(grid, &moved, Preference { course_rad: motion.angle(preference.course_rad), ..preference });
+    let got = solved(
+        grid,
+        &moved,
+        Preference {
+            course_rad: motion.angle(preference.course_rad),
+            ..preference
+        },
+    );
     want.decision.course = motion.course(want.decision.course, grid.courses());
     // The number of evaluated points depends on the starting point of the search.
     want.evaluated = got.evaluated;
@@ -120,13 +158,28 @@ fn directions_are_exact_images_of_each_other() {
         let grid = Grid::new(courses, 2, 1.0);
         for k in 0..courses {
             let (north, east) = grid.direction(k);
-            assert_eq!(grid.direction((courses - k) % courses), (north, 0.0 - east), "{k} of {courses}");
-            assert_eq!(grid.direction((k + courses / 2) % courses), (0.0 - north, 0.0 - east), "{k} of {courses}");
+            assert_eq!(
+                grid.direction((courses - k) % courses),
+                (north, 0.0 - east),
+                "{k} of {courses}"
+            );
+            assert_eq!(
+                grid.direction((k + courses / 2) % courses),
+                (0.0 - north, 0.0 - east),
+                "{k} of {courses}"
+            );
             if courses % 4 == 0 {
-                assert_eq!(grid.direction((k + courses / 4) % courses), (0.0 - east, north), "{k} of {courses}");
+                assert_eq!(
+                    grid.direction((k + courses / 4) % courses),
+                    (0.0 - east, north),
+                    "{k} of {courses}"
+                );
             }
             let (sin, cos) = primitives::math::sin_cos(grid.course_rad(k));
-            assert!((f64::from(north) - cos).abs() < 1e-7 && (f64::from(east) - sin).abs() < 1e-7, "{k}");
+            assert!(
+                (f64::from(north) - cos).abs() < 1e-7 && (f64::from(east) - sin).abs() < 1e-7,
+                "{k}"
+            );
         }
     }
 }

@@ -62,16 +62,26 @@ struct Vehicle {
 ///
 /// # Errors
 /// Those of `open` and of the files that it returns.
-pub fn write(recording: &Recording, wants_vehicles: bool, open: &mut Open<'_>) -> io::Result<(usize, Damaged)> {
+pub fn write(
+    recording: &Recording,
+    wants_vehicles: bool,
+    open: &mut Open<'_>,
+) -> io::Result<(usize, Damaged)> {
     let header = recording.header();
-    let boats = if wants_vehicles { recording.scenario().vehicles.len() } else { 0 };
+    let boats = if wants_vehicles {
+        recording.scenario().vehicles.len()
+    } else {
+        0
+    };
     let mut shoreside = Some(Shoreside::begin(header, open)?);
     let mut next = 0;
     let mut damaged = Damaged::default();
     // The first pass is needed even without vehicles.
     while shoreside.is_some() || next < boats {
         let end = boats.min(next + FILES_MAX);
-        let vehicles: io::Result<Vec<Vehicle>> = (next..end).map(|place| Vehicle::begin(header, place, open)).collect();
+        let vehicles: io::Result<Vec<Vehicle>> = (next..end)
+            .map(|place| Vehicle::begin(header, place, open))
+            .collect();
         damaged = pass(recording, shoreside.take(), vehicles?)?;
         next = end;
     }
@@ -79,19 +89,30 @@ pub fn write(recording: &Recording, wants_vehicles: bool, open: &mut Open<'_>) -
 }
 
 /// Writes these logs in one pass over the recording.
-fn pass(recording: &Recording, mut shoreside: Option<Shoreside>, mut vehicles: Vec<Vehicle>) -> io::Result<Damaged> {
+fn pass(
+    recording: &Recording,
+    mut shoreside: Option<Shoreside>,
+    mut vehicles: Vec<Vehicle>,
+) -> io::Result<Damaged> {
     let scenario = recording.scenario();
     let mut written = Ok(());
     let damaged = for_each_step(recording, |step| {
         if written.is_ok() {
-            written = shoreside.iter_mut().try_for_each(|log| log.add(scenario, &step));
+            written = shoreside
+                .iter_mut()
+                .try_for_each(|log| log.add(scenario, &step));
         }
         if written.is_ok() {
-            written = vehicles.iter_mut().try_for_each(|log| log.add(scenario, &step));
+            written = vehicles
+                .iter_mut()
+                .try_for_each(|log| log.add(scenario, &step));
         }
     });
     written?;
-    let mut logs = shoreside.into_iter().map(|log| log.log).chain(vehicles.into_iter().map(|log| log.log));
+    let mut logs = shoreside
+        .into_iter()
+        .map(|log| log.log)
+        .chain(vehicles.into_iter().map(|log| log.log));
     logs.try_for_each(|mut log| log.file.flush())?;
     Ok(damaged)
 }
@@ -100,7 +121,11 @@ impl Shoreside {
     fn begin(header: &Header, open: &mut Open<'_>) -> io::Result<Shoreside> {
         let log = Log::begin(header, SHORESIDE, open)?;
         let points = vec![None; header.info.scenario.teams.len()];
-        Ok(Shoreside { log, points, has_begun: false })
+        Ok(Shoreside {
+            log,
+            points,
+            has_begun: false,
+        })
     }
 
     fn add(&mut self, scenario: &Scenario, step: &Step) -> io::Result<()> {
@@ -116,7 +141,11 @@ impl Shoreside {
         }
         for ((team, now), before) in scenario.teams.iter().zip(&step.score).zip(&mut self.points) {
             if before.replace(*now) != Some(*now) {
-                log.row(time_s, &format!("{}_SCORES", team.name.to_uppercase()), &now.to_string())?;
+                log.row(
+                    time_s,
+                    &format!("{}_SCORES", team.name.to_uppercase()),
+                    &now.to_string(),
+                )?;
             }
         }
         if log.reports(time_s) {
@@ -132,20 +161,30 @@ impl Shoreside {
 impl Vehicle {
     fn begin(header: &Header, place: usize, open: &mut Open<'_>) -> io::Result<Vehicle> {
         let log = Log::begin(header, &header.info.scenario.vehicles[place].name, open)?;
-        Ok(Vehicle { log, place, before: None })
+        Ok(Vehicle {
+            log,
+            place,
+            before: None,
+        })
     }
 
     fn add(&mut self, scenario: &Scenario, step: &Step) -> io::Result<()> {
         let log = &mut self.log;
         let time_s = step.time_s;
-        let Some(sample) = step.samples.get(self.place) else { return Ok(()) };
+        let Some(sample) = step.samples.get(self.place) else {
+            return Ok(());
+        };
         let estimated = sample.estimated.unwrap_or(sample.truth);
         log.nav(time_s, "NAV_", &estimated)?;
         log.nav(time_s, "NAV_GT_", &sample.truth)?;
         log.desired(time_s, sample.order)?;
         let before = self.before.replace(*sample);
         for (name, is, was) in [
-            ("HAS_FLAG", sample.carrying, before.map(|before| before.carrying)),
+            (
+                "HAS_FLAG",
+                sample.carrying,
+                before.map(|before| before.carrying),
+            ),
             ("TAGGED", sample.tagged, before.map(|before| before.tagged)),
         ] {
             if was != Some(is) {
@@ -166,9 +205,16 @@ impl Log {
         let start_utc_s = header.began_utc_ns as f64 * 1e-9;
         let opened = utc::ctime(header.began_utc_ns);
         let mut file = BufWriter::new(open(community)?);
-        writeln!(file, "{line}\n%% LOG FILE:       {community}.alog\n%% FILE OPENED ON  {opened}")?;
+        writeln!(
+            file,
+            "{line}\n%% LOG FILE:       {community}.alog\n%% FILE OPENED ON  {opened}"
+        )?;
         writeln!(file, "%% LOGSTART        {start_utc_s:>20.2}\n{line}")?;
-        Ok(Log { file, start_utc_s, report_s: f64::NEG_INFINITY })
+        Ok(Log {
+            file,
+            start_utc_s,
+            report_s: f64::NEG_INFINITY,
+        })
     }
 
     /// Whether a node report is due at this time.
@@ -182,7 +228,10 @@ impl Log {
 
     fn row(&mut self, at_s: f64, variable: &str, value: &str) -> io::Result<()> {
         let value: String = value.split_whitespace().collect::<Vec<_>>().join("_");
-        writeln!(self.file, "{at_s:<15.5} {variable:<20} {SOURCE:<15} {value}")
+        writeln!(
+            self.file,
+            "{at_s:<15.5} {variable:<20} {SOURCE:<15} {value}"
+        )
     }
 
     fn number(&mut self, at_s: f64, variable: &str, value: f64) -> io::Result<()> {
@@ -196,13 +245,18 @@ impl Log {
             ("HEADING", compass_deg_from_rad(nav.psi_rad)),
             ("SPEED", nav.speed_m_s()),
         ];
-        numbers.into_iter().try_for_each(|(name, value)| self.number(at_s, &format!("{prefix}{name}"), value))
+        numbers
+            .into_iter()
+            .try_for_each(|(name, value)| self.number(at_s, &format!("{prefix}{name}"), value))
     }
 
     fn desired(&mut self, at_s: f64, order: Order) -> io::Result<()> {
         match order {
             Order::Hold => self.number(at_s, "DESIRED_SPEED", 0.0),
-            Order::Steer { heading_rad, speed_m_s } => {
+            Order::Steer {
+                heading_rad,
+                speed_m_s,
+            } => {
                 self.number(at_s, "DESIRED_HEADING", compass_deg_from_rad(heading_rad))?;
                 self.number(at_s, "DESIRED_SPEED", speed_m_s)
             }
@@ -217,16 +271,34 @@ impl Log {
         }
     }
 
-    fn node_report(&self, at_s: f64, scenario: &Scenario, (place, sample, nav): (usize, &Sample, &Nav)) -> String {
-        node_report(scenario, (place, nav), self.start_utc_s + at_s, mode(sample))
+    fn node_report(
+        &self,
+        at_s: f64,
+        scenario: &Scenario,
+        (place, sample, nav): (usize, &Sample, &Nav),
+    ) -> String {
+        node_report(
+            scenario,
+            (place, nav),
+            self.start_utc_s + at_s,
+            mode(sample),
+        )
     }
 }
 
 /// A node report of the boat in this place: comma-separated `key=value`, `TIME` in seconds. `TYPE`
 /// is the shape that viewers draw.
-pub fn node_report(scenario: &Scenario, (place, nav): (usize, &Nav), time_s: f64, mode: &str) -> String {
+pub fn node_report(
+    scenario: &Scenario,
+    (place, nav): (usize, &Nav),
+    time_s: f64,
+    mode: &str,
+) -> String {
     let vehicle = &scenario.vehicles[place];
-    let group = scenario.teams.get(vehicle.team.index()).map_or("", |team| team.name.as_str());
+    let group = scenario
+        .teams
+        .get(vehicle.team.index())
+        .map_or("", |team| team.name.as_str());
     let length_m = scenario.boat_of(primitives::VehicleId::at(place)).length_m;
     format!(
         "NAME={},TYPE=kayak,TIME={time_s:.2},X={},Y={},SPD={},HDG={},DEPTH=0,LENGTH={length_m},MODE={mode},GROUP={group}",
@@ -263,9 +335,20 @@ fn happened(log: &mut Log, scenario: &Scenario, event: &EventOutcome) -> io::Res
         "ended" => log.row(at_s, "AQUATICUS_GAME_ALL", "stop")?,
         _ => {}
     }
-    let named = [("vname", &event.vehicle), ("other", &event.other), ("team", &event.team)];
-    let named = named.into_iter().filter_map(|(key, name)| Some(format!(",{key}={}", name.as_ref()?)));
-    let text = format!("event={}{},game={}", event.event, named.collect::<String>(), scenario.name);
+    let named = [
+        ("vname", &event.vehicle),
+        ("other", &event.other),
+        ("team", &event.team),
+    ];
+    let named = named
+        .into_iter()
+        .filter_map(|(key, name)| Some(format!(",{key}={}", name.as_ref()?)));
+    let text = format!(
+        "event={}{},game={}",
+        event.event,
+        named.collect::<String>(),
+        scenario.name
+    );
     log.row(at_s, "SQUALL_EVENT", &text)
 }
 
@@ -273,7 +356,9 @@ fn happened(log: &mut Log, scenario: &Scenario, event: &EventOutcome) -> io::Res
 fn mode(sample: &Sample) -> &'static str {
     match sample {
         Sample { nav_lost: true, .. } => "LOST",
-        Sample { agent_lost: true, .. } => "MINDLESS",
+        Sample {
+            agent_lost: true, ..
+        } => "MINDLESS",
         Sample { tagged: true, .. } => "TAGGED",
         Sample { outside: true, .. } => "OUTSIDE",
         Sample { carrying: true, .. } => "CARRYING",

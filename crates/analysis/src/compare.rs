@@ -101,12 +101,21 @@ impl Comparison {
             (plan_a.datum.lon_deg - plan_b.datum.lon_deg).abs(),
         );
         if off_deg > DATUM_DEG {
-            return Err(Incomparable::Datum { a: plan_a.name.clone(), b: plan_b.name.clone() });
+            return Err(Incomparable::Datum {
+                a: plan_a.name.clone(),
+                b: plan_b.name.clone(),
+            });
         }
-        let both: Vec<(&BoatSeries, &BoatSeries)> =
-            a.boats.iter().filter_map(|boat| Some((boat, b.boat(&boat.name)?))).collect();
+        let both: Vec<(&BoatSeries, &BoatSeries)> = a
+            .boats
+            .iter()
+            .filter_map(|boat| Some((boat, b.boat(&boat.name)?)))
+            .collect();
         if both.is_empty() {
-            return Err(Incomparable::Boats { a: names(&a.boats), b: names(&b.boats) });
+            return Err(Incomparable::Boats {
+                a: names(&a.boats),
+                b: names(&b.boats),
+            });
         }
         let pair = |(in_a, in_b): &(&BoatSeries, &BoatSeries)| {
             Some(Pair {
@@ -116,7 +125,11 @@ impl Comparison {
                 response: [response(a, in_a), response(b, in_b)],
             })
         };
-        let boats = both.iter().map(pair).collect::<Option<Vec<Pair>>>().ok_or(Incomparable::Time)?;
+        let boats = both
+            .iter()
+            .map(pair)
+            .collect::<Option<Vec<Pair>>>()
+            .ok_or(Incomparable::Time)?;
         let end_s = [a, b].map(|series| series.times_s.last().copied().unwrap_or(0.0));
         let until_s = end_s[0].min(end_s[1]);
         Ok(Comparison {
@@ -125,13 +138,21 @@ impl Comparison {
             notes: notes([head_a, head_b], [a, b]),
             boats,
             score: score(a, b),
-            events: events([(a, scenario_a), (b, scenario_b)].map(named_events), until_s, tolerance_s),
+            events: events(
+                [(a, scenario_a), (b, scenario_b)].map(named_events),
+                until_s,
+                tolerance_s,
+            ),
         })
     }
 }
 
 fn names(boats: &[BoatSeries]) -> String {
-    boats.iter().map(|boat| boat.name.as_str()).collect::<Vec<_>>().join(", ")
+    boats
+        .iter()
+        .map(|boat| boat.name.as_str())
+        .collect::<Vec<_>>()
+        .join(", ")
 }
 
 /// Other differences, so that they are not attributed to the boats.
@@ -151,13 +172,21 @@ fn notes(heads: [&Header; 2], [a, b]: [&GameSeries; 2]) -> Vec<String> {
     differ("commit", &heads[0].commit, &heads[1].commit);
     let kind = |is_real: bool| if is_real { "real" } else { "simulated" };
     for (i, boat) in a.boats.iter().enumerate() {
-        let Some(j) = b.boats.iter().position(|there| there.name == boat.name) else { continue };
-        let of = |scenario: &Scenario, i: usize| scenario.boat_of(primitives::VehicleId::at(i)).name.clone();
+        let Some(j) = b.boats.iter().position(|there| there.name == boat.name) else {
+            continue;
+        };
+        let of = |scenario: &Scenario, i: usize| {
+            scenario.boat_of(primitives::VehicleId::at(i)).name.clone()
+        };
         differ(&boat.name, &of(one, i), &of(other, j));
         differ(&boat.name, kind(boat.is_real), kind(b.boats[j].is_real));
     }
     let alone = |of: &GameSeries, without: &GameSeries| -> Vec<String> {
-        of.boats.iter().filter(|boat| without.boat(&boat.name).is_none()).map(|boat| boat.name.clone()).collect()
+        of.boats
+            .iter()
+            .filter(|boat| without.boat(&boat.name).is_none())
+            .map(|boat| boat.name.clone())
+            .collect()
     };
     for (name, alone) in [("A", alone(a, b)), ("B", alone(b, a))] {
         if !alone.is_empty() {
@@ -165,7 +194,10 @@ fn notes(heads: [&Header; 2], [a, b]: [&GameSeries; 2]) -> Vec<String> {
         }
     }
     if one.field.plan.name == other.field.plan.name && one.field.plan != other.field.plan {
-        notes.push(format!("the field {} is laid out differently", one.field.plan.name));
+        notes.push(format!(
+            "the field {} is laid out differently",
+            one.field.plan.name
+        ));
     }
     for (name, series) in [("A", a), ("B", b)] {
         notes.extend(series.remark().map(|remark| format!("{name}: {remark}")));
@@ -192,14 +224,23 @@ fn score(a: &GameSeries, b: &GameSeries) -> BTreeMap<String, [Option<u32>; 2]> {
 }
 
 fn named_events((series, scenario): (&GameSeries, &Scenario)) -> Vec<EventOutcome> {
-    series.events.iter().map(|logged| EventOutcome::new(scenario, logged)).collect()
+    series
+        .events
+        .iter()
+        .map(|logged| EventOutcome::new(scenario, logged))
+        .collect()
 }
 
 /// The attributes of an event, apart from its time, that must match.
 type Kind = (String, Option<String>, Option<String>, Option<String>);
 
 fn kind(event: &EventOutcome) -> Kind {
-    (event.event.clone(), event.vehicle.clone(), event.other.clone(), event.team.clone())
+    (
+        event.event.clone(),
+        event.vehicle.clone(),
+        event.other.clone(),
+        event.team.clone(),
+    )
 }
 
 /// Pairs the events of each kind in order. If two are too far apart in time, the earlier one has no
@@ -239,7 +280,13 @@ fn events([a, b]: [Vec<EventOutcome>; 2], until_s: f64, tolerance_s: f64) -> Eve
         only.retain(|event: &EventOutcome| event.at_s <= until_s);
         only.sort_by(|one, other| one.at_s.total_cmp(&other.at_s));
     }
-    EventDifference { tolerance_s, in_both, only_in_a, only_in_b, counts }
+    EventDifference {
+        tolerance_s,
+        in_both,
+        only_in_a,
+        only_in_b,
+        counts,
+    }
 }
 
 #[cfg(test)]
@@ -248,7 +295,14 @@ mod tests {
 
     fn event(at_s: f64, event: &str, vehicle: &str) -> EventOutcome {
         let vehicle = Some(vehicle.to_owned());
-        EventOutcome { tick: 0, at_s, event: event.to_owned(), vehicle, other: None, team: None }
+        EventOutcome {
+            tick: 0,
+            at_s,
+            event: event.to_owned(),
+            vehicle,
+            other: None,
+            team: None,
+        }
     }
 
     fn times(events: &[EventOutcome]) -> Vec<f64> {
@@ -259,11 +313,21 @@ mod tests {
     fn events_within_the_tolerance_are_paired_once_up_to_the_end_of_the_shorter_game() {
         let x = |at_s| event(at_s, "tagged", "x");
         let a = vec![event(10.0, "grabbed", "x"), x(20.0), x(50.0)];
-        let b = vec![event(11.9, "grabbed", "x"), event(20.0, "tagged", "y"), x(49.0)];
+        let b = vec![
+            event(11.9, "grabbed", "x"),
+            event(20.0, "tagged", "y"),
+            x(49.0),
+        ];
         let found = events([a.clone(), b.clone()], 100.0, 2.0);
         assert_eq!(found.counts.get("tagged"), Some(&[2, 2]));
         for (what, [a, b], until_s, tolerance_s, want) in [
-            ("another boat", [a.clone(), b], 100.0, 2.0, (2, vec![20.0], vec![20.0])),
+            (
+                "another boat",
+                [a.clone(), b],
+                100.0,
+                2.0,
+                (2, vec![20.0], vec![20.0]),
+            ),
             ("the same", [a.clone(), a], 100.0, 0.0, (3, vec![], vec![])),
             (
                 "one of three",
@@ -272,10 +336,24 @@ mod tests {
                 2.0,
                 (1, vec![11.0, 12.0], vec![]),
             ),
-            ("after the end", [vec![x(10.0), x(61.0)], vec![]], 60.0, 2.0, (0, vec![10.0], vec![])),
+            (
+                "after the end",
+                [vec![x(10.0), x(61.0)], vec![]],
+                60.0,
+                2.0,
+                (0, vec![10.0], vec![]),
+            ),
         ] {
             let found = events([a, b], until_s, tolerance_s);
-            assert_eq!((found.in_both, times(&found.only_in_a), times(&found.only_in_b)), want, "{what}");
+            assert_eq!(
+                (
+                    found.in_both,
+                    times(&found.only_in_a),
+                    times(&found.only_in_b)
+                ),
+                want,
+                "{what}"
+            );
         }
     }
 }

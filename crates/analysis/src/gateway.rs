@@ -36,21 +36,38 @@ pub struct Traffic {
 /// The gateways of a game, by boat.
 pub(crate) fn gateways(recording: &Recording) -> Vec<Gateway> {
     let topics = recording.bag().topics();
-    let is_known = |name: &str| ["link", "status"].iter().any(|what| topics.contains_key(&*format!("{what}/{name}")));
-    let boats = recording.scenario().vehicles.iter().map(|vehicle| vehicle.name.as_str());
-    boats.filter(|name| is_known(name)).map(|name| gateway_of(recording.bag(), name)).collect()
+    let is_known = |name: &str| {
+        ["link", "status"]
+            .iter()
+            .any(|what| topics.contains_key(&*format!("{what}/{name}")))
+    };
+    let boats = recording
+        .scenario()
+        .vehicles
+        .iter()
+        .map(|vehicle| vehicle.name.as_str());
+    boats
+        .filter(|name| is_known(name))
+        .map(|name| gateway_of(recording.bag(), name))
+        .collect()
 }
 
 /// The gateway of a boat, from the recording of a game or of the gateway itself.
 pub fn gateway_of(bag: &Bag, boat: &str) -> Gateway {
     // A gateway's recording starts with the gateway, which starts disarmed.
     let state = (bag.kind == Kind::Gateway).then(|| "disarmed".to_owned());
-    let mut gateway = Gateway { boat: boat.to_owned(), state, ..Gateway::default() };
+    let mut gateway = Gateway {
+        boat: boat.to_owned(),
+        state,
+        ..Gateway::default()
+    };
     traffic(bag, &mut gateway);
     // Each status lists the failsafes so far, and a restarted gateway starts over: count each one
     // once.
     for message in bag.on(&format!("status/{boat}")) {
-        let Some(status) = gateway.damaged.sound(message.read_json::<GatewayStatus>()) else { continue };
+        let Some(status) = gateway.damaged.sound(message.read_json::<GatewayStatus>()) else {
+            continue;
+        };
         for failsafe in status.failsafes {
             if !gateway.failsafes.contains(&failsafe) {
                 gateway.failsafes.push(failsafe);
@@ -60,12 +77,20 @@ pub fn gateway_of(bag: &Bag, boat: &str) -> Gateway {
     }
     // The gateway's own recording contains its changes of state.
     for message in bag.on("event") {
-        let Some(event) = gateway.damaged.sound(message.read_json::<Value>()) else { continue };
+        let Some(event) = gateway.damaged.sound(message.read_json::<Value>()) else {
+            continue;
+        };
         if let Some(state) = event["event"]["state"]["to"].as_str() {
             gateway.state = Some(state.to_owned());
             // It has no status in which they are listed.
-            if let Some(cause) = state.strip_prefix("failsafe: ").filter(|_| bag.kind == Kind::Gateway) {
-                gateway.failsafes.push(FailsafeReport { at_s: message.at.as_s(), cause: cause.to_owned() });
+            if let Some(cause) = state
+                .strip_prefix("failsafe: ")
+                .filter(|_| bag.kind == Kind::Gateway)
+            {
+                gateway.failsafes.push(FailsafeReport {
+                    at_s: message.at.as_s(),
+                    cause: cause.to_owned(),
+                });
             }
         }
     }
@@ -75,19 +100,32 @@ pub fn gateway_of(bag: &Bag, boat: &str) -> Gateway {
 fn traffic(bag: &Bag, gateway: &mut Gateway) {
     let mut lines = Lines::default();
     for message in bag.on(&format!("link/{}", gateway.boat)) {
-        let Some(bytes) = gateway.damaged.sound(message.read::<LinkBytes>()) else { continue };
+        let Some(bytes) = gateway.damaged.sound(message.read::<LinkBytes>()) else {
+            continue;
+        };
         gateway.way(bytes.outward).bytes += bytes.data.len() as u64;
-        lines.take(bytes.outward, &bytes.data).iter().for_each(|line| gateway.count(line));
+        lines
+            .take(bytes.outward, &bytes.data)
+            .iter()
+            .for_each(|line| gateway.count(line));
     }
     lines.rest().iter().for_each(|line| gateway.count(line));
 }
 
 impl Gateway {
     fn way(&mut self, outward: bool) -> &mut Traffic {
-        if outward { &mut self.to_boat } else { &mut self.from_boat }
+        if outward {
+            &mut self.to_boat
+        } else {
+            &mut self.from_boat
+        }
     }
 
     fn count(&mut self, line: &Line) {
-        *self.way(line.outward).sentences.entry(line.kind().to_owned()).or_insert(0) += 1;
+        *self
+            .way(line.outward)
+            .sentences
+            .entry(line.kind().to_owned())
+            .or_insert(0) += 1;
     }
 }

@@ -25,9 +25,11 @@ impl HullRectangle {
     /// Whether it overlaps another: no side of either is a separating axis.
     pub fn overlaps(&self, other: &HullRectangle) -> bool {
         let line = other.pose.at - self.pose.at;
-        let axes =
-            [self.pose.rotation(), other.pose.rotation()].map(|rotation| [rotation.ahead(), rotation.starboard()]);
-        axes.into_iter().flatten().all(|axis| line.dot(axis).abs() < self.half_m(axis) + other.half_m(axis))
+        let axes = [self.pose.rotation(), other.pose.rotation()]
+            .map(|rotation| [rotation.ahead(), rotation.starboard()]);
+        axes.into_iter()
+            .flatten()
+            .all(|axis| line.dot(axis).abs() < self.half_m(axis) + other.half_m(axis))
     }
 }
 
@@ -38,7 +40,10 @@ mod tests {
     #[test]
     fn hulls_touch_where_no_side_separates_them() {
         let hull = |north, east, deg: f64| HullRectangle {
-            pose: Pose { at: Ned { north, east }, psi_rad: deg.to_radians() },
+            pose: Pose {
+                at: Ned { north, east },
+                psi_rad: deg.to_radians(),
+            },
             length_m: 2.0,
             beam_m: 1.0,
         };
@@ -51,10 +56,18 @@ mod tests {
             ("a bow at the side, touching", hull(0.0, 1.49, 90.0), true),
             // Its corner reaches 1.5 / sqrt(2) = 1.06 m from its centre.
             ("a corner at the side, apart", hull(0.0, 1.57, 45.0), false),
-            ("a corner at the side, touching", hull(0.0, 1.55, 45.0), true),
+            (
+                "a corner at the side, touching",
+                hull(0.0, 1.55, 45.0),
+                true,
+            ),
         ] {
             assert_eq!(hull(0.0, 0.0, 0.0).overlaps(&other), want, "{what}");
-            assert_eq!(other.overlaps(&hull(0.0, 0.0, 0.0)), want, "{what}, the other way round");
+            assert_eq!(
+                other.overlaps(&hull(0.0, 0.0, 0.0)),
+                want,
+                "{what}, the other way round"
+            );
         }
     }
 }

@@ -17,7 +17,9 @@ impl Line {
     pub fn kind(&self) -> &str {
         let body = self.text.strip_prefix(['$', '!']).unwrap_or_default();
         let kind = body.split([',', '*']).next().unwrap_or_default();
-        let is_kind = !kind.is_empty() && kind.len() <= 8 && kind.bytes().all(|byte| byte.is_ascii_alphanumeric());
+        let is_kind = !kind.is_empty()
+            && kind.len() <= 8
+            && kind.bytes().all(|byte| byte.is_ascii_alphanumeric());
         if is_kind { kind } else { "other" }
     }
 }
@@ -47,7 +49,10 @@ impl Lines {
 
     /// The incomplete line in one direction, after its last byte.
     pub fn end(&mut self, outward: bool) -> Option<Line> {
-        line(std::mem::take(&mut self.begun[usize::from(outward)]), outward)
+        line(
+            std::mem::take(&mut self.begun[usize::from(outward)]),
+            outward,
+        )
     }
 
     /// Whether no line is incomplete.
@@ -57,14 +62,20 @@ impl Lines {
 
     /// The incomplete lines.
     pub fn rest(mut self) -> Vec<Line> {
-        [false, true].into_iter().filter_map(|outward| self.end(outward)).collect()
+        [false, true]
+            .into_iter()
+            .filter_map(|outward| self.end(outward))
+            .collect()
     }
 }
 
 /// A line, unless it is empty.
 fn line(bytes: Vec<u8>, outward: bool) -> Option<Line> {
     let bytes = bytes.strip_suffix(b"\r").unwrap_or(&bytes);
-    (!bytes.is_empty()).then(|| Line { outward, text: bytes.escape_ascii().to_string() })
+    (!bytes.is_empty()).then(|| Line {
+        outward,
+        text: bytes.escape_ascii().to_string(),
+    })
 }
 
 #[cfg(test)]
@@ -81,8 +92,16 @@ mod tests {
             assert_eq!(lines.take(true, b"$PSEAC,L"), []);
             all.extend(lines.take(false, &bytes_in[cut..]));
             all.extend(lines.rest());
-            let texts: Vec<(&str, bool)> = all.iter().map(|line| (line.text.as_str(), line.outward)).collect();
-            let want = [("$GPRMC,1*00", false), ("$PSEAC,T,0*0D", false), ("rest", false), ("$PSEAC,L", true)];
+            let texts: Vec<(&str, bool)> = all
+                .iter()
+                .map(|line| (line.text.as_str(), line.outward))
+                .collect();
+            let want = [
+                ("$GPRMC,1*00", false),
+                ("$PSEAC,T,0*0D", false),
+                ("rest", false),
+                ("$PSEAC,L", true),
+            ];
             assert_eq!(texts, want, "cut at {cut}");
         }
     }
@@ -97,7 +116,15 @@ mod tests {
             ("$,", "other"),
             ("", "other"),
         ] {
-            assert_eq!(Line { outward: false, text: text.to_owned() }.kind(), want, "{text}");
+            assert_eq!(
+                Line {
+                    outward: false,
+                    text: text.to_owned()
+                }
+                .kind(),
+                want,
+                "{text}"
+            );
         }
     }
 

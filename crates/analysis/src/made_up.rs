@@ -8,12 +8,24 @@ use std::f64::consts::TAU;
 
 /// A game with samples every 0.1 s up to `span_s`, in which one boat moves as `at` says.
 pub(crate) fn game(span_s: f64, at: impl Fn(f64) -> Sample) -> GameSeries {
-    let times_s: Vec<f64> = (0..=(span_s * 10.0).round() as usize).map(|i| i as f64 / 10.0).collect();
+    let times_s: Vec<f64> = (0..=(span_s * 10.0).round() as usize)
+        .map(|i| i as f64 / 10.0)
+        .collect();
     let samples = times_s.iter().map(|time_s| at(*time_s)).collect();
-    let boat = BoatSeries { name: "blue_one".to_owned(), samples, ..BoatSeries::default() };
+    let boat = BoatSeries {
+        name: "blue_one".to_owned(),
+        samples,
+        ..BoatSeries::default()
+    };
     let score = vec![vec![0, 0]; times_s.len()];
     let teams = vec!["blue".to_owned(), "red".to_owned()];
-    GameSeries { boats: vec![boat], teams, score, times_s, ..GameSeries::default() }
+    GameSeries {
+        boats: vec![boat],
+        teams,
+        score,
+        times_s,
+        ..GameSeries::default()
+    }
 }
 
 /// A boat that drives clockwise around the datum, once in 100 s.
@@ -28,6 +40,9 @@ pub(crate) fn circle(radius_m: f64, span_s: f64) -> GameSeries {
             surge_m_s: TAU * radius_m / 100.0,
             ..Nav::default()
         };
-        Sample { truth: nav, ..Sample::default() }
+        Sample {
+            truth: nav,
+            ..Sample::default()
+        }
     })
 }

@@ -59,7 +59,9 @@ impl GameSeries {
     /// decision.
     pub fn of_at_most(recording: &Recording, samples_max: usize) -> GameSeries {
         let scenario = recording.scenario();
-        let all = recording.frame_count().saturating_mul(scenario.vehicles.len());
+        let all = recording
+            .frame_count()
+            .saturating_mul(scenario.vehicles.len());
         let every = all.div_ceil(samples_max).max(1);
         let boat = |vehicle: &scenario::Vehicle| BoatSeries {
             name: vehicle.name.clone(),
@@ -70,7 +72,11 @@ impl GameSeries {
         let mut series = GameSeries {
             every,
             boats: scenario.vehicles.iter().map(boat).collect(),
-            teams: scenario.teams.iter().map(|team| team.name.clone()).collect(),
+            teams: scenario
+                .teams
+                .iter()
+                .map(|team| team.name.clone())
+                .collect(),
             ..GameSeries::default()
         };
         let mut count = 0;
@@ -99,17 +105,27 @@ impl GameSeries {
 
     /// A note for the user if decisions were omitted.
     pub fn remark(&self) -> Option<String> {
-        (self.every > 1).then(|| format!("the game is long; only one decision in {} is analysed", self.every))
+        (self.every > 1).then(|| {
+            format!(
+                "the game is long; only one decision in {} is analysed",
+                self.every
+            )
+        })
     }
 
     /// The time between the first sample and the last, s.
     pub fn span_s(&self) -> f64 {
-        self.times_s.last().zip(self.times_s.first()).map_or(0.0, |(last, first)| last - first)
+        self.times_s
+            .last()
+            .zip(self.times_s.first())
+            .map_or(0.0, |(last, first)| last - first)
     }
 
     /// Index of the sample at this time: the last one not later.
     pub fn sample_at(&self, at_s: f64) -> usize {
-        self.times_s.partition_point(|time_s| *time_s <= at_s + 1e-6).saturating_sub(1)
+        self.times_s
+            .partition_point(|time_s| *time_s <= at_s + 1e-6)
+            .saturating_sub(1)
     }
 
     /// The boat with this name.

@@ -90,28 +90,46 @@ impl StatisticsBuilder {
         let boat = |vehicle: &scenario::Vehicle| BoatSums {
             sums: BoatStatistics {
                 boat: vehicle.name.clone(),
-                team: scenario.teams.get(vehicle.team.index()).map(|team| team.name.clone()).unwrap_or_default(),
+                team: scenario
+                    .teams
+                    .get(vehicle.team.index())
+                    .map(|team| team.name.clone())
+                    .unwrap_or_default(),
                 is_real: vehicle.source == Source::External,
                 ..BoatStatistics::default()
             },
             ..BoatSums::default()
         };
         let boats: Vec<BoatSums> = scenario.vehicles.iter().map(boat).collect();
-        StatisticsBuilder { before_s: None, span_s: 0.0, tally: Tally::new(boats.len()), boats }
+        StatisticsBuilder {
+            before_s: None,
+            span_s: 0.0,
+            tally: Tally::new(boats.len()),
+            boats,
+        }
     }
 
     /// Adds a decision.
     pub fn add(&mut self, step: &Step) {
-        step.events.iter().for_each(|logged| self.tally.add(logged.event));
+        step.events
+            .iter()
+            .for_each(|logged| self.tally.add(logged.event));
         // A decision covers the time since the previous one, and the first covers none.
         let step_s = step.time_s - self.before_s.replace(step.time_s).unwrap_or(step.time_s);
         self.span_s += step_s;
-        self.boats.iter_mut().zip(&step.samples).for_each(|(boat, sample)| boat.add(sample, step_s));
+        self.boats
+            .iter_mut()
+            .zip(&step.samples)
+            .for_each(|(boat, sample)| boat.add(sample, step_s));
     }
 
     /// The statistics, by vehicle index.
     pub fn end(self) -> Vec<BoatStatistics> {
-        self.boats.into_iter().zip(self.tally.vehicles).map(|(boat, counts)| boat.end(counts, self.span_s)).collect()
+        self.boats
+            .into_iter()
+            .zip(self.tally.vehicles)
+            .map(|(boat, counts)| boat.end(counts, self.span_s))
+            .collect()
     }
 }
 
@@ -119,7 +137,10 @@ impl BoatSums {
     fn add(&mut self, sample: &Sample, step_s: f64) {
         let at = sample.truth.at();
         let sums = &mut self.sums;
-        sums.distance_m += self.before.replace(at).map_or(0.0, |before| before.distance(at));
+        sums.distance_m += self
+            .before
+            .replace(at)
+            .map_or(0.0, |before| before.distance(at));
         sums.speed_max_m_s = sums.speed_max_m_s.max(sample.truth.speed_m_s());
         self.travelled_m += sample.truth.speed_m_s() * step_s;
         for (is, lasted_s) in [
@@ -136,7 +157,8 @@ impl BoatSums {
             self.nav_errors_m.add(error_m);
         }
         if let Some((heading_rad, speed_m_s)) = sample.steered() {
-            self.heading_error.add(wrap_pi(sample.truth.psi_rad - heading_rad));
+            self.heading_error
+                .add(wrap_pi(sample.truth.psi_rad - heading_rad));
             self.speed_error.add(sample.truth.surge_m_s - speed_m_s);
             self.steered_s += step_s;
         }
@@ -147,7 +169,11 @@ impl BoatSums {
         let steering = self.heading_error.root().zip(self.speed_error.root());
         let steered_s = self.steered_s;
         BoatStatistics {
-            speed_mean_m_s: if span_s > 0.0 { self.travelled_m / span_s } else { 0.0 },
+            speed_mean_m_s: if span_s > 0.0 {
+                self.travelled_m / span_s
+            } else {
+                0.0
+            },
             counts,
             navigation: navigation.map(|(rms_m, p95_m)| NavigationError { rms_m, p95_m }),
             steering: steering.map(|(heading_rad, speed_rms_m_s)| SteeringError {
@@ -196,12 +222,17 @@ mod tests {
 
     /// The statistics of a synthetic game.
     fn statistics(series: &GameSeries) -> Vec<BoatStatistics> {
-        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
+        let file =
+            Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
         let scenario = scenario::load(&file).unwrap_or_else(|e| panic!("{e}"));
         let mut builder = StatisticsBuilder::new(&scenario);
         for (i, time_s) in series.times_s.iter().copied().enumerate() {
             let samples = series.boats.iter().map(|boat| boat.samples[i]).collect();
-            builder.add(&Step { time_s, samples, ..Step::default() });
+            builder.add(&Step {
+                time_s,
+                samples,
+                ..Step::default()
+            });
         }
         builder.end()
     }
@@ -211,9 +242,16 @@ mod tests {
         // One turn in 100 s: chords of a tenth of a second are a millionth too short.
         let statistics = &statistics(&made_up::circle(20.0, 100.0))[0];
         let round_m = std::f64::consts::TAU * 20.0;
-        assert!((statistics.distance_m / round_m - 1.0).abs() < 1e-5, "{} m", statistics.distance_m);
+        assert!(
+            (statistics.distance_m / round_m - 1.0).abs() < 1e-5,
+            "{} m",
+            statistics.distance_m
+        );
         for speed_m_s in [statistics.speed_mean_m_s, statistics.speed_max_m_s] {
-            assert!((speed_m_s - round_m / 100.0).abs() < 1e-9, "{speed_m_s} m/s");
+            assert!(
+                (speed_m_s - round_m / 100.0).abs() < 1e-9,
+                "{speed_m_s} m/s"
+            );
         }
         assert_eq!((statistics.navigation, statistics.steering), (None, None));
     }
@@ -224,11 +262,17 @@ mod tests {
         assert_eq!(series.times_s.len(), 20);
         for (i, sample) in series.boats[0].samples.iter_mut().enumerate() {
             let off_m = if i == 7 { 100.0 } else { 1.0 };
-            sample.estimated = Some(Nav { north_m: sample.truth.north_m + off_m, ..sample.truth });
+            sample.estimated = Some(Nav {
+                north_m: sample.truth.north_m + off_m,
+                ..sample.truth
+            });
         }
         let error = statistics(&series)[0].navigation.expect("it was shown");
         assert!((error.p95_m - 1.0).abs() < 1e-9, "{error:?}");
-        assert!((error.rms_m - (10_019.0_f64 / 20.0).sqrt()).abs() < 1e-9, "{error:?}");
+        assert!(
+            (error.rms_m - (10_019.0_f64 / 20.0).sqrt()).abs() < 1e-9,
+            "{error:?}"
+        );
     }
 
     #[test]
@@ -236,17 +280,32 @@ mod tests {
         let mut series = made_up::circle(20.0, 10.0);
         for (i, sample) in series.boats[0].samples.iter_mut().enumerate() {
             let heading_rad = sample.truth.psi_rad + 0.1 + std::f64::consts::TAU;
-            sample.order = Order::Steer { heading_rad, speed_m_s: sample.truth.surge_m_s + 0.5 };
+            sample.order = Order::Steer {
+                heading_rad,
+                speed_m_s: sample.truth.surge_m_s + 0.5,
+            };
             sample.is_free = i > 50;
             sample.tagged = i <= 50;
             sample.carrying = i > 90;
         }
         let statistics = &statistics(&series)[0];
         let error = statistics.steering.expect("it was ordered");
-        assert!((error.heading_rms_deg - 0.1_f64.to_degrees()).abs() < 1e-9, "{error:?}");
-        assert!((error.speed_rms_m_s - 0.5).abs() < 1e-9 && (error.steered_s - 5.0).abs() < 1e-9, "{error:?}");
-        assert!((statistics.tagged_s - 5.0).abs() < 1e-9 && (statistics.carrying_s - 1.0).abs() < 1e-9);
-        for none_s in [statistics.outside_s, statistics.agent_lost_s, statistics.nav_lost_s] {
+        assert!(
+            (error.heading_rms_deg - 0.1_f64.to_degrees()).abs() < 1e-9,
+            "{error:?}"
+        );
+        assert!(
+            (error.speed_rms_m_s - 0.5).abs() < 1e-9 && (error.steered_s - 5.0).abs() < 1e-9,
+            "{error:?}"
+        );
+        assert!(
+            (statistics.tagged_s - 5.0).abs() < 1e-9 && (statistics.carrying_s - 1.0).abs() < 1e-9
+        );
+        for none_s in [
+            statistics.outside_s,
+            statistics.agent_lost_s,
+            statistics.nav_lost_s,
+        ] {
             assert_eq!(format!("{none_s:.1}"), "0.0");
         }
     }
@@ -259,6 +318,13 @@ mod tests {
         }
         series.times_s.clear();
         let statistics = &statistics(&series)[0];
-        assert_eq!((statistics.distance_m, statistics.speed_mean_m_s, statistics.speed_max_m_s), (0.0, 0.0, 0.0));
+        assert_eq!(
+            (
+                statistics.distance_m,
+                statistics.speed_mean_m_s,
+                statistics.speed_max_m_s
+            ),
+            (0.0, 0.0, 0.0)
+        );
     }
 }

@@ -52,12 +52,19 @@ pub struct Sample {
 impl Step {
     /// The decision in a frame, with the orders that led there, by vehicle. Estimated navigation is
     /// not included.
-    pub fn of_frame(scenario: &Scenario, frame: &Frame, orders: impl Iterator<Item = Order>) -> Step {
+    pub fn of_frame(
+        scenario: &Scenario,
+        frame: &Frame,
+        orders: impl Iterator<Item = Order>,
+    ) -> Step {
         let truth = |i: usize| frame.vehicles.get(i).copied().unwrap_or_default();
         Step {
             decision: frame.stamp.seq,
             time_s: frame.stamp.valid_ns.as_s(),
-            samples: orders.enumerate().map(|(i, order)| sample(&truth(i), order, frame.stopped)).collect(),
+            samples: orders
+                .enumerate()
+                .map(|(i, order)| sample(&truth(i), order, frame.stopped))
+                .collect(),
             events: frame.logged(scenario).collect(),
             score: frame.score.clone(),
         }
@@ -68,7 +75,11 @@ impl Step {
 /// messages are skipped and counted.
 pub fn for_each_step(recording: &Recording, take: impl FnMut(Step)) -> Damaged {
     let scenario = recording.scenario();
-    let pictures: Vec<String> = scenario.teams.iter().map(|team| picture(&team.name)).collect();
+    let pictures: Vec<String> = scenario
+        .teams
+        .iter()
+        .map(|team| picture(&team.name))
+        .collect();
     let mut reader = Reader {
         scenario,
         take,
@@ -94,7 +105,10 @@ impl Sample {
     /// The ordered heading, rad, and speed, m/s, if it was steered.
     pub fn steered(&self) -> Option<(f64, f64)> {
         match self.order {
-            Order::Steer { heading_rad, speed_m_s } if self.is_free => Some((heading_rad, speed_m_s)),
+            Order::Steer {
+                heading_rad,
+                speed_m_s,
+            } if self.is_free => Some((heading_rad, speed_m_s)),
             _ => None,
         }
     }
@@ -131,7 +145,11 @@ impl<T: FnMut(Step)> Reader<'_, T> {
     fn frame(&mut self, message: &RecordedMessage<'_>) -> Result<(), RecordingError> {
         let frame: Frame = message.read()?;
         self.close();
-        let step = Step::of_frame(self.scenario, &frame, self.orders.iter().map(|(order, _)| *order));
+        let step = Step::of_frame(
+            self.scenario,
+            &frame,
+            self.orders.iter().map(|(order, _)| *order),
+        );
         (self.now_s, self.open) = (Some(step.time_s), Some(step));
         Ok(())
     }
@@ -145,7 +163,13 @@ impl<T: FnMut(Step)> Reader<'_, T> {
 
     fn picture(&mut self, message: &RecordedMessage<'_>) -> Result<(), RecordingError> {
         let picture: Picture = message.read()?;
-        let Some(step) = self.open.as_mut().filter(|step| step.decision == picture.stamp.seq) else { return Ok(()) };
+        let Some(step) = self
+            .open
+            .as_mut()
+            .filter(|step| step.decision == picture.stamp.seq)
+        else {
+            return Ok(());
+        };
         for own in &picture.own {
             if let Some(sample) = step.samples.get_mut(own.vehicle.index()) {
                 sample.estimated = Some(own.nav);
@@ -158,8 +182,14 @@ impl<T: FnMut(Step)> Reader<'_, T> {
         let inputs: Inputs = message.read()?;
         for input in inputs.of(self.scenario).flatten() {
             match input {
-                Input::Ordered { vehicle, order, given_at } => self.orders[vehicle.index()] = (order, given_at),
-                Input::Held(vehicle) | Input::AgentLost(vehicle) => self.orders[vehicle.index()].0 = Order::Hold,
+                Input::Ordered {
+                    vehicle,
+                    order,
+                    given_at,
+                } => self.orders[vehicle.index()] = (order, given_at),
+                Input::Held(vehicle) | Input::AgentLost(vehicle) => {
+                    self.orders[vehicle.index()].0 = Order::Hold
+                }
                 Input::Played => self.expire_orders(),
                 _ => {}
             }
@@ -179,13 +209,27 @@ impl<T: FnMut(Step)> Reader<'_, T> {
 }
 
 fn sample(truth: &VehicleTruth, order: Order, stopped: bool) -> Sample {
-    let VehicleTruth { tagged, disabled, outside, agent_lost, quarantined, nav_lost, .. } = *truth;
+    let VehicleTruth {
+        tagged,
+        disabled,
+        outside,
+        agent_lost,
+        quarantined,
+        nav_lost,
+        ..
+    } = *truth;
     Sample {
         truth: truth.nav,
         estimated: None,
         order,
         thrusts_newton: [truth.port_newton, truth.starboard_newton],
-        is_free: !(stopped || tagged || disabled || outside || agent_lost || quarantined || nav_lost),
+        is_free: !(stopped
+            || tagged
+            || disabled
+            || outside
+            || agent_lost
+            || quarantined
+            || nav_lost),
         tagged,
         carrying: truth.carrying >= 0,
         outside,

@@ -78,8 +78,15 @@ impl Summary {
         let mut events = vec![];
         let damaged = for_each_step(recording, |step| {
             statistics.add(&step);
-            times_s = Some((times_s.map_or(step.time_s, |(first_s, _)| first_s), step.time_s));
-            events.extend(step.events.iter().map(|logged| EventOutcome::new(scenario, logged)));
+            times_s = Some((
+                times_s.map_or(step.time_s, |(first_s, _)| first_s),
+                step.time_s,
+            ));
+            events.extend(
+                step.events
+                    .iter()
+                    .map(|logged| EventOutcome::new(scenario, logged)),
+            );
             score = step.score;
         });
         let gateways = gateways(recording);
@@ -99,12 +106,19 @@ impl Summary {
             is_cut: recording.is_cut(),
             dropped: ending.map(|ending| ending.dropped),
             bytes: recording.bag().size(),
-            score: scenario.teams.iter().map(|team| team.name.clone()).zip(score).collect(),
+            score: scenario
+                .teams
+                .iter()
+                .map(|team| team.name.clone())
+                .zip(score)
+                .collect(),
             winner: ending.and_then(|ending| ending.outcome.winner.clone()),
             digest: ending.map(|ending| ending.outcome.digest.clone()),
             events,
             boats: statistics.end(),
-            damaged: gateways.iter().fold(damaged, |all, gateway| all.and(&gateway.damaged)),
+            damaged: gateways
+                .iter()
+                .fold(damaged, |all, gateway| all.and(&gateway.damaged)),
             gateways,
             topics: topics(recording.bag()),
         }
@@ -115,7 +129,9 @@ impl Summary {
 pub fn topics(bag: &Bag) -> BTreeMap<String, Topic> {
     let mut topics: BTreeMap<&str, (Topic, [i64; 2])> = BTreeMap::new();
     for message in bag.messages() {
-        let (topic, [first, last]) = topics.entry(message.topic).or_insert((Topic::default(), [i64::MAX, i64::MIN]));
+        let (topic, [first, last]) = topics
+            .entry(message.topic)
+            .or_insert((Topic::default(), [i64::MAX, i64::MIN]));
         topic.count += 1;
         topic.bytes += message.bytes.len() as u64;
         (*first, *last) = ((*first).min(message.at.0), (*last).max(message.at.0));

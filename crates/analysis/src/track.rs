@@ -32,12 +32,14 @@ pub(crate) fn apart(
     let end_s = a.times_s.last()?.min(*b.times_s.last()?);
     let common = |series: &GameSeries, boat: &BoatSeries| -> (Vec<f64>, Vec<Ned>) {
         let all = series.times_s.iter().copied().zip(boat.track());
-        all.filter(|(time_s, _)| (begin_s..=end_s).contains(time_s)).unzip()
+        all.filter(|(time_s, _)| (begin_s..=end_s).contains(time_s))
+            .unzip()
     };
     let (times_s, common_a) = common(a, in_a);
     let (_, common_b) = common(b, in_b);
     let track_b: Vec<Ned> = in_b.track().collect();
-    let distance_m = |(time_s, at): (&f64, &Ned)| at.distance(place_at(&b.times_s, &track_b, *time_s));
+    let distance_m =
+        |(time_s, at): (&f64, &Ned)| at.distance(place_at(&b.times_s, &track_b, *time_s));
     // At the samples of the first.
     let distances_m: Vec<f64> = times_s.iter().zip(&common_a).map(distance_m).collect();
     let final_m = *distances_m.last()?;
@@ -52,10 +54,16 @@ pub(crate) fn apart(
 
 /// The position on a track at a time, interpolated linearly.
 fn place_at(times_s: &[f64], track: &[Ned], time_s: f64) -> Ned {
-    let after = times_s.partition_point(|t| *t < time_s).min(track.len() - 1);
+    let after = times_s
+        .partition_point(|t| *t < time_s)
+        .min(track.len() - 1);
     let before = after.saturating_sub(1);
     let step_s = times_s[after] - times_s[before];
-    let share = if step_s > 0.0 { ((time_s - times_s[before]) / step_s).clamp(0.0, 1.0) } else { 1.0 };
+    let share = if step_s > 0.0 {
+        ((time_s - times_s[before]) / step_s).clamp(0.0, 1.0)
+    } else {
+        1.0
+    };
     // This weighted sum gives each sample's own position exactly.
     track[before].scaled(1.0 - share) + track[after].scaled(share)
 }
@@ -63,7 +71,9 @@ fn place_at(times_s: &[f64], track: &[Ned], time_s: f64) -> Ned {
 /// Every nth point, and the last.
 fn thinned(track: &[Ned]) -> Vec<Ned> {
     let every = track.len().div_ceil(SHAPE_POINTS).max(1);
-    let last = track.last().filter(|_| !(track.len() - 1).is_multiple_of(every));
+    let last = track
+        .last()
+        .filter(|_| !(track.len() - 1).is_multiple_of(every));
     track.iter().step_by(every).chain(last).copied().collect()
 }
 
@@ -77,10 +87,18 @@ fn frechet_m(a: &[Ned], b: &[Ned]) -> f64 {
         for (j, other) in b.iter().enumerate() {
             let left = if j > 0 { row[j - 1] } else { f64::INFINITY };
             let above = if i > 0 { row[j] } else { f64::INFINITY };
-            let reached = if i == 0 && j == 0 { 0.0 } else { left.min(above).min(diagonal) };
+            let reached = if i == 0 && j == 0 {
+                0.0
+            } else {
+                left.min(above).min(diagonal)
+            };
             let leash = reached.max(place.distance_squared(*other));
             diagonal = above;
-            if i == 0 { row.push(leash) } else { row[j] = leash }
+            if i == 0 {
+                row.push(leash)
+            } else {
+                row[j] = leash
+            }
         }
     }
     row.last().copied().unwrap_or(0.0).sqrt()
@@ -103,11 +121,22 @@ mod tests {
         let mut back = there.clone();
         back.reverse();
         // The same track with a pause; a detour; the track back, whose ends are 3 m apart.
-        let rest = line(&[(0.0, 0.0), (1.0, 0.0), (1.0, 0.0), (1.0, 0.0), (2.0, 0.0), (3.0, 0.0)]);
+        let rest = line(&[
+            (0.0, 0.0),
+            (1.0, 0.0),
+            (1.0, 0.0),
+            (1.0, 0.0),
+            (2.0, 0.0),
+            (3.0, 0.0),
+        ]);
         let detour = line(&[(0.0, 0.0), (1.0, 5.0), (3.0, 0.0)]);
-        for (other, want_m) in
-            [(&there, 0.0), (&beside, 2.0), (&rest, 0.0), (&detour, 26.0_f64.sqrt().min(5.0)), (&back, 3.0)]
-        {
+        for (other, want_m) in [
+            (&there, 0.0),
+            (&beside, 2.0),
+            (&rest, 0.0),
+            (&detour, 26.0_f64.sqrt().min(5.0)),
+            (&back, 3.0),
+        ] {
             let got_m = frechet_m(&there, other);
             assert!((got_m - want_m).abs() < 1e-12, "{other:?}: {got_m}");
             assert_eq!(got_m, frechet_m(other, &there));
@@ -126,8 +155,14 @@ mod tests {
         }
         let apart = apart((&a, &a.boats[0]), (&b, &b.boats[0])).expect("they were on together");
         let chord_m = 2.0 * 20.0 * primitives::math::sin_cos(TAU * 5.0 / 100.0 / 2.0).0;
-        assert!((apart.max_m - chord_m).abs() < 1e-9 && (apart.final_m - chord_m).abs() < 1e-9, "{apart:?}");
-        assert!(apart.mean_m < chord_m && apart.rms_m < chord_m && apart.mean_m > 0.9 * chord_m, "{apart:?}");
+        assert!(
+            (apart.max_m - chord_m).abs() < 1e-9 && (apart.final_m - chord_m).abs() < 1e-9,
+            "{apart:?}"
+        );
+        assert!(
+            apart.mean_m < chord_m && apart.rms_m < chord_m && apart.mean_m > 0.9 * chord_m,
+            "{apart:?}"
+        );
     }
 
     #[test]
@@ -135,15 +170,23 @@ mod tests {
         let a = made_up::circle(20.0, 50.0);
         let mut coarse = a.clone();
         let even = |i: &usize| i.is_multiple_of(2);
-        coarse.times_s = (0..a.times_s.len()).filter(even).map(|i| a.times_s[i]).collect();
-        coarse.boats[0].samples = (0..a.times_s.len()).filter(even).map(|i| a.boats[0].samples[i]).collect();
+        coarse.times_s = (0..a.times_s.len())
+            .filter(even)
+            .map(|i| a.times_s[i])
+            .collect();
+        coarse.boats[0].samples = (0..a.times_s.len())
+            .filter(even)
+            .map(|i| a.boats[0].samples[i])
+            .collect();
         let apart = apart((&a, &a.boats[0]), (&coarse, &coarse.boats[0])).expect("a track");
         assert!(apart.max_m < 1e-3, "{apart:?}");
     }
 
     #[test]
     fn long_tracks_are_thinned_and_keep_their_ends() {
-        let long: Vec<Ned> = (0..10_001).map(|i| Ned::from_xy(f64::from(i), 0.0)).collect();
+        let long: Vec<Ned> = (0..10_001)
+            .map(|i| Ned::from_xy(f64::from(i), 0.0))
+            .collect();
         let thin = thinned(&long);
         assert!(thin.len() <= SHAPE_POINTS + 1 && thin[0] == long[0] && thin.last() == long.last());
         assert_eq!(thinned(&long[..7]), &long[..7]);

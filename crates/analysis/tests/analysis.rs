@@ -1,160 +1,116 @@
 //! Analysis of a small synthetic recording: statistics, and tables and logs byte by byte where
 //! other programs read them.
 
+mod game;
+
 use analysis::{Comparison, GameSeries, Incomparable, Summary, alog, gateway_of, table};
-use messages::external::{FailsafeReport, GatewayStatus, LinkBytes};
+use game::{bytes_of, decision, ending, header, recording};
 use messages::input::Input;
-use messages::picture::{Contact, FlagView, Nav, OwnBoat};
-use messages::water::Water;
-use messages::{Frame, GameInfo, Message, Order, Picture, Stamp, VehicleTruth};
-use primitives::{FlagId, SimTime, TeamId, VehicleId};
-use recording::{Bag, Decision, Ending, Entry, Facts, Header, Kind, Opening, Recording, Writer};
-use rules::event::{Event, Logged};
-use scenario::Outcome;
+use messages::{Message, Order};
+use primitives::{SimTime, VehicleId};
+use recording::{Bag, Decision, Entry, Facts, Header, Kind, Opening, Recording, Writer};
 use std::io::Cursor;
-use std::path::Path;
-
-fn header() -> Header {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
-    let scenario = scenario::load(&file).unwrap_or_else(|e| panic!("{e}"));
-    Header {
-        commit: "c0ffee".to_owned(),
-        game: "pav01-1".to_owned(),
-        began_utc_ns: 1_700_000_000_000_000_000,
-        info: GameInfo { version: primitives::VERSION.to_owned(), pace: "lockstep".to_owned(), scenario },
-        water: Water { waves: vec![] },
-    }
-}
-
-fn ending() -> Ending {
-    let outcome = Outcome { digest: "ab".to_owned(), winner: Some("blue".to_owned()), ..Outcome::default() };
-    Ending { outcome, run: serde_json::json!({"pace": "lockstep"}), dropped: 3 }
-}
-
-/// The decision `seq`: the first boat drives north at 2 m/s and estimates its position 3 m too far
-/// north and 4 m too far east. It carries a flag at the third frame.
-fn decision(seq: u64) -> Decision {
-    let at = |seq: u64, version| Stamp { valid_ns: SimTime(seq as i64 * 100_000_000), seq, version };
-    let nav = |seq: u64| Nav { north_m: 10.0 + 0.2 * seq as f64, surge_m_s: 2.0, ..Nav::default() };
-    let has_flag = seq >= 2;
-    let first = VehicleTruth { nav: nav(seq), carrying: if has_flag { 1 } else { -1 }, ..VehicleTruth::default() };
-    let mut vehicles = vec![VehicleTruth { carrying: -1, ..VehicleTruth::default() }; 4];
-    vehicles[0] = first;
-    let grabbed = Event::Grabbed { vehicle: VehicleId(0), flag: FlagId(1) };
-    let events =
-        if seq == 2 { vec![Logged { tick: 3, at: SimTime(150_000_000), event: grabbed }.into()] } else { vec![] };
-    let flags = vec![FlagView { carrier: -1 }, FlagView { carrier: if has_flag { 0 } else { -1 } }];
-    let score = vec![u32::from(has_flag), 0];
-    let stamp = at(seq, Frame::VERSION);
-    let frame =
-        Frame { stamp, vehicles, score: score.clone(), flags: flags.clone(), events, ..Frame::default() }.into();
-    let Some(before) = seq.checked_sub(1) else { return Decision { frame, ..Decision::default() } };
-    let believed = Nav { north_m: nav(before).north_m + 3.0, east_m: 4.0, ..nav(before) };
-    let own = OwnBoat::new(VehicleId(0), believed);
-    let contact = Contact {
-        vehicle: VehicleId(2),
-        team: TeamId(1),
-        seen_ns: SimTime(50_000_000),
-        north_m: 1.0,
-        east_m: 2.0,
-        psi_rad: 0.5,
-        velocity_north_m_s: 0.25,
-        velocity_east_m_s: 0.0,
-        tagged: true,
-        carrying: -1,
-    };
-    let stamp = at(before, Picture::VERSION);
-    let picture = Picture { stamp, own: vec![own], contacts: vec![contact], flags, score, ..Picture::default() };
-    let order = Order::Steer { heading_rad: 0.0, speed_m_s: 2.5 };
-    let inputs =
-        vec![Input::Pictured, Input::Ordered { vehicle: VehicleId(0), order, given_at: SimTime::ZERO }, Input::Played];
-    Decision { frame, pictures: vec![picture], inputs }
-}
-
-fn link(outward: bool, data: &[u8]) -> Entry {
-    let stamp = Stamp { version: LinkBytes::VERSION, ..Stamp::default() };
-    let bytes = LinkBytes { stamp, vehicle: VehicleId(0), outward, data: data.to_vec() };
-    let bytes = primitives::codec::encode(&bytes);
-    Entry::Message {
-        topic: "link/blue_one".to_owned(),
-        schema: Some(LinkBytes::SCHEMA),
-        bytes,
-        at: SimTime(250_000_000),
-    }
-}
-
-fn status(failsafes: &[&str]) -> Entry {
-    let failsafe = |cause: &&str| FailsafeReport { at_s: 1.0, cause: (*cause).to_owned() };
-    let failsafes = failsafes.iter().map(failsafe).collect();
-    let status = GatewayStatus { state: "armed".to_owned(), failsafes, ..GatewayStatus::default() };
-    let bytes = serde_json::to_vec(&status).expect("JSON");
-    Entry::Message { topic: "status/blue_one".to_owned(), schema: None, bytes, at: SimTime(200_000_000) }
-}
-
-fn bytes_of(header: &Header, decisions: u64) -> Vec<u8> {
-    let mut writer = Writer::begin(Cursor::new(Vec::new()), &header.opening()).expect("it begins");
-    let mut note = |note: &Entry, utc_ns| writer.write(note, utc_ns).expect("it is written");
-    (0..decisions).for_each(|seq| note(&Entry::Decision(Box::new(decision(seq))), 1_000_000_000 * (1 + seq)));
-    note(&link(false, b"$GPRMC,1*00\r\n$PSE"), 1_000_000_000);
-    note(&link(true, b"$PSEAC,T,0*0D\r\n"), 1_000_000_000);
-    note(&link(false, b"AA,2*11\r\n"), 1_000_000_000);
-    note(&status(&[]), 1_000_000_000);
-    note(&status(&["link down"]), 1_000_000_000);
-    note(&status(&["link down", "no orders"]), 1_000_000_000);
-    writer.end(ending().facts()).expect("it ends").into_inner()
-}
-
-fn recording() -> Recording {
-    Recording::of(bytes_of(&header(), 4)).unwrap_or_else(|e| panic!("{e}"))
-}
 
 #[test]
 fn a_gateways_own_recording_begins_disarmed_and_tells_each_change() {
     let state_after = |changes: &[&str]| {
         let kind = Kind::Gateway;
         let facts = Facts::new();
-        let opening = Opening { kind, began_utc_ns: 0, facts, more: vec![], teams: vec![] };
+        let opening = Opening {
+            kind,
+            began_utc_ns: 0,
+            facts,
+            more: vec![],
+            teams: vec![],
+        };
         let mut writer = Writer::begin(Cursor::new(Vec::new()), &opening).expect("it begins");
         for to in changes {
-            let bytes = format!("{{\"event\":{{\"state\":{{\"from\":\"disarmed\",\"to\":\"{to}\"}}}}}}").into_bytes();
-            let entry = Entry::Message { topic: "event".to_owned(), schema: None, bytes, at: SimTime(1) };
+            let bytes =
+                format!("{{\"event\":{{\"state\":{{\"from\":\"disarmed\",\"to\":\"{to}\"}}}}}}")
+                    .into_bytes();
+            let entry = Entry::Message {
+                topic: "event".to_owned(),
+                schema: None,
+                bytes,
+                at: SimTime(1),
+            };
             writer.write(&entry, 1).expect("it is written");
         }
         let bytes = writer.end(Facts::new()).expect("it ends").into_inner();
         let gateway = gateway_of(&Bag::of(bytes).expect("a recording"), "blue_one");
-        (gateway.state.expect("it begins disarmed"), gateway.failsafes)
+        (
+            gateway.state.expect("it begins disarmed"),
+            gateway.failsafes,
+        )
     };
     assert_eq!(state_after(&[]), ("disarmed".to_owned(), vec![]));
-    assert_eq!(state_after(&["armed", "e-stopped"]), ("e-stopped".to_owned(), vec![]));
+    assert_eq!(
+        state_after(&["armed", "e-stopped"]),
+        ("e-stopped".to_owned(), vec![])
+    );
     let (state, failsafes) = state_after(&["armed", "failsafe: the link is down", "disarmed"]);
-    let causes: Vec<&str> = failsafes.iter().map(|failsafe| failsafe.cause.as_str()).collect();
-    assert_eq!((state.as_str(), causes), ("disarmed", vec!["the link is down"]));
+    let causes: Vec<&str> = failsafes
+        .iter()
+        .map(|failsafe| failsafe.cause.as_str())
+        .collect();
+    assert_eq!(
+        (state.as_str(), causes),
+        ("disarmed", vec!["the link is down"])
+    );
 }
 
 #[test]
 fn a_summary_has_the_figures_of_the_game() {
     let summary = Summary::of(&recording());
     let series = GameSeries::of(&recording());
-    assert_eq!((summary.game.as_str(), summary.seed, summary.commit.as_str()), ("pav01-1", 1, "c0ffee"));
+    assert_eq!(
+        (summary.game.as_str(), summary.seed, summary.commit.as_str()),
+        ("pav01-1", 1, "c0ffee")
+    );
     assert!((summary.duration_s - 0.3).abs() < 1e-9 && (summary.wall_s - 3.0).abs() < 1e-9);
-    assert_eq!((summary.is_cut, summary.dropped, summary.winner.as_deref()), (false, Some(3), Some("blue")));
+    assert_eq!(
+        (summary.is_cut, summary.dropped, summary.winner.as_deref()),
+        (false, Some(3), Some("blue"))
+    );
     assert_eq!(summary.score.get("blue"), Some(&1));
     assert_eq!(summary.events.len(), 1);
     assert_eq!(summary.events[0].sentence(), "blue_one grabs the red flag");
     let blue_one = &summary.boats[0];
-    assert!((blue_one.distance_m - 0.6).abs() < 1e-9 && (blue_one.speed_max_m_s - 2.0).abs() < 1e-9);
+    assert!(
+        (blue_one.distance_m - 0.6).abs() < 1e-9 && (blue_one.speed_max_m_s - 2.0).abs() < 1e-9
+    );
     assert!((blue_one.carrying_s - 0.2).abs() < 1e-9 && blue_one.counts.grabs == 1);
     let navigation = blue_one.navigation.expect("it was in pictures");
     assert!((navigation.rms_m - 5.0).abs() < 1e-9 && (navigation.p95_m - 5.0).abs() < 1e-9);
     let steering = blue_one.steering.expect("it was ordered");
     assert!((steering.speed_rms_m_s - 0.5).abs() < 1e-9 && steering.heading_rms_deg < 1e-9);
     assert_eq!(summary.boats[1].steering, None);
-    let rates: Vec<(&str, u64)> = summary.topics.iter().map(|(name, topic)| (name.as_str(), topic.count)).collect();
-    let want = [("frame", 4), ("inputs", 4), ("link/blue_one", 3), ("picture/blue", 3), ("status/blue_one", 3)];
+    let rates: Vec<(&str, u64)> = summary
+        .topics
+        .iter()
+        .map(|(name, topic)| (name.as_str(), topic.count))
+        .collect();
+    let want = [
+        ("frame", 4),
+        ("inputs", 4),
+        ("link/blue_one", 3),
+        ("picture/blue", 3),
+        ("status/blue_one", 3),
+    ];
     assert_eq!(rates, want);
-    assert!(summary.topics["frame"].rate_hz.is_some_and(|rate_hz| (rate_hz - 10.0).abs() < 1e-9));
+    assert!(
+        summary.topics["frame"]
+            .rate_hz
+            .is_some_and(|rate_hz| (rate_hz - 10.0).abs() < 1e-9)
+    );
     assert_eq!(summary.topics["link/blue_one"].rate_hz, None);
-    assert_eq!(series.boats[0].samples[3].order, Order::Steer { heading_rad: 0.0, speed_m_s: 2.5 });
+    assert_eq!(
+        series.boats[0].samples[3].order,
+        Order::Steer {
+            heading_rad: 0.0,
+            speed_m_s: 2.5
+        }
+    );
     assert_eq!(series.boats[0].samples[0].order, Order::Hold);
 }
 
@@ -162,13 +118,28 @@ fn a_summary_has_the_figures_of_the_game() {
 fn a_long_game_is_thinned_out_evenly_with_its_end_and_all_its_events() {
     let recording = Recording::of(bytes_of(&header(), 12)).expect("a recording");
     let whole = GameSeries::of(&recording);
-    assert_eq!((whole.every, whole.times_s.len(), whole.remark()), (1, 12, None));
+    assert_eq!(
+        (whole.every, whole.times_s.len(), whole.remark()),
+        (1, 12, None)
+    );
     // At most 20 of 48 samples of four boats: every third decision, and the last.
     let thinned = GameSeries::of_at_most(&recording, 20);
     let kept = [0, 3, 6, 9, 11];
-    assert_eq!((thinned.every, &thinned.times_s), (3, &kept.map(|i| whole.times_s[i]).to_vec()));
-    assert!(thinned.remark().is_some_and(|remark| remark.contains("one decision in 3")), "{:?}", thinned.remark());
-    assert_eq!((&thinned.events, thinned.score.len()), (&whole.events, kept.len()));
+    assert_eq!(
+        (thinned.every, &thinned.times_s),
+        (3, &kept.map(|i| whole.times_s[i]).to_vec())
+    );
+    assert!(
+        thinned
+            .remark()
+            .is_some_and(|remark| remark.contains("one decision in 3")),
+        "{:?}",
+        thinned.remark()
+    );
+    assert_eq!(
+        (&thinned.events, thinned.score.len()),
+        (&whole.events, kept.len())
+    );
     for (boat, all) in thinned.boats.iter().zip(&whole.boats) {
         assert_eq!(boat.samples, kept.map(|i| all.samples[i]), "{}", boat.name);
     }
@@ -177,12 +148,26 @@ fn a_long_game_is_thinned_out_evenly_with_its_end_and_all_its_events() {
 #[test]
 fn a_gateway_is_known_by_its_bytes_and_failsafes() {
     let summary = Summary::of(&recording());
-    let [gateway] = summary.gateways.as_slice() else { panic!("{:?}", summary.gateways) };
-    assert_eq!((gateway.boat.as_str(), gateway.state.as_deref()), ("blue_one", Some("armed")));
+    let [gateway] = summary.gateways.as_slice() else {
+        panic!("{:?}", summary.gateways)
+    };
+    assert_eq!(
+        (gateway.boat.as_str(), gateway.state.as_deref()),
+        ("blue_one", Some("armed"))
+    );
     assert_eq!((gateway.from_boat.bytes, gateway.to_boat.bytes), (26, 15));
-    let kinds: Vec<(&str, u64)> = gateway.from_boat.sentences.iter().map(|(kind, n)| (kind.as_str(), *n)).collect();
+    let kinds: Vec<(&str, u64)> = gateway
+        .from_boat
+        .sentences
+        .iter()
+        .map(|(kind, n)| (kind.as_str(), *n))
+        .collect();
     assert_eq!(kinds, [("GPRMC", 1), ("PSEAA", 1)]);
-    let causes: Vec<&str> = gateway.failsafes.iter().map(|failsafe| failsafe.cause.as_str()).collect();
+    let causes: Vec<&str> = gateway
+        .failsafes
+        .iter()
+        .map(|failsafe| failsafe.cause.as_str())
+        .collect();
     assert_eq!(causes, ["link down", "no orders"]);
 }
 
@@ -193,31 +178,57 @@ fn rows_of(recording: &Recording, topic: &str) -> Vec<String> {
         lines.push(cells.join(","));
         Ok(())
     };
-    table::write(recording.bag(), Some(recording.scenario()), topic, &mut sink)
-        .unwrap_or_else(|e| panic!("{topic}: {e}"));
+    table::write(
+        recording.bag(),
+        Some(recording.scenario()),
+        topic,
+        &mut sink,
+    )
+    .unwrap_or_else(|e| panic!("{topic}: {e}"));
     lines
 }
 
 #[test]
 fn every_topic_is_a_table() {
     let recording = recording();
-    for (topic, rows) in
-        [("frame", 4), ("inputs", 9), ("picture/blue", 6), ("link/blue_one", 3), ("status/blue_one", 3), ("events", 1)]
-    {
+    for (topic, rows) in [
+        ("frame", 4),
+        ("inputs", 9),
+        ("picture/blue", 6),
+        ("link/blue_one", 3),
+        ("status/blue_one", 3),
+        ("events", 1),
+    ] {
         let lines = rows_of(&recording, topic);
         assert_eq!(lines.len(), rows + 1, "{topic}");
         let columns = lines[0].split(',').count();
         assert!(
-            lines.iter().all(|line| line.split(',').count() >= columns && line.starts_with(['t', '0'])),
+            lines
+                .iter()
+                .all(|line| line.split(',').count() >= columns && line.starts_with(['t', '0'])),
             "{lines:?}"
         );
     }
     let frame = rows_of(&recording, "frame");
-    assert!(frame[0].starts_with("t_s,seq,blue_one.north_m,blue_one.east_m,blue_one.psi_rad,"), "{}", frame[0]);
-    assert!(frame[0].ends_with(",flag.blue.carrier,flag.red.carrier,score.blue,score.red,events,stopped,over"));
-    assert!(frame[3].starts_with("0.2,2,10.4,0,0,2,") && frame[3].contains("blue_one grabs the red flag"));
+    assert!(
+        frame[0].starts_with("t_s,seq,blue_one.north_m,blue_one.east_m,blue_one.psi_rad,"),
+        "{}",
+        frame[0]
+    );
+    assert!(
+        frame[0].ends_with(
+            ",flag.blue.carrier,flag.red.carrier,score.blue,score.red,events,stopped,over"
+        )
+    );
+    assert!(
+        frame[3].starts_with("0.2,2,10.4,0,0,2,")
+            && frame[3].contains("blue_one grabs the red flag")
+    );
     assert!(frame[3].contains(",,blue_one,1,0,"), "{}", frame[3]);
-    assert_eq!(rows_of(&recording, "events")[1], "0.15,3,grabbed,blue_one,,red,blue_one grabs the red flag");
+    assert_eq!(
+        rows_of(&recording, "events")[1],
+        "0.15,3,grabbed,blue_one,,red,blue_one grabs the red flag"
+    );
     assert_eq!(
         rows_of(&recording, "link/blue_one"),
         [
@@ -228,12 +239,27 @@ fn every_topic_is_a_table() {
         ]
     );
     let inputs = rows_of(&recording, "inputs");
-    assert!(inputs[2].starts_with("0.1,1,steer,blue_one,0,2.5,,"), "{}", inputs[2]);
+    assert!(
+        inputs[2].starts_with("0.1,1,steer,blue_one,0,2.5,,"),
+        "{}",
+        inputs[2]
+    );
     let picture = rows_of(&recording, "picture/blue");
-    assert!(picture[1].starts_with("0,0,own,blue_one,0,13,4,"), "{}", picture[1]);
-    assert!(picture[2].starts_with("0,0,contact,red_one,0.05,1,2,0.5,,,,0.25,0,true,"), "{}", picture[2]);
+    assert!(
+        picture[1].starts_with("0,0,own,blue_one,0,13,4,"),
+        "{}",
+        picture[1]
+    );
+    assert!(
+        picture[2].starts_with("0,0,contact,red_one,0.05,1,2,0.5,,,,0.25,0,true,"),
+        "{}",
+        picture[2]
+    );
     let status = rows_of(&recording, "status/blue_one");
-    assert!(status[0].contains(",failsafes.1.cause,") && status[3].contains(",no orders,"), "{status:?}");
+    assert!(
+        status[0].contains(",failsafes.1.cause,") && status[3].contains(",no orders,"),
+        "{status:?}"
+    );
 }
 
 /// The logs of a recording, with their names.
@@ -247,7 +273,12 @@ fn logs(recording: &Recording, wants_vehicles: bool) -> Vec<(String, String)> {
     assert_eq!(written.expect("they are written").0, names.len());
     names
         .into_iter()
-        .map(|name| (name.clone(), std::fs::read_to_string(dir.path().join(name)).expect("text")))
+        .map(|name| {
+            (
+                name.clone(),
+                std::fs::read_to_string(dir.path().join(name)).expect("text"),
+            )
+        })
         .collect()
 }
 
@@ -257,17 +288,28 @@ fn the_log_of_a_vehicle_is_what_moos_tools_read() {
     let logs = logs(&recording, true);
     let log = &logs[1].1;
     assert!(log.starts_with(include_str!("blue_one.alog")), "{log}");
-    assert!(log.contains("\n0.10000         DESIRED_HEADING      squall          0.0000\n"), "{log}");
-    assert!(log.contains("\n0.20000         HAS_FLAG             squall          true\n"), "{log}");
+    assert!(
+        log.contains("\n0.10000         DESIRED_HEADING      squall          0.0000\n"),
+        "{log}"
+    );
+    assert!(
+        log.contains("\n0.20000         HAS_FLAG             squall          true\n"),
+        "{log}"
+    );
     let names: Vec<&str> = logs.iter().map(|(name, _)| name.as_str()).collect();
-    assert_eq!(names, ["shoreside", "blue_one", "blue_two", "red_one", "red_two"]);
+    assert_eq!(
+        names,
+        ["shoreside", "blue_one", "blue_two", "red_one", "red_two"]
+    );
 }
 
 #[test]
 fn the_log_of_the_shoreside_has_reports_and_what_happened() {
     let recording = recording();
     let logs = logs(&recording, false);
-    let [(_, log)] = &logs[..] else { panic!("one log") };
+    let [(_, log)] = &logs[..] else {
+        panic!("one log")
+    };
     let length_m = recording.scenario().boat_of(VehicleId(0)).length_m;
     let report = format!(
         "NAME=blue_one,TYPE=kayak,TIME=1700000000.00,X=0.00,Y=10.00,SPD=2.00,HDG=0.00,DEPTH=0,LENGTH={length_m},MODE=PLAYING,GROUP=blue"
@@ -284,40 +326,83 @@ fn the_log_of_the_shoreside_has_reports_and_what_happened() {
         assert!(log.lines().any(|line| line == row), "{row}\nis not in\n{log}");
     }
     let rows: Vec<&str> = log.lines().skip(5).collect();
-    assert!(rows.iter().all(|row| row.split_whitespace().count() == 4), "no value has blanks");
-    let times: Vec<f64> = rows.iter().filter_map(|row| row.split(' ').next()?.parse().ok()).collect();
+    assert!(
+        rows.iter().all(|row| row.split_whitespace().count() == 4),
+        "no value has blanks"
+    );
+    let times: Vec<f64> = rows
+        .iter()
+        .filter_map(|row| row.split(' ').next()?.parse().ok())
+        .collect();
     assert!(times.len() == rows.len() && times.is_sorted());
 }
 
 #[test]
 fn an_order_ends_with_the_mind_that_gave_it() {
-    let mut writer = Writer::begin(Cursor::new(Vec::new()), &header().opening()).expect("it begins");
+    let mut writer =
+        Writer::begin(Cursor::new(Vec::new()), &header().opening()).expect("it begins");
     for seq in 0..3 {
         let mut decision = decision(seq);
         if seq == 2 {
             decision.inputs = vec![Input::AgentLost(VehicleId(0)), Input::Played];
         }
-        writer.write(&Entry::Decision(Box::new(decision)), 1).expect("it is written");
+        writer
+            .write(&Entry::Decision(Box::new(decision)), 1)
+            .expect("it is written");
     }
     let series = GameSeries::of(
-        &Recording::of(writer.end(ending().facts()).expect("it ends").into_inner()).expect("a recording"),
+        &Recording::of(writer.end(ending().facts()).expect("it ends").into_inner())
+            .expect("a recording"),
     );
-    let orders: Vec<Order> = series.boats[0].samples.iter().map(|moment| moment.order).collect();
-    assert_eq!(orders, [Order::Hold, Order::Steer { heading_rad: 0.0, speed_m_s: 2.5 }, Order::Hold]);
+    let orders: Vec<Order> = series.boats[0]
+        .samples
+        .iter()
+        .map(|moment| moment.order)
+        .collect();
+    assert_eq!(
+        orders,
+        [
+            Order::Hold,
+            Order::Steer {
+                heading_rad: 0.0,
+                speed_m_s: 2.5
+            },
+            Order::Hold
+        ]
+    );
 }
 
 #[test]
 fn a_game_differs_in_nothing_from_itself() {
     let recording = recording();
     let series = GameSeries::of(&recording);
-    let same = Comparison::of([recording.header(); 2], [&series; 2], 0.0).unwrap_or_else(|e| panic!("{e}"));
+    let same = Comparison::of([recording.header(); 2], [&series; 2], 0.0)
+        .unwrap_or_else(|e| panic!("{e}"));
     assert_eq!((same.boats.len(), same.notes.len()), (4, 0));
     for pair in &same.boats {
         let apart = pair.apart;
-        assert_eq!([apart.mean_m, apart.rms_m, apart.max_m, apart.final_m, apart.frechet_m], [0.0; 5], "{}", pair.boat);
+        assert_eq!(
+            [
+                apart.mean_m,
+                apart.rms_m,
+                apart.max_m,
+                apart.final_m,
+                apart.frechet_m
+            ],
+            [0.0; 5],
+            "{}",
+            pair.boat
+        );
         assert_eq!(pair.response[0], pair.response[1]);
     }
-    assert_eq!((same.events.in_both, same.events.only_in_a.len(), same.events.only_in_b.len()), (1, 0, 0));
+    assert_eq!(
+        (
+            same.events.in_both,
+            same.events.only_in_a.len(),
+            same.events.only_in_b.len()
+        ),
+        (1, 0, 0)
+    );
     assert_eq!(same.score.get("blue"), Some(&[Some(1), Some(1)]));
 }
 
@@ -329,18 +414,34 @@ fn games_that_differ_say_in_what_and_strangers_are_refused() {
     other.info.scenario.vehicles[3].name = "red_three".to_owned();
     let b = Recording::of(bytes_of(&other, 3)).unwrap_or_else(|e| panic!("{e}"));
     let series = [&a, &b].map(GameSeries::of);
-    let compare = |header: &Header, b: &GameSeries| Comparison::of([a.header(), header], [&series[0], b], 1.0);
+    let compare = |header: &Header, b: &GameSeries| {
+        Comparison::of([a.header(), header], [&series[0], b], 1.0)
+    };
     let found = compare(b.header(), &series[1]).unwrap_or_else(|e| panic!("{e}"));
     let notes = found.notes.join("\n");
-    for part in ["seed: 1 in A, 7 in B", "only in A: red_two", "only in B: red_three", "A lasts 0.3 s, B 0.2 s"] {
+    for part in [
+        "seed: 1 in A, 7 in B",
+        "only in A: red_two",
+        "only in B: red_three",
+        "A lasts 0.3 s, B 0.2 s",
+    ] {
         assert!(notes.contains(part), "{part} is not in {notes}");
     }
     assert!(found.boats.len() == 3 && (found.common_s - 0.2).abs() < 1e-9);
     let mut far = header();
     far.info.scenario.field.plan.datum.lat_deg += 0.1;
-    assert!(matches!(compare(&far, &series[1]), Err(Incomparable::Datum { .. })));
-    let strangers = GameSeries { boats: vec![], ..series[1].clone() };
-    assert!(matches!(compare(b.header(), &strangers), Err(Incomparable::Boats { .. })));
+    assert!(matches!(
+        compare(&far, &series[1]),
+        Err(Incomparable::Datum { .. })
+    ));
+    let strangers = GameSeries {
+        boats: vec![],
+        ..series[1].clone()
+    };
+    assert!(matches!(
+        compare(b.header(), &strangers),
+        Err(Incomparable::Boats { .. })
+    ));
     let mut empty = series[1].clone();
     empty.times_s.clear();
     empty.boats.iter_mut().for_each(|boat| boat.samples.clear());

@@ -7,11 +7,16 @@ use std::path::Path;
 fn game(c: &mut Criterion) {
     let mut group = c.benchmark_group("game");
     for name in ["pav01_vs_pav01", "swarm_20v20"] {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../scenarios/games/{name}.toml"));
+        let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join(format!("../../scenarios/games/{name}.toml"));
         let scenario = scenario::load(&path).unwrap_or_else(|e| panic!("{e}"));
-        let play = || arena::play(&scenario, agent::minds_of(&scenario), 1).unwrap_or_else(|e| panic!("{e}"));
+        let play = || {
+            arena::play(&scenario, agent::minds_of(&scenario), 1).unwrap_or_else(|e| panic!("{e}"))
+        };
         // Ticks per second.
-        group.throughput(Throughput::Elements(play().ticks)).sample_size(10);
+        group
+            .throughput(Throughput::Elements(play().ticks))
+            .sample_size(10);
         group.bench_function(name, |b| b.iter(play));
     }
     group.finish();

@@ -1,11 +1,12 @@
 //! Tests how well the mandatory behaviours keep random strategies safe: how often boats leave the
 //! field, and how often hulls touch.
 //!
-//! Run `cargo run --release -p squall-arena --example safety -- [GAMES] [SEA] [DURATION_S] [BOAT] [SEED]`.
-//! The default is 10,000 games of 120 s in calm water between boats of the kind `surveyor_m1_8`. With
-//! the seed of a game, it only writes the files of that game, for `squall run`, which records and shows
-//! it. Every boat has a random strategy over `safety.toml`: places on the field and up to 20 m beyond
-//! it, pursuits, stations, headings, at any speed. Equal seeds give equal games.
+//! Run `cargo run --release -p squall-arena --example safety -- [GAMES] [SEA] [DURATION_S] [BOAT]
+//! [SEED]`. The default is 10,000 games of 120 s in calm water between boats of the kind
+//! `surveyor_m1_8`. With the seed of a game, it only writes the files of that game, for `squall
+//! run`, which records and shows it. Every boat has a random strategy over `safety.toml`: places on
+//! the field and up to 20 m beyond it, pursuits, stations, headings, at any speed. Equal seeds give
+//! equal games.
 
 use analysis::HullRectangle;
 use primitives::VehicleId;
@@ -39,7 +40,11 @@ const CROWD_M: f64 = 15.0;
 
 fn main() {
     let args: Vec<String> = std::env::args().skip(1).collect();
-    let number = |i: usize, default: u64| args.get(i).and_then(|arg| arg.parse().ok()).unwrap_or(default);
+    let number = |i: usize, default: u64| {
+        args.get(i)
+            .and_then(|arg| arg.parse().ok())
+            .unwrap_or(default)
+    };
     let games = number(0, 10_000);
     let duration_s = number(2, 120);
     let sea = args.get(1).map_or("calm", String::as_str);
@@ -48,7 +53,10 @@ fn main() {
         let folder = PathBuf::from(format!("runs/safety/{seed}"));
         std::fs::create_dir_all(&folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display()));
         scenario(&folder, (sea, boat), duration_s, seed);
-        print(&format!("squall run {}/game.toml --seed {seed}", folder.display()));
+        print(&format!(
+            "squall run {}/game.toml --seed {seed}",
+            folder.display()
+        ));
         return;
     }
     let next = AtomicU64::new(1);
@@ -59,7 +67,14 @@ fn main() {
             let folder = tempfile::tempdir().expect("a folder for strategies");
             let seeds = std::iter::from_fn(|| Some(next.fetch_add(1, Ordering::Relaxed)));
             let seeds = seeds.take_while(|seed| *seed <= games);
-            seeds.map(|seed| play(&scenario(folder.path(), (sea, boat), duration_s, seed), seed)).collect::<Vec<_>>()
+            seeds
+                .map(|seed| {
+                    play(
+                        &scenario(folder.path(), (sea, boat), duration_s, seed),
+                        seed,
+                    )
+                })
+                .collect::<Vec<_>>()
         };
         let workers: Vec<_> = (0..jobs).map(|_| scope.spawn(work)).collect();
         for worker in workers {
@@ -77,22 +92,40 @@ fn print(text: &str) {
 fn summary(tallies: &[Tally], (sea, boat): (&str, &str), duration_s: u64) -> String {
     let sum = |count: fn(&Tally) -> usize| tallies.iter().map(count).sum::<usize>();
     let boat_hours: f64 = tallies.iter().map(|tally| tally.boat_hours).sum();
-    let often = |total: usize| format!("{total} times, {:.3} a boat-hour", total as f64 / boat_hours);
+    let often = |total: usize| {
+        format!(
+            "{total} times, {:.3} a boat-hour",
+            total as f64 / boat_hours
+        )
+    };
     let in_games = |count: fn(&Tally) -> usize| {
         let games = tallies.iter().filter(|tally| count(tally) > 0).count();
-        format!("in {:.2} % of games", 100.0 * games as f64 / tallies.len() as f64)
+        format!(
+            "in {:.2} % of games",
+            100.0 * games as f64 / tallies.len() as f64
+        )
     };
     let left = sum(|t| t.left);
     let pushed = sum(|t| t.left_pushed);
     let crowded = sum(|t| t.left_crowded);
     [
-        format!("{} games of {duration_s} s, sea {sea}, {boat}, {boat_hours:.0} boat-hours", tallies.len()),
+        format!(
+            "{} games of {duration_s} s, sea {sea}, {boat}, {boat_hours:.0} boat-hours",
+            tallies.len()
+        ),
         format!("left the field: {}, {}", often(left), in_games(|t| t.left)),
         format!("  pushed (hulls touched within {PUSH_REMEMBERED_S} s): {pushed}"),
         format!("  with another boat within {CROWD_M} m: {crowded}"),
         format!("  neither: {}", left - pushed - crowded),
-        format!("hulls touched: {}, {}", often(sum(|t| t.touched)), in_games(|t| t.touched)),
-        format!("nearer than the rules' collision distance: {}", often(sum(|t| t.collided))),
+        format!(
+            "hulls touched: {}, {}",
+            often(sum(|t| t.touched)),
+            in_games(|t| t.touched)
+        ),
+        format!(
+            "nearer than the rules' collision distance: {}",
+            often(sum(|t| t.collided))
+        ),
     ]
     .join("\n")
 }
@@ -110,7 +143,10 @@ fn scenario(folder: &Path, (sea, boat): (&str, &str), duration_s: u64, seed: u64
         for role in &roles {
             write(folder.join(role), &program(&scenarios, &mut stream));
         }
-        write(folder.join(format!("{team}.toml")), &format!("about = \"Random\"\nroles = {roles:?}\n"));
+        write(
+            folder.join(format!("{team}.toml")),
+            &format!("about = \"Random\"\nroles = {roles:?}\n"),
+        );
         game += &format!("[[team]]\nname = \"{team}\"\nstrategy = \"{team}.toml\"\n");
     }
     write(folder.join("game.toml"), &game);
@@ -123,7 +159,10 @@ fn write(path: PathBuf, text: &str) {
 
 /// A random program: one to three behaviours over the mandatory ones.
 fn program(scenarios: &Path, stream: &mut Stream) -> String {
-    let mut text = format!("base = \"{}/strategies/safety.toml\"\nabout = \"Random\"\n", scenarios.display());
+    let mut text = format!(
+        "base = \"{}/strategies/safety.toml\"\nabout = \"Random\"\n",
+        scenarios.display()
+    );
     let count = 1 + stream.below(3);
     for i in 0..count {
         let weight = stream.between(20.0, 100.0);
@@ -131,9 +170,18 @@ fn program(scenarios: &Path, stream: &mut Stream) -> String {
         text += &behaviour(stream);
         // The first one is always active.
         if i > 0 {
-            let conditions =
-                ["enemy_in_zone", "own_side", "time_s > 60", "has_flag", "!tagged", "distance(nearest_enemy) < 30"];
-            text += &format!("when = \"{}\"\n", conditions[stream.below(conditions.len() as u64) as usize]);
+            let conditions = [
+                "enemy_in_zone",
+                "own_side",
+                "time_s > 60",
+                "has_flag",
+                "!tagged",
+                "distance(nearest_enemy) < 30",
+            ];
+            text += &format!(
+                "when = \"{}\"\n",
+                conditions[stream.below(conditions.len() as u64) as usize]
+            );
         }
     }
     text
@@ -142,9 +190,19 @@ fn program(scenarios: &Path, stream: &mut Stream) -> String {
 fn behaviour(stream: &mut Stream) -> String {
     let speed_m_s = stream.between(0.5, 5.0);
     // The field is 160 m by 80 m from its corner at the datum.
-    let place =
-        |stream: &mut Stream| format!("[{:.1}, {:.1}]", stream.between(-20.0, 180.0), stream.between(-20.0, 100.0));
-    let boats = ["nearest_enemy", "opponent", "nearest_attacker", "nearest_mate"];
+    let place = |stream: &mut Stream| {
+        format!(
+            "[{:.1}, {:.1}]",
+            stream.between(-20.0, 180.0),
+            stream.between(-20.0, 100.0)
+        )
+    };
+    let boats = [
+        "nearest_enemy",
+        "opponent",
+        "nearest_attacker",
+        "nearest_mate",
+    ];
     let boat = boats[stream.below(boats.len() as u64) as usize];
     match stream.below(7) {
         0 => {
@@ -165,10 +223,19 @@ fn behaviour(stream: &mut Stream) -> String {
                 "kind = \"loiter\"\nellipse = {{ centre = {centre}, along_m = {along:.1}, across_m = {across:.1} }}\nspeed_m_s = {speed_m_s:.2}\n"
             )
         }
-        3 => format!("kind = \"cut_range\"\ncontact = \"{boat}\"\npatience = {:.0}\n", stream.between(0.0, 100.0)),
+        3 => format!(
+            "kind = \"cut_range\"\ncontact = \"{boat}\"\npatience = {:.0}\n",
+            stream.between(0.0, 100.0)
+        ),
         4 => format!("kind = \"intercept\"\ncontact = \"{boat}\"\nspeed_m_s = {speed_m_s:.2}\n"),
-        5 => format!("kind = \"station_keep\"\nat = {}\ntransit_speed_m_s = {speed_m_s:.2}\n", place(stream)),
-        _ => format!("kind = \"attractor\"\nto = {}\nouter_m = 300\nspeed_m_s = {speed_m_s:.2}\n", place(stream)),
+        5 => format!(
+            "kind = \"station_keep\"\nat = {}\ntransit_speed_m_s = {speed_m_s:.2}\n",
+            place(stream)
+        ),
+        _ => format!(
+            "kind = \"attractor\"\nto = {}\nouter_m = 300\nspeed_m_s = {speed_m_s:.2}\n",
+            place(stream)
+        ),
     }
 }
 
@@ -184,7 +251,11 @@ fn play(scenario: &Scenario, seed: u64) -> Tally {
         let pose = |i: usize| contest.world().state().boats[i].pose;
         let hull = |i: usize| {
             let boat = scenario.boat_of(VehicleId::at(i));
-            HullRectangle { pose: pose(i), length_m: boat.length_m, beam_m: boat.beam_m }
+            HullRectangle {
+                pose: pose(i),
+                length_m: boat.length_m,
+                beam_m: boat.beam_m,
+            }
         };
         for (a, b) in (0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b))) {
             let touch = hull(a).overlaps(&hull(b));
@@ -198,7 +269,8 @@ fn play(scenario: &Scenario, seed: u64) -> Tally {
             if let Event::LeftField(vehicle) = logged.event {
                 let i = vehicle.index();
                 tally.left += 1;
-                let crowded = (0..count).any(|j| j != i && pose(i).at.distance(pose(j).at) < CROWD_M);
+                let crowded =
+                    (0..count).any(|j| j != i && pose(i).at.distance(pose(j).at) < CROWD_M);
                 if now_s - touched_s[i] <= PUSH_REMEMBERED_S {
                     tally.left_pushed += 1;
                 } else if crowded {
@@ -209,7 +281,11 @@ fn play(scenario: &Scenario, seed: u64) -> Tally {
         true
     });
     let outcome = outcome.unwrap_or_else(|e| panic!("seed {seed}: {e}"));
-    tally.collided = outcome.events.iter().filter(|event| event.event == "collided").count();
+    tally.collided = outcome
+        .events
+        .iter()
+        .filter(|event| event.event == "collided")
+        .count();
     tally.boat_hours = outcome.duration_s * count as f64 / 3600.0;
     tally
 }

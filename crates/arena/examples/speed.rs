@@ -1,8 +1,8 @@
 //! Measures how fast games run: simulated time per second of one core, and their digests.
 //!
-//! Run `cargo run --release -p squall-arena --example speed -- [--seeds N] [--duration-s S] [GAME.toml ...]`.
-//! The default is the shipped games that need no person and no real boat, with seed 1. A pure
-//! optimisation leaves every digest unchanged.
+//! Run `cargo run --release -p squall-arena --example speed -- [--seeds N] [--duration-s S]
+//! [GAME.toml ...]`. The default is the shipped games that need no person and no real boat, with
+//! seed 1. A pure optimisation leaves every digest unchanged.
 
 use primitives::SimTime;
 use scenario::Scenario;
@@ -14,7 +14,11 @@ fn main() {
     let mut games = Vec::new();
     let mut args = std::env::args().skip(1);
     while let Some(arg) = args.next() {
-        let mut number = || args.next().and_then(|value| value.parse().ok()).unwrap_or_else(|| panic!("{arg} N"));
+        let mut number = || {
+            args.next()
+                .and_then(|value| value.parse().ok())
+                .unwrap_or_else(|| panic!("{arg} N"))
+        };
         match arg.as_str() {
             "--seeds" => seeds = number() as u64,
             "--duration-s" => duration_s = number(),
@@ -35,18 +39,27 @@ fn main() {
 /// The games that programs can play alone.
 fn shipped() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games");
-    let entries = folder.read_dir().unwrap_or_else(|e| panic!("{}: {e}", folder.display()));
-    let mut games: Vec<PathBuf> = entries.map(|entry| entry.expect("a folder that can be read").path()).collect();
+    let entries = folder
+        .read_dir()
+        .unwrap_or_else(|e| panic!("{}: {e}", folder.display()));
+    let mut games: Vec<PathBuf> = entries
+        .map(|entry| entry.expect("a folder that can be read").path())
+        .collect();
     games.sort();
     games.retain(|path| {
-        !["mixed_2v2", "person_2v2"].iter().any(|name| path.file_stem().is_some_and(|stem| stem == *name))
+        !["mixed_2v2", "person_2v2"]
+            .iter()
+            .any(|name| path.file_stem().is_some_and(|stem| stem == *name))
     });
     games
 }
 
 #[expect(clippy::print_stdout, reason = "this is a program")]
 fn print_game(path: &Path, scenario: &Scenario, seed: u64, until: SimTime) {
-    let scenario = Scenario { seed, ..scenario.clone() };
+    let scenario = Scenario {
+        seed,
+        ..scenario.clone()
+    };
     let begun_s = core_time_s();
     let minds = agent::minds_of(&scenario);
     let outcome = arena::play_watched(&scenario, minds, seed, |contest| contest.now() < until);
@@ -64,7 +77,11 @@ fn print_game(path: &Path, scenario: &Scenario, seed: u64, until: SimTime) {
 /// CPU time of this thread, s: other load on the machine does not count.
 fn core_time_s() -> f64 {
     let path = "/proc/thread-self/schedstat";
-    let text = std::fs::read_to_string(path).unwrap_or_else(|e| panic!("{path}: {e} (this program needs Linux)"));
-    let first = text.split_whitespace().next().and_then(|time_ns| time_ns.parse::<f64>().ok());
+    let text = std::fs::read_to_string(path)
+        .unwrap_or_else(|e| panic!("{path}: {e} (this program needs Linux)"));
+    let first = text
+        .split_whitespace()
+        .next()
+        .and_then(|time_ns| time_ns.parse::<f64>().ok());
     first.unwrap_or_else(|| panic!("{path} is {text:?}, expected three numbers")) * 1e-9
 }

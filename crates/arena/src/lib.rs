@@ -20,8 +20,8 @@ pub fn play(scenario: &Scenario, minds: Vec<Box<dyn Mind>>, seed: u64) -> Result
     play_watched(scenario, minds, seed, |_| true)
 }
 
-/// Like [`play`], with its errors and panics, but shows the contest to `watch` before every decision and
-/// at the end. Stops when `watch` returns `false`.
+/// Like [`play`], with its errors and panics, but shows the contest to `watch` before every
+/// decision and at the end. Stops when `watch` returns `false`.
 pub fn play_watched(
     scenario: &Scenario,
     minds: Vec<Box<dyn Mind>>,
@@ -31,8 +31,8 @@ pub fn play_watched(
     play_observed(scenario, minds, seed, |contest, _| watch(contest))
 }
 
-/// Like [`play_watched`], but also shows the minds, in the state that led there. Errors and panics are
-/// those of [`play`].
+/// Like [`play_watched`], but also shows the minds, in the state that led there. Errors and panics
+/// are those of [`play`].
 pub fn play_observed(
     scenario: &Scenario,
     minds: Vec<Box<dyn Mind>>,
@@ -52,7 +52,12 @@ pub fn play_observed(
 
 /// A runner for these minds, one per vehicle in the scenario's order.
 pub fn runner_of<M: Mind + ?Sized>(minds: Vec<Box<M>>) -> MindRunner<M> {
-    MindRunner::new(minds.into_iter().enumerate().map(|(i, mind)| (VehicleId::at(i), mind)))
+    MindRunner::new(
+        minds
+            .into_iter()
+            .enumerate()
+            .map(|(i, mind)| (VehicleId::at(i), mind)),
+    )
 }
 
 /// Passes every mind its team's picture and the contest its order.
@@ -61,6 +66,8 @@ pub fn decide<M: Mind + ?Sized>(contest: &mut Contest, runner: &mut MindRunner<M
     runner.decide(stamp, |vehicle| Some(contest.picture_of(vehicle)));
     for (vehicle, order) in runner.orders() {
         // As over the network: an order with invalid numbers is refused, and the boat holds.
-        contest.order(vehicle, order, stamp.valid_ns).unwrap_or_default();
+        contest
+            .order(vehicle, order, stamp.valid_ns)
+            .unwrap_or_default();
     }
 }

@@ -17,7 +17,8 @@ const WARM_UP: u64 = 3_000;
 
 #[test]
 fn a_decision_takes_nothing_from_the_heap_unless_hulls_are_close_or_something_happens() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
+    let path =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
     let scenario: Scenario = scenario::load(&path).unwrap_or_else(|e| panic!("{e}"));
     let mut runner = arena::runner_of(agent::minds_of(&scenario));
     let mut contest = Contest::new(&scenario, 1).unwrap_or_else(|e| panic!("{e}"));
@@ -25,7 +26,11 @@ fn a_decision_takes_nothing_from_the_heap_unless_hulls_are_close_or_something_ha
     let mut busy = 0;
     while !contest.is_over() {
         let boats = &contest.world().state().boats;
-        let near = |i: usize| boats[..i].iter().any(|other| other.pose.at.distance(boats[i].pose.at) < 1.83 + 1.0);
+        let near = |i: usize| {
+            boats[..i]
+                .iter()
+                .any(|other| other.pose.at.distance(boats[i].pose.at) < 1.83 + 1.0)
+        };
         let crowded = (0..boats.len()).any(near);
         let events = contest.events().len();
         let decision = contest.decision();
@@ -38,7 +43,11 @@ fn a_decision_takes_nothing_from_the_heap_unless_hulls_are_close_or_something_ha
             busy += 1;
         } else {
             free += 1;
-            assert_eq!(used.allocations + used.reallocations, 0, "decision {decision}: {used:?}");
+            assert_eq!(
+                used.allocations + used.reallocations,
+                0,
+                "decision {decision}: {used:?}"
+            );
         }
     }
     assert!(free > 2_000, "{free} decisions without, {busy} with");

@@ -71,14 +71,40 @@ const ANYBODY: Rights = Rights {
 /// The agents of a team and policies that propose actions to them: no true state, and nothing from
 /// other teams.
 const TEAM: Rights = Rights {
-    publishes: &["order/{team}/*", "say/{team}", "policy/{boat}", "control", "stop/{boat}"],
-    hears: &["picture/{team}", "say/{team}", "policy/{boat}", "run", "control", "released"],
+    publishes: &[
+        "order/{team}/*",
+        "say/{team}",
+        "policy/{boat}",
+        "control",
+        "stop/{boat}",
+    ],
+    hears: &[
+        "picture/{team}",
+        "say/{team}",
+        "policy/{boat}",
+        "run",
+        "control",
+        "released",
+    ],
     asks: &["scenario", "join/agent/{team}"],
     answers: &["helm/{boat}"],
 };
 const GATEWAY: Rights = Rights {
-    publishes: &["nav/{boat}", "report/status/{boat}", "report/link/{boat}", "control", "stop/{boat}"],
-    hears: &["external/{boat}", "frame", "run", "control", "stop/{boat}", "released"],
+    publishes: &[
+        "nav/{boat}",
+        "report/status/{boat}",
+        "report/link/{boat}",
+        "control",
+        "stop/{boat}",
+    ],
+    hears: &[
+        "external/{boat}",
+        "frame",
+        "run",
+        "control",
+        "stop/{boat}",
+        "released",
+    ],
     asks: &["scenario", "join/gateway/{boat}"],
     answers: &["operate/{boat}"],
 };
@@ -94,14 +120,26 @@ const OBSERVER: Rights = Rights {
 // second secret for the same right.
 const OPERATOR: Rights = Rights {
     publishes: &["control", "stop/{boat}", "policy/{boat}"],
-    asks: &["scenario", "events", "water", "helm/{boat}", "control", "operate/{boat}"],
+    asks: &[
+        "scenario",
+        "events",
+        "water",
+        "helm/{boat}",
+        "control",
+        "operate/{boat}",
+    ],
     ..OBSERVER
 };
 
 fn rights(identity: &Identity) -> &'static Rights {
     match identity {
         // The sim opens the hub; no node links as the sim.
-        Identity::Sim => &Rights { publishes: &[], hears: &[], asks: &[], answers: &[] },
+        Identity::Sim => &Rights {
+            publishes: &[],
+            hears: &[],
+            asks: &[],
+            answers: &[],
+        },
         Identity::Team(_) => &TEAM,
         Identity::Gateway(_) => &GATEWAY,
         Identity::Observer => &OBSERVER,
@@ -114,7 +152,10 @@ pub(crate) fn may_ask(identity: &Identity, key: &str) -> bool {
     // Checks the kind alone, to spare a node without the right the wait for an answer. The hub's
     // rule, with topics spelled out, is binding.
     let kind = key.split('/').nth(2);
-    rights(identity).asks.iter().any(|pattern| pattern.split('/').next() == kind)
+    rights(identity)
+        .asks
+        .iter()
+        .any(|pattern| pattern.split('/').next() == kind)
 }
 
 /// The rules for nodes with these rights, for their teams and boats.
@@ -133,35 +174,70 @@ impl Subject {
         // in the outgoing direction.
         let spelled_out = |pattern: &&str| -> Vec<String> {
             if pattern.contains("{team}") {
-                self.teams.iter().map(|team| pattern.replace("{team}", team)).collect()
+                self.teams
+                    .iter()
+                    .map(|team| pattern.replace("{team}", team))
+                    .collect()
             } else if pattern.contains("{boat}") {
-                self.boats.iter().map(|boat| pattern.replace("{boat}", boat)).collect()
+                self.boats
+                    .iter()
+                    .map(|boat| pattern.replace("{boat}", boat))
+                    .collect()
             } else {
                 vec![(*pattern).to_owned()]
             }
         };
-        patterns.iter().flat_map(spelled_out).map(|topic| topic::matching(game, &topic)).collect()
+        patterns
+            .iter()
+            .flat_map(spelled_out)
+            .map(|topic| topic::matching(game, &topic))
+            .collect()
     }
 
     /// Access rules for kinds of messages, directions (as seen from the hub) and topics.
     fn rules(&self, game: &GameName) -> Vec<Value> {
-        let Rights { publishes, hears, asks, answers } = self.rights;
+        let Rights {
+            publishes,
+            hears,
+            asks,
+            answers,
+        } = self.rights;
         // A node that does not know the game's name searches for all games.
         let tokens = vec![topic::all_alive(game), topic::everyone_alive()];
         let rules: [(&[&str], &[&str], Vec<String>); 10] = [
             (&["put"], &["ingress"], self.keys(game, publishes)),
             (&["put"], &["egress"], self.keys(game, hears)),
-            (&["declare_subscriber"], &["ingress"], self.keys(game, hears)),
+            (
+                &["declare_subscriber"],
+                &["ingress"],
+                self.keys(game, hears),
+            ),
             (&["query"], &["ingress"], self.keys(game, asks)),
             (&["reply"], &["egress"], self.keys(game, asks)),
-            (&["declare_queryable", "reply"], &["ingress"], self.keys(game, answers)),
+            (
+                &["declare_queryable", "reply"],
+                &["ingress"],
+                self.keys(game, answers),
+            ),
             (&["query"], &["egress"], self.keys(game, answers)),
             // Subscriptions and queryables here are no secret: publishers must know them.
-            (&["declare_subscriber", "declare_queryable"], &["egress"], vec![topic::matching(game, "**")]),
+            (
+                &["declare_subscriber", "declare_queryable"],
+                &["egress"],
+                vec![topic::matching(game, "**")],
+            ),
             // Outward only: a token that another node shows in the sim's name would be believed.
             // Agents and gateways show none for the same reason; the hub sees their links.
-            (&["liveliness_token"], &["egress"], vec![topic::all_alive(game)]),
-            (&["liveliness_query", "declare_liveliness_subscriber"], &["ingress", "egress"], tokens),
+            (
+                &["liveliness_token"],
+                &["egress"],
+                vec![topic::all_alive(game)],
+            ),
+            (
+                &["liveliness_query", "declare_liveliness_subscriber"],
+                &["ingress", "egress"],
+                tokens,
+            ),
         ];
         let mut json = Vec::new();
         for (messages, flows, keys) in rules {
@@ -178,8 +254,14 @@ impl Subject {
 
 /// The subjects that a game knows, with or without keys.
 fn subjects(scenario: &Scenario, has_keys: bool) -> Vec<Subject> {
-    let names = |boats: Vec<&Vehicle>| -> Vec<String> { boats.into_iter().map(|boat| boat.name.clone()).collect() };
-    let teams: Vec<String> = scenario.teams.iter().map(|team| team.name.clone()).collect();
+    let names = |boats: Vec<&Vehicle>| -> Vec<String> {
+        boats.into_iter().map(|boat| boat.name.clone()).collect()
+    };
+    let teams: Vec<String> = scenario
+        .teams
+        .iter()
+        .map(|team| team.name.clone())
+        .collect();
     let boats = names(scenario.vehicles.iter().collect());
     let subject = |identity: Identity, teams: &[String], boats: &[String]| Subject {
         id: identity.to_string(),
@@ -188,18 +270,43 @@ fn subjects(scenario: &Scenario, has_keys: bool) -> Vec<Subject> {
         boats: boats.to_vec(),
     };
     if !has_keys {
-        return vec![Subject { id: "anybody".to_owned(), rights: &ANYBODY, teams, boats }];
+        return vec![Subject {
+            id: "anybody".to_owned(),
+            rights: &ANYBODY,
+            teams,
+            boats,
+        }];
     }
-    let mut subjects: Vec<Subject> =
-        [Identity::Observer, Identity::Operator].map(|identity| subject(identity, &teams, &boats)).into();
+    let mut subjects: Vec<Subject> = [Identity::Observer, Identity::Operator]
+        .map(|identity| subject(identity, &teams, &boats))
+        .into();
     for (i, team) in teams.iter().enumerate() {
-        let own = names(scenario.vehicles.iter().filter(|boat| boat.team.index() == i).collect());
-        subjects.push(subject(Identity::Team(team.clone()), std::slice::from_ref(team), &own));
+        let own = names(
+            scenario
+                .vehicles
+                .iter()
+                .filter(|boat| boat.team.index() == i)
+                .collect(),
+        );
+        subjects.push(subject(
+            Identity::Team(team.clone()),
+            std::slice::from_ref(team),
+            &own,
+        ));
     }
     // Keys may exist for one gateway per boat, or for one machine that runs all gateways.
-    let externals = names(scenario.externals().map(|boat| &scenario.vehicles[boat.index()]).collect());
+    let externals = names(
+        scenario
+            .externals()
+            .map(|boat| &scenario.vehicles[boat.index()])
+            .collect(),
+    );
     for boat in &externals {
-        subjects.push(subject(Identity::Gateway(Some(boat.clone())), &[], std::slice::from_ref(boat)));
+        subjects.push(subject(
+            Identity::Gateway(Some(boat.clone())),
+            &[],
+            std::slice::from_ref(boat),
+        ));
     }
     subjects.push(subject(Identity::Gateway(None), &[], &externals));
     subjects

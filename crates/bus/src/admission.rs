@@ -40,11 +40,18 @@ struct Port {
 }
 
 /// Guards these ports while the session is open; at most `waiting_max` connections may be pending.
-pub(crate) fn begin(session: &Session, numbers: Vec<u16>, files: OpenFiles, waiting_max: usize) -> zenoh::Result<()> {
+pub(crate) fn begin(
+    session: &Session,
+    numbers: Vec<u16>,
+    files: OpenFiles,
+    waiting_max: usize,
+) -> zenoh::Result<()> {
     let links = Arc::new(Links::default());
     let watched = Arc::downgrade(&links);
     let note = move |event: LinkEvent| {
-        let Some(ends) = linger::ends(event.link()) else { return };
+        let Some(ends) = linger::ends(event.link()) else {
+            return;
+        };
         match event.kind() {
             SampleKind::Put => links.lock().insert(ends),
             // Identified by both addresses, since descriptors are reused: the same number may now
@@ -52,7 +59,13 @@ pub(crate) fn begin(session: &Session, numbers: Vec<u16>, files: OpenFiles, wait
             SampleKind::Delete => links.lock().remove(&ends),
         };
     };
-    session.info().link_events_listener().history(true).callback(note).background().wait()?;
+    session
+        .info()
+        .link_events_listener()
+        .history(true)
+        .callback(note)
+        .background()
+        .wait()?;
     let waiting = Connections::new(waiting_max);
     let listeners = listeners(&numbers);
     // Connections already accepted by the system must fit into the reserved descriptors, beside
@@ -63,7 +76,15 @@ pub(crate) fn begin(session: &Session, numbers: Vec<u16>, files: OpenFiles, wait
         descriptor::with_socket(*listener, |socket| socket.listen(queue_max))?;
     }
     let slots = BTreeMap::new();
-    let mut port = Port { numbers, listeners, files, waiting_max, waiting, slots, is_closed: false };
+    let mut port = Port {
+        numbers,
+        listeners,
+        files,
+        waiting_max,
+        waiting,
+        slots,
+        is_closed: false,
+    };
     // The session drops its callback when it closes.
     let look = move || {
         while let Some(links) = watched.upgrade() {
@@ -84,10 +105,17 @@ impl Port {
             self.close(true);
             descriptor::all()
         });
-        let Ok(descriptors) = listed else { return LOOK_OFTEN };
+        let Ok(descriptors) = listed else {
+            return LOOK_OFTEN;
+        };
         let OpenFiles { usual, .. } = self.files;
-        let is_lent = |descriptor: RawFd| u64::try_from(descriptor).is_ok_and(|number| number >= usual);
-        let free = usual - descriptors.iter().filter(|descriptor| !is_lent(**descriptor)).count() as u64;
+        let is_lent =
+            |descriptor: RawFd| u64::try_from(descriptor).is_ok_and(|number| number >= usual);
+        let free = usual
+            - descriptors
+                .iter()
+                .filter(|descriptor| !is_lent(**descriptor))
+                .count() as u64;
         let mut found = BTreeMap::new();
         for descriptor in descriptors {
             if let Kind::Connection(ends) = descriptor::kind(descriptor)
@@ -98,23 +126,37 @@ impl Port {
         }
         // Connections that became links meanwhile are known by now.
         let links = links.lock().clone();
-        let lent: Vec<(Ends, RawFd)> = found.iter().map(|(ends, it)| (*ends, *it)).filter(|it| is_lent(it.1)).collect();
+        let lent: Vec<(Ends, RawFd)> = found
+            .iter()
+            .map(|(ends, it)| (*ends, *it))
+            .filter(|it| is_lent(it.1))
+            .collect();
         // Lent descriptors return before the port opens, because the next flood needs them. A node
         // whose link holds one reconnects.
         let are_too_many = lent.len() as u64 > self.files.kept() / 4;
         self.close(free < self.files.kept() / 2 || are_too_many);
         let goes = |ends: &Ends| self.is_closed && (are_too_many || !links.contains(ends));
-        lent.iter().filter(|(ends, _)| goes(ends)).for_each(|(ends, it)| descriptor::end(*it, *ends));
+        lent.iter()
+            .filter(|(ends, _)| goes(ends))
+            .for_each(|(ends, it)| descriptor::end(*it, *ends));
         found.retain(|ends, _| !links.contains(ends));
         self.slots.retain(|ends, _| found.contains_key(ends));
         for (ends, descriptor) in found {
             // Mapped IPv4 addresses count as IPv4; otherwise one host would have two shares of the
             // port.
-            let admit = || self.waiting.admit(ends.1.ip().to_canonical(), move || descriptor::end(descriptor, ends));
+            let admit = || {
+                self.waiting.admit(ends.1.ip().to_canonical(), move || {
+                    descriptor::end(descriptor, ends)
+                })
+            };
             self.slots.entry(ends).or_insert_with(admit);
         }
         let are_many = 2 * self.slots.len() > self.waiting_max;
-        if self.is_closed || are_many { LOOK_OFTEN } else { LOOK }
+        if self.is_closed || are_many {
+            LOOK_OFTEN
+        } else {
+            LOOK
+        }
     }
 
     /// Blocks new connections and lends the reserved descriptors, or undoes both.
@@ -122,7 +164,9 @@ impl Port {
         if self.is_closed != is_closed {
             self.is_closed = is_closed;
             // In this order, since new connections would take the lent descriptors.
-            self.listeners.iter().for_each(|listener| filter(*listener, is_closed));
+            self.listeners
+                .iter()
+                .for_each(|listener| filter(*listener, is_closed));
             self.files.lend(is_closed);
         }
     }
@@ -130,8 +174,13 @@ impl Port {
 
 /// This process's sockets that listen on one of these ports.
 fn listeners(ports: &[u16]) -> Vec<RawFd> {
-    let is_one = |it: &RawFd| matches!(descriptor::kind(*it), Kind::Listener(port) if ports.contains(&port));
-    descriptor::all().unwrap_or_default().into_iter().filter(is_one).collect()
+    let is_one =
+        |it: &RawFd| matches!(descriptor::kind(*it), Kind::Listener(port) if ports.contains(&port));
+    descriptor::all()
+        .unwrap_or_default()
+        .into_iter()
+        .filter(is_one)
+        .collect()
 }
 
 /// Makes the system drop packets for a listener, or stops that. A client's TCP retries after a
@@ -141,8 +190,13 @@ fn filter(listener: RawFd, is_closed: bool) {
     /// `BPF_RET | BPF_K` of classic BPF (`linux/bpf_common.h`) with zero: accepts no byte of the
     /// packet.
     const DROP: [socket2::SockFilter; 1] = [socket2::SockFilter::new(0x06, 0, 0, 0)];
-    let change =
-        |socket: &socket2::SockRef<'_>| if is_closed { socket.attach_filter(&DROP) } else { socket.detach_filter() };
+    let change = |socket: &socket2::SockRef<'_>| {
+        if is_closed {
+            socket.attach_filter(&DROP)
+        } else {
+            socket.detach_filter()
+        }
+    };
     // If this fails, a flood takes longer to clear.
     drop(descriptor::with_socket(listener, change));
 }

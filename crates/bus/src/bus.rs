@@ -38,7 +38,11 @@ impl Delivery {
     /// For what is sent at every decision: in lockstep each message counts, in real time the next
     /// one replaces it.
     pub fn per_decision(is_lockstep: bool) -> Delivery {
-        if is_lockstep { Delivery::Reliable } else { Delivery::Newest }
+        if is_lockstep {
+            Delivery::Reliable
+        } else {
+            Delivery::Newest
+        }
     }
 }
 
@@ -72,7 +76,9 @@ impl Bus {
     /// # Errors
     /// [`BusError`] if it cannot listen at its endpoints.
     pub fn hub(net: &Net, game: &GameName, scenario: &Scenario) -> Result<Bus, BusError> {
-        runtime().open_hub(net, game, scenario).map(|session| Bus::of(session, net))
+        runtime()
+            .open_hub(net, game, scenario)
+            .map(|session| Bus::of(session, net))
     }
 
     /// Connects to a hub.
@@ -80,12 +86,20 @@ impl Bus {
     /// # Errors
     /// [`BusError`] if no hub listens there.
     pub fn leaf(net: &Net) -> Result<Bus, BusError> {
-        runtime().open_leaf(net).map(|session| Bus::of(session, net))
+        runtime()
+            .open_leaf(net)
+            .map(|session| Bus::of(session, net))
     }
 
     fn of(session: Arc<dyn Session>, net: &Net) -> Bus {
-        let is_on_this_machine = !net.lan && net.connect.iter().all(|endpoint| is_loopback(endpoint));
-        Bus { session, token: net.token.clone(), keys: net.keys.clone(), is_on_this_machine }
+        let is_on_this_machine =
+            !net.lan && net.connect.iter().all(|endpoint| is_loopback(endpoint));
+        Bus {
+            session,
+            token: net.token.clone(),
+            keys: net.keys.clone(),
+            is_on_this_machine,
+        }
     }
 
     /// The same session, for a node with this token.
@@ -98,15 +112,24 @@ impl Bus {
     /// # Errors
     /// [`BusError`] if the session is closed.
     pub fn publisher(&self, key: String, priority: Priority) -> Result<Publisher, BusError> {
-        self.session.publisher(key, priority, Delivery::Reliable).map(Publisher)
+        self.session
+            .publisher(key, priority, Delivery::Reliable)
+            .map(Publisher)
     }
 
     /// Prepares to publish on `key`, with this delivery over QUIC links.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.
-    pub fn publisher_with(&self, key: String, priority: Priority, delivery: Delivery) -> Result<Publisher, BusError> {
-        self.session.publisher(key, priority, delivery).map(Publisher)
+    pub fn publisher_with(
+        &self,
+        key: String,
+        priority: Priority,
+        delivery: Delivery,
+    ) -> Result<Publisher, BusError> {
+        self.session
+            .publisher(key, priority, delivery)
+            .map(Publisher)
     }
 
     /// Calls `receive` with the bytes of every message published on `key`.
@@ -149,7 +172,10 @@ impl Bus {
             let status = serde_json::from_slice::<GatewayStatus>(bytes).ok();
             // Operators read the name in the status; a status whose name does not match its key is
             // invalid.
-            status.filter(|status| status.vehicle == name).into_iter().for_each(&take);
+            status
+                .filter(|status| status.vehicle == name)
+                .into_iter()
+                .for_each(&take);
         })
     }
 
@@ -170,7 +196,10 @@ impl Bus {
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.
-    pub fn watch_links(&self, receive: impl Fn(String) + Send + Sync + 'static) -> Result<Declaration, BusError> {
+    pub fn watch_links(
+        &self,
+        receive: impl Fn(String) + Send + Sync + 'static,
+    ) -> Result<Declaration, BusError> {
         self.session.watch_links(Box::new(receive))
     }
 }
@@ -194,7 +223,13 @@ impl Publisher {
     /// # Errors
     /// [`BusError`] if the session is closed.
     pub fn send_encoded<M: Message>(&self, bytes: Vec<u8>) -> Result<(), BusError> {
-        self.0.send(bytes, Encoding::Cdr { schema: M::SCHEMA, version: M::VERSION })
+        self.0.send(
+            bytes,
+            Encoding::Cdr {
+                schema: M::SCHEMA,
+                version: M::VERSION,
+            },
+        )
     }
 
     /// Sends JSON bytes.

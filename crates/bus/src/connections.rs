@@ -37,7 +37,10 @@ pub struct Slot {
 impl Connections {
     /// Slots for at most `most` connections.
     pub fn new(most: usize) -> Connections {
-        Connections { open: Arc::default(), most }
+        Connections {
+            open: Arc::default(),
+            most,
+        }
     }
 
     /// Takes a slot for a connection from this address; `close` ends the connection. If no slot is
@@ -47,17 +50,32 @@ impl Connections {
         let mut open = self.open.lock();
         let mut surplus = Vec::new();
         while open.connections.len() >= self.most {
-            let Some(entry) = open.most_idle().and_then(|number| open.connections.remove(&number)) else { break };
+            let Some(entry) = open
+                .most_idle()
+                .and_then(|number| open.connections.remove(&number))
+            else {
+                break;
+            };
             surplus.push(entry);
         }
         open.count += 1;
         let number = open.count;
-        open.connections.insert(number, Entry { from, used: number, close: Box::new(close) });
+        open.connections.insert(
+            number,
+            Entry {
+                from,
+                used: number,
+                close: Box::new(close),
+            },
+        );
         drop(open);
         // Outside the lock: closing calls into the connection's owner, which may drop its slot and
         // so take the lock.
         surplus.into_iter().for_each(|entry| (entry.close)());
-        Slot { open: Arc::clone(&self.open), number }
+        Slot {
+            open: Arc::clone(&self.open),
+            number,
+        }
     }
 
     /// Ends all connections.
@@ -70,13 +88,18 @@ impl Connections {
 impl Open {
     fn most_idle(&self) -> Option<u64> {
         let mut by_address = BTreeMap::<IpAddr, usize>::new();
-        self.connections.values().for_each(|entry| *by_address.entry(entry.from).or_insert(0) += 1);
+        self.connections
+            .values()
+            .for_each(|entry| *by_address.entry(entry.from).or_insert(0) += 1);
         let share = |entry: &Entry| by_address.get(&entry.from).copied().unwrap_or(0);
         let most_idle =
             // The address with the most connections first: a host that opens thousands evicts its
             // own, and a host with a single connection keeps it however long it idles.
             |(_, a): &(&u64, &Entry), (_, b): &(&u64, &Entry)| share(b).cmp(&share(a)).then(a.used.cmp(&b.used));
-        self.connections.iter().min_by(most_idle).map(|(number, _)| *number)
+        self.connections
+            .iter()
+            .min_by(most_idle)
+            .map(|(number, _)| *number)
     }
 }
 
@@ -110,11 +133,16 @@ mod tests {
     fn admit(connections: &Connections, from: IpAddr) -> (Slot, Arc<AtomicBool>) {
         let closed = Arc::new(AtomicBool::new(false));
         let close = Arc::clone(&closed);
-        (connections.admit(from, move || close.store(true, Ordering::Relaxed)), closed)
+        (
+            connections.admit(from, move || close.store(true, Ordering::Relaxed)),
+            closed,
+        )
     }
 
     fn closed<'a>(all: impl IntoIterator<Item = &'a (Slot, Arc<AtomicBool>)>) -> Vec<bool> {
-        all.into_iter().map(|(_, closed)| closed.load(Ordering::Relaxed)).collect()
+        all.into_iter()
+            .map(|(_, closed)| closed.load(Ordering::Relaxed))
+            .collect()
     }
 
     #[test]
@@ -137,7 +165,11 @@ mod tests {
         let connections = Connections::new(4);
         let operator = admit(&connections, OPERATOR);
         let crowd: Vec<_> = (0..300).map(|_| admit(&connections, STRANGER)).collect();
-        assert_eq!(closed([&operator]), [false], "it has idled longest, but is one of few");
+        assert_eq!(
+            closed([&operator]),
+            [false],
+            "it has idled longest, but is one of few"
+        );
         assert_eq!(closed(&crowd).iter().filter(|closed| !**closed).count(), 3);
     }
 }

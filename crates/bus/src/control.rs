@@ -45,11 +45,19 @@ fn stop(bus: &Bus, key: &str, control: Control) -> Result<Option<ControlReply>, 
     let answered = Arc::new(Answered::default());
     for said in 1.. {
         publisher.send_json(json.clone())?;
-        ask(bus, key, control, ANSWER.saturating_sub(clock::since(start)), &answered);
+        ask(
+            bus,
+            key,
+            control,
+            ANSWER.saturating_sub(clock::since(start)),
+            &answered,
+        );
         answered.wait(STOP_ANSWER, Option::is_some);
         match answered.visit(Option::take) {
             // Observers may stop a game too, but may not query the sim.
-            Some(Err(BusError::NotAllowed { .. })) if said < SAID_UNASKED => clock::rest(STOP_ANSWER),
+            Some(Err(BusError::NotAllowed { .. })) if said < SAID_UNASKED => {
+                clock::rest(STOP_ANSWER)
+            }
             Some(Err(BusError::NotAllowed { .. })) => return Ok(Some(Ok(()))),
             Some(reply) => return reply.map(Some),
             None if clock::since(start) >= ANSWER => return Ok(None),

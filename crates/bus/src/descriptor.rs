@@ -29,11 +29,17 @@ pub(crate) fn all() -> io::Result<Vec<RawFd>> {
     // Linux has the first, macOS and the BSDs the second. If neither exists, links keep their
     // linger time and the port keeps zenoh's limits.
     let folder = std::fs::read_dir(FOLDERS[0]).or_else(|_| std::fs::read_dir(FOLDERS[1]))?;
-    Ok(folder.flatten().filter_map(|entry| entry.file_name().to_str()?.parse().ok()).collect())
+    Ok(folder
+        .flatten()
+        .filter_map(|entry| entry.file_name().to_str()?.parse().ok())
+        .collect())
 }
 
 /// A descriptor as a socket, whatever its kind: the system checks that at each call.
-#[expect(unsafe_code, reason = "zenoh does not give its sockets away: only their numbers can be known")]
+#[expect(
+    unsafe_code,
+    reason = "zenoh does not give its sockets away: only their numbers can be known"
+)]
 fn borrow<'a>(descriptor: RawFd) -> BorrowedFd<'a> {
     // SAFETY: the number comes from the system, so it is not -1, and the descriptor is not closed
     // through this. If another thread closes it meanwhile, calls fail. If its number is reused, the
@@ -45,11 +51,21 @@ fn borrow<'a>(descriptor: RawFd) -> BorrowedFd<'a> {
 pub(crate) fn kind(descriptor: RawFd) -> Kind {
     let borrowed = borrow(descriptor);
     let socket = SockRef::from(&borrowed);
-    let Some(local) = socket.local_addr().ok().and_then(|address| address.as_socket()) else { return Kind::Other };
+    let Some(local) = socket
+        .local_addr()
+        .ok()
+        .and_then(|address| address.as_socket())
+    else {
+        return Kind::Other;
+    };
     match socket.peer_addr() {
-        Ok(peer) => peer.as_socket().map_or(Kind::Other, |peer| Kind::Connection((local, peer))),
+        Ok(peer) => peer
+            .as_socket()
+            .map_or(Kind::Other, |peer| Kind::Connection((local, peer))),
         // Neither a listener nor a datagram socket has a peer; the socket type distinguishes them.
-        Err(_) if socket.r#type().is_ok_and(|kind| kind == Type::STREAM) => Kind::Listener(local.port()),
+        Err(_) if socket.r#type().is_ok_and(|kind| kind == Type::STREAM) => {
+            Kind::Listener(local.port())
+        }
         Err(_) => Kind::Other,
     }
 }
@@ -64,7 +80,9 @@ pub(crate) fn with_socket<T>(descriptor: RawFd, change: impl FnOnce(&SockRef<'_>
 pub(crate) fn end(descriptor: RawFd, ends: Ends) {
     // A duplicate keeps referring to the same socket, although the owner may close the descriptor
     // at any time.
-    let Ok(duplicate) = borrow(descriptor).try_clone_to_owned() else { return };
+    let Ok(duplicate) = borrow(descriptor).try_clone_to_owned() else {
+        return;
+    };
     if matches!(kind(duplicate.as_raw_fd()), Kind::Connection(found) if found == ends) {
         // It may have ended already.
         drop(SockRef::from(&duplicate).shutdown(Shutdown::Both));

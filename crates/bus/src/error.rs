@@ -61,7 +61,9 @@ pub enum BusError {
     Keys(String),
     /// A session with keys in a process with more than one zenoh thread: its TLS links are not safe
     /// there.
-    #[error("a node with keys must be started with ZENOH_RUNTIME={KEYS_RUNTIME} in its environment; {0}")]
+    #[error(
+        "a node with keys must be started with ZENOH_RUNTIME={KEYS_RUNTIME} in its environment; {0}"
+    )]
     Threads(String),
     /// The game has keys, and this node has none.
     #[error("{0} uses TLS: the game has keys, pass yours with --keys FOLDER (see `squall keys`)")]
@@ -87,11 +89,19 @@ pub enum BusError {
 /// zenoh's error, without the source location that it appends and the endpoints that it repeats.
 pub(crate) fn reason(error: &zenoh::Error) -> String {
     let text = error.to_string();
-    let text = text.split(" at /").next().unwrap_or(&text).trim_end_matches(['!', ' ']);
+    let text = text
+        .split(" at /")
+        .next()
+        .unwrap_or(&text)
+        .trim_end_matches(['!', ' ']);
     if text.starts_with("Unable to connect to any of") {
-        return "nothing answers there; check the address and the port, and that the sim runs".to_owned();
+        return "nothing answers there; check the address and the port, and that the sim runs"
+            .to_owned();
     }
-    match text.rsplit_once(": ").filter(|_| text.starts_with("Can not create a new")) {
+    match text
+        .rsplit_once(": ")
+        .filter(|_| text.starts_with("Can not create a new"))
+    {
         Some((_, cause)) => cause.to_owned(),
         None => text.to_owned(),
     }
@@ -104,7 +114,10 @@ mod tests {
     #[test]
     fn a_refused_endpoint_is_explained_without_zenohs_notation() {
         for (text, want) in [
-            ("Unable to connect to any of [Single(tcp/10.0.0.5:1)]! at /a/b.rs:1.", "nothing answers there; check"),
+            (
+                "Unable to connect to any of [Single(tcp/10.0.0.5:1)]! at /a/b.rs:1.",
+                "nothing answers there; check",
+            ),
             (
                 "Can not create a new TCP listener bound to tcp/10.0.0.5:1: [10.0.0.5:1: Address already in use (os error \
                  98) at /a/b.rs:1.]",
@@ -112,7 +125,11 @@ mod tests {
             ),
             ("Invalid key [x]!", "Invalid key [x]"),
         ] {
-            assert!(reason(&text.into()).starts_with(want), "{}", reason(&text.into()));
+            assert!(
+                reason(&text.into()).starts_with(want),
+                "{}",
+                reason(&text.into())
+            );
         }
     }
 }

@@ -76,7 +76,12 @@ pub struct GameSearch<'a> {
 impl<'a> GameSearch<'a> {
     /// A search that ends after this time, or when `stop` is set.
     pub fn new(wait: Duration, stop: &'a AtomicBool) -> GameSearch<'a> {
-        GameSearch { wait, stop, start: clock::now(), last: String::new() }
+        GameSearch {
+            wait,
+            stop,
+            start: clock::now(),
+            last: String::new(),
+        }
     }
 
     /// Retries until it succeeds, times out or fails for good; reports what is missing whenever
@@ -168,19 +173,34 @@ fn only_game(bus: &Bus) -> Result<GameName, Missing> {
 /// The games on the network.
 fn games(bus: &Bus) -> Result<Vec<GameName>, BusError> {
     let keys = bus.who_is_alive(&topic::everyone_alive(), ANSWER)?;
-    Ok(keys.iter().filter_map(|key| topic::parse_alive(key)).map(|(game, _)| game).collect())
+    Ok(keys
+        .iter()
+        .filter_map(|key| topic::parse_alive(key))
+        .map(|(game, _)| game)
+        .collect())
 }
 
 fn listed(games: &[GameName]) -> String {
-    games.iter().map(GameName::as_str).collect::<Vec<_>>().join(", ")
+    games
+        .iter()
+        .map(GameName::as_str)
+        .collect::<Vec<_>>()
+        .join(", ")
 }
 
 fn game_info(bus: &Bus, game: &GameName) -> Result<GameInfo, Missing> {
     let answer = bus.ask(&topic::scenario(game), Vec::new(), ANSWER)?;
     let Some(bytes) = answer else {
         let others = games(bus)?;
-        let others = if others.is_empty() { String::new() } else { format!("; there is {}", listed(&others)) };
-        return Err(Missing::Yet(format!("no sim answers for game {:?}{others}", game.as_str())));
+        let others = if others.is_empty() {
+            String::new()
+        } else {
+            format!("; there is {}", listed(&others))
+        };
+        return Err(Missing::Yet(format!(
+            "no sim answers for game {:?}{others}",
+            game.as_str()
+        )));
     };
     Ok(understood(&bytes)?)
 }
@@ -189,7 +209,10 @@ fn game_info(bus: &Bus, game: &GameName) -> Result<GameInfo, Missing> {
 fn understood(answer: &[u8]) -> Result<GameInfo, Refusal> {
     // The version first: the rest may be unreadable in another version.
     let value: serde_json::Value = serde_json::from_slice(answer).unwrap_or_default();
-    let version = value.get("version").and_then(serde_json::Value::as_str).unwrap_or("unknown");
+    let version = value
+        .get("version")
+        .and_then(serde_json::Value::as_str)
+        .unwrap_or("unknown");
     if version != primitives::VERSION {
         return Err(Refusal::Version(format!("the sim is {version}")));
     }
@@ -234,23 +257,52 @@ pub fn join(
     let version = primitives::VERSION.to_owned();
     let node = bus.id();
     let asked = clock::now();
-    let request = JoinRequest { version, role, node, vehicles: vehicles.to_vec() };
-    match bus.request(&topic::join(game, scenario, role, vehicles), &request, ANSWER)? {
-        None => Err(Missing::Yet("the sim does not answer the join request".to_owned())),
-        Some(JoinReply::Granted { ticket, vehicles, now_ns }) => Ok(Joined { ticket, vehicles, now: now_ns, asked }),
-        Some(JoinReply::Busy { vehicle }) => Err(Missing::Yet(format!("{vehicle} has another {role}"))),
+    let request = JoinRequest {
+        version,
+        role,
+        node,
+        vehicles: vehicles.to_vec(),
+    };
+    match bus.request(
+        &topic::join(game, scenario, role, vehicles),
+        &request,
+        ANSWER,
+    )? {
+        None => Err(Missing::Yet(
+            "the sim does not answer the join request".to_owned(),
+        )),
+        Some(JoinReply::Granted {
+            ticket,
+            vehicles,
+            now_ns,
+        }) => Ok(Joined {
+            ticket,
+            vehicles,
+            now: now_ns,
+            asked,
+        }),
+        Some(JoinReply::Busy { vehicle }) => {
+            Err(Missing::Yet(format!("{vehicle} has another {role}")))
+        }
         Some(JoinReply::Refused { reason }) => Err(Missing::Forever(Refusal::Refused(reason))),
     }
 }
 
 /// Checks that the keys, if any, allow joining in this role: the hub drops queries without the
 /// right.
-fn check_keys(bus: &Bus, scenario: &Scenario, role: Role, vehicles: &[String]) -> Result<(), Refusal> {
+fn check_keys(
+    bus: &Bus,
+    scenario: &Scenario,
+    role: Role,
+    vehicles: &[String],
+) -> Result<(), Refusal> {
     let Some(keys) = &bus.keys else { return Ok(()) };
     let is_own = |name: &String| match (&keys.identity, role) {
         (Identity::Team(team), Role::Agent) => {
             // The sim itself refuses an unknown name.
-            scenario.vehicle_by_name(name).is_none_or(|v| scenario.teams[scenario.team_of(v).index()].name == *team)
+            scenario
+                .vehicle_by_name(name)
+                .is_none_or(|v| scenario.teams[scenario.team_of(v).index()].name == *team)
         }
         (Identity::Gateway(boat), Role::Gateway) => boat.as_ref().is_none_or(|boat| boat == name),
         _ => false,
@@ -260,7 +312,9 @@ fn check_keys(bus: &Bus, scenario: &Scenario, role: Role, vehicles: &[String]) -
         Some(name) => {
             let folder = keys.folder.display();
             let identity = &keys.identity;
-            Err(Refusal::Refused(format!("{folder}: the keys of {identity} are not for the {role} of {name}")))
+            Err(Refusal::Refused(format!(
+                "{folder}: the keys of {identity} are not for the {role} of {name}"
+            )))
         }
     }
 }
@@ -271,9 +325,14 @@ mod tests {
 
     #[test]
     fn a_game_is_believed_if_it_is_of_this_version_and_everything_that_it_names_is_in_it() {
-        let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
+        let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("../../scenarios/games/pav01_vs_pav01.toml");
         let scenario = scenario::load(&file).unwrap_or_else(|e| panic!("{e}"));
-        let info = GameInfo { version: primitives::VERSION.to_owned(), pace: "lockstep".to_owned(), scenario };
+        let info = GameInfo {
+            version: primitives::VERSION.to_owned(),
+            pace: "lockstep".to_owned(),
+            scenario,
+        };
         let told = |change: &dyn Fn(&mut GameInfo)| {
             let mut info = info.clone();
             change(&mut info);
@@ -283,9 +342,15 @@ mod tests {
         let refused = |change: &dyn Fn(&mut GameInfo)| told(change).expect_err("it is refused");
         assert!(refused(&|info| info.version = "0.0.1".to_owned()).contains("the sim is 0.0.1"));
         let other_team = refused(&|info| info.scenario.vehicles[0].team = primitives::TeamId(9));
-        assert!(other_team.contains("the team of blue_one is 9, expected less than 2"), "{other_team}");
+        assert!(
+            other_team.contains("the team of blue_one is 9, expected less than 2"),
+            "{other_team}"
+        );
         let other_strategy = refused(&|info| info.scenario.vehicles[1].strategy = 77);
-        assert!(other_strategy.contains("the strategy of blue_two is 77"), "{other_strategy}");
+        assert!(
+            other_strategy.contains("the strategy of blue_two is 77"),
+            "{other_strategy}"
+        );
         assert!(understood(b"{").is_err());
     }
 }

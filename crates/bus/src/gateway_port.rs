@@ -28,7 +28,11 @@ pub fn ask_gateway(
     let deadline = clock::now() + limit;
     // Commands that need the token are sent once, even if the answer is lost: a second release
     // could release a different stop.
-    let repeats = if command.needs_token() { 0 } else { ATTEMPTS - 1 };
+    let repeats = if command.needs_token() {
+        0
+    } else {
+        ATTEMPTS - 1
+    };
     for _ in 0..repeats {
         match ask_once(at, token, command, deadline) {
             Err(BusError::Use { .. }) => {}
@@ -44,10 +48,17 @@ fn ask_once(
     command: &GatewayCommand,
     deadline: Instant,
 ) -> Result<OperatorReply, BusError> {
-    let failed =
-        |e: std::io::Error| BusError::Use { doing: "ask the gateway at", key: at.to_string(), reason: e.to_string() };
+    let failed = |e: std::io::Error| BusError::Use {
+        doing: "ask the gateway at",
+        key: at.to_string(),
+        reason: e.to_string(),
+    };
     // A timeout of zero would be an error.
-    let left = || deadline.saturating_duration_since(clock::now()).max(Duration::from_millis(1));
+    let left = || {
+        deadline
+            .saturating_duration_since(clock::now())
+            .max(Duration::from_millis(1))
+    };
     let stream = TcpStream::connect_timeout(&at, left()).map_err(failed)?;
     // Nagle's algorithm would delay the second line until the first is acknowledged, up to 40 ms on
     // Linux.
@@ -59,9 +70,18 @@ fn ask_once(
         (&stream).write_all(&payload)?;
         stream.set_read_timeout(Some(left()))?;
         let mut line = Vec::new();
-        reader.by_ref().take(ANSWER_BYTES_MAX).read_until(b'\n', &mut line)?;
-        if line.is_empty() { Err(std::io::ErrorKind::ConnectionAborted.into()) } else { Ok(Some(line)) }
+        reader
+            .by_ref()
+            .take(ANSWER_BYTES_MAX)
+            .read_until(b'\n', &mut line)?;
+        if line.is_empty() {
+            Err(std::io::ErrorKind::ConnectionAborted.into())
+        } else {
+            Ok(Some(line))
+        }
     };
-    let reply = token::request(token, GATEWAY_PORT_KEY, command, |payload| exchange(payload).map_err(failed))?;
+    let reply = token::request(token, GATEWAY_PORT_KEY, command, |payload| {
+        exchange(payload).map_err(failed)
+    })?;
     reply.ok_or(BusError::Silent)
 }

@@ -27,7 +27,11 @@ pub struct Inbox<T>(Arc<Queue<T>>);
 
 /// A queue for `capacity` items.
 pub fn inbox<T>(capacity: usize) -> (InboxSender<T>, Inbox<T>) {
-    let queue = Arc::new(Queue { items: Watched::new(VecDeque::new()), capacity, dropped: AtomicU64::new(0) });
+    let queue = Arc::new(Queue {
+        items: Watched::new(VecDeque::new()),
+        capacity,
+        dropped: AtomicU64::new(0),
+    });
     (InboxSender(Arc::clone(&queue)), Inbox(queue))
 }
 
@@ -35,12 +39,16 @@ impl<T> InboxSender<T> {
     /// Enqueues `item`, or drops and counts it if the queue is full.
     pub fn put(&self, item: T) {
         let is_dropped = !self.offer(item);
-        self.0.dropped.fetch_add(u64::from(is_dropped), Ordering::Relaxed);
+        self.0
+            .dropped
+            .fetch_add(u64::from(is_dropped), Ordering::Relaxed);
     }
 
     /// Enqueues `item` if there is a free slot, and returns whether there was.
     pub fn offer(&self, item: T) -> bool {
-        let Queue { items, capacity, .. } = &*self.0;
+        let Queue {
+            items, capacity, ..
+        } = &*self.0;
         let surplus = items.visit(|items| {
             // The newest is refused, not the oldest: accepted items are processed in order, and a
             // flood loses its own messages.

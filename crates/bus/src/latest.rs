@@ -29,9 +29,11 @@ impl<T> Latest<T> {
     /// Waits up to `limit` for an item, then empties all cells and returns their items by cell. All
     /// `None` means a timeout.
     pub fn take(&self, limit: Duration) -> Vec<Option<T>> {
-        self.0.wait(limit, |cells| cells.iter().any(Option::is_some));
+        self.0
+            .wait(limit, |cells| cells.iter().any(Option::is_some));
         // All cells at once: an agent with boats of several teams then works on the newest picture
         // of each.
-        self.0.visit(|cells| cells.iter_mut().map(Option::take).collect())
+        self.0
+            .visit(|cells| cells.iter_mut().map(Option::take).collect())
     }
 }

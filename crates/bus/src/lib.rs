@@ -49,7 +49,8 @@ pub use inbox::{Inbox, InboxSender, inbox};
 pub use latest::Latest;
 pub use link_lock::{LinkLock, LinkLockError};
 pub use local_registry::{
-    Entry, GatewayEntry, Registration, gateways as local_gateways, list as local_registry, register, register_gateway,
+    Entry, GatewayEntry, Registration, gateways as local_gateways, list as local_registry,
+    register, register_gateway,
 };
 pub use net::{DEFAULT_PORT, Net, free_port, is_loopback, is_same_place};
 pub use parcel::Parcel;
@@ -58,7 +59,8 @@ pub use query::Query;
 pub use ros_session::{RosPublisher, RosSession};
 pub use runtime::{Runtime, System, random_bytes, random_number, replace_runtime};
 pub use session::{
-    Declaration, Encoding, OnBytes, OnLinkLost, OnQuery, OnToken, PendingQuery, Sender, Session, keys_meet,
+    Declaration, Encoding, OnBytes, OnLinkLost, OnQuery, OnToken, PendingQuery, Sender, Session,
+    keys_meet,
 };
 pub use sim_liveness::{Patience, SimState, SimWatch};
 pub use thread::{NodeThread, start_thread};

@@ -21,7 +21,13 @@ pub(crate) fn disable(session: &Session) -> zenoh::Result<()> {
         }
     };
     // A new link is reported before it is read from, and stays open during the callback.
-    session.info().link_events_listener().history(true).callback(take).background().wait()
+    session
+        .info()
+        .link_events_listener()
+        .history(true)
+        .callback(take)
+        .background()
+        .wait()
 }
 
 /// The addresses of a link's two ends; `None` if it is not a connection.
@@ -33,7 +39,10 @@ pub(crate) fn ends(link: &Link) -> Option<Ends> {
 /// Disables the option on the socket of a link. Links without a connection, such as UDP, have none.
 fn disable_for(link: &Link) {
     if let Some(ends) = ends(link) {
-        descriptor::all().into_iter().flatten().for_each(|descriptor| disable_if(descriptor, ends));
+        descriptor::all()
+            .into_iter()
+            .flatten()
+            .for_each(|descriptor| disable_if(descriptor, ends));
     }
 }
 
@@ -45,7 +54,9 @@ fn disable_if(descriptor: RawFd, ends: Ends) {
         // system discards the data sent last. Links that are never completed are not reported here;
         // for those, `.cargo/config.toml` compiles zenoh's linger time to nothing. Before, `strace
         // -f -T -e close` showed calls of 10.0 s; `tests/process/network.rs` guards it.
-        drop(descriptor::with_socket(descriptor, |socket| socket.set_linger(None)));
+        drop(descriptor::with_socket(descriptor, |socket| {
+            socket.set_linger(None)
+        }));
     }
 }
 
@@ -61,12 +72,21 @@ mod tests {
         let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
         let address = listener.local_addr().expect("an address");
         let sockets = [0, 1].map(|_| TcpStream::connect(address).expect("it listens"));
-        let linger = || sockets.each_ref().map(|socket| SockRef::from(socket).linger().expect("a TCP socket"));
+        let linger = || {
+            sockets
+                .each_ref()
+                .map(|socket| SockRef::from(socket).linger().expect("a TCP socket"))
+        };
         let time = Some(Duration::from_secs(10));
-        sockets.iter().for_each(|socket| SockRef::from(socket).set_linger(time).expect("a TCP socket"));
+        sockets.iter().for_each(|socket| {
+            SockRef::from(socket)
+                .set_linger(time)
+                .expect("a TCP socket")
+        });
         let local = sockets[1].local_addr().expect("an address");
         let all = descriptor::all().expect("the system lists them");
-        all.into_iter().for_each(|descriptor| disable_if(descriptor, (local, address)));
+        all.into_iter()
+            .for_each(|descriptor| disable_if(descriptor, (local, address)));
         assert_eq!(linger(), [time, None]);
     }
 }

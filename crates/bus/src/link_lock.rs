@@ -12,7 +12,13 @@ const HOLDER_MAX: u64 = 32;
 
 /// The lock; freed when its process ends, for whatever reason.
 #[derive(Debug)]
-pub struct LinkLock(#[expect(dead_code, reason = "the system holds the lock as long as the file is open")] File);
+pub struct LinkLock(
+    #[expect(
+        dead_code,
+        reason = "the system holds the lock as long as the file is open"
+    )]
+    File,
+);
 
 /// Why locking a link failed.
 #[derive(Debug, Error)]
@@ -41,19 +47,33 @@ impl LinkLock {
     /// # Errors
     /// [`LinkLockError::Held`] if another process holds it.
     pub fn take(link: &str) -> Result<LinkLock, LinkLockError> {
-        let failed = |source| LinkLockError::File { link: link.to_owned(), source };
+        let failed = |source| LinkLockError::File {
+            link: link.to_owned(),
+            source,
+        };
         let path = path(link).map_err(failed)?;
-        let options = OpenOptions::new().read(true).write(true).create(true).mode(0o600).clone();
+        let options = OpenOptions::new()
+            .read(true)
+            .write(true)
+            .create(true)
+            .mode(0o600)
+            .clone();
         let mut file = options.open(path).map_err(failed)?;
         // A system lock, not the existence of a file: it ends with its process, however that ends.
         match file.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => {
-                return Err(LinkLockError::Held { link: link.to_owned(), holder: read(&mut file) });
+                return Err(LinkLockError::Held {
+                    link: link.to_owned(),
+                    holder: read(&mut file),
+                });
             }
             Err(TryLockError::Error(e)) => return Err(failed(e)),
         }
-        let named = file.set_len(0).and_then(|()| file.rewind()).and_then(|()| write!(file, "{}", std::process::id()));
+        let named = file
+            .set_len(0)
+            .and_then(|()| file.rewind())
+            .and_then(|()| write!(file, "{}", std::process::id()));
         named.map_err(failed)?;
         Ok(LinkLock(file))
     }
@@ -76,11 +96,24 @@ fn read(file: &mut File) -> Option<u32> {
 
 /// The lock file of a link; a device is identified by itself, not by its path.
 fn path(link: &str) -> io::Result<PathBuf> {
-    let device = link.strip_prefix("serial://").map(|rest| rest.split('?').next().unwrap_or(rest));
-    let real = device.and_then(|device| std::fs::canonicalize(device).ok()).map(|path| path.display().to_string());
+    let device = link
+        .strip_prefix("serial://")
+        .map(|rest| rest.split('?').next().unwrap_or(rest));
+    let real = device
+        .and_then(|device| std::fs::canonicalize(device).ok())
+        .map(|path| path.display().to_string());
     let name = real.unwrap_or_else(|| link.to_owned());
-    let fit = |c: char| if c.is_ascii_alphanumeric() || matches!(c, '.' | '-') { c } else { '_' };
-    Ok(private_folder()?.join(format!("{}.link", name.chars().map(fit).take(200).collect::<String>())))
+    let fit = |c: char| {
+        if c.is_ascii_alphanumeric() || matches!(c, '.' | '-') {
+            c
+        } else {
+            '_'
+        }
+    };
+    Ok(private_folder()?.join(format!(
+        "{}.link",
+        name.chars().map(fit).take(200).collect::<String>()
+    )))
 }
 
 #[cfg(test)]
@@ -94,7 +127,12 @@ mod tests {
         let lock = LinkLock::take(&link).expect("nobody has it");
         assert_eq!(LinkLock::holder(&link), Some(std::process::id()));
         let refused = LinkLock::take(&link).expect_err("it is locked");
-        assert!(refused.to_string().contains(&format!("process {}", std::process::id())), "{refused}");
+        assert!(
+            refused
+                .to_string()
+                .contains(&format!("process {}", std::process::id())),
+            "{refused}"
+        );
         let other = LinkLock::take(&format!("{link}1")).expect("another link");
         drop(lock);
         LinkLock::take(&link).expect("it is free");

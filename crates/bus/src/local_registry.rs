@@ -57,9 +57,14 @@ fn folder() -> PathBuf {
 fn folder_in(runtime_dir: Option<OsString>) -> PathBuf {
     // A relative path would mean another folder in each working directory, and is invalid by the
     // XDG Base Directory Specification.
-    match runtime_dir.map(PathBuf::from).filter(|dir| dir.is_absolute()) {
+    match runtime_dir
+        .map(PathBuf::from)
+        .filter(|dir| dir.is_absolute())
+    {
         Some(dir) => dir.join("squall"),
-        None => std::env::temp_dir().join(format!("squall-{}", rustix::process::geteuid().as_raw())),
+        None => {
+            std::env::temp_dir().join(format!("squall-{}", rustix::process::geteuid().as_raw()))
+        }
     }
 }
 
@@ -68,7 +73,9 @@ fn is_private(folder: &Path) -> bool {
     fs::symlink_metadata(folder).is_ok_and(|about| {
         // `symlink_metadata` does not follow a link that another user put into `/tmp`. The files
         // hold tokens.
-        about.is_dir() && about.uid() == rustix::process::geteuid().as_raw() && about.mode() & 0o077 == 0
+        about.is_dir()
+            && about.uid() == rustix::process::geteuid().as_raw()
+            && about.mode() & 0o077 == 0
     })
 }
 
@@ -77,7 +84,11 @@ fn is_private(folder: &Path) -> bool {
 /// # Errors
 /// If the file cannot be written, or other users can read its folder.
 pub fn register(entry: &Entry) -> std::io::Result<Registration> {
-    register_in(&folder(), &format!("{}-{}.{GAMES}", entry.game, entry.pid), entry)
+    register_in(
+        &folder(),
+        &format!("{}-{}.{GAMES}", entry.game, entry.pid),
+        entry,
+    )
 }
 
 /// Registers a gateway.
@@ -97,15 +108,25 @@ pub(crate) fn private_folder() -> std::io::Result<PathBuf> {
 }
 
 fn make_private(folder: &Path) -> std::io::Result<()> {
-    fs::DirBuilder::new().recursive(true).mode(0o700).create(folder)?;
+    fs::DirBuilder::new()
+        .recursive(true)
+        .mode(0o700)
+        .create(folder)?;
     if !is_private(folder) {
         let problem = "is a link or accessible to other users, expected a folder of mode 700 that this user owns";
-        return Err(std::io::Error::other(format!("{} {problem}", folder.display())));
+        return Err(std::io::Error::other(format!(
+            "{} {problem}",
+            folder.display()
+        )));
     }
     Ok(())
 }
 
-fn register_in<E: Serialize>(folder: &Path, name: &str, entry: &E) -> std::io::Result<Registration> {
+fn register_in<E: Serialize>(
+    folder: &Path,
+    name: &str,
+    entry: &E,
+) -> std::io::Result<Registration> {
     make_private(folder)?;
     let registration = Registration(folder.join(name));
     registration.update(entry)?;
@@ -119,7 +140,12 @@ impl Registration {
     /// If the file cannot be written.
     pub fn update<E: Serialize>(&self, entry: &E) -> std::io::Result<()> {
         let unfinished = self.0.with_added_extension("new");
-        let mut file = fs::OpenOptions::new().write(true).create(true).truncate(true).mode(0o600).open(&unfinished)?;
+        let mut file = fs::OpenOptions::new()
+            .write(true)
+            .create(true)
+            .truncate(true)
+            .mode(0o600)
+            .open(&unfinished)?;
         file.write_all(&serde_json::to_vec(entry)?)?;
         // Renamed when complete: others read the folder at any time, and could not parse half a
         // file.
@@ -150,8 +176,14 @@ pub fn gateways() -> Vec<GatewayEntry> {
 
 fn list_in<E: DeserializeOwned>(folder: &Path, kind: &str) -> Vec<E> {
     // Other users with write access could redirect us to their own game.
-    let files = is_private(folder).then(|| fs::read_dir(folder).ok()).flatten();
-    let files = files.into_iter().flatten().flatten().map(|file| file.path());
+    let files = is_private(folder)
+        .then(|| fs::read_dir(folder).ok())
+        .flatten();
+    let files = files
+        .into_iter()
+        .flatten()
+        .flatten()
+        .map(|file| file.path());
     let files = files.filter(|path| path.extension().is_some_and(|ending| ending == kind));
     files.filter_map(|path| live_entry(&path)).collect()
 }
@@ -201,20 +233,38 @@ mod tests {
             pid: std::process::id(),
             token: None,
         };
-        let dead = GatewayEntry { pid: u32::MAX, ..gateway.clone() };
+        let dead = GatewayEntry {
+            pid: u32::MAX,
+            ..gateway.clone()
+        };
         let gateways = [("b.gateway", &gateway), ("c.gateway", &dead)];
-        let gateways = gateways.map(|(name, entry)| register_in(&dir, name, entry).expect("a folder"));
+        let gateways =
+            gateways.map(|(name, entry)| register_in(&dir, name, entry).expect("a folder"));
         let mode = fs::metadata(&registration.0).expect("a file").mode();
         assert_eq!(mode & 0o777, 0o600, "{mode:o}");
         assert_eq!(list_in::<Entry>(&dir, GAMES), std::slice::from_ref(&entry));
-        assert_eq!(list_in::<GatewayEntry>(&dir, GATEWAYS), std::slice::from_ref(&gateway), "one of two runs");
+        assert_eq!(
+            list_in::<GatewayEntry>(&dir, GATEWAYS),
+            std::slice::from_ref(&gateway),
+            "one of two runs"
+        );
         assert!(!gateways[1].0.exists(), "it is dead");
-        let renewed = GatewayEntry { token: Some("another".to_owned()), ..gateway };
+        let renewed = GatewayEntry {
+            token: Some("another".to_owned()),
+            ..gateway
+        };
         gateways[0].update(&renewed).expect("it is ours");
         assert_eq!(list_in::<GatewayEntry>(&dir, GATEWAYS), [renewed]);
         fs::set_permissions(&dir, fs::Permissions::from_mode(0o777)).expect("it is ours");
-        assert_eq!(list_in::<Entry>(&dir, GAMES), [], "anybody could have written it");
-        assert!(register_in(&dir, "a.json", &entry).is_err(), "anybody could read it");
+        assert_eq!(
+            list_in::<Entry>(&dir, GAMES),
+            [],
+            "anybody could have written it"
+        );
+        assert!(
+            register_in(&dir, "a.json", &entry).is_err(),
+            "anybody could read it"
+        );
         drop((registration, gateways));
         fs::remove_dir(&dir).expect("it is empty");
     }
@@ -228,8 +278,14 @@ mod tests {
         std::os::unix::fs::symlink(&own, &link).expect("a link");
         assert!(!is_private(&link));
         let refused = make_private(&link).expect_err("it is refused").to_string();
-        assert!(refused.contains("squall is a link or accessible to other users"), "{refused}");
-        assert_eq!(folder_in(Some("/run/user/7".into())), Path::new("/run/user/7/squall"));
+        assert!(
+            refused.contains("squall is a link or accessible to other users"),
+            "{refused}"
+        );
+        assert_eq!(
+            folder_in(Some("/run/user/7".into())),
+            Path::new("/run/user/7/squall")
+        );
         for given in [Some("".into()), Some("run".into()), None] {
             assert!(folder_in(given).starts_with(std::env::temp_dir()));
         }

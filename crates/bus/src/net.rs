@@ -23,8 +23,14 @@ pub const DEFAULT_PORT: u16 = 7447;
 const LINKS: [(&str, &str); 5] = [
     // zenoh would wait a millisecond for a free slot before it drops. It waits in a thread that
     // serves all nodes: one stopped observer would slow down all.
-    ("transport/link/tx/queue/congestion_control/drop/wait_before_drop", "0"),
-    ("transport/link/tx/queue/congestion_control/block/wait_before_close", "100000"),
+    (
+        "transport/link/tx/queue/congestion_control/drop/wait_before_drop",
+        "0",
+    ),
+    (
+        "transport/link/tx/queue/congestion_control/block/wait_before_close",
+        "100000",
+    ),
     ("transport/link/tx/queue/size/real_time", "16"),
     ("transport/link/tx/queue/size/data_low", "16"),
     ("transport/link/rx/max_message_size", "16777216"),
@@ -34,7 +40,11 @@ const LINKS: [(&str, &str); 5] = [
 /// their outgoing link. An answer has the settings of its query, and only the queue of this
 /// priority has room for the longest answers: a scenario with a network has 216 kB.
 fn qos(game: &GameName) -> String {
-    let long = [topic::scenario(game), topic::events(game), topic::water(game)];
+    let long = [
+        topic::scenario(game),
+        topic::events(game),
+        topic::water(game),
+    ];
     json!([
         { "messages": ["put", "delete", "query"], "flows": ["ingress"], "overwrite": { "congestion_control": "drop" } },
         { "messages": ["query"], "flows": ["ingress"], "key_exprs": long, "overwrite": { "priority": "data_low" } },
@@ -81,24 +91,51 @@ impl Net {
     /// The endpoint at which nodes on the same machine reach this hub.
     pub fn local_endpoint(&self) -> Option<String> {
         let first = self.endpoints(&self.listen).into_iter().next()?;
-        Some(first.replace("/0.0.0.0:", "/127.0.0.1:").replace("/[::]:", "/[::1]:"))
+        Some(
+            first
+                .replace("/0.0.0.0:", "/127.0.0.1:")
+                .replace("/[::]:", "/[::1]:"),
+        )
     }
 
     /// The zenoh configuration of a game's hub for at most `nodes` nodes.
-    pub(crate) fn hub(&self, game: &GameName, scenario: &Scenario, nodes: usize) -> Result<Config, BusError> {
-        if let Some(keys) = self.keys.as_ref().filter(|keys| keys.identity != Identity::Sim) {
-            let reason = format!("a sim needs the keys of sim, not those of {}", keys.identity);
-            return Err(BusError::Keys(format!("{}: {reason}", keys.folder.display())));
+    pub(crate) fn hub(
+        &self,
+        game: &GameName,
+        scenario: &Scenario,
+        nodes: usize,
+    ) -> Result<Config, BusError> {
+        if let Some(keys) = self
+            .keys
+            .as_ref()
+            .filter(|keys| keys.identity != Identity::Sim)
+        {
+            let reason = format!(
+                "a sim needs the keys of sim, not those of {}",
+                keys.identity
+            );
+            return Err(BusError::Keys(format!(
+                "{}: {reason}",
+                keys.folder.display()
+            )));
         }
         let mut config = self.base()?;
         // A file with its own rules takes precedence.
         if config.get_json("access_control/enabled").ok().as_deref() != Some("true") {
-            set(&mut config, "access_control", &access::control(game, scenario, self.keys.is_some()).to_string())?;
+            set(
+                &mut config,
+                "access_control",
+                &access::control(game, scenario, self.keys.is_some()).to_string(),
+            )?;
         }
         // A star, not a mesh: in lockstep all nodes talk to the sim only, and a client needs no
         // open port.
         set(&mut config, "mode", "\"router\"")?;
-        let listen: Vec<String> = self.endpoints(&self.listen).into_iter().map(with_handshake_time).collect();
+        let listen: Vec<String> = self
+            .endpoints(&self.listen)
+            .into_iter()
+            .map(with_handshake_time)
+            .collect();
         set(&mut config, "listen/endpoints", &json!(listen).to_string())?;
         set(&mut config, "connect/endpoints", &self.list(&self.connect))?;
         // Our messages carry simulated time; a hybrid clock in every sample would only add cost.
@@ -112,9 +149,16 @@ impl Net {
 
     /// The zenoh configuration of a leaf. It keeps trying to connect, and reconnects after a cut.
     pub(crate) fn leaf(&self) -> Result<Config, BusError> {
-        if let Some(keys) = self.keys.as_ref().filter(|keys| keys.identity == Identity::Sim) {
+        if let Some(keys) = self
+            .keys
+            .as_ref()
+            .filter(|keys| keys.identity == Identity::Sim)
+        {
             let reason = "the keys of sim only serve games: use those of a team, a gateway, an observer or an operator";
-            return Err(BusError::Keys(format!("{}: {reason}", keys.folder.display())));
+            return Err(BusError::Keys(format!(
+                "{}: {reason}",
+                keys.folder.display()
+            )));
         }
         let mut config = self.base()?;
         set(&mut config, "mode", "\"client\"")?;
@@ -131,15 +175,23 @@ impl Net {
         let mut config = match &self.config_file {
             None => Config::default(),
             Some(path) => {
-                let refused = |reason| BusError::Open { what: path.display().to_string(), reason };
+                let refused = |reason| BusError::Open {
+                    what: path.display().to_string(),
+                    reason,
+                };
                 // The library would read any file, whatever its type and size.
-                primitives::input_file::read(path, CONFIG_MAX).map_err(|e| refused(e.to_string()))?;
+                primitives::input_file::read(path, CONFIG_MAX)
+                    .map_err(|e| refused(e.to_string()))?;
                 Config::from_file(path).map_err(|e| refused(reason(&e)))?
             }
         };
         // Two runs on one machine must never meet, and no node may join by accident: zenoh's
         // defaults allow both.
-        set(&mut config, "scouting/multicast/enabled", if self.lan { "true" } else { "false" })?;
+        set(
+            &mut config,
+            "scouting/multicast/enabled",
+            if self.lan { "true" } else { "false" },
+        )?;
         set(&mut config, "scouting/gossip/enabled", "false")?;
         for (key, value) in LINKS {
             set(&mut config, key, value)?;
@@ -157,7 +209,11 @@ impl Net {
             });
             set(&mut config, "transport/link/tls", &tls.to_string())?;
             // Endpoints learnt from other nodes must use TLS too.
-            set(&mut config, "transport/link/protocols", r#"["tls", "quic"]"#)?;
+            set(
+                &mut config,
+                "transport/link/protocols",
+                r#"["tls", "quic"]"#,
+            )?;
         }
         Ok(config)
     }
@@ -167,8 +223,12 @@ impl Net {
     pub(crate) fn endpoints(&self, endpoints: &[String]) -> Vec<String> {
         let zenoh_form = |endpoint: &String| match (endpoint.split_once('/'), self.keys.is_some()) {
             (Some(("tcp", address)), true) => format!("tls/{address}"),
-            (Some(("quic", address)), true) if !address.contains('?') => format!("quic/{address}?mixed_rel=1"),
-            (Some(("quic", address)), false) if !address.contains('?') => format!("udp/{address}?rel=1;mixed_rel=1"),
+            (Some(("quic", address)), true) if !address.contains('?') => {
+                format!("quic/{address}?mixed_rel=1")
+            }
+            (Some(("quic", address)), false) if !address.contains('?') => {
+                format!("udp/{address}?rel=1;mixed_rel=1")
+            }
             _ => endpoint.clone(),
         };
         endpoints.iter().map(zenoh_form).collect()
@@ -176,7 +236,10 @@ impl Net {
 
     /// The ports on which this node listens.
     pub(crate) fn ports(&self) -> Vec<u16> {
-        self.listen.iter().filter_map(|endpoint| address(endpoint).rsplit(':').next()?.parse().ok()).collect()
+        self.listen
+            .iter()
+            .filter_map(|endpoint| address(endpoint).rsplit(':').next()?.parse().ok())
+            .collect()
     }
 
     fn list(&self, endpoints: &[String]) -> String {
@@ -205,14 +268,20 @@ pub(crate) fn nodes_max(files: OpenFiles) -> usize {
 fn limit_strangers(config: &mut Config, game: &GameName, nodes: usize) -> Result<(), BusError> {
     let all = topic::matching(game, "**");
     let smaller = |messages: &[&str], size: usize| json!({ "messages": messages, "flows": ["ingress"], "key_exprs": [&all], "size_limit": size });
-    let filters = json!([smaller(&["put", "delete"], PUBLISHED_MAX), smaller(&["query"], QUESTION_MAX)]);
+    let filters = json!([
+        smaller(&["put", "delete"], PUBLISHED_MAX),
+        smaller(&["query"], QUESTION_MAX)
+    ]);
     for (key, value) in [
         ("transport/unicast/max_sessions", nodes.to_string()),
         // zenoh would refuse the newcomer; `crate::admission` ends another connection first.
         ("transport/unicast/accept_pending", (2 * nodes).to_string()),
         ("transport/unicast/accept_timeout", ACCEPT_MS.to_string()),
         // Smaller than a leaf's: each link keeps the fragments of a message until it is complete.
-        ("transport/link/rx/max_message_size", MESSAGE_MAX.to_string()),
+        (
+            "transport/link/rx/max_message_size",
+            MESSAGE_MAX.to_string(),
+        ),
         ("low_pass_filter", filters.to_string()),
     ] {
         set(config, key, &value)?;
@@ -221,16 +290,20 @@ fn limit_strangers(config: &mut Config, game: &GameName, nodes: usize) -> Result
 }
 
 fn set(config: &mut Config, key: &str, value: &str) -> Result<(), BusError> {
-    config.insert_json5(key, value).map_err(|e| BusError::Setting {
-        key: key.to_owned(),
-        value: value.to_owned(),
-        reason: reason(&e),
-    })
+    config
+        .insert_json5(key, value)
+        .map_err(|e| BusError::Setting {
+            key: key.to_owned(),
+            value: value.to_owned(),
+            reason: reason(&e),
+        })
 }
 
 /// Host and port of an endpoint, for example `127.0.0.1:7447` of `tcp/127.0.0.1:7447#iface=lo`.
 pub(crate) fn address(endpoint: &str) -> &str {
-    let address = endpoint.split_once('/').map_or(endpoint, |(_, address)| address);
+    let address = endpoint
+        .split_once('/')
+        .map_or(endpoint, |(_, address)| address);
     address.split(['?', '#']).next().unwrap_or(address)
 }
 
@@ -239,7 +312,9 @@ pub fn is_loopback(endpoint: &str) -> bool {
     let address = address(endpoint);
     match address.parse::<SocketAddr>() {
         Ok(address) => address.ip().is_loopback(),
-        Err(_) => address.rsplit_once(':').is_some_and(|(host, _)| host == "localhost"),
+        Err(_) => address
+            .rsplit_once(':')
+            .is_some_and(|(host, _)| host == "localhost"),
     }
 }
 
@@ -262,12 +337,18 @@ const FREE_PORTS: std::ops::Range<u16> = 20_000..32_768;
 /// # Errors
 /// If none of the ports tried is free.
 pub fn free_port(prefer_default: bool) -> std::io::Result<u16> {
-    let is_free = |port: u16| TcpListener::bind(("127.0.0.1", port)).and_then(|listener| listener.local_addr());
+    let is_free = |port: u16| {
+        TcpListener::bind(("127.0.0.1", port)).and_then(|listener| listener.local_addr())
+    };
     if prefer_default && let Ok(free) = is_free(DEFAULT_PORT) {
         return Ok(free.port());
     }
-    let any = || FREE_PORTS.start + u16::from_le_bytes(random_bytes()) % (FREE_PORTS.end - FREE_PORTS.start);
-    let free = (0..100).find_map(|_| is_free(any()).ok()).map_or_else(|| is_free(0), Ok)?;
+    let any = || {
+        FREE_PORTS.start + u16::from_le_bytes(random_bytes()) % (FREE_PORTS.end - FREE_PORTS.start)
+    };
+    let free = (0..100)
+        .find_map(|_| is_free(any()).ok())
+        .map_or_else(|| is_free(0), Ok)?;
     Ok(free.port())
 }
 
@@ -297,13 +378,25 @@ mod tests {
 
     #[test]
     fn places_are_compared_by_host_and_port() {
-        for other in ["tcp/localhost:7447", "tcp/[::1]:7447", "quic/127.0.0.1:7447", "udp/127.0.0.1:7447?rel=1"] {
+        for other in [
+            "tcp/localhost:7447",
+            "tcp/[::1]:7447",
+            "quic/127.0.0.1:7447",
+            "udp/127.0.0.1:7447?rel=1",
+        ] {
             assert!(is_same_place("tcp/127.0.0.1:7447", other), "{other}");
         }
-        for other in ["tcp/127.0.0.1:7448", "tcp/192.168.1.5:7447", "tcp/localhost"] {
+        for other in [
+            "tcp/127.0.0.1:7448",
+            "tcp/192.168.1.5:7447",
+            "tcp/localhost",
+        ] {
             assert!(!is_same_place("tcp/127.0.0.1:7447", other), "{other}");
         }
-        assert!(is_same_place("tcp/boat.local:7447", "quic/boat.local:7447#iface=wlan0"));
+        assert!(is_same_place(
+            "tcp/boat.local:7447",
+            "quic/boat.local:7447#iface=wlan0"
+        ));
     }
 
     /// A client whose own port is its target port connects to itself, and blocks the port for
@@ -312,7 +405,10 @@ mod tests {
     fn who_retries_to_reach_a_free_port_does_not_take_it() {
         let port = free_port(false).unwrap();
         let retries = 2 * usize::from(u16::MAX);
-        assert!((0..retries).all(|_| std::net::TcpStream::connect(("127.0.0.1", port)).is_err()), "{port}");
+        assert!(
+            (0..retries).all(|_| std::net::TcpStream::connect(("127.0.0.1", port)).is_err()),
+            "{port}"
+        );
         TcpListener::bind(("127.0.0.1", port)).unwrap();
     }
 }

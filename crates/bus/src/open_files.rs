@@ -19,14 +19,25 @@ impl OpenFiles {
     /// Raises the limit to `wanted` files, or as far as the system permits, and reserves some.
     pub(crate) fn reserve(wanted: u64) -> OpenFiles {
         let limits = getrlimit(Resource::Nofile);
-        let [current, maximum] = [limits.current, limits.maximum].map(|limit| limit.unwrap_or(u64::MAX));
+        let [current, maximum] =
+            [limits.current, limits.maximum].map(|limit| limit.unwrap_or(u64::MAX));
         // The limit is lowered by the reserve, so that the system itself refuses files: zenoh's
         // `accept` cannot be told to leave some.
         let kept = KEPT.min(maximum / 8);
         let most = maximum.min(current.max(wanted).saturating_add(kept));
-        let files = OpenFiles { usual: most - kept, most };
+        let files = OpenFiles {
+            usual: most - kept,
+            most,
+        };
         // If the system refuses, the limits stay unchanged.
-        if set(files.usual) { files } else { OpenFiles { usual: current, most: current } }
+        if set(files.usual) {
+            files
+        } else {
+            OpenFiles {
+                usual: current,
+                most: current,
+            }
+        }
     }
 
     /// The number of reserved files.
@@ -42,7 +53,14 @@ impl OpenFiles {
 
 fn set(current: u64) -> bool {
     let maximum = getrlimit(Resource::Nofile).maximum;
-    setrlimit(Resource::Nofile, Rlimit { current: Some(current), maximum }).is_ok()
+    setrlimit(
+        Resource::Nofile,
+        Rlimit {
+            current: Some(current),
+            maximum,
+        },
+    )
+    .is_ok()
 }
 
 #[cfg(test)]

@@ -25,33 +25,44 @@ pub struct Parcel {
 impl Parcel {
     /// A parcel without nonce or seal.
     pub fn new(bytes: Vec<u8>) -> Parcel {
-        Parcel { bytes, attachment: Vec::new() }
+        Parcel {
+            bytes,
+            attachment: Vec::new(),
+        }
     }
 
     /// The parcel in a message that zenoh has received.
     pub(crate) fn of(bytes: Option<&ZBytes>, attachment: Option<&ZBytes>) -> Parcel {
-        let [bytes, attachment] =
-            [bytes, attachment].map(|part| part.map(|part| part.to_bytes().into_owned()).unwrap_or_default());
+        let [bytes, attachment] = [bytes, attachment].map(|part| {
+            part.map(|part| part.to_bytes().into_owned())
+                .unwrap_or_default()
+        });
         Parcel { bytes, attachment }
     }
 
     /// A query whose answers must be sealed.
     pub(crate) fn question(bytes: Vec<u8>) -> Parcel {
         // 128 bits: no two queries ever share a nonce, so a recorded answer fits no later query.
-        Parcel { bytes, attachment: random_bytes::<16>().to_vec() }
+        Parcel {
+            bytes,
+            attachment: random_bytes::<16>().to_vec(),
+        }
     }
 
     /// The answer to this query at `key`, sealed if the node knows a token.
     pub(crate) fn answer(&self, key: &str, bytes: Vec<u8>, token: Option<&Token>) -> Parcel {
         // A query without a nonce is from a node without the token, which could not verify a seal.
         let token = token.filter(|_| !self.attachment.is_empty());
-        let attachment = token.map(|token| token.hmac(&self.sealed(key, &bytes))).unwrap_or_default();
+        let attachment = token
+            .map(|token| token.hmac(&self.sealed(key, &bytes)))
+            .unwrap_or_default();
         Parcel { bytes, attachment }
     }
 
     /// Whether `answer` was made for this query at `key` by a node that knows `token`.
     pub(crate) fn is_answered_by(&self, key: &str, answer: &Parcel, token: &Token) -> bool {
-        !self.attachment.is_empty() && token.verifies(&self.sealed(key, &answer.bytes), &answer.attachment)
+        !self.attachment.is_empty()
+            && token.verifies(&self.sealed(key, &answer.bytes), &answer.attachment)
     }
 
     fn sealed<'a>(&'a self, key: &'a str, answer: &'a [u8]) -> [&'a [u8]; 5] {
@@ -71,14 +82,45 @@ mod tests {
         let question = Parcel::question(b"status".to_vec());
         let answer = question.answer(KEY, b"armed".to_vec(), Some(&token));
         assert!(question.is_answered_by(KEY, &answer, &token));
-        let another_answer = Parcel { bytes: b"disarmed".to_vec(), ..answer.clone() };
+        let another_answer = Parcel {
+            bytes: b"disarmed".to_vec(),
+            ..answer.clone()
+        };
         for (what, key, question, answer) in [
             ("another answer", KEY, &question, &another_answer),
-            ("another key", "squall/pond/operate/red_one", &question, &answer),
-            ("another nonce", KEY, &Parcel::question(b"status".to_vec()), &answer),
-            ("another question", KEY, &Parcel { bytes: b"arm".to_vec(), ..question.clone() }, &answer),
-            ("another token", KEY, &question, &question.answer(KEY, b"armed".to_vec(), Some(&Token::random()))),
-            ("no token", KEY, &question, &question.answer(KEY, b"armed".to_vec(), None)),
+            (
+                "another key",
+                "squall/pond/operate/red_one",
+                &question,
+                &answer,
+            ),
+            (
+                "another nonce",
+                KEY,
+                &Parcel::question(b"status".to_vec()),
+                &answer,
+            ),
+            (
+                "another question",
+                KEY,
+                &Parcel {
+                    bytes: b"arm".to_vec(),
+                    ..question.clone()
+                },
+                &answer,
+            ),
+            (
+                "another token",
+                KEY,
+                &question,
+                &question.answer(KEY, b"armed".to_vec(), Some(&Token::random())),
+            ),
+            (
+                "no token",
+                KEY,
+                &question,
+                &question.answer(KEY, b"armed".to_vec(), None),
+            ),
             ("no nonce", KEY, &Parcel::new(b"status".to_vec()), &answer),
         ] {
             assert!(!question.is_answered_by(key, answer, &token), "{what}");

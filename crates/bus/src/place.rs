@@ -23,8 +23,13 @@ pub type PlacedSession = Option<(Net, Bus)>;
 
 impl Place {
     /// A place that `find` looks up; its errors are permanent.
-    pub fn new(find: impl Fn(Option<&GameName>) -> Result<Net, String> + Send + Sync + 'static) -> Place {
-        Place { find: Arc::new(find), token: CurrentToken::default() }
+    pub fn new(
+        find: impl Fn(Option<&GameName>) -> Result<Net, String> + Send + Sync + 'static,
+    ) -> Place {
+        Place {
+            find: Arc::new(find),
+            token: CurrentToken::default(),
+        }
     }
 
     /// The current place of the game, and its token if known.
@@ -41,7 +46,11 @@ impl Place {
     }
 
     /// A session at the place of a game; reuses the previous one if it leads there.
-    pub(crate) fn session(&self, game: Option<&GameName>, session: &mut PlacedSession) -> Result<Bus, Missing> {
+    pub(crate) fn session(
+        &self,
+        game: Option<&GameName>,
+        session: &mut PlacedSession,
+    ) -> Result<Bus, Missing> {
         let net = self.net(game)?;
         match session {
             // Opening a session costs five round trips: it is kept while it leads to the same

@@ -26,7 +26,13 @@ impl Bus {
         receive: impl Fn(Query) + Send + Sync + 'static,
     ) -> Result<Declaration, BusError> {
         let token = self.token.clone();
-        let receive = move |question, asker| receive(Query { asker, question, token: token.clone() });
+        let receive = move |question, asker| {
+            receive(Query {
+                asker,
+                question,
+                token: token.clone(),
+            })
+        };
         self.session.answer(key, Box::new(receive))
     }
 
@@ -35,8 +41,19 @@ impl Bus {
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.
-    pub fn ask(&self, key: &str, payload: Vec<u8>, limit: Duration) -> Result<Option<Vec<u8>>, BusError> {
-        self.session.ask(Priority::Normal, key, Parcel::new(payload), limit, &mut |_| true)
+    pub fn ask(
+        &self,
+        key: &str,
+        payload: Vec<u8>,
+        limit: Duration,
+    ) -> Result<Option<Vec<u8>>, BusError> {
+        self.session.ask(
+            Priority::Normal,
+            key,
+            Parcel::new(payload),
+            limit,
+            &mut |_| true,
+        )
     }
 
     /// Like [`Bus::ask`], at a key where other nodes answer. In a game without keys any node may
@@ -44,7 +61,12 @@ impl Bus {
     ///
     /// # Errors
     /// [`BusError`] if the session is closed, or if only nodes without the token have answered.
-    pub fn ask_node(&self, key: &str, payload: Vec<u8>, limit: Duration) -> Result<Option<Vec<u8>>, BusError> {
+    pub fn ask_node(
+        &self,
+        key: &str,
+        payload: Vec<u8>,
+        limit: Duration,
+    ) -> Result<Option<Vec<u8>>, BusError> {
         self.ask_node_at(Priority::Normal, key, payload, limit)
     }
 
@@ -57,7 +79,9 @@ impl Bus {
     ) -> Result<Option<Vec<u8>>, BusError> {
         // With keys, access control lets no other node answer.
         let Some(token) = self.token.as_ref().filter(|_| self.keys.is_none()) else {
-            return self.session.ask(priority, key, Parcel::new(payload), limit, &mut |_| true);
+            return self
+                .session
+                .ask(priority, key, Parcel::new(payload), limit, &mut |_| true);
         };
         // Any node may declare that it answers for a boat's gateway, and zenoh routes a query to
         // the first that claims completeness: a stranger could swallow an E-stop and answer
@@ -65,12 +89,20 @@ impl Bus {
         // have made each command depend on the sim's loop.
         let question = Parcel::question(payload);
         let mut refused = false;
-        let answer = self.session.ask(priority, key, question.clone(), limit, &mut |answer| {
-            let is_sealed = question.is_answered_by(key, answer, token);
-            refused |= !is_sealed;
-            is_sealed
-        })?;
-        if answer.is_none() && refused { Err(BusError::Unsealed { key: key.to_owned() }) } else { Ok(answer) }
+        let answer = self
+            .session
+            .ask(priority, key, question.clone(), limit, &mut |answer| {
+                let is_sealed = question.is_answered_by(key, answer, token);
+                refused |= !is_sealed;
+                is_sealed
+            })?;
+        if answer.is_none() && refused {
+            Err(BusError::Unsealed {
+                key: key.to_owned(),
+            })
+        } else {
+            Ok(answer)
+        }
     }
 
     /// Sends a request to the sim at `key` that may need the game's token, and proves knowledge of
@@ -87,7 +119,15 @@ impl Bus {
         limit: Duration,
     ) -> Result<Option<T>, BusError> {
         self.check_may_ask(key)?;
-        let ask = |payload| self.session.ask(Priority::Urgent, key, Parcel::new(payload), limit, &mut |_| true);
+        let ask = |payload| {
+            self.session.ask(
+                Priority::Urgent,
+                key,
+                Parcel::new(payload),
+                limit,
+                &mut |_| true,
+            )
+        };
         token::request(self.token.as_ref(), key, body, ask)
     }
 
@@ -113,9 +153,9 @@ impl Bus {
 
     fn check_may_ask(&self, key: &str) -> Result<(), BusError> {
         match self.keys.as_ref().map(|keys| &keys.identity) {
-            Some(identity) if !access::may_ask(identity, key) => {
-                Err(BusError::NotAllowed { identity: identity.clone() })
-            }
+            Some(identity) if !access::may_ask(identity, key) => Err(BusError::NotAllowed {
+                identity: identity.clone(),
+            }),
             _ => Ok(()),
         }
     }

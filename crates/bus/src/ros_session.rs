@@ -33,20 +33,33 @@ impl RosSession {
     /// program, or if it is a Squall game.
     pub fn open(endpoint: &str) -> Result<RosSession, BusError> {
         let what = format!("of ROS 2 at {endpoint}");
-        let net = Net { connect: vec![endpoint.to_owned()], ..Net::default() };
+        let net = Net {
+            connect: vec![endpoint.to_owned()],
+            ..Net::default()
+        };
         match open(net.leaf()?, what.clone()) {
             Ok(session) => {
-                if session.who_is_alive(&topic::everyone_alive(), LOOK)?.is_empty() {
-                    return Ok(RosSession { session, is_router: false });
+                if session
+                    .who_is_alive(&topic::everyone_alive(), LOOK)?
+                    .is_empty()
+                {
+                    return Ok(RosSession {
+                        session,
+                        is_router: false,
+                    });
                 }
                 session.close();
                 let reason = "a Squall game listens there: start the game with another --listen, or pass --router";
-                Err(BusError::Open { what, reason: reason.to_owned() })
+                Err(BusError::Open {
+                    what,
+                    reason: reason.to_owned(),
+                })
             }
             // A mesh of ROS 2 nodes needs one known router to find each other.
-            Err(_) if is_loopback(endpoint) => {
-                Ok(RosSession { session: open(net.ros_router(endpoint)?, what)?, is_router: true })
-            }
+            Err(_) if is_loopback(endpoint) => Ok(RosSession {
+                session: open(net.ros_router(endpoint)?, what)?,
+                is_router: true,
+            }),
             Err(error) => Err(error),
         }
     }
@@ -56,7 +69,9 @@ impl RosSession {
     /// # Errors
     /// [`BusError`] if the session is closed.
     pub fn publisher(&self, key: String) -> Result<RosPublisher, BusError> {
-        self.session.sender(key, Priority::Normal, Delivery::Reliable).map(RosPublisher)
+        self.session
+            .sender(key, Priority::Normal, Delivery::Reliable)
+            .map(RosPublisher)
     }
 
     /// Calls `receive` with every request to the service at `key`, and the handle that answers it.
@@ -69,11 +84,22 @@ impl RosSession {
         receive: impl Fn(Parcel, Box<dyn PendingQuery>) + Send + Sync + 'static,
     ) -> Result<Declaration, BusError> {
         let callback = move |query: zenoh::query::Query| {
-            receive(Parcel::of(query.payload(), query.attachment()), Box::new(query));
+            receive(
+                Parcel::of(query.payload(), query.attachment()),
+                Box::new(query),
+            );
         };
         // Clients of ROS 2 ask only queryables that are complete.
-        let queryable = self.session.0.declare_queryable(key.clone()).complete(true).callback(callback).wait();
-        queryable.map(Declaration::new).map_err(failed("answer at", &key))
+        let queryable = self
+            .session
+            .0
+            .declare_queryable(key.clone())
+            .complete(true)
+            .callback(callback)
+            .wait();
+        queryable
+            .map(Declaration::new)
+            .map_err(failed("answer at", &key))
     }
 }
 
@@ -111,11 +137,13 @@ impl Net {
             // By gossip, nodes learn each other's addresses from the router.
             ("scouting/gossip/enabled", "true".to_owned()),
         ] {
-            config.insert_json5(key, &value).map_err(|e| BusError::Setting {
-                key: key.to_owned(),
-                value,
-                reason: reason(&e),
-            })?;
+            config
+                .insert_json5(key, &value)
+                .map_err(|e| BusError::Setting {
+                    key: key.to_owned(),
+                    value,
+                    reason: reason(&e),
+                })?;
         }
         Ok(config)
     }

@@ -33,7 +33,11 @@ pub trait Runtime: Send + Sync {
     ///
     /// # Errors
     /// If the system cannot start a thread.
-    fn spawn(&self, name: &str, body: Box<dyn FnOnce() + Send>) -> io::Result<Option<JoinHandle<()>>>;
+    fn spawn(
+        &self,
+        name: &str,
+        body: Box<dyn FnOnce() + Send>,
+    ) -> io::Result<Option<JoinHandle<()>>>;
 
     /// Signals that the value at `address` has changed.
     fn notify(&self, address: usize);
@@ -50,7 +54,12 @@ pub trait Runtime: Send + Sync {
     ///
     /// # Errors
     /// [`BusError`] if it cannot listen at its endpoints.
-    fn open_hub(&self, net: &Net, game: &GameName, scenario: &Scenario) -> Result<Arc<dyn Session>, BusError>;
+    fn open_hub(
+        &self,
+        net: &Net,
+        game: &GameName,
+        scenario: &Scenario,
+    ) -> Result<Arc<dyn Session>, BusError>;
 
     /// Opens a session connected to a hub.
     ///
@@ -94,7 +103,10 @@ pub fn replace_runtime(runtime: &'static dyn Runtime) {
 pub struct System;
 
 impl Runtime for System {
-    #[expect(clippy::disallowed_methods, reason = "the one place where nodes read the clock")]
+    #[expect(
+        clippy::disallowed_methods,
+        reason = "the one place where nodes read the clock"
+    )]
     fn now(&self) -> Instant {
         Instant::now()
     }
@@ -114,7 +126,10 @@ impl Runtime for System {
         Duration::ZERO
     }
 
-    #[expect(clippy::disallowed_methods, reason = "the one place where nodes wait for time to pass")]
+    #[expect(
+        clippy::disallowed_methods,
+        reason = "the one place where nodes wait for time to pass"
+    )]
     fn sleep(&self, time: Duration) {
         std::thread::sleep(time);
     }
@@ -123,8 +138,15 @@ impl Runtime for System {
         getrandom::fill(bytes).expect("the operating system has randomness");
     }
 
-    fn spawn(&self, name: &str, body: Box<dyn FnOnce() + Send>) -> io::Result<Option<JoinHandle<()>>> {
-        std::thread::Builder::new().name(name.to_owned()).spawn(body).map(Some)
+    fn spawn(
+        &self,
+        name: &str,
+        body: Box<dyn FnOnce() + Send>,
+    ) -> io::Result<Option<JoinHandle<()>>> {
+        std::thread::Builder::new()
+            .name(name.to_owned())
+            .spawn(body)
+            .map(Some)
     }
 
     fn notify(&self, _: usize) {}
@@ -137,7 +159,12 @@ impl Runtime for System {
         true
     }
 
-    fn open_hub(&self, net: &Net, game: &GameName, scenario: &Scenario) -> Result<Arc<dyn Session>, BusError> {
+    fn open_hub(
+        &self,
+        net: &Net,
+        game: &GameName,
+        scenario: &Scenario,
+    ) -> Result<Arc<dyn Session>, BusError> {
         Ok(Arc::new(ZenohSession::hub(net, game, scenario)?))
     }
 

@@ -48,11 +48,21 @@ pub trait Session: Send + Sync {
     fn id(&self) -> String;
 
     /// Prepares to publish on `key`.
-    fn publisher(&self, key: String, priority: Priority, delivery: Delivery) -> Result<Box<dyn Sender>, BusError>;
+    fn publisher(
+        &self,
+        key: String,
+        priority: Priority,
+        delivery: Delivery,
+    ) -> Result<Box<dyn Sender>, BusError>;
 
     /// Calls `receive` with every message published on `key`; with `hears_own`, including this
     /// session's own.
-    fn subscribe(&self, key: String, hears_own: bool, receive: OnBytes) -> Result<Declaration, BusError>;
+    fn subscribe(
+        &self,
+        key: String,
+        hears_own: bool,
+        receive: OnBytes,
+    ) -> Result<Declaration, BusError>;
 
     /// Calls `receive` with every query at `key`.
     fn answer(&self, key: String, receive: OnQuery) -> Result<Declaration, BusError>;
@@ -108,5 +118,6 @@ pub trait PendingQuery: Send + Sync {
 /// Whether two key expressions intersect.
 pub fn keys_meet(one: &str, other: &str) -> bool {
     use zenoh::key_expr::keyexpr;
-    one == other || matches!((keyexpr::new(one), keyexpr::new(other)), (Ok(one), Ok(other)) if one.intersects(other))
+    one == other
+        || matches!((keyexpr::new(one), keyexpr::new(other)), (Ok(one), Ok(other)) if one.intersects(other))
 }

@@ -25,7 +25,11 @@ impl Patience {
     /// The patience of nodes that play in the game: `silence` for a silent sim, and five seconds
     /// for one that was heard until its token went.
     pub fn of_player(silence: Duration) -> Patience {
-        Patience { silence, missing: Duration::from_secs(5), unheard: silence }
+        Patience {
+            silence,
+            missing: Duration::from_secs(5),
+            unheard: silence,
+        }
     }
 }
 
@@ -61,7 +65,15 @@ impl SimLiveness {
     fn new(patience: Patience, now: Instant) -> SimLiveness {
         let ours = None;
         let tokens = BTreeSet::new();
-        SimLiveness { patience, heard_at: now, is_heard: false, missed_at: None, ours, tokens, is_replaced: false }
+        SimLiveness {
+            patience,
+            heard_at: now,
+            is_heard: false,
+            missed_at: None,
+            ours,
+            tokens,
+            is_replaced: false,
+        }
     }
 
     fn hear(&mut self, now: Instant) {
@@ -98,19 +110,32 @@ impl SimLiveness {
         if !self.is_heard && self.is_there() == Some(true) {
             self.heard_at = now;
         }
-        self.missed_at = if self.is_there() == Some(false) { self.missed_at.or(Some(now)) } else { None };
-        let Patience { silence, missing, unheard } = self.patience;
+        self.missed_at = if self.is_there() == Some(false) {
+            self.missed_at.or(Some(now))
+        } else {
+            None
+        };
+        let Patience {
+            silence,
+            missing,
+            unheard,
+        } = self.patience;
         // The order decides. A dying sim is heard until its token goes. If the link is cut, silence
         // comes first and zenoh drops the link after 10 s; an agent that left then would be missing
         // after the cable is back.
-        let is_cut_off = |missed: Instant| missed.saturating_duration_since(self.heard_at) > missing;
+        let is_cut_off =
+            |missed: Instant| missed.saturating_duration_since(self.heard_at) > missing;
         let limit = match self.missed_at {
             Some(_) if !self.is_heard => silence.min(unheard),
             Some(missed) if !is_cut_off(missed) => silence.min(missing),
             Some(_) | None => silence,
         };
         let silent = now.saturating_duration_since(self.heard_at);
-        if silent > limit { SimState::Dead(silent) } else { SimState::Alive }
+        if silent > limit {
+            SimState::Dead(silent)
+        } else {
+            SimState::Alive
+        }
     }
 }
 
@@ -128,9 +153,14 @@ impl SimWatch {
     pub fn open(bus: &Bus, game: &GameName, patience: Patience) -> Result<SimWatch, BusError> {
         let liveness = Arc::new(Watched::new(SimLiveness::new(patience, clock::now())));
         let told = Arc::clone(&liveness);
-        let take = move |key: &str, is_there: bool| told.visit(|liveness| liveness.take_token(key, is_there));
+        let take = move |key: &str, is_there: bool| {
+            told.visit(|liveness| liveness.take_token(key, is_there))
+        };
         let tokens = bus.watch_alive(topic::all_alive(game), take)?;
-        Ok(SimWatch { liveness, _tokens: tokens })
+        Ok(SimWatch {
+            liveness,
+            _tokens: tokens,
+        })
     }
 
     /// Records that the sim was heard just now.
@@ -145,13 +175,17 @@ impl SimWatch {
 
     /// Waits up to `limit` for a sim and uses it from then on. Returns whether one is present.
     pub fn find(&self, limit: Duration) -> bool {
-        self.liveness.wait(limit, |liveness| !liveness.tokens.is_empty()) && self.liveness.visit(SimLiveness::choose)
+        self.liveness
+            .wait(limit, |liveness| !liveness.tokens.is_empty())
+            && self.liveness.visit(SimLiveness::choose)
     }
 
     /// Waits up to `limit` until our sim has lost its token or another one has appeared. Returns
     /// whether either happened.
     pub fn is_lost(&self, limit: Duration) -> bool {
-        self.liveness.wait(limit, |liveness| liveness.is_replaced || liveness.is_there() != Some(true))
+        self.liveness.wait(limit, |liveness| {
+            liveness.is_replaced || liveness.is_there() != Some(true)
+        })
     }
 }
 
@@ -163,7 +197,11 @@ mod tests {
 
     /// Simulates seconds from the start: whether the sim is heard, and whether its token is
     /// present. Returns the second at which it counts as dead.
-    fn died(silence_s: u64, is_heard: impl Fn(u64) -> bool, is_there: impl Fn(u64) -> bool) -> Option<u64> {
+    fn died(
+        silence_s: u64,
+        is_heard: impl Fn(u64) -> bool,
+        is_there: impl Fn(u64) -> bool,
+    ) -> Option<u64> {
         let start = clock::now();
         let mut sim = SimLiveness::new(Patience::of_player(Duration::from_secs(silence_s)), start);
         (0..300).find(|s| {
@@ -179,8 +217,16 @@ mod tests {
     #[test]
     fn a_sim_that_dies_is_missed_soon() {
         assert_eq!(died(SILENCE, |s| s <= 20, |s| s <= 20), Some(26));
-        assert_eq!(died(SILENCE, |s| s <= 20, |s| s <= 18), Some(26), "its last pictures came late");
-        assert_eq!(died(2, |s| s <= 20, |s| s <= 20), Some(23), "who wants to know sooner does");
+        assert_eq!(
+            died(SILENCE, |s| s <= 20, |s| s <= 18),
+            Some(26),
+            "its last pictures came late"
+        );
+        assert_eq!(
+            died(2, |s| s <= 20, |s| s <= 20),
+            Some(23),
+            "who wants to know sooner does"
+        );
     }
 
     #[test]
@@ -191,9 +237,17 @@ mod tests {
     #[test]
     fn a_game_that_does_not_begin_is_waited_for_as_long_as_the_sim_is_there() {
         assert_eq!(died(2, |_| false, |s| s <= 200), Some(203));
-        assert_eq!(died(SILENCE, |_| false, |s| !(100..140).contains(&s)), None, "the link is cut, and reopened");
+        assert_eq!(
+            died(SILENCE, |_| false, |s| !(100..140).contains(&s)),
+            None,
+            "the link is cut, and reopened"
+        );
         assert_eq!(died(2, |s| s > 100, |_| true), None, "it begins late");
-        assert_eq!(died(2, |s| (100..=120).contains(&s), |_| true), Some(123), "it hangs in the game");
+        assert_eq!(
+            died(2, |s| (100..=120).contains(&s), |_| true),
+            Some(123),
+            "it hangs in the game"
+        );
     }
 
     #[test]
@@ -201,9 +255,17 @@ mod tests {
         // The network drops a link after ten seconds.
         let is_there = |s| !(30..55).contains(&s);
         assert_eq!(died(SILENCE, |s| s <= 20 || s >= 55, is_there), None);
-        assert_eq!(died(SILENCE, |s| s <= 20, |s| s < 30), Some(81), "but not forever");
         assert_eq!(
-            died(SILENCE, |s| s <= 20 || (55..90).contains(&s), |s| is_there(s) && s < 90),
+            died(SILENCE, |s| s <= 20, |s| s < 30),
+            Some(81),
+            "but not forever"
+        );
+        assert_eq!(
+            died(
+                SILENCE,
+                |s| s <= 20 || (55..90).contains(&s),
+                |s| is_there(s) && s < 90
+            ),
             Some(95),
             "it died then"
         );
@@ -211,22 +273,42 @@ mod tests {
 
     #[test]
     fn a_link_that_is_opened_anew_is_no_death() {
-        assert_eq!(died(SILENCE, |s| !(21..24).contains(&s), |s| !(21..24).contains(&s)), None);
+        assert_eq!(
+            died(
+                SILENCE,
+                |s| !(21..24).contains(&s),
+                |s| !(21..24).contains(&s)
+            ),
+            None
+        );
     }
 
     #[test]
     fn a_sim_of_the_same_name_is_another_one() {
         let now = clock::now();
         let mut sim = SimLiveness::new(Patience::of_player(Duration::from_secs(SILENCE)), now);
-        assert_eq!((sim.is_there(), sim.state(now)), (None, SimState::Alive), "its token may take a moment");
+        assert_eq!(
+            (sim.is_there(), sim.state(now)),
+            (None, SimState::Alive),
+            "its token may take a moment"
+        );
         for is_there in [true, false, true, false] {
             sim.take_token("a", is_there);
-            assert_eq!((sim.is_there(), sim.state(now)), (Some(is_there), SimState::Alive));
+            assert_eq!(
+                (sim.is_there(), sim.state(now)),
+                (Some(is_there), SimState::Alive)
+            );
         }
         sim.take_token("b", true);
-        assert_eq!((sim.is_there(), sim.state(now)), (Some(false), SimState::Replaced));
+        assert_eq!(
+            (sim.is_there(), sim.state(now)),
+            (Some(false), SimState::Replaced)
+        );
         assert!(sim.choose(), "whoever can begin again goes by the new one");
-        assert_eq!((sim.is_there(), sim.state(now)), (Some(true), SimState::Alive));
+        assert_eq!(
+            (sim.is_there(), sim.state(now)),
+            (Some(true), SimState::Alive)
+        );
         sim.take_token("b", false);
         assert!(!sim.choose());
     }
@@ -235,7 +317,11 @@ mod tests {
     fn by_its_token_alone_a_sim_is_gone_when_it_is_not_the_same_or_not_there_for_a_while() {
         let start = clock::now();
         let second = Duration::from_secs(1);
-        let patience = Patience { silence: Duration::from_secs(5), missing: second, unheard: second };
+        let patience = Patience {
+            silence: Duration::from_secs(5),
+            missing: second,
+            unheard: second,
+        };
         let mut sim = SimLiveness::new(patience, start);
         for (at_s, token, want, what) in [
             (4.0, None, true, "it has time to appear"),
@@ -246,7 +332,9 @@ mod tests {
             (10.5, None, false, "for too long"),
         ] {
             let now = start + Duration::from_secs_f64(at_s);
-            token.into_iter().for_each(|is_there| sim.take_token("a", is_there));
+            token
+                .into_iter()
+                .for_each(|is_there| sim.take_token("a", is_there));
             assert_eq!(sim.state(now) == SimState::Alive, want, "{at_s} s: {what}");
         }
         let never = SimLiveness::new(patience, start).state(start + Duration::from_secs(6));

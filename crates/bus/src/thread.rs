@@ -54,7 +54,11 @@ impl Drop for NodeThread {
         // Before `join`: not every runtime returns a handle.
         if self.is_done.wait(END_MAX, |is_done| *is_done) {
             // A panicked thread has no result.
-            self.handle.take().map(JoinHandle::join).into_iter().for_each(drop);
+            self.handle
+                .take()
+                .map(JoinHandle::join)
+                .into_iter()
+                .for_each(drop);
         }
     }
 }

@@ -35,7 +35,9 @@ pub struct Token([u8; 32]);
 
 /// A text that is not a token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error("not a token ({0} characters), expected the 64 hexadecimal digits that `squall sim` prints")]
+#[error(
+    "not a token ({0} characters), expected the 64 hexadecimal digits that `squall sim` prints"
+)]
 pub struct NotAToken(usize);
 
 impl Token {
@@ -93,7 +95,9 @@ impl FromStr for Token {
 
     fn from_str(text: &str) -> Result<Token, NotAToken> {
         let bytes = bytes_of(text.trim()).and_then(|bytes| bytes.try_into().ok());
-        bytes.map(Token).ok_or(NotAToken(text.trim().chars().count()))
+        bytes
+            .map(Token)
+            .ok_or(NotAToken(text.trim().chars().count()))
     }
 }
 
@@ -151,7 +155,10 @@ pub(crate) enum Answer<T> {
 
 /// A request without a proof.
 pub(crate) fn first<T: Serialize>(body: &T) -> Vec<u8> {
-    json(&Request { body: spelled(body), proof: None })
+    json(&Request {
+        body: spelled(body),
+        proof: None,
+    })
 }
 
 /// Sends a request on `key` through `ask`, and proves knowledge of the token if challenged; returns
@@ -166,10 +173,15 @@ pub fn request<B: Serialize, T: DeserializeOwned>(
     body: &B,
     mut ask: impl FnMut(Vec<u8>) -> Result<Option<Vec<u8>>, BusError>,
 ) -> Result<Option<T>, BusError> {
-    let refused = |reason| BusError::Request { key: key.to_owned(), reason };
+    let refused = |reason| BusError::Request {
+        key: key.to_owned(),
+        reason,
+    };
     let mut payload = first(body);
     for _ in 0..ATTEMPTS {
-        let Some(answer) = ask(payload)? else { return Ok(None) };
+        let Some(answer) = ask(payload)? else {
+            return Ok(None);
+        };
         let answer = serde_json::from_slice(&answer);
         match answer.map_err(|e| refused(format!("cannot parse the reply: {e}")))? {
             Answer::Answer(answer) => return Ok(Some(answer)),
@@ -214,7 +226,10 @@ pub struct Guard {
 impl Guard {
     /// A guard for this token; without one it admits every request.
     pub fn new(token: impl Into<CurrentToken>) -> Guard {
-        Guard { token: token.into(), open: VecDeque::new() }
+        Guard {
+            token: token.into(),
+            open: VecDeque::new(),
+        }
     }
 
     /// Checks a request on `key`; some requests need a proof.
@@ -236,9 +251,13 @@ impl Guard {
             return Checked::Granted(request);
         };
         let now = clock::now();
-        self.open.retain(|(_, since)| now.saturating_duration_since(*since) < GOOD_FOR);
+        self.open
+            .retain(|(_, since)| now.saturating_duration_since(*since) < GOOD_FOR);
         if let Some(proof) = proof
-            && let Some(i) = self.open.iter().position(|(challenge, _)| *challenge == proof.challenge)
+            && let Some(i) = self
+                .open
+                .iter()
+                .position(|(challenge, _)| *challenge == proof.challenge)
         {
             // Before the proof is verified: a challenge is valid for one attempt, right or wrong.
             self.open.remove(i);
@@ -262,9 +281,17 @@ fn hex(bytes: &[u8]) -> String {
 }
 
 fn bytes_of(hex: &str) -> Option<Vec<u8>> {
-    let digits: Option<Vec<u8>> = hex.chars().map(|c| c.to_digit(16).map(|digit| digit as u8)).collect();
+    let digits: Option<Vec<u8>> = hex
+        .chars()
+        .map(|c| c.to_digit(16).map(|digit| digit as u8))
+        .collect();
     let digits = digits.filter(|digits| digits.len().is_multiple_of(2))?;
-    Some(digits.chunks(2).map(|pair| pair[0] << 4 | pair[1]).collect())
+    Some(
+        digits
+            .chunks(2)
+            .map(|pair| pair[0] << 4 | pair[1])
+            .collect(),
+    )
 }
 
 fn spelled<T: Serialize>(body: &T) -> Box<RawValue> {
@@ -291,8 +318,12 @@ mod tests {
 
     /// The challenge in the answer to a request without a proof.
     fn challenge(guard: &mut Guard, payload: &[u8]) -> String {
-        let Checked::Challenged(answer) = check(guard, KEY, payload) else { panic!("it needs a proof") };
-        let Ok(Answer::<()>::Challenge(challenge)) = serde_json::from_slice(&answer) else { panic!("a challenge") };
+        let Checked::Challenged(answer) = check(guard, KEY, payload) else {
+            panic!("it needs a proof")
+        };
+        let Ok(Answer::<()>::Challenge(challenge)) = serde_json::from_slice(&answer) else {
+            panic!("a challenge")
+        };
         challenge
     }
 
@@ -311,7 +342,10 @@ mod tests {
         let mut guard = guard(&token);
         let again = proven(&mut guard, &token, "blue_one");
         assert!(is_granted(check(&mut guard, KEY, &again), "blue_one"));
-        assert!(matches!(check(&mut guard, KEY, &again), Checked::Challenged(_)), "a replay");
+        assert!(
+            matches!(check(&mut guard, KEY, &again), Checked::Challenged(_)),
+            "a replay"
+        );
     }
 
     #[test]
@@ -319,16 +353,42 @@ mod tests {
         let token = Token::random();
         let mut guard = guard(&token);
         let foreign = proven(&mut guard, &Token::random(), "blue_one");
-        assert!(matches!(check(&mut guard, KEY, &foreign), Checked::Challenged(_)), "another token");
+        assert!(
+            matches!(check(&mut guard, KEY, &foreign), Checked::Challenged(_)),
+            "another token"
+        );
         let good = proven(&mut guard, &token, "blue_one");
-        assert!(matches!(check(&mut guard, "g/control", &good), Checked::Challenged(_)), "another key");
+        assert!(
+            matches!(
+                check(&mut guard, "g/control", &good),
+                Checked::Challenged(_)
+            ),
+            "another key"
+        );
         let good = String::from_utf8(proven(&mut guard, &token, "blue_one")).expect("JSON");
         let other = good.replace("blue_one", "blue_two");
-        assert!(matches!(check(&mut guard, KEY, other.as_bytes()), Checked::Challenged(_)), "another request");
-        let unasked = Request { body: spelled(&"x"), proof: Some(token.prove("00".repeat(16), KEY, br#""x""#)) };
-        assert!(matches!(check(&mut guard, KEY, &json(&unasked)), Checked::Challenged(_)), "a challenge of its own");
+        assert!(
+            matches!(
+                check(&mut guard, KEY, other.as_bytes()),
+                Checked::Challenged(_)
+            ),
+            "another request"
+        );
+        let unasked = Request {
+            body: spelled(&"x"),
+            proof: Some(token.prove("00".repeat(16), KEY, br#""x""#)),
+        };
+        assert!(
+            matches!(
+                check(&mut guard, KEY, &json(&unasked)),
+                Checked::Challenged(_)
+            ),
+            "a challenge of its own"
+        );
         assert!(matches!(check(&mut guard, KEY, b"{}"), Checked::Garbage(_)));
-        let asked = request::<_, String>(None, KEY, &"x", |_| Ok(Some(br#"{"challenge":"ab"}"#.to_vec())));
+        let asked = request::<_, String>(None, KEY, &"x", |_| {
+            Ok(Some(br#"{"challenge":"ab"}"#.to_vec()))
+        });
         assert!(matches!(asked, Err(BusError::NeedsToken)));
     }
 
@@ -338,15 +398,23 @@ mod tests {
         let mut guard = guard(&token);
         let challenge = challenge(&mut guard, br#"{ "body": "a\u0062" }"#);
         let Proof { challenge, mac } = token.prove(challenge, KEY, br#""a\u0062""#);
-        let again = format!(r#"{{"proof": {{"mac": "{mac}", "challenge": "{challenge}"}}, "body":  "a\u0062" }}"#);
+        let again = format!(
+            r#"{{"proof": {{"mac": "{mac}", "challenge": "{challenge}"}}, "body":  "a\u0062" }}"#
+        );
         assert!(is_granted(check(&mut guard, KEY, again.as_bytes()), "ab"));
     }
 
     #[test]
     fn what_needs_no_proof_gets_through_without() {
         let mut guard = guard(&Token::random());
-        assert!(is_granted(guard.check(KEY, &first(&"stop"), |body| body != "stop"), "stop"));
-        assert!(is_granted(check(&mut Guard::default(), KEY, &first(&"x")), "x"), "there is no token");
+        assert!(is_granted(
+            guard.check(KEY, &first(&"stop"), |body| body != "stop"),
+            "stop"
+        ));
+        assert!(
+            is_granted(check(&mut Guard::default(), KEY, &first(&"x")), "x"),
+            "there is no token"
+        );
     }
 
     #[test]
@@ -361,7 +429,10 @@ mod tests {
             assert!(is_granted(check(&mut guard, KEY, &again), "x"));
         }
         let outdated = proven(&mut guard, &first, "x");
-        assert!(matches!(check(&mut guard, KEY, &outdated), Checked::Challenged(_)), "the token of the game before");
+        assert!(
+            matches!(check(&mut guard, KEY, &outdated), Checked::Challenged(_)),
+            "the token of the game before"
+        );
     }
 
     #[test]
@@ -382,7 +453,10 @@ mod tests {
         // Computed with Python's `hmac`, as in docs/agents.md.
         let token: Token = "0123456789abcdef".repeat(4).parse().expect("64 digits");
         let proof = token.prove("4f0c".repeat(8), KEY, br#"{"vehicles": ["blue_one"]}"#);
-        assert_eq!(proof.mac, "c5c85c75544a5893559866cd73c08baec4f04276dd346c726a156e722f60ac4f");
+        assert_eq!(
+            proof.mac,
+            "c5c85c75544a5893559866cd73c08baec4f04276dd346c726a156e722f60ac4f"
+        );
         // RFC 4231, test case 1, of the MAC alone.
         let mut mac = Hmac::<Sha256>::new_from_slice(&[0x0b; 20]).expect("a key");
         mac.update(b"Hi There");

@@ -15,7 +15,10 @@ pub struct Watched<T> {
 impl<T> Watched<T> {
     /// Starts with this value.
     pub fn new(state: T) -> Watched<T> {
-        Watched { state: Mutex::new(state), changed: Condvar::new() }
+        Watched {
+            state: Mutex::new(state),
+            changed: Condvar::new(),
+        }
     }
 
     /// Reads or changes the value, and wakes waiting threads.
@@ -37,7 +40,10 @@ impl<T> Watched<T> {
                 Some(false) => return holds(&self.state.lock()),
                 None => {
                     let mut state = self.state.lock();
-                    return !self.changed.wait_while_for(&mut state, |state| !holds(state), limit).timed_out();
+                    return !self
+                        .changed
+                        .wait_while_for(&mut state, |state| !holds(state), limit)
+                        .timed_out();
                 }
             }
         }

@@ -47,9 +47,18 @@ pub fn restart_for_keys() -> Result<(), BusError> {
     if has_threads_for_keys() {
         return Ok(());
     }
-    let refused = |error| BusError::Threads(format!("this program cannot be started again with it: {error}"));
+    let refused = |error| {
+        BusError::Threads(format!(
+            "this program cannot be started again with it: {error}"
+        ))
+    };
     let mut again = Command::new(std::env::current_exe().map_err(refused)?);
-    Err(refused(again.args(std::env::args_os().skip(1)).env(RUNTIME_VARIABLE, KEYS_RUNTIME).exec()))
+    Err(refused(
+        again
+            .args(std::env::args_os().skip(1))
+            .env(RUNTIME_VARIABLE, KEYS_RUNTIME)
+            .exec(),
+    ))
 }
 
 /// # Errors
@@ -58,9 +67,12 @@ pub(crate) fn check_threads_for_keys() -> Result<(), BusError> {
     if has_threads_for_keys() {
         return Ok(());
     }
-    let found =
-        std::env::var_os(RUNTIME_VARIABLE).map_or("it is not set".to_owned(), |it| format!("it is {}", it.display()));
-    Err(BusError::Threads(format!("{found}: call bus::restart_for_keys() first in main")))
+    let found = std::env::var_os(RUNTIME_VARIABLE).map_or("it is not set".to_owned(), |it| {
+        format!("it is {}", it.display())
+    });
+    Err(BusError::Threads(format!(
+        "{found}: call bus::restart_for_keys() first in main"
+    )))
 }
 
 fn has_threads_for_keys() -> bool {
@@ -77,10 +89,25 @@ mod tests {
     #[test]
     fn a_process_with_other_threads_opens_no_session_with_keys() {
         let folder = tempfile::tempdir().expect("a folder");
-        make(folder.path(), &[Identity::Observer], &["localhost".to_owned()], Duration::from_secs(60)).expect("keys");
-        let keys = Some(Arc::new(Bundle::load(&folder.path().join("observer")).expect("good keys")));
-        let net = Net { connect: vec!["tcp/127.0.0.1:1".to_owned()], keys, ..Net::default() };
+        make(
+            folder.path(),
+            &[Identity::Observer],
+            &["localhost".to_owned()],
+            Duration::from_secs(60),
+        )
+        .expect("keys");
+        let keys = Some(Arc::new(
+            Bundle::load(&folder.path().join("observer")).expect("good keys"),
+        ));
+        let net = Net {
+            connect: vec!["tcp/127.0.0.1:1".to_owned()],
+            keys,
+            ..Net::default()
+        };
         let error = Bus::leaf(&net).err().expect("it is refused").to_string();
-        assert!(error.contains("ZENOH_RUNTIME=(rx:") && error.contains("bus::restart_for_keys()"), "{error}");
+        assert!(
+            error.contains("ZENOH_RUNTIME=(rx:") && error.contains("bus::restart_for_keys()"),
+            "{error}"
+        );
     }
 }

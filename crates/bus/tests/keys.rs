@@ -32,14 +32,24 @@ fn keys(hosts: &[&str], valid: Duration) -> tempfile::TempDir {
     let boat = Identity::Gateway(Some("red_one".to_owned()));
     let sim = Identity::Sim;
     let any = Identity::Gateway(None);
-    let all = [sim, team("blue"), team("red"), any, boat, Identity::Observer, Identity::Operator];
+    let all = [
+        sim,
+        team("blue"),
+        team("red"),
+        any,
+        boat,
+        Identity::Observer,
+        Identity::Operator,
+    ];
     let hosts: Vec<String> = hosts.iter().map(|host| (*host).to_owned()).collect();
     make(folder.path(), &all, &hosts, valid).expect("keys");
     folder
 }
 
 fn bundle(keys: &tempfile::TempDir, identity: &str) -> Option<Arc<Bundle>> {
-    Some(Arc::new(Bundle::load(&keys.path().join(identity)).expect("good keys")))
+    Some(Arc::new(
+        Bundle::load(&keys.path().join(identity)).expect("good keys"),
+    ))
 }
 
 /// A hub, and its endpoint.
@@ -48,13 +58,24 @@ fn hub(keys: Option<Arc<Bundle>>) -> (Result<Bus, BusError>, String) {
 }
 
 fn hub_over(transport: &str, keys: Option<Arc<Bundle>>) -> (Result<Bus, BusError>, String) {
-    let endpoint = format!("{transport}/127.0.0.1:{}", bus::free_port(false).expect("a port"));
-    let net = Net { listen: vec![endpoint.clone()], keys, ..Net::default() };
+    let endpoint = format!(
+        "{transport}/127.0.0.1:{}",
+        bus::free_port(false).expect("a port")
+    );
+    let net = Net {
+        listen: vec![endpoint.clone()],
+        keys,
+        ..Net::default()
+    };
     (Bus::hub(&net, &game(), &scenario()), endpoint)
 }
 
 fn leaf(endpoint: &str, keys: Option<Arc<Bundle>>) -> Result<Bus, BusError> {
-    Bus::leaf(&Net { connect: vec![endpoint.to_owned()], keys, ..Net::default() })
+    Bus::leaf(&Net {
+        connect: vec![endpoint.to_owned()],
+        keys,
+        ..Net::default()
+    })
 }
 
 fn refused(endpoint: &str, keys: Option<Arc<Bundle>>) -> String {
@@ -72,20 +93,35 @@ fn whose_keys_do_not_fit_is_told_why() {
     let (sim, endpoint) = hub(bundle(&own, "sim"));
     let _sim = sim.expect("it listens");
     let blue = leaf(&endpoint, bundle(&own, "team-blue")).expect("it is let in");
-    assert_eq!(blue.keys.as_ref().map(|keys| &keys.identity), Some(&team("blue")));
+    assert_eq!(
+        blue.keys.as_ref().map(|keys| &keys.identity),
+        Some(&team("blue"))
+    );
     let text = refused(&endpoint, bundle(&foreign, "team-blue"));
-    assert!(text.contains("another authority") && text.contains(endpoint.trim_start_matches("tcp/")), "{text}");
-    assert!(matches!(leaf(&endpoint, None), Err(BusError::NeedsKeys(_))), "no keys");
+    assert!(
+        text.contains("another authority") && text.contains(endpoint.trim_start_matches("tcp/")),
+        "{text}"
+    );
+    assert!(
+        matches!(leaf(&endpoint, None), Err(BusError::NeedsKeys(_))),
+        "no keys"
+    );
     let text = refused(&endpoint, bundle(&own, "sim"));
     assert!(text.contains("the keys of sim only serve games"), "{text}");
     let (sim, endpoint) = hub(bundle(&own, "team-blue"));
     let text = sim.err().expect("only the sim's keys serve").to_string();
     assert!(text.contains("not those of team-blue"), "{text}");
-    assert!(matches!(leaf(&endpoint, None), Err(BusError::Open { .. })), "nobody listens");
+    assert!(
+        matches!(leaf(&endpoint, None), Err(BusError::Open { .. })),
+        "nobody listens"
+    );
     let (sim, endpoint) = hub(bundle(&elsewhere, "sim"));
     let _sim = sim.expect("it listens");
     let text = refused(&endpoint, bundle(&elsewhere, "observer"));
-    assert!(text.contains("--host 127.0.0.1") && text.contains("sim.example"), "{text}");
+    assert!(
+        text.contains("--host 127.0.0.1") && text.contains("sim.example"),
+        "{text}"
+    );
     let (sim, endpoint) = hub(None);
     let _sim = sim.expect("it listens");
     let text = refused(&endpoint, bundle(&own, "observer"));
@@ -98,17 +134,26 @@ fn keys_that_are_over_or_no_keys_are_refused_before_anything_is_opened() {
     clock::rest(Duration::from_millis(1100));
     let problem = |path: &Path| Bundle::load(path).expect_err("it is refused").to_string();
     let text = problem(&own.path().join("observer"));
-    assert!(text.contains("certificate.pem") && text.contains("expired at"), "{text}");
+    assert!(
+        text.contains("certificate.pem") && text.contains("expired at"),
+        "{text}"
+    );
     let text = problem(own.path());
     assert!(
-        text.contains("the bundles gateway, gateway-red_one, observer, operator, sim, team-blue, team-red"),
+        text.contains(
+            "the bundles gateway, gateway-red_one, observer, operator, sim, team-blue, team-red"
+        ),
         "{text}"
     );
     let own = keys(&["localhost"], DAY);
     let folder = own.path().join("observer");
-    std::fs::copy(own.path().join("operator/key.pem"), folder.join("key.pem")).expect("it is copied");
+    std::fs::copy(own.path().join("operator/key.pem"), folder.join("key.pem"))
+        .expect("it is copied");
     let text = problem(&folder);
-    assert!(text.contains("key.pem: is not the key of certificate.pem"), "{text}");
+    assert!(
+        text.contains("key.pem: is not the key of certificate.pem"),
+        "{text}"
+    );
     for (file, damaged, want) in [
         ("key.pem", "", "key.pem: has no private key in PEM"),
         (
@@ -116,8 +161,16 @@ fn keys_that_are_over_or_no_keys_are_refused_before_anything_is_opened() {
             "-----BEGIN CERTIFICATE-----\n!\n-----END CERTIFICATE-----\n",
             "certificate.pem: is damaged",
         ),
-        ("certificate.pem", "hello", "certificate.pem: has no certificate in PEM"),
-        ("authority.pem", "", "authority.pem: has no certificate in PEM"),
+        (
+            "certificate.pem",
+            "hello",
+            "certificate.pem: has no certificate in PEM",
+        ),
+        (
+            "authority.pem",
+            "",
+            "authority.pem: has no certificate in PEM",
+        ),
     ] {
         let folder = own.path().join("team-red");
         let before = std::fs::read(folder.join(file)).expect("it is there");
@@ -133,11 +186,29 @@ fn keys_that_are_over_or_no_keys_are_refused_before_anything_is_opened() {
 fn keys_are_for_their_owner_only_and_never_written_over() {
     use std::os::unix::fs::PermissionsExt;
     let own = keys(&["localhost"], DAY);
-    let mode = |path: &str| own.path().join(path).metadata().expect("it is there").permissions().mode() & 0o777;
-    assert_eq!([mode("sim"), mode("sim/key.pem"), mode("team-blue/key.pem")], [0o700, 0o600, 0o600]);
-    let again = make(own.path(), &[Identity::Observer], &[], DAY).expect_err("it is there already").to_string();
+    let mode = |path: &str| {
+        own.path()
+            .join(path)
+            .metadata()
+            .expect("it is there")
+            .permissions()
+            .mode()
+            & 0o777
+    };
+    assert_eq!(
+        [mode("sim"), mode("sim/key.pem"), mode("team-blue/key.pem")],
+        [0o700, 0o600, 0o600]
+    );
+    let again = make(own.path(), &[Identity::Observer], &[], DAY)
+        .expect_err("it is there already")
+        .to_string();
     assert!(again.contains("observer"), "{again}");
-    assert_eq!(Bundle::load(&own.path().join("sim")).expect("good keys").hosts, ["localhost"]);
+    assert_eq!(
+        Bundle::load(&own.path().join("sim"))
+            .expect("good keys")
+            .hosts,
+        ["localhost"]
+    );
 }
 
 /// Whether `to` receives what `from` publishes. It does not if only a later message has arrived.
@@ -146,11 +217,20 @@ fn is_heard(from: &Bus, to: &Bus, word: &str, free: &str) -> bool {
     let [of_word, of_free] = [Arc::clone(&heard), Arc::clone(&heard)];
     let key = |word: &str| topic::matching(&game(), word);
     let _subscriptions = (
-        to.subscribe(key(word), move |_| of_word.visit(|(heard, _)| *heard = true)).expect("open"),
-        to.subscribe(key(free), move |_| of_free.visit(|(_, heard)| *heard = true)).expect("open"),
+        to.subscribe(key(word), move |_| {
+            of_word.visit(|(heard, _)| *heard = true)
+        })
+        .expect("open"),
+        to.subscribe(key(free), move |_| {
+            of_free.visit(|(_, heard)| *heard = true)
+        })
+        .expect("open"),
     );
     // Over QUIC in datagrams, which have the same rights as what is reliable.
-    let publisher = |word| from.publisher_with(key(word), Priority::Normal, Delivery::Newest).expect("open");
+    let publisher = |word| {
+        from.publisher_with(key(word), Priority::Normal, Delivery::Newest)
+            .expect("open")
+    };
     let asked = publisher(word);
     let sure = publisher(free);
     let start = clock::now();
@@ -178,11 +258,17 @@ const HEARD: [(&str, &str); 9] = [
     ("picture/blue", "team-blue observer operator"),
     ("picture/red", "team-red observer operator"),
     ("say/blue", "team-blue observer operator"),
-    ("external/red_one", "gateway gateway-red_one observer operator"),
+    (
+        "external/red_one",
+        "gateway gateway-red_one observer operator",
+    ),
     ("external/blue_one", "gateway observer operator"),
     ("order/blue/x", ""),
     ("nav/red_one", ""),
-    ("released", "team-blue team-red gateway gateway-red_one observer operator"),
+    (
+        "released",
+        "team-blue team-red gateway gateway-red_one observer operator",
+    ),
 ];
 /// Topics that others publish, and whose messages the sim receives.
 const PUBLISHED: [(&str, &str); 17] = [
@@ -195,7 +281,10 @@ const PUBLISHED: [(&str, &str); 17] = [
     ("nav/red_one", "gateway gateway-red_one"),
     ("report/status/red_one", "gateway gateway-red_one"),
     ("report/link/blue_one", "gateway"),
-    ("stop/red_one", "team-red gateway gateway-red_one observer operator"),
+    (
+        "stop/red_one",
+        "team-red gateway gateway-red_one observer operator",
+    ),
     ("status/red_one", ""),
     ("link/red_one", ""),
     ("frame", ""),
@@ -206,7 +295,10 @@ const PUBLISHED: [(&str, &str); 17] = [
 ];
 /// Keys that others query, and whom the sim answers.
 const ASKED: [(&str, &str); 11] = [
-    ("scenario", "team-blue team-red gateway gateway-red_one observer operator"),
+    (
+        "scenario",
+        "team-blue team-red gateway gateway-red_one observer operator",
+    ),
     ("events", "observer operator"),
     ("water", "observer operator"),
     ("join/agent/blue", "team-blue"),
@@ -234,16 +326,33 @@ fn check_rights(transport: &str) {
     let (sim, endpoint) = hub_over(transport, bundle(&own, "sim"));
     let sim = sim.expect("it listens");
     let node = |identity: &str| leaf(&endpoint, bundle(&own, identity)).expect("it is let in");
-    let nodes =
-        ["team-blue", "team-red", "gateway", "gateway-red_one", "observer", "operator"].map(|name| (name, node(name)));
+    let nodes = [
+        "team-blue",
+        "team-red",
+        "gateway",
+        "gateway-red_one",
+        "observer",
+        "operator",
+    ]
+    .map(|name| (name, node(name)));
     for (word, who) in HEARD {
         for (name, bus) in &nodes {
-            check(name, is_heard(&sim, bus, word, "run"), who, &format!("hears {word}"));
+            check(
+                name,
+                is_heard(&sim, bus, word, "run"),
+                who,
+                &format!("hears {word}"),
+            );
         }
     }
     for (word, who) in PUBLISHED {
         for (name, bus) in &nodes {
-            check(name, is_heard(bus, &sim, word, "control"), who, &format!("publishes {word}"));
+            check(
+                name,
+                is_heard(bus, &sim, word, "control"),
+                who,
+                &format!("publishes {word}"),
+            );
         }
     }
     let answer = |query: Query| query.answer(b"1".to_vec());
@@ -251,24 +360,46 @@ fn check_rights(transport: &str) {
         let key = topic::matching(&game(), word);
         let _queryable = sim.answer(key.clone(), answer).expect("open");
         for (name, bus) in &nodes {
-            let limit = if who.split(' ').any(|word| word == *name) { LIMIT } else { Duration::from_millis(150) };
+            let limit = if who.split(' ').any(|word| word == *name) {
+                LIMIT
+            } else {
+                Duration::from_millis(150)
+            };
             let asked = bus.ask(&key, vec![], limit).expect("open");
             check(name, asked.is_some(), who, &format!("asks {word}"));
         }
     }
     for (name, bus) in &nodes {
-        let asked: Result<Option<u8>, BusError> = bus.request(&topic::control(&game()), &1, Duration::from_millis(150));
-        assert_eq!(matches!(asked, Err(BusError::NotAllowed { .. })), *name != "operator", "{name} is told so at once");
+        let asked: Result<Option<u8>, BusError> =
+            bus.request(&topic::control(&game()), &1, Duration::from_millis(150));
+        assert_eq!(
+            matches!(asked, Err(BusError::NotAllowed { .. })),
+            *name != "operator",
+            "{name} is told so at once"
+        );
     }
     // An operator's query reaches the gateway of the boat, and no other.
     let operator = &nodes[5].1;
     for (i, who) in [(0, false), (2, true), (3, true), (4, false)] {
-        let _queryable = nodes[i].1.answer(topic::matching(&game(), "operate/red_one"), answer).expect("open");
+        let _queryable = nodes[i]
+            .1
+            .answer(topic::matching(&game(), "operate/red_one"), answer)
+            .expect("open");
         let key = topic::operate(&game(), "red_one");
         let start = clock::now();
         let mut is_answered = false;
-        while !is_answered && clock::since(start) < if who { LIMIT } else { Duration::from_millis(500) } {
-            is_answered = operator.ask(&key, vec![], Duration::from_millis(100)).expect("open").is_some();
+        while !is_answered
+            && clock::since(start)
+                < if who {
+                    LIMIT
+                } else {
+                    Duration::from_millis(500)
+                }
+        {
+            is_answered = operator
+                .ask(&key, vec![], Duration::from_millis(100))
+                .expect("open")
+                .is_some();
         }
         assert_eq!(is_answered, who, "{} answers for red_one", nodes[i].0);
     }

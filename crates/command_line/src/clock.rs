@@ -10,7 +10,10 @@ pub fn now() -> Instant {
 }
 
 /// Sleeps where no condition can be waited for.
-#[expect(clippy::disallowed_methods, reason = "interval between polls of the stop flag")]
+#[expect(
+    clippy::disallowed_methods,
+    reason = "interval between polls of the stop flag"
+)]
 pub fn rest(time: Duration) {
     std::thread::sleep(time);
 }

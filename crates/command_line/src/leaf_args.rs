@@ -19,8 +19,8 @@ pub struct AccessArgs {
     /// Folder with this node's keys, created by `squall keys new`; required if the game uses keys
     #[arg(long, value_name = "FOLDER")]
     keys: Option<PathBuf>,
-    /// File with the game's token, which `squall sim` prints [default: SQUALL_TOKEN, or the token of the game on this
-    /// machine]
+    /// File with the game's token, which `squall sim` prints [default: SQUALL_TOKEN, or the token
+    /// of the game on this machine]
     #[arg(long, value_name = "FILE")]
     token_file: Option<PathBuf>,
 }
@@ -31,19 +31,29 @@ impl AccessArgs {
     /// # Errors
     /// If they cannot be read.
     pub fn keys(&self) -> Result<Option<Arc<Bundle>>> {
-        Ok(self.keys.as_deref().map(Bundle::load).transpose()?.map(Arc::new))
+        Ok(self
+            .keys
+            .as_deref()
+            .map(Bundle::load)
+            .transpose()?
+            .map(Arc::new))
     }
 
     /// The given token.
     pub fn token(&self) -> Result<Option<Token>> {
         let given = text_of(self.token_file.as_deref(), TOKEN_VARIABLE)?;
-        given.map(|(text, place)| text.parse().with_context(|| place)).transpose()
+        given
+            .map(|(text, place)| text.parse().with_context(|| place))
+            .transpose()
     }
 }
 
 /// Restarts this program with the number of threads that a process with keys needs.
 pub fn restart_with_threads_for_keys() -> Result<()> {
-    let is_keys = |word: OsString| word.to_str().is_some_and(|word| word == "--keys" || word.starts_with("--keys="));
+    let is_keys = |word: OsString| {
+        word.to_str()
+            .is_some_and(|word| word == "--keys" || word.starts_with("--keys="))
+    };
     if std::env::args_os().skip(1).any(is_keys) {
         bus::restart_for_keys()?;
     }
@@ -57,10 +67,13 @@ const TOKEN_FILE_MAX: u64 = 4096;
 /// for errors.
 pub fn text_of(file: Option<&Path>, variable: &str) -> Result<Option<(String, String)>> {
     let Some(file) = file else {
-        return Ok(std::env::var(variable).ok().map(|text| (text, variable.to_owned())));
+        return Ok(std::env::var(variable)
+            .ok()
+            .map(|text| (text, variable.to_owned())));
     };
     let place = file.display().to_string();
-    let text = input_file::read_text(file, TOKEN_FILE_MAX).with_context(|| format!("cannot read {place}"))?;
+    let text = input_file::read_text(file, TOKEN_FILE_MAX)
+        .with_context(|| format!("cannot read {place}"))?;
     Ok(Some((text, place)))
 }
 
@@ -103,31 +116,48 @@ impl LeafArgs {
 
     /// Whether they leave the choice of a game to this machine, and none is running here.
     pub fn finds_no_game(&self) -> bool {
-        let names_place = self.game.is_some() || self.lan || !self.connect.is_empty() || self.zenoh_config.is_some();
+        let names_place = self.game.is_some()
+            || self.lan
+            || !self.connect.is_empty()
+            || self.zenoh_config.is_some();
         !names_place && bus::local_registry().is_empty()
     }
 
     /// The same arguments for an emulated boat. Without a name, they select the only water on
     /// this machine.
     pub fn in_water(mut self) -> LeafArgs {
-        let water: Vec<bus::Entry> = bus::local_registry().into_iter().filter(|entry| entry.is_water).collect();
+        let water: Vec<bus::Entry> = bus::local_registry()
+            .into_iter()
+            .filter(|entry| entry.is_water)
+            .collect();
         if let ([water], true, false) = (water.as_slice(), self.connect.is_empty(), self.lan) {
             self.game = self.game.or_else(|| GameName::new(&water.game).ok());
         }
         self
     }
 
-    /// Checks that a command for all boats of a game, sent to these gateways, refers to only one game.
-    /// Stops need no check: they go to as many boats as can be reached.
+    /// Checks that a command for all boats of a game, sent to these gateways, refers to only one
+    /// game. Stops need no check: they go to as many boats as can be reached.
     ///
     /// # Errors
     /// If there are several games; the error names them.
     pub fn check_one_game(&self, gateways: &[bus::GatewayEntry]) -> Result<()> {
-        let mut names: BTreeSet<String> = gateways.iter().filter_map(|entry| entry.game.clone()).collect();
+        let mut names: BTreeSet<String> = gateways
+            .iter()
+            .filter_map(|entry| entry.game.clone())
+            .collect();
         if self.connect.is_empty() && !self.lan {
-            names.extend(bus::local_registry().into_iter().filter(|entry| !entry.is_water).map(|entry| entry.game));
+            names.extend(
+                bus::local_registry()
+                    .into_iter()
+                    .filter(|entry| !entry.is_water)
+                    .map(|entry| entry.game),
+            );
         }
-        ensure!(self.game.is_some() || names.len() < 2, several_games(names.iter().map(String::as_str)));
+        ensure!(
+            self.game.is_some() || names.len() < 2,
+            several_games(names.iter().map(String::as_str))
+        );
         Ok(())
     }
 
@@ -140,7 +170,10 @@ impl LeafArgs {
     pub fn place(&self) -> Result<Place> {
         let leaf = self.clone();
         let keys = self.access.keys()?;
-        Ok(Place::new(move |game| leaf.net_of(game, keys.clone()).map_err(|e| crate::explain::line(&e))))
+        Ok(Place::new(move |game| {
+            leaf.net_of(game, keys.clone())
+                .map_err(|e| crate::explain::line(&e))
+        }))
     }
 
     /// The place of this game, or else of the given one.
@@ -148,14 +181,30 @@ impl LeafArgs {
         let game = game.or(self.game.as_ref());
         let mut connect = self.connect.clone();
         let is_named = |entry: &bus::Entry| game.is_none_or(|game| game.as_str() == entry.game);
-        let mut known: Vec<bus::Entry> = bus::local_registry().into_iter().filter(is_named).collect();
+        let mut known: Vec<bus::Entry> =
+            bus::local_registry().into_iter().filter(is_named).collect();
         if connect.is_empty() && !self.lan {
             connect.push(local_endpoint(&known)?);
         }
-        known.retain(|entry| connect.iter().any(|given| bus::is_same_place(given, &entry.endpoint)));
-        let shown = || known.first().and_then(|entry| entry.token.as_ref()?.parse().ok());
+        known.retain(|entry| {
+            connect
+                .iter()
+                .any(|given| bus::is_same_place(given, &entry.endpoint))
+        });
+        let shown = || {
+            known
+                .first()
+                .and_then(|entry| entry.token.as_ref()?.parse().ok())
+        };
         let token = self.access.token()?.or_else(shown);
-        Ok(Net { listen: vec![], connect, lan: self.lan, config_file: self.zenoh_config.clone(), token, keys })
+        Ok(Net {
+            listen: vec![],
+            connect,
+            lan: self.lan,
+            config_file: self.zenoh_config.clone(),
+            token,
+            keys,
+        })
     }
 }
 
@@ -165,11 +214,16 @@ fn local_endpoint(known: &[bus::Entry]) -> Result<String> {
     match if games.is_empty() { water } else { games }.as_slice() {
         [] => Ok(format!("tcp/127.0.0.1:{}", bus::DEFAULT_PORT)),
         [entry] => Ok(entry.endpoint.clone()),
-        several => bail!(several_games(several.iter().map(|entry| entry.game.as_str()))),
+        several => bail!(several_games(
+            several.iter().map(|entry| entry.game.as_str())
+        )),
     }
 }
 
 fn several_games<'a>(names: impl Iterator<Item = &'a str>) -> UsageError {
     let names: Vec<&str> = names.collect();
-    UsageError(format!("several games run on this machine; select one with --game: {}", names.join(", ")))
+    UsageError(format!(
+        "several games run on this machine; select one with --game: {}",
+        names.join(", ")
+    ))
 }

@@ -33,6 +33,9 @@ impl Observer {
 
     /// Whether the game's sim is still present.
     pub fn is_on(&self) -> Result<bool> {
-        Ok(!self.bus.who_is_alive(&topic::all_alive(&self.game), bus::ANSWER)?.is_empty())
+        Ok(!self
+            .bus
+            .who_is_alive(&topic::all_alive(&self.game), bus::ANSWER)?
+            .is_empty())
     }
 }

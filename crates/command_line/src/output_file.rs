@@ -7,7 +7,8 @@ use std::path::Path;
 
 /// Writes a file; errors call it `what`.
 pub fn write(path: &Path, what: &str, bytes: impl AsRef<[u8]>) -> Result<()> {
-    primitives::output_file::write(path, bytes).with_context(|| format!("cannot write {what} to {}", path.display()))
+    primitives::output_file::write(path, bytes)
+        .with_context(|| format!("cannot write {what} to {}", path.display()))
 }
 
 /// Checks that a file is writable, before hours of games; leaves it unchanged.
@@ -27,11 +28,13 @@ pub fn check(path: &Path, what: &str) -> Result<()> {
 
 /// Writes a value as formatted JSON.
 pub fn write_json(path: &Path, what: &str, value: &impl Serialize) -> Result<()> {
-    let text = serde_json::to_string_pretty(value).with_context(|| format!("{what} is not JSON"))?;
+    let text =
+        serde_json::to_string_pretty(value).with_context(|| format!("{what} is not JSON"))?;
     write(path, what, text + "\n")
 }
 
 /// Creates a folder if it does not exist.
 pub fn make_folder(dir: &Path) -> Result<()> {
-    std::fs::create_dir_all(dir).with_context(|| format!("cannot create the folder {}", dir.display()))
+    std::fs::create_dir_all(dir)
+        .with_context(|| format!("cannot create the folder {}", dir.display()))
 }

@@ -18,7 +18,9 @@ pub fn name() -> &'static str {
 
 /// The prefix of its gateway commands: `squall gateway` or `squall-gateway`.
 pub fn gateway() -> &'static str {
-    PROGRAM.get().map_or("squall gateway", |[_, gateway]| gateway)
+    PROGRAM
+        .get()
+        .map_or("squall gateway", |[_, gateway]| gateway)
 }
 
 /// Replaces `{gateway}` in a text by the prefix of gateway commands.

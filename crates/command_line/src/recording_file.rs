@@ -12,27 +12,45 @@ pub const FOLDER: &str = "runs";
 
 /// The recordings of games in a folder, newest first.
 pub fn runs(folder: &Path) -> Vec<PathBuf> {
-    let files = std::fs::read_dir(folder).into_iter().flatten().filter_map(Result::ok).map(|file| file.path());
-    let is_game =
-        |path: &PathBuf| path.extension().is_some_and(|end| end == "mcap") && !stem(path).starts_with("gateway-");
+    let files = std::fs::read_dir(folder)
+        .into_iter()
+        .flatten()
+        .filter_map(Result::ok)
+        .map(|file| file.path());
+    let is_game = |path: &PathBuf| {
+        path.extension().is_some_and(|end| end == "mcap") && !stem(path).starts_with("gateway-")
+    };
     let mut runs: Vec<PathBuf> = files.filter(is_game).collect();
-    runs.sort_by_cached_key(|path| Reverse((path.metadata().and_then(|file| file.modified()).ok(), path.clone())));
+    runs.sort_by_cached_key(|path| {
+        Reverse((
+            path.metadata().and_then(|file| file.modified()).ok(),
+            path.clone(),
+        ))
+    });
     runs
 }
 
 /// The name of a recording: that of its file, without the extension.
 pub fn stem(path: &Path) -> String {
-    path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+    path.file_stem()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned()
 }
 
-/// Parses an argument that names a recording: a path, or a part of a name in `runs`, where the newest counts.
+/// Parses an argument that names a recording: a path, or a part of a name in `runs`, where the
+/// newest counts.
 pub fn named(word: &str) -> Result<PathBuf> {
     let path = Path::new(word);
     if word.contains(['/', '\\']) || path.extension().is_some() || path.exists() {
         return existing(word).map_err(Error::msg);
     }
-    let found = runs(Path::new(FOLDER)).into_iter().find(|path| stem(path).contains(word));
-    found.ok_or_else(|| anyhow!("there is no recording {word} in {FOLDER}; list the recordings with: squall runs"))
+    let found = runs(Path::new(FOLDER))
+        .into_iter()
+        .find(|path| stem(path).contains(word));
+    found.ok_or_else(|| {
+        anyhow!("there is no recording {word} in {FOLDER}; list the recordings with: squall runs")
+    })
 }
 
 /// The given recording, or the newest in `runs`, which it names.
@@ -63,7 +81,11 @@ pub fn open_any(file: &Path, to: &str) -> Result<Bag> {
     })?;
     if let [first, ..] = &bag.damage[..] {
         let places = bag.damage.len();
-        let of = if places == 1 { String::new() } else { format!(" (the first of {places} damaged ranges)") };
+        let of = if places == 1 {
+            String::new()
+        } else {
+            format!(" (the first of {places} damaged ranges)")
+        };
         let place = format!("bytes {} to {}{of}", first.start, first.end - 1);
         let file = file.display();
         terminal::remark(&format!(

@@ -25,18 +25,32 @@ static KINDS: OnceLock<&[Kind]> = OnceLock::new();
 pub fn install(kinds: &'static [Kind]) {
     // An earlier caller installed the same kinds: a process runs one program.
     let _ = KINDS.set(kinds);
-    set_built_in(|name| FILES.get_file(name).map(include_dir::File::contents), announce);
+    set_built_in(
+        |name| FILES.get_file(name).map(include_dir::File::contents),
+        announce,
+    );
 }
 
-/// Announces, once per path, that a file on the disk overrides a built-in one. Child processes leave
-/// that to their parent.
+/// Announces, once per path, that a file on the disk overrides a built-in one. Child processes
+/// leave that to their parent.
 pub fn announce(path: &Path) {
     static ANNOUNCED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
     let is_child = std::env::args_os().any(|word| word == "--for-parent");
-    if !is_child && ANNOUNCED.lock().unwrap_or_else(PoisonError::into_inner).insert(path.to_owned()) {
-        let mut parts = path.components().rev().map(|part| part.as_os_str().to_string_lossy());
+    if !is_child
+        && ANNOUNCED
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .insert(path.to_owned())
+    {
+        let mut parts = path
+            .components()
+            .rev()
+            .map(|part| part.as_os_str().to_string_lossy());
         let [name, folder] = [parts.next(), parts.next()].map(Option::unwrap_or_default);
-        terminal::remark(&format!("{} overrides the built-in {folder}/{name}", path.display()));
+        terminal::remark(&format!(
+            "{} overrides the built-in {folder}/{name}",
+            path.display()
+        ));
     }
 }
 
@@ -46,7 +60,9 @@ fn kinds() -> &'static [Kind] {
 
 /// The contents of the built-in file of this name, if it exists.
 pub fn contents(kind: Kind, name: &str) -> Option<&'static [u8]> {
-    FILES.get_file(format!("{}/{name}.toml", kind.folder())).map(include_dir::File::contents)
+    FILES
+        .get_file(format!("{}/{name}.toml", kind.folder()))
+        .map(include_dir::File::contents)
 }
 
 /// Finds the file that an argument names: a path, or a name in `scenarios` here, in a parent
@@ -59,17 +75,26 @@ pub fn find(word: &str, kind: Kind) -> Result<PathBuf> {
 pub fn find_beside(word: &str, kind: Kind, beside: Option<&Path>) -> Result<PathBuf> {
     let given = PathBuf::from(word);
     if given.extension().is_some_and(|end| end == "mcap") {
-        bail!("{word} is a recording, expected a {kind}; show it with squall replay, or analyse it with squall log");
+        bail!(
+            "{word} is a recording, expected a {kind}; show it with squall replay, or analyse it with squall log"
+        );
     }
     if !is_path(word, TOML) {
-        return located(word, (kind.folder(), TOML), beside).ok_or_else(|| unknown(word, kind, beside));
+        return located(word, (kind.folder(), TOML), beside)
+            .ok_or_else(|| unknown(word, kind, beside));
     }
     match other_kind(kinds(), &given, kind) {
-        Some(other) => bail!("{word} is a {other}, expected a {kind}{}", where_it_goes(other)),
+        Some(other) => bail!(
+            "{word} is a {other}, expected a {kind}{}",
+            where_it_goes(other)
+        ),
         None if given.exists() || built_in(&given).is_some() => Ok(given),
         None => {
             let name = name_of(&given, TOML).unwrap_or_default();
-            let folder = given.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+            let folder = given
+                .parent()
+                .filter(|folder| *folder != Path::new(""))
+                .unwrap_or(Path::new("."));
             let there = names_in(folder, TOML);
             let there: Vec<&str> = there.iter().map(String::as_str).collect();
             if !word.contains('/') && contents(kind, &name).is_some() {
@@ -85,12 +110,17 @@ pub fn find_any(word: &str) -> Result<Vec<PathBuf>> {
     if is_path(word, TOML) {
         return Ok(vec![word.into()]);
     }
-    let found = kinds().iter().filter_map(|kind| located(word, (kind.folder(), TOML), None));
+    let found = kinds()
+        .iter()
+        .filter_map(|kind| located(word, (kind.folder(), TOML), None));
     let found: Vec<PathBuf> = found.collect();
     if found.is_empty() {
         let known: BTreeSet<String> = kinds().iter().flat_map(|kind| all_names(*kind)).collect();
         let known: Vec<&str> = known.iter().map(String::as_str).collect();
-        bail!("there is no scenario file {word}{}; list them with: squall files", did_you_mean(word, &known));
+        bail!(
+            "there is no scenario file {word}{}; list them with: squall files",
+            did_you_mean(word, &known)
+        );
     }
     Ok(found)
 }
@@ -103,28 +133,45 @@ pub fn find_policy(word: &str) -> Result<PathBuf> {
     located(word, POLICIES, None).ok_or_else(|| {
         let known = policies();
         let known: Vec<&str> = known.iter().map(String::as_str).collect();
-        anyhow!("there is no policy {word}, expected the path of a file or one of {}", known.join(", "))
+        anyhow!(
+            "there is no policy {word}, expected the path of a file or one of {}",
+            known.join(", ")
+        )
     })
 }
 
 /// Whether an argument is a path, not a name.
 fn is_path(word: &str, extension: &str) -> bool {
     let path = Path::new(word);
-    let ends_so = path.extension().is_some_and(|end| end.eq_ignore_ascii_case(extension));
+    let ends_so = path
+        .extension()
+        .is_some_and(|end| end.eq_ignore_ascii_case(extension));
     word.contains(['/', '\\']) || ends_so || path.is_file()
 }
 
 /// The folders on the disk in which a name is looked up, nearest first.
 fn folders(folder: &str, beside: Option<&Path>) -> Vec<PathBuf> {
     let here = std::env::current_dir().unwrap_or_default();
-    let above = here.ancestors().map(|above| above.join(FOLDER).join(folder));
-    beside.map(Path::to_owned).into_iter().chain(above).collect()
+    let above = here
+        .ancestors()
+        .map(|above| above.join(FOLDER).join(folder));
+    beside
+        .map(Path::to_owned)
+        .into_iter()
+        .chain(above)
+        .collect()
 }
 
 /// The file of this name in a folder of `scenarios`, on the disk or built in.
-fn located(name: &str, (folder, extension): (&str, &str), beside: Option<&Path>) -> Option<PathBuf> {
+fn located(
+    name: &str,
+    (folder, extension): (&str, &str),
+    beside: Option<&Path>,
+) -> Option<PathBuf> {
     let file = format!("{name}.{extension}");
-    let mut paths = folders(folder, beside).into_iter().map(|folder| folder.join(&file));
+    let mut paths = folders(folder, beside)
+        .into_iter()
+        .map(|folder| folder.join(&file));
     if let Some(path) = paths.find(|path| path.is_file()) {
         // As a user would type it, so that the printed path can be read again.
         let here = std::env::current_dir().unwrap_or_default();
@@ -136,14 +183,27 @@ fn located(name: &str, (folder, extension): (&str, &str), beside: Option<&Path>)
 fn unknown(word: &str, kind: Kind, beside: Option<&Path>) -> anyhow::Error {
     let mut others = kinds().iter().copied().filter(|other| *other != kind);
     if let Some(other) = others.find(|other| all_names(*other).contains(word)) {
-        return anyhow!("there is no {kind} {word}, but there is a {other} of that name{}", where_it_goes(other));
+        return anyhow!(
+            "there is no {kind} {word}, but there is a {other} of that name{}",
+            where_it_goes(other)
+        );
     }
     let mut known = names(kind);
-    known.extend(folders(kind.folder(), beside).iter().flat_map(|folder| names_in(folder, TOML)));
+    known.extend(
+        folders(kind.folder(), beside)
+            .iter()
+            .flat_map(|folder| names_in(folder, TOML)),
+    );
     let known: Vec<&str> = known.iter().map(String::as_str).collect();
     let guess = did_you_mean(word, &known);
-    let list =
-        if guess.is_empty() { format!(", expected the path of a file or one of {}", known.join(", ")) } else { guess };
+    let list = if guess.is_empty() {
+        format!(
+            ", expected the path of a file or one of {}",
+            known.join(", ")
+        )
+    } else {
+        guess
+    };
     anyhow!("there is no {kind} {word}{list}")
 }
 
@@ -175,15 +235,24 @@ pub fn policies() -> BTreeSet<String> {
 
 fn built_in_names(folder: &str, extension: &str) -> BTreeSet<String> {
     let files = FILES.get_dir(folder).into_iter().flat_map(Dir::files);
-    files.filter_map(|file| name_of(file.path(), extension)).collect()
+    files
+        .filter_map(|file| name_of(file.path(), extension))
+        .collect()
 }
 
 /// The user's own files of a kind by name: those on the disk that are no copies of built-in ones.
 pub fn own(kind: Kind) -> BTreeMap<String, PathBuf> {
-    let names = folders(kind.folder(), None).into_iter().flat_map(|folder| names_in(&folder, TOML));
+    let names = folders(kind.folder(), None)
+        .into_iter()
+        .flat_map(|folder| names_in(&folder, TOML));
     let found = names.filter_map(|name| Some((located(&name, (kind.folder(), TOML), None)?, name)));
-    let is_own = |(path, name): &(PathBuf, String)| std::fs::read(path).ok().as_deref() != contents(kind, name);
-    found.filter(is_own).map(|(path, name)| (name, path)).collect()
+    let is_own = |(path, name): &(PathBuf, String)| {
+        std::fs::read(path).ok().as_deref() != contents(kind, name)
+    };
+    found
+        .filter(is_own)
+        .map(|(path, name)| (name, path))
+        .collect()
 }
 
 /// The names of all files of a kind, on the disk and built in.
@@ -192,18 +261,26 @@ pub fn all_names(kind: Kind) -> BTreeSet<String> {
 }
 
 fn names_in(folder: &Path, extension: &str) -> BTreeSet<String> {
-    let files = std::fs::read_dir(folder).into_iter().flatten().filter_map(std::result::Result::ok);
-    files.filter_map(|file| name_of(&file.path(), extension)).collect()
+    let files = std::fs::read_dir(folder)
+        .into_iter()
+        .flatten()
+        .filter_map(std::result::Result::ok);
+    files
+        .filter_map(|file| name_of(&file.path(), extension))
+        .collect()
 }
 
 fn name_of(path: &Path, extension: &str) -> Option<String> {
-    let is_wanted = path.extension().is_some_and(|end| end.eq_ignore_ascii_case(extension));
+    let is_wanted = path
+        .extension()
+        .is_some_and(|end| end.eq_ignore_ascii_case(extension));
     is_wanted.then(|| path.file_stem()?.to_str().map(str::to_owned))?
 }
 
 /// Whether the name of a file ends as those of scenario files, on Windows also with capitals.
 pub fn is_toml(path: &Path) -> bool {
-    path.extension().is_some_and(|end| end.eq_ignore_ascii_case("toml"))
+    path.extension()
+        .is_some_and(|end| end.eq_ignore_ascii_case("toml"))
 }
 
 /// Parses an argument that names an existing file or folder of any kind.
@@ -215,12 +292,23 @@ pub fn existing(word: &str) -> Result<PathBuf, String> {
     if path.exists() {
         return Ok(path);
     }
-    let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
-    let files = std::fs::read_dir(folder).into_iter().flatten().filter_map(std::result::Result::ok);
-    let there: Vec<String> = files.map(|file| file.file_name().to_string_lossy().into_owned()).collect();
+    let folder = path
+        .parent()
+        .filter(|folder| *folder != Path::new(""))
+        .unwrap_or(Path::new("."));
+    let files = std::fs::read_dir(folder)
+        .into_iter()
+        .flatten()
+        .filter_map(std::result::Result::ok);
+    let there: Vec<String> = files
+        .map(|file| file.file_name().to_string_lossy().into_owned())
+        .collect();
     let there: Vec<&str> = there.iter().map(String::as_str).collect();
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    Err(format!("there is no file {word}{}", did_you_mean(&name, &there)))
+    Err(format!(
+        "there is no file {word}{}",
+        did_you_mean(&name, &there)
+    ))
 }
 
 /// Parses an argument that names a file of this kind.

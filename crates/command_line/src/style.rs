@@ -42,8 +42,15 @@ pub struct Names(BTreeMap<String, usize>);
 impl Names {
     /// The names in this scenario.
     pub fn of(scenario: &Scenario) -> Names {
-        let teams = scenario.teams.iter().enumerate().map(|(i, team)| (team.name.clone(), i));
-        let boats = scenario.vehicles.iter().map(|vehicle| (vehicle.name.clone(), vehicle.team.index()));
+        let teams = scenario
+            .teams
+            .iter()
+            .enumerate()
+            .map(|(i, team)| (team.name.clone(), i));
+        let boats = scenario
+            .vehicles
+            .iter()
+            .map(|vehicle| (vehicle.name.clone(), vehicle.team.index()));
         Names(boats.chain(teams).collect())
     }
 
@@ -52,7 +59,9 @@ impl Names {
         let is_end = |character: char| !(character.is_ascii_alphanumeric() || character == '_');
         let word = |piece: &str| {
             let (word, rest) = piece.split_at(piece.find(is_end).unwrap_or(piece.len()));
-            self.0.get(word).map_or_else(|| piece.to_owned(), |index| team(*index, word) + rest)
+            self.0
+                .get(word)
+                .map_or_else(|| piece.to_owned(), |index| team(*index, word) + rest)
         };
         text.split_inclusive(is_end).map(word).collect()
     }
@@ -64,15 +73,28 @@ mod tests {
 
     #[test]
     fn names_have_their_teams_colours_and_other_words_none() {
-        let names = Names([("blue".to_owned(), 0), ("blue_1".to_owned(), 0), ("red".to_owned(), 1)].into());
+        let names = Names(
+            [
+                ("blue".to_owned(), 0),
+                ("blue_1".to_owned(), 0),
+                ("red".to_owned(), 1),
+            ]
+            .into(),
+        );
         for (text, want) in [
             ("", ""),
             (
                 "  1.0 s  blue_1 grabs the red flag\n",
                 "  1.0 s  \x1b[94mblue_1\x1b[0m grabs the \x1b[91mred\x1b[0m flag\n",
             ),
-            ("blue 3  red 4", "\x1b[94mblue\x1b[0m 3  \x1b[91mred\x1b[0m 4"),
-            ("blue_12 blueish tired red", "blue_12 blueish tired \x1b[91mred\x1b[0m"),
+            (
+                "blue 3  red 4",
+                "\x1b[94mblue\x1b[0m 3  \x1b[91mred\x1b[0m 4",
+            ),
+            (
+                "blue_12 blueish tired red",
+                "blue_12 blueish tired \x1b[91mred\x1b[0m",
+            ),
         ] {
             assert_eq!(names.paint(text), want);
         }

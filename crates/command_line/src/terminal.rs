@@ -62,7 +62,9 @@ fn is_written(control: &str, text: &str) -> bool {
     let mut out = std::io::stdout().lock();
     let steered = out.write_all(control.as_bytes());
     let mut out = AutoStream::auto(out);
-    let written = steered.and_then(|()| out.write_all(text.as_bytes())).and_then(|()| out.flush());
+    let written = steered
+        .and_then(|()| out.write_all(text.as_bytes()))
+        .and_then(|()| out.flush());
     let is_written = written.is_ok();
     // A reader that closes a pipe early has read enough.
     if let Err(error) = written
@@ -81,10 +83,18 @@ pub fn complain(text: &str) {
 /// Prints an error after this word in place of the program's name.
 pub fn complain_as(who: &str, text: &str) {
     let text = printable::coloured_message(text);
-    drop(writeln!(anstream::stderr(), "{} {text}", style::bad(&format!("{who}:"))));
+    drop(writeln!(
+        anstream::stderr(),
+        "{} {text}",
+        style::bad(&format!("{who}:"))
+    ));
 }
 
 /// Prints a text to standard error, where it does not mix with results.
 pub fn remark(text: &str) {
-    drop(writeln!(anstream::stderr(), "{}", printable::message(&explain::without_number(text))));
+    drop(writeln!(
+        anstream::stderr(),
+        "{}",
+        printable::message(&explain::without_number(text))
+    ));
 }

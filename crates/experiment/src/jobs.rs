@@ -13,7 +13,11 @@ const GAMES_MAX: usize = 4_000_000;
 
 /// The names of a game's teams, the first one first.
 pub(crate) fn teams_of(game: &Path, files: &Arc<Files>) -> Result<Vec<String>, Problems> {
-    Ok(load_with_files(game, &Overrides::default(), files)?.teams.into_iter().map(|team| team.name).collect())
+    Ok(load_with_files(game, &Overrides::default(), files)?
+        .teams
+        .into_iter()
+        .map(|team| team.name)
+        .collect())
 }
 
 /// A game without real boats, which cannot be played here: a problem of `file`.
@@ -26,19 +30,30 @@ pub(crate) fn load_game(
     let scenario = load_with_files(game, overrides, files)?;
     match scenario.has_no_real_boats() {
         Ok(()) => Ok(scenario),
-        Err(real_boats) => Err(Problems(vec![Problem::of_file(file.to_owned(), real_boats.to_string())])),
+        Err(real_boats) => Err(Problems(vec![Problem::of_file(
+            file.to_owned(),
+            real_boats.to_string(),
+        )])),
     }
 }
 
 /// The problem with an experiment whose file requests too many games.
 pub(crate) fn too_many_games(games: usize, file: &Path) -> Option<Problem> {
-    let message = || format!("there are {games} games in all, expected at most {GAMES_MAX}; reduce games or entries");
+    let message = || {
+        format!(
+            "there are {games} games in all, expected at most {GAMES_MAX}; reduce games or entries"
+        )
+    };
     (games > GAMES_MAX).then(|| Problem::of_file(file.to_owned(), message()))
 }
 
 /// The option of a command that gives a team its strategy, with a space before it.
 pub(crate) fn strategy_option(team: &str, file: &str) -> String {
-    if ["blue", "red"].contains(&team) { format!(" --{team} {file}") } else { format!(" --strategy {team}={file}") }
+    if ["blue", "red"].contains(&team) {
+        format!(" --{team} {file}")
+    } else {
+        format!(" --strategy {team}={file}")
+    }
 }
 
 /// The number of threads for this many games: as requested or one per core, but at most four per
@@ -60,10 +75,18 @@ mod tests {
     #[test]
     fn threads_are_no_more_than_four_a_core_nor_than_games() {
         let of = |number: usize| NonZeroUsize::new(number).expect("it is not 0");
-        for (asked, cores, games, want) in
-            [(3, 2, 100, 3), (10_000, 2, 1_000_000, 8), (10_000, 2, 5, 5), (2, 16, 1, 1), (1, 1, 0, 1)]
-        {
-            assert_eq!(capped(of(asked), of(cores), games), of(want), "{asked} for {games} games on {cores} cores");
+        for (asked, cores, games, want) in [
+            (3, 2, 100, 3),
+            (10_000, 2, 1_000_000, 8),
+            (10_000, 2, 5, 5),
+            (2, 16, 1, 1),
+            (1, 1, 0, 1),
+        ] {
+            assert_eq!(
+                capped(of(asked), of(cores), games),
+                of(want),
+                "{asked} for {games} games on {cores} cores"
+            );
         }
     }
 }

@@ -53,7 +53,10 @@ impl Packed {
     pub fn new(spec: &impl Serialize, files: Vec<(PathBuf, Arc<[u8]>)>, digest: String) -> Packed {
         Packed {
             spec: serde_json::to_string(spec).expect("it has names for keys"),
-            files: files.into_iter().map(|(path, bytes)| (path, bytes.to_vec())).collect(),
+            files: files
+                .into_iter()
+                .map(|(path, bytes)| (path, bytes.to_vec()))
+                .collect(),
             digest,
         }
     }
@@ -68,10 +71,20 @@ impl Packed {
         plan: impl FnOnce(&S, Arc<Files>) -> Result<P, Problems>,
         digest: impl FnOnce(&P) -> String,
     ) -> Result<P, UnpackError> {
-        let plan = plan(&serde_json::from_str(&self.spec)?, Arc::new(Files::kept(self.files)))?;
+        let plan = plan(
+            &serde_json::from_str(&self.spec)?,
+            Arc::new(Files::kept(self.files)),
+        )?;
         let found = digest(&plan);
         // The digest of plan and files shows whether two versions agree on the games.
-        if found == self.digest { Ok(plan) } else { Err(UnpackError::Other { expected: self.digest, found }) }
+        if found == self.digest {
+            Ok(plan)
+        } else {
+            Err(UnpackError::Other {
+                expected: self.digest,
+                found,
+            })
+        }
     }
 }
 
@@ -85,24 +98,44 @@ struct PackedFile {
     base64: Option<String>,
 }
 
-fn write_files<S: Serializer>(files: &[(PathBuf, Vec<u8>)], serializer: S) -> Result<S::Ok, S::Error> {
+fn write_files<S: Serializer>(
+    files: &[(PathBuf, Vec<u8>)],
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
     serializer.collect_seq(files.iter().map(|(path, bytes)| {
         let text = String::from_utf8(bytes.clone()).ok();
         let base64 = text.is_none().then(|| BASE64.encode(bytes));
-        PackedFile { path: path.clone(), text, base64 }
+        PackedFile {
+            path: path.clone(),
+            text,
+            base64,
+        }
     }))
 }
 
-fn read_files<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<(PathBuf, Vec<u8>)>, D::Error> {
+fn read_files<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Vec<(PathBuf, Vec<u8>)>, D::Error> {
     let files: Vec<PackedFile> = Vec::deserialize(deserializer)?;
-    let unpacked = files.into_iter().map(|PackedFile { path, text, base64 }| match (text, base64) {
-        (Some(text), None) => Ok((path, text.into_bytes())),
-        (None, Some(base64)) => {
-            let bytes = BASE64.decode(base64);
-            Ok((path.clone(), bytes.map_err(|why| D::Error::custom(format!("{}: {why}", path.display())))?))
-        }
-        _ => Err(D::Error::custom(format!("{}: expected either text or base64", path.display()))),
-    });
+    let unpacked =
+        files
+            .into_iter()
+            .map(|PackedFile { path, text, base64 }| match (text, base64) {
+                (Some(text), None) => Ok((path, text.into_bytes())),
+                (None, Some(base64)) => {
+                    let bytes = BASE64.decode(base64);
+                    Ok((
+                        path.clone(),
+                        bytes.map_err(|why| {
+                            D::Error::custom(format!("{}: {why}", path.display()))
+                        })?,
+                    ))
+                }
+                _ => Err(D::Error::custom(format!(
+                    "{}: expected either text or base64",
+                    path.display()
+                ))),
+            });
     unpacked.collect()
 }
 
@@ -112,14 +145,30 @@ mod tests {
 
     #[test]
     fn texts_and_models_go_through_json_and_what_is_neither_is_refused() {
-        let files =
-            vec![(PathBuf::from("a.toml"), b"x = \"1\"\n".to_vec()), (PathBuf::from("b.onnx"), vec![0, 255, 7])];
-        let packed = Packed { spec: "{}".to_owned(), files, digest: "d".to_owned() };
+        let files = vec![
+            (PathBuf::from("a.toml"), b"x = \"1\"\n".to_vec()),
+            (PathBuf::from("b.onnx"), vec![0, 255, 7]),
+        ];
+        let packed = Packed {
+            spec: "{}".to_owned(),
+            files,
+            digest: "d".to_owned(),
+        };
         let json = serde_json::to_string(&packed).expect("it has names for keys");
-        assert!(json.contains("x = \\\"1\\\"\\n") && json.contains("AP8H"), "{json}");
-        assert_eq!(serde_json::from_str::<Packed>(&json).expect("it is read again"), packed);
-        for (broken, why) in [("\"base64\":\"AP8H\"", "\"base64\":\"?\""), ("\"base64\":\"AP8H\"", "\"bytes\":[]")] {
-            let refused = serde_json::from_str::<Packed>(&json.replace(broken, why)).expect_err("it is refused");
+        assert!(
+            json.contains("x = \\\"1\\\"\\n") && json.contains("AP8H"),
+            "{json}"
+        );
+        assert_eq!(
+            serde_json::from_str::<Packed>(&json).expect("it is read again"),
+            packed
+        );
+        for (broken, why) in [
+            ("\"base64\":\"AP8H\"", "\"base64\":\"?\""),
+            ("\"base64\":\"AP8H\"", "\"bytes\":[]"),
+        ] {
+            let refused = serde_json::from_str::<Packed>(&json.replace(broken, why))
+                .expect_err("it is refused");
             assert!(refused.to_string().contains("b.onnx"), "{refused}");
         }
     }

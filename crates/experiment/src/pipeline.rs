@@ -59,10 +59,15 @@ pub(crate) fn play_game(
     stop: Stop<'_>,
     mut see: impl FnMut(&Contest, &MindRunner),
 ) -> Result<Game, String> {
-    let outcome = arena::play_observed(scenario, agent::minds_of(scenario), seed, |contest, runner| {
-        see(contest, runner);
-        !stop.is_set()
-    });
+    let outcome = arena::play_observed(
+        scenario,
+        agent::minds_of(scenario),
+        seed,
+        |contest, runner| {
+            see(contest, runner);
+            !stop.is_set()
+        },
+    );
     Ok(Game::new(scenario, outcome.map_err(|why| why.to_string())?))
 }
 

@@ -9,7 +9,11 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 fn shipped(file: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(file).canonicalize().expect("it can be")
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../scenarios")
+        .join(file)
+        .canonicalize()
+        .expect("it can be")
 }
 
 /// A sweep of two entries over two axes with short games, plus `more` lines.
@@ -32,14 +36,18 @@ const WIND: &str = "[[axis]]\nkey = \"sea.wind.speed_m_s\"\nrange = [1, 9]\ncoun
 fn plan_of(folder: &Path, text: &str) -> Plan {
     let path = folder.join("tried.toml");
     std::fs::write(&path, text).expect("it can be");
-    Plan::new(&load_file::<Sweep>(&path).unwrap_or_else(|problems| panic!("{problems}"))).expect("it can be")
+    Plan::new(&load_file::<Sweep>(&path).unwrap_or_else(|problems| panic!("{problems}")))
+        .expect("it can be")
 }
 
 /// Plays a study from its current game up to, but not including, `to`.
 fn go_on(study: &mut Study, plan: &Plan, to: usize, jobs: usize) {
     let from = study.done();
     let jobs = NonZeroUsize::new(jobs).expect("it can be");
-    sweep::play(plan, (from, to), jobs, &AtomicBool::new(false), |played| study.add(plan, &played)).expect("it can be");
+    sweep::play(plan, (from, to), jobs, &AtomicBool::new(false), |played| {
+        study.add(plan, &played)
+    })
+    .expect("it can be");
 }
 
 /// Every file of a study.
@@ -48,7 +56,10 @@ fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
         .expect("it can be")
         .map(|entry| entry.expect("it can be"))
         .map(|entry| {
-            (entry.file_name().into_string().expect("it can be"), std::fs::read(entry.path()).expect("it can be"))
+            (
+                entry.file_name().into_string().expect("it can be"),
+                std::fs::read(entry.path()).expect("it can be"),
+            )
         })
         .collect();
     files.sort();
@@ -68,10 +79,22 @@ fn a_study_that_was_cut_anywhere_and_taken_up_again_is_the_same_bytes_on_any_num
     let names: Vec<&str> = want.iter().map(|(name, _)| name.as_str()).collect();
     assert_eq!(
         names,
-        ["boats.csv", "games.csv", "games.parquet", "plan.json", "plan.txt", "report.html", "report.json", "sums.txt"]
+        [
+            "boats.csv",
+            "games.csv",
+            "games.parquet",
+            "plan.json",
+            "plan.txt",
+            "report.html",
+            "report.json",
+            "sums.txt"
+        ]
     );
     let packed = serde_json::from_slice(&want[3].1).expect("a packed plan");
-    assert_eq!(Plan::unpack(packed).expect("it is this version's").digest(), plan.digest());
+    assert_eq!(
+        Plan::unpack(packed).expect("it is this version's").digest(),
+        plan.digest()
+    );
 
     // Any number of bytes may be missing from the last line of either table, and from lines before
     // it.
@@ -84,27 +107,50 @@ fn a_study_that_was_cut_anywhere_and_taken_up_again_is_the_same_bytes_on_any_num
         for (name, bytes) in [("games.csv", games), ("boats.csv", boats)] {
             let path = cut.join(name);
             let length = std::fs::metadata(&path).unwrap().len();
-            std::fs::OpenOptions::new().write(true).open(&path).unwrap().set_len(length - bytes).unwrap();
+            std::fs::OpenOptions::new()
+                .write(true)
+                .open(&path)
+                .unwrap()
+                .set_len(length - bytes)
+                .unwrap();
         }
         let mut study = Study::resume(&cut, &plan).unwrap();
-        assert_eq!(study.done() < 11, games + boats > 0, "{games} {boats}: {}", study.done());
+        assert_eq!(
+            study.done() < 11,
+            games + boats > 0,
+            "{games} {boats}: {}",
+            study.done()
+        );
         go_on(&mut study, &plan, 24, 3);
         study.report(&plan).unwrap();
         assert!(files(&cut) == want, "cut by {games} and {boats} bytes");
     }
 
     // A full disk leaves files empty or missing, and any digit may change.
-    let lines = |name: &str| std::fs::read_to_string(whole.join(name)).unwrap().lines().count();
+    let lines = |name: &str| {
+        std::fs::read_to_string(whole.join(name))
+            .unwrap()
+            .lines()
+            .count()
+    };
     for name in ["games.csv", "boats.csv", "sums.txt", "plan.json"] {
         for damage in ["empty", "none", "a digit", "no head"] {
             let path = cut.join(name);
             let text = std::fs::read_to_string(&path).unwrap();
             let digit = text.rfind(|c: char| c.is_ascii_digit()).unwrap();
-            let other = if &text[digit..=digit] == "1" { "2" } else { "1" };
+            let other = if &text[digit..=digit] == "1" {
+                "2"
+            } else {
+                "1"
+            };
             match damage {
                 "empty" => std::fs::write(&path, "").unwrap(),
                 "none" => std::fs::remove_file(&path).unwrap(),
-                "a digit" => std::fs::write(&path, format!("{}{other}{}", &text[..digit], &text[digit + 1..])).unwrap(),
+                "a digit" => std::fs::write(
+                    &path,
+                    format!("{}{other}{}", &text[..digit], &text[digit + 1..]),
+                )
+                .unwrap(),
                 _ => std::fs::write(&path, text.split_once('\n').unwrap().1).unwrap(),
             }
             let mut study = Study::resume(&cut, &plan).unwrap();
@@ -128,29 +174,50 @@ fn a_game_of_the_report_is_the_one_that_its_command_plays() {
     let plan = plan_of(dir.path(), &text(WIND));
     let job = plan.job(22);
     let mut played = None;
-    sweep::play(&plan, (22, 23), NonZeroUsize::MIN, &AtomicBool::new(false), |one| {
-        played = Some(one.row);
-        Ok::<(), StudyError>(())
-    })
+    sweep::play(
+        &plan,
+        (22, 23),
+        NonZeroUsize::MIN,
+        &AtomicBool::new(false),
+        |one| {
+            played = Some(one.row);
+            Ok::<(), StudyError>(())
+        },
+    )
     .unwrap();
     let played = played.expect("a game");
     assert_eq!((job.point, job.entry, job.seed, job.side), (2, 1, 6, 0));
     let command = plan.command(&job);
     // The parsed form of these words: the same files, values and seed.
     let setting = |key: &str, value: &str| format!("--set '{key}={value}'");
-    for part in [setting("sea.wind.speed_m_s", "9"), setting("game.duration_s", "30"), "--seed 6".to_owned()] {
+    for part in [
+        setting("sea.wind.speed_m_s", "9"),
+        setting("game.duration_s", "30"),
+        "--seed 6".to_owned(),
+    ] {
         assert!(command.contains(&part), "{command}");
     }
-    assert!(command.starts_with("squall run surveyor_2v2 --blue easy_attackers --red pav01 --set"), "{command}");
+    assert!(
+        command.starts_with("squall run surveyor_2v2 --blue easy_attackers --red pav01 --set"),
+        "{command}"
+    );
     let settings = ["game.duration_s=30", "sea.wind.speed_m_s=9"];
     let overrides = Overrides {
-        settings: settings.map(|text| scenario::Setting::parse(text).unwrap()).to_vec(),
-        strategies: [("blue", "strategies/easy_attackers.toml"), ("red", "strategies/pav01.toml")]
-            .map(|(team, file)| (team.to_owned(), shipped(file)))
-            .into(),
+        settings: settings
+            .map(|text| scenario::Setting::parse(text).unwrap())
+            .to_vec(),
+        strategies: [
+            ("blue", "strategies/easy_attackers.toml"),
+            ("red", "strategies/pav01.toml"),
+        ]
+        .map(|(team, file)| (team.to_owned(), shipped(file)))
+        .into(),
         ..Overrides::default()
     };
-    let scenario = load_with(&shipped("games/surveyor_2v2.toml"), &overrides).unwrap().of_seed(6).unwrap();
+    let scenario = load_with(&shipped("games/surveyor_2v2.toml"), &overrides)
+        .unwrap()
+        .of_seed(6)
+        .unwrap();
     let outcome = arena::play(&scenario, agent::minds_of(&scenario), 6).unwrap();
     assert_eq!(outcome.digest, played.digest);
     let score = played.result.unwrap().of("score");
@@ -163,11 +230,25 @@ fn all_points_play_the_same_seeds_and_designs_cover_the_space() {
     let two = format!("{WIND}[[axis]]\nkey = \"boat.gps.noise_m\"\nvalues = [0.1, 1, 4]\n");
     let grid = plan_of(dir.path(), &text(&two));
     assert_eq!(grid.points().len(), 9);
-    let seeds = |point: usize| (0..8).map(|i| grid.job(8 * point + i).seed).collect::<Vec<u64>>();
+    let seeds = |point: usize| {
+        (0..8)
+            .map(|i| grid.job(8 * point + i).seed)
+            .collect::<Vec<u64>>()
+    };
     assert_eq!(seeds(0), [5, 5, 5, 5, 6, 6, 6, 6]);
     assert_eq!(seeds(8), seeds(0));
-    let with = |design: &str| plan_of(dir.path(), &format!("design = {design:?}\npoints = 30\n{}", text(&two)));
-    let winds = |plan: &Plan| plan.points().iter().map(|point| point[1].number().unwrap()).collect::<Vec<f64>>();
+    let with = |design: &str| {
+        plan_of(
+            dir.path(),
+            &format!("design = {design:?}\npoints = 30\n{}", text(&two)),
+        )
+    };
+    let winds = |plan: &Plan| {
+        plan.points()
+            .iter()
+            .map(|point| point[1].number().unwrap())
+            .collect::<Vec<f64>>()
+    };
     let one = with("one_at_a_time");
     // The nominal point (wind 5, noise 1), two more winds and two more noises.
     assert_eq!(one.points().len(), 5);
@@ -193,16 +274,34 @@ fn a_named_pipe_in_place_of_a_table_is_refused_and_not_waited_for() {
     for name in ["games.csv", "boats.csv", "sums.txt", "plan.txt"] {
         drop(Study::begin(&folder, &plan).unwrap());
         std::fs::remove_file(folder.join(name)).unwrap();
-        assert!(std::process::Command::new("mkfifo").arg(folder.join(name)).status().unwrap().success());
+        assert!(
+            std::process::Command::new("mkfifo")
+                .arg(folder.join(name))
+                .status()
+                .unwrap()
+                .success()
+        );
         let why = Study::resume(&folder, &plan).err().expect(name).to_string();
-        assert!(why.contains(name) && why.contains("it is not a file"), "{why}");
+        assert!(
+            why.contains(name) && why.contains("it is not a file"),
+            "{why}"
+        );
         std::fs::remove_dir_all(&folder).unwrap();
     }
     for name in ["report.html", "report.json", "games.parquet"] {
         let study = Study::begin(&folder, &plan).unwrap();
-        assert!(std::process::Command::new("mkfifo").arg(folder.join(name)).status().unwrap().success());
+        assert!(
+            std::process::Command::new("mkfifo")
+                .arg(folder.join(name))
+                .status()
+                .unwrap()
+                .success()
+        );
         let why = study.report(&plan).expect_err(name).to_string();
-        assert!(why.contains(name) && why.contains("it is a pipe without a reader"), "{why}");
+        assert!(
+            why.contains(name) && why.contains("it is a pipe without a reader"),
+            "{why}"
+        );
         std::fs::remove_dir_all(&folder).unwrap();
     }
 }
@@ -212,19 +311,52 @@ fn what_is_wrong_is_said_before_a_game_with_its_place() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("wrong.toml");
     for (axis, want) in [
-        ("key = \"sea.wind.speed_m_s\"\nrange = [1, 900]", "wrong.toml:15:24: speed_m_s is 900, expected 0 to"),
-        ("key = \"sea.winds.speed_m_s\"\nvalues = [1]", "winds is unknown"),
-        ("key = \"weather.wind\"\nvalues = [1]", "wrong.toml:15:7: key is \"weather.wind\", expected sea, boat"),
-        ("key = \"sea\"\nvalues = [\"nonesuch.toml\"]", "nonesuch.toml"),
-        ("key = \"sea\"\nrange = [0, 1]", "sea has no values, expected files"),
-        ("key = \"boat.gps.noise_m\"\nnormal = [1, 0.5]", "noise_m is -0.5, expected 0 to"),
-        ("key = \"boat.gps.noise_m\"", "has none, expected one of values, range, normal, log_normal"),
-        ("key = \"boat.gps.noise_m\"\nvalues = [1, \"two\"]", "different types"),
-        ("key = \"boat.gps.noise_m\"\nrange = [0, 1]\nlog = true", "expected more than 0 with log"),
-        ("key = \"game.duration_s\"\nvalues = [40]", "the key \"game.duration_s\" is used twice"),
+        (
+            "key = \"sea.wind.speed_m_s\"\nrange = [1, 900]",
+            "wrong.toml:15:24: speed_m_s is 900, expected 0 to",
+        ),
+        (
+            "key = \"sea.winds.speed_m_s\"\nvalues = [1]",
+            "winds is unknown",
+        ),
+        (
+            "key = \"weather.wind\"\nvalues = [1]",
+            "wrong.toml:15:7: key is \"weather.wind\", expected sea, boat",
+        ),
+        (
+            "key = \"sea\"\nvalues = [\"nonesuch.toml\"]",
+            "nonesuch.toml",
+        ),
+        (
+            "key = \"sea\"\nrange = [0, 1]",
+            "sea has no values, expected files",
+        ),
+        (
+            "key = \"boat.gps.noise_m\"\nnormal = [1, 0.5]",
+            "noise_m is -0.5, expected 0 to",
+        ),
+        (
+            "key = \"boat.gps.noise_m\"",
+            "has none, expected one of values, range, normal, log_normal",
+        ),
+        (
+            "key = \"boat.gps.noise_m\"\nvalues = [1, \"two\"]",
+            "different types",
+        ),
+        (
+            "key = \"boat.gps.noise_m\"\nrange = [0, 1]\nlog = true",
+            "expected more than 0 with log",
+        ),
+        (
+            "key = \"game.duration_s\"\nvalues = [40]",
+            "the key \"game.duration_s\" is used twice",
+        ),
     ] {
         std::fs::write(&path, text(&format!("[[axis]]\n{axis}\n"))).unwrap();
-        let said = load_file::<Sweep>(&path).and_then(|sweep| Plan::new(&sweep).map(drop)).expect_err(axis).to_string();
+        let said = load_file::<Sweep>(&path)
+            .and_then(|sweep| Plan::new(&sweep).map(drop))
+            .expect_err(axis)
+            .to_string();
         assert!(said.contains(want), "{axis}: {said}");
     }
 }
@@ -234,12 +366,21 @@ fn a_folder_keeps_one_sweep_and_says_so() {
     let dir = tempfile::tempdir().unwrap();
     let plan = plan_of(dir.path(), &text(WIND));
     let folder = dir.path().join("out");
-    assert!(matches!(Study::resume(&folder, &plan), Err(StudyError::Missing { .. })));
+    assert!(matches!(
+        Study::resume(&folder, &plan),
+        Err(StudyError::Missing { .. })
+    ));
     let mut study = Study::begin(&folder, &plan).unwrap();
     go_on(&mut study, &plan, 2, 1);
-    assert!(matches!(Study::begin(&folder, &plan), Err(StudyError::Exists { games: 2, .. })));
+    assert!(matches!(
+        Study::begin(&folder, &plan),
+        Err(StudyError::Exists { games: 2, .. })
+    ));
     let other = plan_of(dir.path(), &text(WIND).replace("[1, 9]", "[1, 8]"));
-    assert!(matches!(Study::resume(&folder, &other), Err(StudyError::Other { .. })));
+    assert!(matches!(
+        Study::resume(&folder, &other),
+        Err(StudyError::Other { .. })
+    ));
 }
 
 #[test]
@@ -253,11 +394,27 @@ fn the_breaking_point_is_found_where_it_is() {
     let condition = Condition::parse("easy.duration_s > 37", plan.sweep()).unwrap();
     let jobs = (NonZeroUsize::MIN, &AtomicBool::new(false));
     let mut journal = Journal::begin(dir.path(), &plan).unwrap();
-    let point = sweep::breaking_point(&plan, &condition, Some("game.duration_s"), &mut journal, jobs, |_| {}).unwrap();
+    let point = sweep::breaking_point(
+        &plan,
+        &condition,
+        Some("game.duration_s"),
+        &mut journal,
+        jobs,
+        |_| {},
+    )
+    .unwrap();
     let low = point.low.unwrap();
     let high = point.high.unwrap();
-    assert!(low < 37.0 && 37.0 < high && high - low < 1.0, "{low} to {high}");
-    for text in ["easy.duration_s", "nobody.score < 1", "easy.speed < 1", "score < 1"] {
+    assert!(
+        low < 37.0 && 37.0 < high && high - low < 1.0,
+        "{low} to {high}"
+    );
+    for text in [
+        "easy.duration_s",
+        "nobody.score < 1",
+        "easy.speed < 1",
+        "score < 1",
+    ] {
         assert!(Condition::parse(text, plan.sweep()).is_err(), "{text}");
     }
 }
@@ -265,49 +422,90 @@ fn the_breaking_point_is_found_where_it_is() {
 #[test]
 fn a_search_that_was_stopped_anywhere_goes_on_without_playing_its_games_again() {
     let dir = tempfile::tempdir().unwrap();
-    let plan = plan_of(dir.path(), &text("[[axis]]\nkey = \"sea.wind.speed_m_s\"\nrange = [1, 12]\n"));
+    let plan = plan_of(
+        dir.path(),
+        &text("[[axis]]\nkey = \"sea.wind.speed_m_s\"\nrange = [1, 12]\n"),
+    );
     let condition = Condition::parse("easy.closest_m < 9", plan.sweep()).unwrap();
     let find = |journal: &mut Journal, stop: &AtomicBool, after: usize| {
         let mut rounds = 0;
-        sweep::find(&plan, &condition, 120, journal, (NonZeroUsize::MIN, stop), |_, _| {
-            rounds += 1;
-            stop.store(rounds == after, Ordering::Relaxed);
-        })
+        sweep::find(
+            &plan,
+            &condition,
+            120,
+            journal,
+            (NonZeroUsize::MIN, stop),
+            |_, _| {
+                rounds += 1;
+                stop.store(rounds == after, Ordering::Relaxed);
+            },
+        )
     };
     let whole = dir.path().join("whole");
     let mut journal = Journal::begin(&whole, &plan).unwrap();
     let want = find(&mut journal, &AtomicBool::new(false), 99).unwrap();
-    assert!(want.failures > 0 && want.games == 120 && journal.games() == 120, "{want:?}");
+    assert!(
+        want.failures > 0 && want.games == 120 && journal.games() == 120,
+        "{want:?}"
+    );
 
     let cut = dir.path().join("cut");
     let mut journal = Journal::begin(&cut, &plan).unwrap();
-    assert!(matches!(find(&mut journal, &AtomicBool::new(false), 1), Err(SearchError::Stopped)));
+    assert!(matches!(
+        find(&mut journal, &AtomicBool::new(false), 1),
+        Err(SearchError::Stopped)
+    ));
     assert_eq!(journal.games(), 100);
     drop(journal);
-    assert!(matches!(Journal::begin(&cut, &plan), Err(StudyError::Exists { games: 100, .. })));
+    assert!(matches!(
+        Journal::begin(&cut, &plan),
+        Err(StudyError::Exists { games: 100, .. })
+    ));
     let file = cut.join("search.csv");
     let bytes = std::fs::read(&file).unwrap();
     std::fs::write(&file, &bytes[..bytes.len() - 5]).unwrap();
     let mut journal = Journal::resume(&cut, &plan).unwrap();
-    assert_eq!(journal.games(), 99, "the truncated part does not count as a game");
-    assert_eq!(find(&mut journal, &AtomicBool::new(false), 99).unwrap(), want);
-    assert_eq!(std::fs::read(&file).unwrap(), std::fs::read(whole.join("search.csv")).unwrap());
+    assert_eq!(
+        journal.games(),
+        99,
+        "the truncated part does not count as a game"
+    );
+    assert_eq!(
+        find(&mut journal, &AtomicBool::new(false), 99).unwrap(),
+        want
+    );
+    assert_eq!(
+        std::fs::read(&file).unwrap(),
+        std::fs::read(whole.join("search.csv")).unwrap()
+    );
 
     // With a changed digit, a game in the middle is played again.
     drop(journal);
     let mut bytes = std::fs::read(&file).unwrap();
-    let middle = (bytes.len() / 2..).find(|i| bytes[*i].is_ascii_digit()).unwrap();
+    let middle = (bytes.len() / 2..)
+        .find(|i| bytes[*i].is_ascii_digit())
+        .unwrap();
     bytes[middle] = if bytes[middle] == b'1' { b'2' } else { b'1' };
     std::fs::write(&file, bytes).unwrap();
     let mut journal = Journal::resume(&cut, &plan).unwrap();
     assert_eq!(journal.games(), 119);
-    assert_eq!(find(&mut journal, &AtomicBool::new(false), 99).unwrap(), want);
+    assert_eq!(
+        find(&mut journal, &AtomicBool::new(false), 99).unwrap(),
+        want
+    );
 
     // A breaking point requires other games; no known game is lost.
     let condition = Condition::parse("easy.score < 1", plan.sweep()).unwrap();
     let search = |plan: &Plan, condition: &Condition, journal: &mut Journal, is_stopped: bool| {
         let threads = (NonZeroUsize::MIN, &AtomicBool::new(is_stopped));
-        sweep::breaking_point(plan, condition, Some("sea.wind.speed_m_s"), journal, threads, |_| {})
+        sweep::breaking_point(
+            plan,
+            condition,
+            Some("sea.wind.speed_m_s"),
+            journal,
+            threads,
+            |_| {},
+        )
     };
     search(&plan, &condition, &mut journal, false).unwrap();
     assert!(journal.games() > 120);
@@ -316,7 +514,10 @@ fn a_search_that_was_stopped_anywhere_goes_on_without_playing_its_games_again() 
     // With no thread to play, all games must be in the journal.
     search(&plan, &condition, &mut again, true).unwrap();
     let other = plan_of(dir.path(), &text(WIND));
-    assert!(matches!(Journal::resume(&cut, &other), Err(StudyError::Other { .. })));
+    assert!(matches!(
+        Journal::resume(&cut, &other),
+        Err(StudyError::Other { .. })
+    ));
     let condition = Condition::parse("easy.score < 2", other.sweep()).unwrap();
     let mut new = Journal::begin(&dir.path().join("new"), &other).unwrap();
     let none = search(&other, &condition, &mut new, true);

@@ -8,7 +8,11 @@ impl Dice {
     /// The stream for this seed.
     pub fn new(seed: u64) -> Dice {
         // Seeds that differ in a few bits must give very different states, none of them 0.
-        Dice(seed.wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15).max(1))
+        Dice(
+            seed.wrapping_add(1)
+                .wrapping_mul(0x9E37_79B9_7F4A_7C15)
+                .max(1),
+        )
     }
 
     /// A number from 0 to `sides - 1`; 0 without sides.

@@ -12,7 +12,8 @@ squall-fuzz play TARGET FILE                                     check one input
 squall-fuzz seeds FOLDER                                         write real inputs, one folder per target";
 
 /// The command that runs this program.
-const COMMAND: &str = "cargo run --manifest-path crates/fuzz/Cargo.toml --target-dir target/outside --";
+const COMMAND: &str =
+    "cargo run --manifest-path crates/fuzz/Cargo.toml --target-dir target/outside --";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -20,9 +21,14 @@ fn main() -> ExitCode {
     match words.as_slice() {
         ["soak", options @ ..] => soak_all(options),
         // A child process of `soak`, because an input may crash it.
-        ["child", target, seconds, seed, current] => child(target, seconds, seed, Path::new(current)),
+        ["child", target, seconds, seed, current] => {
+            child(target, seconds, seed, Path::new(current))
+        }
         ["play", target, file] => {
-            soak::check(&target_of(target), &std::fs::read(file).unwrap_or_else(|e| give_up(&format!("{file}: {e}"))));
+            soak::check(
+                &target_of(target),
+                &std::fs::read(file).unwrap_or_else(|e| give_up(&format!("{file}: {e}"))),
+            );
             println!("no fault");
             ExitCode::SUCCESS
         }
@@ -39,8 +45,12 @@ fn soak_all(options: &[&str]) -> ExitCode {
     let mut options = options.iter();
     while let Some(option) = options.next() {
         let mut number = || {
-            let text = options.next().unwrap_or_else(|| give_up(&format!("{option} needs a number\n{USAGE}")));
-            text.parse().unwrap_or_else(|_| give_up(&format!("{option} is {text}, expected a whole number")))
+            let text = options
+                .next()
+                .unwrap_or_else(|| give_up(&format!("{option} needs a number\n{USAGE}")));
+            text.parse().unwrap_or_else(|_| {
+                give_up(&format!("{option} is {text}, expected a whole number"))
+            })
         };
         match *option {
             "--seconds" => seconds = number(),
@@ -64,21 +74,36 @@ fn soak_all(options: &[&str]) -> ExitCode {
             });
         }
     });
-    if is_sound.into_inner() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+    if is_sound.into_inner() {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    }
 }
 
 /// Runs a target in a separate process. Returns whether it found no fault.
 fn soak_one(target: &Target, seconds: u64, seed: u64) -> bool {
     let folder = failures();
     let current = folder.join(format!("{}-{}-current", target.name, std::process::id()));
-    let program = std::env::current_exe().unwrap_or_else(|e| give_up(&format!("cannot find this program: {e}")));
+    let program = std::env::current_exe()
+        .unwrap_or_else(|e| give_up(&format!("cannot find this program: {e}")));
     let mut command = Command::new(program);
-    command.args(["child", target.name, &seconds.to_string(), &seed.to_string()]).arg(&current);
-    let status = command.status().unwrap_or_else(|e| give_up(&format!("cannot start a process: {e}")));
+    command
+        .args([
+            "child",
+            target.name,
+            &seconds.to_string(),
+            &seed.to_string(),
+        ])
+        .arg(&current);
+    let status = command
+        .status()
+        .unwrap_or_else(|e| give_up(&format!("cannot start a process: {e}")));
     if !status.success() {
         let input = soak::left_in(&current).unwrap_or_default();
         let file = folder.join(format!("{}-{seed}", target.name));
-        std::fs::write(&file, &input).unwrap_or_else(|e| give_up(&format!("{}: {e}", file.display())));
+        std::fs::write(&file, &input)
+            .unwrap_or_else(|e| give_up(&format!("{}: {e}", file.display())));
         println!(
             "{}: FAILED ({status}). Reproduce with: {COMMAND} play {} {}",
             target.name,
@@ -95,9 +120,18 @@ fn child(target: &str, seconds: &str, seed: &str, current: &Path) -> ExitCode {
     limit_memory();
     let target = target_of(target);
     let seconds = seconds.parse().expect("seconds");
-    match soak::soak(&target, Duration::from_secs(seconds), seed.parse().expect("a seed"), current) {
+    match soak::soak(
+        &target,
+        Duration::from_secs(seconds),
+        seed.parse().expect("a seed"),
+        current,
+    ) {
         Ok(runs) => {
-            println!("{}: {runs} runs, {} per second, no fault", target.name, runs / seconds.max(1));
+            println!(
+                "{}: {runs} runs, {} per second, no fault",
+                target.name,
+                runs / seconds.max(1)
+            );
             ExitCode::SUCCESS
         }
         Err(_) => ExitCode::FAILURE,
@@ -108,7 +142,14 @@ fn child(target: &str, seconds: &str, seed: &str, current: &Path) -> ExitCode {
 fn limit_memory() {
     use rustix::process::{Resource, Rlimit, setrlimit};
     let most = Some(4 << 30);
-    setrlimit(Resource::As, Rlimit { current: most, maximum: most }).expect("a limit can be lowered");
+    setrlimit(
+        Resource::As,
+        Rlimit {
+            current: most,
+            maximum: most,
+        },
+    )
+    .expect("a limit can be lowered");
 }
 
 fn seeds(folder: &Path) -> ExitCode {
@@ -125,13 +166,15 @@ fn seeds(folder: &Path) -> ExitCode {
 
 fn failures() -> PathBuf {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("artifacts");
-    std::fs::create_dir_all(&folder).unwrap_or_else(|e| give_up(&format!("{}: {e}", folder.display())));
+    std::fs::create_dir_all(&folder)
+        .unwrap_or_else(|e| give_up(&format!("{}: {e}", folder.display())));
     folder
 }
 
 fn target_of(name: &str) -> Target {
     let names = TARGETS.map(|target| target.name).join(", ");
-    named(name).unwrap_or_else(|| give_up(&format!("unknown target {name}, expected one of {names}")))
+    named(name)
+        .unwrap_or_else(|| give_up(&format!("unknown target {name}, expected one of {names}")))
 }
 
 fn give_up(why: &str) -> ! {

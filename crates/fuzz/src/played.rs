@@ -1,7 +1,9 @@
 //! Real inputs: the scenario files in the tree, and a short game with all its messages.
 
 use messages::water::{PlaneWave, Water};
-use messages::{Frame, GameInfo, Message, Orders, Picture, PolicyProposal, Say, Stamp, VehicleOrder, Word};
+use messages::{
+    Frame, GameInfo, Message, Orders, Picture, PolicyProposal, Say, Stamp, VehicleOrder, Word,
+};
 use primitives::VehicleId;
 use recording::{Decision, Ending, Entry, Header, Writer};
 use rules::event::EventCursor;
@@ -58,15 +60,38 @@ pub fn played(scenario: Scenario, decisions: u64) -> Played {
         arena::decide(&mut contest, &mut runner);
         let pictures: Vec<Picture> = contest.last_pictures().to_vec();
         orders.extend(runner.answer(7));
-        let stamp = Stamp { version: Say::VERSION, ..pictures[0].stamp };
-        let word = Word { vehicle: VehicleId(0), key: 5, value: 0.5 };
-        says.push(Say { stamp, words: [&[word], runner.sent()].concat() });
+        let stamp = Stamp {
+            version: Say::VERSION,
+            ..pictures[0].stamp
+        };
+        let word = Word {
+            vehicle: VehicleId(0),
+            key: 5,
+            value: 0.5,
+        };
+        says.push(Say {
+            stamp,
+            words: [&[word], runner.sent()].concat(),
+        });
         contest.advance();
         let frame: Frame = contest.frame(&mut cursor);
-        kept.push(Decision { frame: frame.into(), pictures, inputs: contest.take_inputs() });
+        kept.push(Decision {
+            frame: frame.into(),
+            pictures,
+            inputs: contest.take_inputs(),
+        });
     }
-    let ending = Ending { outcome: contest.outcome(), ..Ending::default() };
-    Played { scenario, decisions: kept, orders, says, ending }
+    let ending = Ending {
+        outcome: contest.outcome(),
+        ..Ending::default()
+    };
+    Played {
+        scenario,
+        decisions: kept,
+        orders,
+        says,
+        ending,
+    }
 }
 
 impl Played {
@@ -84,7 +109,12 @@ impl Played {
     /// # Panics
     /// If the recording cannot be written.
     pub fn recording(&self, others: &[Entry]) -> Vec<u8> {
-        let wave = PlaneWave { amplitude_m: 0.1, wavenumber_rad_m: 1.0, omega_rad_s: 3.1, ..PlaneWave::default() };
+        let wave = PlaneWave {
+            amplitude_m: 0.1,
+            wavenumber_rad_m: 1.0,
+            omega_rad_s: 3.1,
+            ..PlaneWave::default()
+        };
         let header = Header {
             commit: "c0ffee".to_owned(),
             game: "fuzz-1".to_owned(),
@@ -93,23 +123,45 @@ impl Played {
             water: Water { waves: vec![wave] },
         };
         let mut writer = Writer::begin(Cursor::new(Vec::new()), &header.opening()).expect("memory");
-        let decisions = self.decisions.iter().map(|decision| Entry::Decision(Box::new(decision.clone())));
+        let decisions = self
+            .decisions
+            .iter()
+            .map(|decision| Entry::Decision(Box::new(decision.clone())));
         for entry in decisions.chain(others.iter().cloned()) {
-            writer.write(&entry, 1_700_000_000_000_000_000).expect("memory");
+            writer
+                .write(&entry, 1_700_000_000_000_000_000)
+                .expect("memory");
         }
-        writer.end(self.ending.facts()).expect("memory").into_inner()
+        writer
+            .end(self.ending.facts())
+            .expect("memory")
+            .into_inner()
     }
 }
 
 /// A policy proposal for a boat.
 pub fn proposal() -> PolicyProposal {
-    let stamp = Stamp { version: PolicyProposal::VERSION, ..Stamp::default() };
-    PolicyProposal { stamp, vehicle: VehicleId(0), course_rad: 1.0, speed_m_s: 1.5 }
+    let stamp = Stamp {
+        version: PolicyProposal::VERSION,
+        ..Stamp::default()
+    };
+    PolicyProposal {
+        stamp,
+        vehicle: VehicleId(0),
+        course_rad: 1.0,
+        speed_m_s: 1.5,
+    }
 }
 
 /// One order of each kind.
 pub fn orders() -> [VehicleOrder; 3] {
-    let thrust = messages::Order::Thrust { port: 0.5, starboard: -0.5 };
-    let steer = messages::Order::Steer { heading_rad: 1.0, speed_m_s: 1.0 };
+    let thrust = messages::Order::Thrust {
+        port: 0.5,
+        starboard: -0.5,
+    };
+    let steer = messages::Order::Steer {
+        heading_rad: 1.0,
+        speed_m_s: 1.0,
+    };
     [messages::Order::Hold, steer, thrust].map(|order| VehicleOrder::new(VehicleId(0), order))
 }

@@ -28,11 +28,17 @@ const LENGTH: u64 = 8;
 /// If a guarantee is violated.
 pub fn check(target: &Target, input: &[u8]) {
     let (base, times) = target.allocated_max;
-    let is_within = |(allocated, cpu): (usize, Duration)| allocated <= base + times * input.len() && cpu < CPU_MAX;
+    let is_within = |(allocated, cpu): (usize, Duration)| {
+        allocated <= base + times * input.len() && cpu < CPU_MAX
+    };
     // Data created once and cached does not count against the input: measure again.
     if !is_within(cost(target, input)) {
         let (allocated, cpu) = cost(target, input);
-        assert!(is_within((allocated, cpu)), "{allocated} bytes and {cpu:?} for {} bytes of input", input.len());
+        assert!(
+            is_within((allocated, cpu)),
+            "{allocated} bytes and {cpu:?} for {} bytes of input",
+            input.len()
+        );
     }
 }
 
@@ -41,7 +47,10 @@ fn cost(target: &Target, input: &[u8]) -> (usize, Duration) {
     let allocated = ALLOCATOR.stats().bytes_allocated;
     let cpu = cpu_time();
     (target.check)(input);
-    (ALLOCATOR.stats().bytes_allocated - allocated, cpu_time() - cpu)
+    (
+        ALLOCATOR.stats().bytes_allocated - allocated,
+        cpu_time() - cpu,
+    )
 }
 
 /// Runs a target for this long. Returns the number of inputs. The file `current` holds each input
@@ -52,14 +61,19 @@ fn cost(target: &Target, input: &[u8]) -> (usize, Duration) {
 ///
 /// # Panics
 /// If the file cannot be written.
-#[expect(clippy::disallowed_methods, reason = "the clock only decides how long it runs")]
+#[expect(
+    clippy::disallowed_methods,
+    reason = "the clock only decides how long it runs"
+)]
 pub fn soak(target: &Target, time: Duration, seed: u64, current: &Path) -> Result<u64, Vec<u8>> {
     let seeds = (target.seeds)();
     let file = File::create(current).expect("the file can be written");
     let runs = watch_dog();
     let run = |input: Vec<u8>| {
-        file.write_all_at(&(input.len() as u64).to_le_bytes(), 0).expect("the file can be written");
-        file.write_all_at(&input, LENGTH).expect("the file can be written");
+        file.write_all_at(&(input.len() as u64).to_le_bytes(), 0)
+            .expect("the file can be written");
+        file.write_all_at(&input, LENGTH)
+            .expect("the file can be written");
         runs.fetch_add(1, Ordering::Relaxed);
         catch_unwind(AssertUnwindSafe(|| check(target, &input))).map_err(|_| input)
     };
@@ -78,7 +92,8 @@ pub fn soak(target: &Target, time: Duration, seed: u64, current: &Path) -> Resul
 pub fn left_in(current: &Path) -> Option<Vec<u8>> {
     let bytes = std::fs::read(current).ok()?;
     let (length, rest) = bytes.split_first_chunk()?;
-    rest.get(..usize::try_from(u64::from_le_bytes(*length)).ok()?).map(<[u8]>::to_vec)
+    rest.get(..usize::try_from(u64::from_le_bytes(*length)).ok()?)
+        .map(<[u8]>::to_vec)
 }
 
 /// A counter of runs. The process ends if it does not change for too long.

@@ -16,10 +16,14 @@ use std::path::Path;
 const GAMES: usize = 64;
 
 fn setup(game: &str, opponent: Player) -> Setup {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../scenarios/games/{game}.toml"));
+    let path =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../scenarios/games/{game}.toml"));
     Setup {
         scenario: scenario::load(&path).unwrap_or_else(|problems| panic!("{problems}")),
-        spaces: Spaces { observation: ObservationSpace::Pyquaticus, action: ActionSpace::Pyquaticus },
+        spaces: Spaces {
+            observation: ObservationSpace::Pyquaticus,
+            action: ActionSpace::Pyquaticus,
+        },
         control: Control::Direct,
         teacher: None,
         critic: CriticInput::Observation,
@@ -36,23 +40,32 @@ fn setup(game: &str, opponent: Player) -> Setup {
 
 fn steps(c: &mut Criterion) {
     let mut group = c.benchmark_group("environment");
-    let strategy = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/strategies/strategy_4.toml");
     let strategy =
-        scenario::load_file::<scenario::strategy::Strategy>(&strategy).unwrap_or_else(|problems| panic!("{problems}"));
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/strategies/strategy_4.toml");
+    let strategy = scenario::load_file::<scenario::strategy::Strategy>(&strategy)
+        .unwrap_or_else(|problems| panic!("{problems}"));
     let games = [
         ("calm", "pyquaticus_2v2", Player::Policy),
         ("sea and sensors", "surveyor_2v2", Player::Policy),
-        ("sea and sensors against strategy 4", "surveyor_2v2", Player::Strategy(Box::new(strategy))),
+        (
+            "sea and sensors against strategy 4",
+            "surveyor_2v2",
+            Player::Strategy(Box::new(strategy)),
+        ),
     ];
     for (name, game, opponent) in games {
-        let mut environment =
-            VectorEnvironment::new(setup(game, opponent), GAMES, 1, 1, None).unwrap_or_else(|e| panic!("{e}"));
+        let mut environment = VectorEnvironment::new(setup(game, opponent), GAMES, 1, 1, None)
+            .unwrap_or_else(|e| panic!("{e}"));
         let mut stream = Stream::new(1, "actions");
         let rows = environment.rows().0;
-        group.throughput(Throughput::Elements(GAMES as u64)).sample_size(20);
+        group
+            .throughput(Throughput::Elements(GAMES as u64))
+            .sample_size(20);
         group.bench_function(name, |b| {
             b.iter(|| {
-                let actions: Vec<Action> = (0..rows).map(|_| Action::Discrete(stream.below(17) as usize)).collect();
+                let actions: Vec<Action> = (0..rows)
+                    .map(|_| Action::Discrete(stream.below(17) as usize))
+                    .collect();
                 environment.step(&actions).unwrap_or_else(|e| panic!("{e}"));
             });
         });
@@ -61,13 +74,24 @@ fn steps(c: &mut Criterion) {
     for (name, game, starts) in [
         ("new game, calm", "pyquaticus_2v2", None),
         ("new game, sea and sensors", "surveyor_2v2", None),
-        ("new game, sea and sensors, one of 100 starts", "surveyor_2v2", Some(100)),
+        (
+            "new game, sea and sensors, one of 100 starts",
+            "surveyor_2v2",
+            Some(100),
+        ),
     ] {
-        let setup = Setup { steps_max: Some(1), starts, ..setup(game, Player::Policy) };
-        let mut environment = VectorEnvironment::new(setup, 1, 1, 1, None).unwrap_or_else(|e| panic!("{e}"));
+        let setup = Setup {
+            steps_max: Some(1),
+            starts,
+            ..setup(game, Player::Policy)
+        };
+        let mut environment =
+            VectorEnvironment::new(setup, 1, 1, 1, None).unwrap_or_else(|e| panic!("{e}"));
         let actions = vec![Action::Discrete(0); environment.rows().0];
         group.throughput(Throughput::Elements(1));
-        group.bench_function(name, |b| b.iter(|| environment.step(&actions).unwrap_or_else(|e| panic!("{e}"))));
+        group.bench_function(name, |b| {
+            b.iter(|| environment.step(&actions).unwrap_or_else(|e| panic!("{e}")))
+        });
     }
     group.finish();
 }

@@ -1,6 +1,6 @@
 //! Measures the primitive policies, which each have a single task. Plays episodes of their
-//! training runs with the policy and, for comparison, with stationary boats and with a random action
-//! every half second.
+//! training runs with the policy and, for comparison, with stationary boats and with a random
+//! action every half second.
 //!
 //! `cargo run --release -p squall-learn --example primitives -- [EPISODES] [FOLDER] [NAME…]`. By
 //! default it plays 128 episodes of each shipped policy,
@@ -64,7 +64,10 @@ impl Played {
         }
         self.at_home += f64::from(u8::from(boat.from_home < HOME));
         let among = [boat.among.on_guard, boat.among.at_shield, boat.among.clear];
-        self.among.iter_mut().zip(among).for_each(|(sum, number)| *sum += number);
+        self.among
+            .iter_mut()
+            .zip(among)
+            .for_each(|(sum, number)| *sum += number);
     }
 
     fn a_minute(&self, count: impl Fn(&Counts) -> u32, team: usize) -> f64 {
@@ -73,26 +76,46 @@ impl Played {
 }
 
 fn played(mut setup: Setup, actor: &mut Actor, episodes: usize) -> Played {
-    setup.opponents.iter_mut().for_each(|(weight, _)| *weight = 1.0);
+    setup
+        .opponents
+        .iter_mut()
+        .for_each(|(weight, _)| *weight = 1.0);
     let step_s = setup.scenario.decision().as_s() * f64::from(setup.decisions_per_step);
     let size = setup.observation_size();
-    let mut environment =
-        VectorEnvironment::new(setup, episodes, 1, SEED, None).unwrap_or_else(|error| panic!("{error}"));
+    let mut environment = VectorEnvironment::new(setup, episodes, 1, SEED, None)
+        .unwrap_or_else(|error| panic!("{error}"));
     let (rows, per_game) = environment.rows();
-    let sides: Vec<_> = (0..episodes).map(|game| environment.standing(game).side).collect();
-    let boats_of = |game: usize| environment.setup().pilots_of(sides[game].learner, SEED + game as u64);
+    let sides: Vec<_> = (0..episodes)
+        .map(|game| environment.standing(game).side)
+        .collect();
+    let boats_of = |game: usize| {
+        environment
+            .setup()
+            .pilots_of(sides[game].learner, SEED + game as u64)
+    };
     let boats: Vec<Vec<VehicleId>> = (0..episodes).map(|game| boats_of(game).collect()).collect();
     let mut ended = vec![false; episodes];
     let mut played = Played::default();
     while ended.iter().any(|ended| !ended) {
         for game in (0..episodes).filter(|game| !ended[*game]) {
             let all = progress(environment.contest(game), true);
-            boats[game].iter().for_each(|boat| played.look(&all[boat.index()]));
+            boats[game]
+                .iter()
+                .for_each(|boat| played.look(&all[boat.index()]));
         }
-        let actions: Vec<Action> = environment.observations().chunks_exact(size).map(|row| actor.act(row)).collect();
-        environment.step(&actions).unwrap_or_else(|error| panic!("{error}"));
+        let actions: Vec<Action> = environment
+            .observations()
+            .chunks_exact(size)
+            .map(|row| actor.act(row))
+            .collect();
+        environment
+            .step(&actions)
+            .unwrap_or_else(|error| panic!("{error}"));
         let going = (0..rows).filter(|row| !ended[row / per_game]);
-        played.reward += going.map(|row| f64::from(environment.rewards()[row])).sum::<f64>() / rows as f64;
+        played.reward += going
+            .map(|row| f64::from(environment.rewards()[row]))
+            .sum::<f64>()
+            / rows as f64;
         for one in environment.finished() {
             if std::mem::replace(&mut ended[one.game], true) {
                 continue;
@@ -114,18 +137,29 @@ fn main() {
     let args: Vec<String> = std::env::args().skip(1).collect();
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
     let episodes = args.first().and_then(|arg| arg.parse().ok()).unwrap_or(128);
-    let folder = args.get(1).map_or_else(|| scenarios.join("policies"), PathBuf::from);
-    let names: Vec<&str> = if args.len() > 2 { args[2..].iter().map(String::as_str).collect() } else { NAMES.to_vec() };
+    let folder = args
+        .get(1)
+        .map_or_else(|| scenarios.join("policies"), PathBuf::from);
+    let names: Vec<&str> = if args.len() > 2 {
+        args[2..].iter().map(String::as_str).collect()
+    } else {
+        NAMES.to_vec()
+    };
     println!("                            means over time          a minute of the team");
-    println!("policy    boats     reward  home guard shield clear  grabs  tags tagged grabbed  left");
+    println!(
+        "policy    boats     reward  home guard shield clear  grabs  tags tagged grabbed  left"
+    );
     for name in names {
         let file = scenarios.join(format!("training/primitive_{name}.toml"));
-        let training =
-            scenario::load_file::<learn::training::Training>(&file).unwrap_or_else(|problems| panic!("{problems}"));
-        let setup = Setup::of_stage(&training, &training.stage[0]).unwrap_or_else(|error| panic!("{error}"));
+        let training = scenario::load_file::<learn::training::Training>(&file)
+            .unwrap_or_else(|problems| panic!("{problems}"));
+        let setup = Setup::of_stage(&training, &training.stage[0])
+            .unwrap_or_else(|error| panic!("{error}"));
         let path = folder.join(format!("primitive_{name}.onnx"));
-        let bytes = std::fs::read(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-        let network = Network::read(&bytes).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        let bytes =
+            std::fs::read(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        let network =
+            Network::read(&bytes).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
         for (who, mut actor) in [
             ("policy", Actor::Policy(Box::new(network))),
             ("stopped", Actor::Stops),

@@ -99,10 +99,11 @@ impl Reported {
     /// Whether this is a message of this kind about this boat.
     pub fn is_about(self, message: &[u8], vehicle: VehicleId, name: &str) -> bool {
         match self {
-            Reported::Status => {
-                serde_json::from_slice::<GatewayStatus>(message).is_ok_and(|status| status.vehicle == name)
+            Reported::Status => serde_json::from_slice::<GatewayStatus>(message)
+                .is_ok_and(|status| status.vehicle == name),
+            Reported::Link => {
+                codec::decode::<LinkBytes>(message).is_ok_and(|bytes| bytes.vehicle == vehicle)
             }
-            Reported::Link => codec::decode::<LinkBytes>(message).is_ok_and(|bytes| bytes.vehicle == vehicle),
         }
     }
 }
@@ -182,7 +183,10 @@ impl fmt::Display for OperatorCommand {
 impl OperatorCommand {
     /// Whether the command requires the game's token. Status and stops do not.
     pub fn needs_token(&self) -> bool {
-        !matches!(self, OperatorCommand::Status | OperatorCommand::Disarm | OperatorCommand::EStop)
+        !matches!(
+            self,
+            OperatorCommand::Status | OperatorCommand::Disarm | OperatorCommand::EStop
+        )
     }
 }
 

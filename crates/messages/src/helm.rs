@@ -68,7 +68,10 @@ impl HelmReport {
     pub fn sum<'a>(&self, functions: impl Iterator<Item = &'a FunctionReport>) -> Vec<f64> {
         let mut total = vec![0.0; self.courses * self.speeds];
         for function in functions {
-            total.iter_mut().zip(&function.utilities).for_each(|(sum, u)| *sum += function.weight * f64::from(*u));
+            total
+                .iter_mut()
+                .zip(&function.utilities)
+                .for_each(|(sum, u)| *sum += function.weight * f64::from(*u));
         }
         total
     }
@@ -127,15 +130,29 @@ impl PolicyReport {
     /// Labels the discrete actions with their probabilities, most probable first, and the inputs.
     /// Empty if the scenario lacks the model.
     pub fn words(&self, scenario: &Scenario, vehicle: VehicleId) -> PolicyWords {
-        let Some(model) = scenario.strategy_of(vehicle).models().find(|model| model.name == self.model) else {
+        let Some(model) = scenario
+            .strategy_of(vehicle)
+            .models()
+            .find(|model| model.name == self.model)
+        else {
             return PolicyWords::default();
         };
-        let mut actions: Vec<(String, f32)> =
-            self.probabilities.iter().enumerate().map(|(i, share)| (model.words(i), *share)).collect();
+        let mut actions: Vec<(String, f32)> = self
+            .probabilities
+            .iter()
+            .enumerate()
+            .map(|(i, share)| (model.words(i), *share))
+            .collect();
         actions.sort_by(|a, b| b.1.total_cmp(&a.1));
         let (mates, enemies) = scenario.sides_of(vehicle);
         let names = model.spec.observation.names(mates, enemies);
-        PolicyWords { actions, observed: names.into_iter().zip(self.observed.iter().copied()).collect() }
+        PolicyWords {
+            actions,
+            observed: names
+                .into_iter()
+                .zip(self.observed.iter().copied())
+                .collect(),
+        }
     }
 }
 

@@ -128,12 +128,37 @@ pub struct VehicleOrder {
 impl VehicleOrder {
     /// The order for `vehicle` in wire form.
     pub fn new(vehicle: VehicleId, order: Order) -> VehicleOrder {
-        let hold = VehicleOrder { vehicle, kind: 0, heading_rad: 0.0, speed_m_s: 0.0, port: 0.0, starboard: 0.0 };
+        let hold = VehicleOrder {
+            vehicle,
+            kind: 0,
+            heading_rad: 0.0,
+            speed_m_s: 0.0,
+            port: 0.0,
+            starboard: 0.0,
+        };
         match order {
             Order::Hold => hold,
-            Order::Steer { heading_rad, speed_m_s } => VehicleOrder { kind: 1, heading_rad, speed_m_s, ..hold },
-            Order::Thrust { port, starboard } => VehicleOrder { kind: 2, port, starboard, ..hold },
-            Order::Turn { by_rad, speed_m_s } => VehicleOrder { kind: 3, heading_rad: by_rad, speed_m_s, ..hold },
+            Order::Steer {
+                heading_rad,
+                speed_m_s,
+            } => VehicleOrder {
+                kind: 1,
+                heading_rad,
+                speed_m_s,
+                ..hold
+            },
+            Order::Thrust { port, starboard } => VehicleOrder {
+                kind: 2,
+                port,
+                starboard,
+                ..hold
+            },
+            Order::Turn { by_rad, speed_m_s } => VehicleOrder {
+                kind: 3,
+                heading_rad: by_rad,
+                speed_m_s,
+                ..hold
+            },
         }
     }
 
@@ -141,9 +166,18 @@ impl VehicleOrder {
     pub fn order(&self) -> Option<Order> {
         match self.kind {
             0 => Some(Order::Hold),
-            1 => Some(Order::Steer { heading_rad: self.heading_rad, speed_m_s: self.speed_m_s }),
-            2 => Some(Order::Thrust { port: self.port, starboard: self.starboard }),
-            3 => Some(Order::Turn { by_rad: self.heading_rad, speed_m_s: self.speed_m_s }),
+            1 => Some(Order::Steer {
+                heading_rad: self.heading_rad,
+                speed_m_s: self.speed_m_s,
+            }),
+            2 => Some(Order::Thrust {
+                port: self.port,
+                starboard: self.starboard,
+            }),
+            3 => Some(Order::Turn {
+                by_rad: self.heading_rad,
+                speed_m_s: self.speed_m_s,
+            }),
             _ => None,
         }
     }
@@ -152,7 +186,10 @@ impl VehicleOrder {
 impl Frame {
     /// Events since the previous frame, except those that refer to things outside the game.
     pub fn logged<'a>(&'a self, scenario: &'a Scenario) -> impl Iterator<Item = Logged> + 'a {
-        self.events.iter().filter_map(EventRecord::logged).filter(|logged| scenario.has(logged.event))
+        self.events
+            .iter()
+            .filter_map(EventRecord::logged)
+            .filter(|logged| scenario.has(logged.event))
     }
 }
 

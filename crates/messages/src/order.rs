@@ -53,18 +53,31 @@ impl Order {
     pub fn check(self) -> Result<Order, BadOrder> {
         let (a, b, range_ok) = match self {
             Order::Hold => return Ok(self),
-            Order::Steer { heading_rad, speed_m_s } => {
-                (heading_rad, speed_m_s, (0.0..=100.0).contains(&speed_m_s) && heading_rad.abs() <= 1e3)
+            Order::Steer {
+                heading_rad,
+                speed_m_s,
+            } => (
+                heading_rad,
+                speed_m_s,
+                (0.0..=100.0).contains(&speed_m_s) && heading_rad.abs() <= 1e3,
+            ),
+            Order::Turn { by_rad, speed_m_s } => (
+                by_rad,
+                speed_m_s,
+                (0.0..=100.0).contains(&speed_m_s) && by_rad.abs() <= std::f64::consts::PI,
+            ),
+            Order::Thrust { port, starboard } => {
+                (port, starboard, port.abs() <= 1.0 && starboard.abs() <= 1.0)
             }
-            Order::Turn { by_rad, speed_m_s } => {
-                (by_rad, speed_m_s, (0.0..=100.0).contains(&speed_m_s) && by_rad.abs() <= std::f64::consts::PI)
-            }
-            Order::Thrust { port, starboard } => (port, starboard, port.abs() <= 1.0 && starboard.abs() <= 1.0),
         };
         if !(a.is_finite() && b.is_finite()) {
             return Err(BadOrder::NotFinite);
         }
-        if range_ok { Ok(self) } else { Err(BadOrder::OutOfRange) }
+        if range_ok {
+            Ok(self)
+        } else {
+            Err(BadOrder::OutOfRange)
+        }
     }
 }
 
@@ -74,7 +87,10 @@ mod tests {
 
     #[test]
     fn only_orders_with_sound_numbers_pass() {
-        let steer = |heading_rad, speed_m_s| Order::Steer { heading_rad, speed_m_s };
+        let steer = |heading_rad, speed_m_s| Order::Steer {
+            heading_rad,
+            speed_m_s,
+        };
         let turn = |by_rad, speed_m_s| Order::Turn { by_rad, speed_m_s };
         let thrust = |port, starboard| Order::Thrust { port, starboard };
         for (order, want) in [

@@ -52,12 +52,18 @@ pub struct Nav {
 impl Nav {
     /// The position.
     pub fn at(&self) -> Ned {
-        Ned { north: self.north_m, east: self.east_m }
+        Ned {
+            north: self.north_m,
+            east: self.east_m,
+        }
     }
 
     /// Position and heading.
     pub fn pose(&self) -> Pose {
-        Pose { at: self.at(), psi_rad: self.psi_rad }
+        Pose {
+            at: self.at(),
+            psi_rad: self.psi_rad,
+        }
     }
 
     /// Speed over the ground, m/s.
@@ -67,7 +73,13 @@ impl Nav {
 
     /// Velocity over the ground, m/s.
     pub fn velocity_m_s(&self) -> Ned {
-        ned_from_body(self.pose().rotation(), Body { ahead: self.surge_m_s, starboard: self.sway_m_s })
+        ned_from_body(
+            self.pose().rotation(),
+            Body {
+                ahead: self.surge_m_s,
+                starboard: self.sway_m_s,
+            },
+        )
     }
 }
 
@@ -158,24 +170,62 @@ impl Picture {
     pub fn remove_bad_numbers(&mut self) -> u64 {
         let count = |picture: &Picture| picture.own.len() + picture.contacts.len();
         let before = count(self);
-        let is_sound = |numbers: &[f64]| numbers.iter().all(|number| number.abs() <= Picture::NUMBER_MAX);
+        let is_sound = |numbers: &[f64]| {
+            numbers
+                .iter()
+                .all(|number| number.abs() <= Picture::NUMBER_MAX)
+        };
         self.own.retain(|OwnBoat { nav, imu, .. }| {
-            let Nav { north_m, east_m, psi_rad, surge_m_s, sway_m_s, yaw_rate_rad_s } = *nav;
-            let Imu { roll_rate_rad_s, pitch_rate_rad_s, yaw_rate_rad_s: gyro_rad_s, .. } = *imu;
-            is_sound(&[north_m, east_m, psi_rad, surge_m_s, sway_m_s, yaw_rate_rad_s])
-                && is_sound(&[roll_rate_rad_s, pitch_rate_rad_s, gyro_rad_s])
+            let Nav {
+                north_m,
+                east_m,
+                psi_rad,
+                surge_m_s,
+                sway_m_s,
+                yaw_rate_rad_s,
+            } = *nav;
+            let Imu {
+                roll_rate_rad_s,
+                pitch_rate_rad_s,
+                yaw_rate_rad_s: gyro_rad_s,
+                ..
+            } = *imu;
+            is_sound(&[
+                north_m,
+                east_m,
+                psi_rad,
+                surge_m_s,
+                sway_m_s,
+                yaw_rate_rad_s,
+            ]) && is_sound(&[roll_rate_rad_s, pitch_rate_rad_s, gyro_rad_s])
                 && is_sound(&[imu.ahead_m_s2, imu.starboard_m_s2, imu.down_m_s2])
         });
         self.contacts.retain(|contact| {
-            let Contact { north_m, east_m, psi_rad, velocity_north_m_s, velocity_east_m_s, .. } = *contact;
-            is_sound(&[north_m, east_m, psi_rad, velocity_north_m_s, velocity_east_m_s])
+            let Contact {
+                north_m,
+                east_m,
+                psi_rad,
+                velocity_north_m_s,
+                velocity_east_m_s,
+                ..
+            } = *contact;
+            is_sound(&[
+                north_m,
+                east_m,
+                psi_rad,
+                velocity_north_m_s,
+                velocity_east_m_s,
+            ])
         });
         (before - count(self)) as u64
     }
 
     /// The own boat `vehicle`, if it is of this team.
     pub fn own(&self, vehicle: VehicleId) -> Option<&OwnBoat> {
-        self.own.binary_search_by_key(&vehicle, |boat| boat.vehicle).ok().map(|i| &self.own[i])
+        self.own
+            .binary_search_by_key(&vehicle, |boat| boat.vehicle)
+            .ok()
+            .map(|i| &self.own[i])
     }
 }
 
@@ -208,8 +258,19 @@ pub fn number_of_flag(flag: Option<FlagId>) -> i16 {
 
 impl From<&OwnBoat> for Ability {
     fn from(boat: &OwnBoat) -> Ability {
-        let OwnBoat { tagged, disabled, outside, tag_ready_ns: tag_ready, .. } = *boat;
-        Ability { tagged, disabled, outside, tag_ready }
+        let OwnBoat {
+            tagged,
+            disabled,
+            outside,
+            tag_ready_ns: tag_ready,
+            ..
+        } = *boat;
+        Ability {
+            tagged,
+            disabled,
+            outside,
+            tag_ready,
+        }
     }
 }
 
@@ -232,16 +293,35 @@ mod tests {
             carrying: -1,
         };
         let own = OwnBoat::new(VehicleId(0), Nav::default());
-        let good = Picture { own: vec![own], contacts: vec![contact], ..Picture::default() };
+        let good = Picture {
+            own: vec![own],
+            contacts: vec![contact],
+            ..Picture::default()
+        };
         let mut picture = good.clone();
         assert_eq!((picture.remove_bad_numbers(), &picture), (0, &good));
         for bad in [f64::NAN, f64::INFINITY, -1.1e6] {
-            let nav = Nav { yaw_rate_rad_s: bad, ..Nav::default() };
-            let imu = Imu { down_m_s2: bad, ..Imu::default() };
-            picture.own.extend([OwnBoat { nav, ..own }, OwnBoat { imu, ..own }]);
+            let nav = Nav {
+                yaw_rate_rad_s: bad,
+                ..Nav::default()
+            };
+            let imu = Imu {
+                down_m_s2: bad,
+                ..Imu::default()
+            };
             picture
-                .contacts
-                .extend([Contact { psi_rad: bad, ..contact }, Contact { velocity_east_m_s: bad, ..contact }]);
+                .own
+                .extend([OwnBoat { nav, ..own }, OwnBoat { imu, ..own }]);
+            picture.contacts.extend([
+                Contact {
+                    psi_rad: bad,
+                    ..contact
+                },
+                Contact {
+                    velocity_east_m_s: bad,
+                    ..contact
+                },
+            ]);
         }
         assert_eq!((picture.remove_bad_numbers(), &picture), (12, &good));
     }

@@ -53,7 +53,10 @@ impl Refusal {
         (Refusal::Missing, "without an order for a boat"),
         (Refusal::OutOfPlace, "not applicable"),
         (Refusal::Flood, "too many at once"),
-        (Refusal::Surplus, "more team messages than a boat has variables"),
+        (
+            Refusal::Surplus,
+            "more team messages than a boat has variables",
+        ),
         (Refusal::TeamMessageMissing, "missing team message"),
         (Refusal::ProposalMissing, "missing proposal"),
     ];
@@ -90,7 +93,11 @@ impl Refusals {
         let decoded = codec::decode(bytes);
         if let Err(error) = &decoded {
             let is_other = matches!(error, DecodeError::Version { .. });
-            self.count(if is_other { Refusal::Version } else { Refusal::Garbage });
+            self.count(if is_other {
+                Refusal::Version
+            } else {
+                Refusal::Garbage
+            });
         }
         decoded.ok()
     }
@@ -110,7 +117,9 @@ impl From<BTreeMap<Refusal, u64>> for Refusals {
 
 impl From<Refusals> for BTreeMap<Refusal, u64> {
     fn from(refusals: Refusals) -> BTreeMap<Refusal, u64> {
-        Refusal::ALL.map(|(refusal, _)| (refusal, refusals.of(refusal))).into()
+        Refusal::ALL
+            .map(|(refusal, _)| (refusal, refusals.of(refusal)))
+            .into()
     }
 }
 
@@ -118,7 +127,10 @@ impl Add for Refusals {
     type Output = Refusals;
 
     fn add(mut self, other: Refusals) -> Refusals {
-        self.0.iter_mut().zip(other.0).for_each(|(own, more)| *own += more);
+        self.0
+            .iter_mut()
+            .zip(other.0)
+            .for_each(|(own, more)| *own += more);
         self
     }
 }
@@ -126,8 +138,12 @@ impl Add for Refusals {
 impl fmt::Display for Refusals {
     /// The reasons with non-zero counts: `2 x malformed, 1 x for another tick`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let occurred = Refusal::ALL.iter().filter(|(refusal, _)| self.of(*refusal) > 0);
-        let texts: Vec<String> = occurred.map(|(refusal, text)| format!("{} x {text}", self.of(*refusal))).collect();
+        let occurred = Refusal::ALL
+            .iter()
+            .filter(|(refusal, _)| self.of(*refusal) > 0);
+        let texts: Vec<String> = occurred
+            .map(|(refusal, text)| format!("{} x {text}", self.of(*refusal)))
+            .collect();
         f.write_str(&texts.join(", "))
     }
 }
@@ -140,20 +156,52 @@ mod tests {
     #[test]
     fn what_cannot_be_decoded_is_counted_by_reason_and_told_in_words_and_json() {
         let mut refusals = Refusals::default();
-        let good = Orders { stamp: Stamp { version: Orders::VERSION, ..Stamp::default() }, ..Orders::default() };
-        let newer = Orders { stamp: Stamp { version: 99, ..Stamp::default() }, ..Orders::default() };
+        let good = Orders {
+            stamp: Stamp {
+                version: Orders::VERSION,
+                ..Stamp::default()
+            },
+            ..Orders::default()
+        };
+        let newer = Orders {
+            stamp: Stamp {
+                version: 99,
+                ..Stamp::default()
+            },
+            ..Orders::default()
+        };
         assert_eq!(refusals.decode::<Orders>(&codec::encode(&good)), Some(good));
         assert_eq!((refusals.total(), refusals.to_string().as_str()), (0, ""));
         for bytes in [b"ahoy".to_vec(), vec![], codec::encode(&newer)] {
             assert_eq!(refusals.decode::<Orders>(&bytes), None, "{bytes:?}");
         }
-        assert_eq!(refusals, Refusals::from([(Refusal::Garbage, 2), (Refusal::Version, 1)]));
-        assert_eq!(refusals.to_string(), "2 x malformed, 1 x from another version");
+        assert_eq!(
+            refusals,
+            Refusals::from([(Refusal::Garbage, 2), (Refusal::Version, 1)])
+        );
+        assert_eq!(
+            refusals.to_string(),
+            "2 x malformed, 1 x from another version"
+        );
         let json = serde_json::to_value(refusals).expect("JSON");
-        assert_eq!((&json["garbage"], &json["team_message_missing"]), (&2.into(), &0.into()));
-        assert_eq!(serde_json::from_value::<Refusals>(json).expect("refusals"), refusals);
+        assert_eq!(
+            (&json["garbage"], &json["team_message_missing"]),
+            (&2.into(), &0.into())
+        );
+        assert_eq!(
+            serde_json::from_value::<Refusals>(json).expect("refusals"),
+            refusals
+        );
         let of_old_files = serde_json::from_str::<Refusals>(r#"{"garbage": 2, "version": 1}"#);
-        assert_eq!(of_old_files.expect("refusals") + Refusals::default(), refusals);
-        assert!(Refusal::ALL.iter().enumerate().all(|(i, (refusal, _))| *refusal as usize == i));
+        assert_eq!(
+            of_old_files.expect("refusals") + Refusals::default(),
+            refusals
+        );
+        assert!(
+            Refusal::ALL
+                .iter()
+                .enumerate()
+                .all(|(i, (refusal, _))| *refusal as usize == i)
+        );
     }
 }

@@ -30,7 +30,10 @@ pub const DEFINITIONS: [(&str, &str); 22] = [
 const PACKAGE: &str = "squall_msgs/";
 
 fn definition(name: &str) -> Option<&'static str> {
-    DEFINITIONS.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
+    DEFINITIONS
+        .iter()
+        .find(|(known, _)| *known == name)
+        .map(|(_, text)| *text)
 }
 
 /// A definition with all nested definitions, in the form of ROS 2 recordings; none for a name that
@@ -40,13 +43,18 @@ pub fn full_definition(schema: &str) -> Option<String> {
     let mut text = definition(names[0])?.to_owned();
     let mut next = 0;
     while next < names.len() {
-        let parts = definition(names[next])?.lines().filter_map(|line| line.trim_start().strip_prefix(PACKAGE));
+        let parts = definition(names[next])?
+            .lines()
+            .filter_map(|line| line.trim_start().strip_prefix(PACKAGE));
         for part in parts {
             let name = part.split([' ', '[']).next()?;
             if !names.contains(&name) {
                 names.push(name);
                 let bar = "=".repeat(80);
-                text.push_str(&format!("{bar}\nMSG: {PACKAGE}{name}\n{}", definition(name)?));
+                text.push_str(&format!(
+                    "{bar}\nMSG: {PACKAGE}{name}\n{}",
+                    definition(name)?
+                ));
             }
         }
         next += 1;
@@ -61,8 +69,18 @@ mod tests {
     #[test]
     fn a_full_definition_names_each_part_once() {
         let text = full_definition("squall_msgs/msg/Frame").expect("it is ours");
-        let parts: Vec<&str> = text.lines().filter_map(|line| line.strip_prefix("MSG: ")).collect();
-        let want = ["Stamp", "VehicleTruth", "SeaView", "FlagView", "EventRecord", "Nav"];
+        let parts: Vec<&str> = text
+            .lines()
+            .filter_map(|line| line.strip_prefix("MSG: "))
+            .collect();
+        let want = [
+            "Stamp",
+            "VehicleTruth",
+            "SeaView",
+            "FlagView",
+            "EventRecord",
+            "Nav",
+        ];
         assert_eq!(parts, want.map(|name| format!("squall_msgs/{name}")));
         assert_eq!(full_definition("squall_msgs/msg/Whale"), None);
     }
@@ -70,7 +88,12 @@ mod tests {
     #[test]
     fn all_definitions_are_listed() {
         let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("msg");
-        assert_eq!(std::fs::read_dir(folder).expect("the folder is there").count(), DEFINITIONS.len());
+        assert_eq!(
+            std::fs::read_dir(folder)
+                .expect("the folder is there")
+                .count(),
+            DEFINITIONS.len()
+        );
         assert!(DEFINITIONS.is_sorted());
     }
 }

@@ -29,7 +29,9 @@ pub struct RunState {
 }
 
 /// The phase of a run.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, strum::IntoStaticStr)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, strum::IntoStaticStr,
+)]
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]
 pub enum Phase {
@@ -62,11 +64,14 @@ impl RecordingState {
     pub fn problem(&self) -> Option<String> {
         let file = &self.file;
         match &self.failed {
-            Some(reason) if self.bytes == 0 => Some(format!("nothing is recorded in {file}: {reason}")),
-            Some(reason) => Some(format!("the recording {file} is incomplete: {reason}")),
-            None if self.dropped > 0 => {
-                Some(format!("the recording {file} lacks {} messages: the disk was too slow", self.dropped))
+            Some(reason) if self.bytes == 0 => {
+                Some(format!("nothing is recorded in {file}: {reason}"))
             }
+            Some(reason) => Some(format!("the recording {file} is incomplete: {reason}")),
+            None if self.dropped > 0 => Some(format!(
+                "the recording {file} lacks {} messages: the disk was too slow",
+                self.dropped
+            )),
             None => None,
         }
     }

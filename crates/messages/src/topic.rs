@@ -17,11 +17,14 @@ impl GameName {
     /// # Errors
     /// States which characters are allowed.
     pub fn new(name: &str) -> Result<GameName, String> {
-        let allowed = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_' || c == '-';
+        let allowed =
+            |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_' || c == '-';
         if (1..=64).contains(&name.len()) && name.chars().all(allowed) {
             Ok(GameName(name.to_owned()))
         } else {
-            Err(format!("game name is {name:?}, expected 1 to 64 of a-z, 0-9, _ and -"))
+            Err(format!(
+                "game name is {name:?}, expected 1 to 64 of a-z, 0-9, _ and -"
+            ))
         }
     }
 
@@ -43,13 +46,21 @@ pub fn frame(game: &GameName) -> String {
 
 /// A team's picture (publish).
 pub fn picture(game: &GameName, scenario: &Scenario, team: TeamId) -> String {
-    format!("squall/{}/picture/{}", game.0, scenario.teams[team.index()].name)
+    format!(
+        "squall/{}/picture/{}",
+        game.0,
+        scenario.teams[team.index()].name
+    )
 }
 
 /// The orders of an agent that plays for these teams (publish).
 pub fn orders(game: &GameName, scenario: &Scenario, teams: &[TeamId], agent: &str) -> String {
     match teams {
-        [team] => format!("squall/{}/order/{}/{agent}", game.0, scenario.teams[team.index()].name),
+        [team] => format!(
+            "squall/{}/order/{}/{agent}",
+            game.0,
+            scenario.teams[team.index()].name
+        ),
         _ => format!("squall/{}/order/{agent}", game.0),
     }
 }
@@ -61,22 +72,38 @@ pub fn all_orders(game: &GameName) -> String {
 
 /// Messages between the minds of a team (publish, subscribe).
 pub fn say(game: &GameName, scenario: &Scenario, team: TeamId) -> String {
-    format!("squall/{}/say/{}", game.0, scenario.teams[team.index()].name)
+    format!(
+        "squall/{}/say/{}",
+        game.0,
+        scenario.teams[team.index()].name
+    )
 }
 
 /// Proposals of an external policy for a boat (publish).
 pub fn policy(game: &GameName, scenario: &Scenario, vehicle: VehicleId) -> String {
-    format!("squall/{}/policy/{}", game.0, scenario.vehicles[vehicle.index()].name)
+    format!(
+        "squall/{}/policy/{}",
+        game.0,
+        scenario.vehicles[vehicle.index()].name
+    )
 }
 
 /// The helm report of a boat (query).
 pub fn helm(game: &GameName, scenario: &Scenario, vehicle: VehicleId) -> String {
-    format!("squall/{}/helm/{}", game.0, scenario.vehicles[vehicle.index()].name)
+    format!(
+        "squall/{}/helm/{}",
+        game.0,
+        scenario.vehicles[vehicle.index()].name
+    )
 }
 
 /// Navigation of a real boat, from its gateway (publish).
 pub fn nav(game: &GameName, scenario: &Scenario, vehicle: VehicleId) -> String {
-    format!("squall/{}/nav/{}", game.0, scenario.vehicles[vehicle.index()].name)
+    format!(
+        "squall/{}/nav/{}",
+        game.0,
+        scenario.vehicles[vehicle.index()].name
+    )
 }
 
 /// Navigation of all real boats (subscribe).
@@ -86,7 +113,11 @@ pub fn all_nav(game: &GameName) -> String {
 
 /// Commands for a real boat, from the sim (publish).
 pub fn external_order(game: &GameName, scenario: &Scenario, vehicle: VehicleId) -> String {
-    format!("squall/{}/external/{}", game.0, scenario.vehicles[vehicle.index()].name)
+    format!(
+        "squall/{}/external/{}",
+        game.0,
+        scenario.vehicles[vehicle.index()].name
+    )
 }
 
 /// Gateway reports for other nodes, to the sim alone (publish): see [`Reported`].
@@ -195,7 +226,12 @@ mod tests {
     fn a_token_says_which_sim_is_alive() {
         let game = GameName::new("pav01-3f").expect("a good name");
         assert_eq!(parse_alive(&alive(&game, "a7")), Some((game, "a7".into())));
-        for other in ["squall/x/alive/sim", "squall/x/frame", "other/x/alive/sim/a", "squall/x/alive/cat/a"] {
+        for other in [
+            "squall/x/alive/sim",
+            "squall/x/frame",
+            "other/x/alive/sim/a",
+            "squall/x/alive/cat/a",
+        ] {
             assert_eq!(parse_alive(other), None, "{other}");
         }
     }
@@ -203,28 +239,61 @@ mod tests {
     #[test]
     fn keys_name_game_team_and_boat() {
         let game = GameName::new("pav01").expect("a good name");
-        let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
+        let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("../../scenarios/games/pav01_vs_pav01.toml");
         let scenario = scenario::load(&file).unwrap_or_else(|e| panic!("{e}"));
         let red = TeamId(1);
         let two = VehicleId(1);
         for (key, want) in [
             (say(&game, &scenario, red), "squall/pav01/say/red"),
-            (policy(&game, &scenario, two), "squall/pav01/policy/blue_two"),
+            (
+                policy(&game, &scenario, two),
+                "squall/pav01/policy/blue_two",
+            ),
             (helm(&game, &scenario, two), "squall/pav01/helm/blue_two"),
             (nav(&game, &scenario, two), "squall/pav01/nav/blue_two"),
-            (external_order(&game, &scenario, two), "squall/pav01/external/blue_two"),
-            (orders(&game, &scenario, &[red], "a7"), "squall/pav01/order/red/a7"),
-            (orders(&game, &scenario, &[TeamId(0), red], "a7"), "squall/pav01/order/a7"),
+            (
+                external_order(&game, &scenario, two),
+                "squall/pav01/external/blue_two",
+            ),
+            (
+                orders(&game, &scenario, &[red], "a7"),
+                "squall/pav01/order/red/a7",
+            ),
+            (
+                orders(&game, &scenario, &[TeamId(0), red], "a7"),
+                "squall/pav01/order/a7",
+            ),
         ] {
             assert_eq!(key, want);
         }
         for (role, vehicles, want) in [
-            (Role::Agent, &["red_one", "red_two"][..], "squall/pav01/join/agent/red"),
-            (Role::Agent, &["red_one", "blue_two"], "squall/pav01/join/agent"),
-            (Role::Agent, &["red_one", "nobody"], "squall/pav01/join/agent"),
+            (
+                Role::Agent,
+                &["red_one", "red_two"][..],
+                "squall/pav01/join/agent/red",
+            ),
+            (
+                Role::Agent,
+                &["red_one", "blue_two"],
+                "squall/pav01/join/agent",
+            ),
+            (
+                Role::Agent,
+                &["red_one", "nobody"],
+                "squall/pav01/join/agent",
+            ),
             (Role::Agent, &[], "squall/pav01/join/agent"),
-            (Role::Gateway, &["red_one"], "squall/pav01/join/gateway/red_one"),
-            (Role::Gateway, &["red_one", "red_two"], "squall/pav01/join/gateway"),
+            (
+                Role::Gateway,
+                &["red_one"],
+                "squall/pav01/join/gateway/red_one",
+            ),
+            (
+                Role::Gateway,
+                &["red_one", "red_two"],
+                "squall/pav01/join/gateway",
+            ),
         ] {
             let vehicles: Vec<String> = vehicles.iter().map(|name| (*name).to_owned()).collect();
             assert_eq!(join(&game, &scenario, role, &vehicles), want);

@@ -46,7 +46,9 @@ pub(crate) struct BackSeat {
 impl BackSeat {
     /// Receives a value. Returns whether it was one of [`READS`].
     pub(crate) fn receive(&mut self, msg: &Msg, now: SimTime) -> bool {
-        let Some(place) = READS.iter().position(|name| *name == msg.key) else { return false };
+        let Some(place) = READS.iter().position(|name| *name == msg.key) else {
+            return false;
+        };
         match READS[place] {
             "DEPLOY" => self.switch(msg.as_bool(), |seat, is_on| seat.is_undeployed = !is_on),
             "MOOS_MANUAL_OVERRIDE" | "MOOS_MANUAL_OVERIDE" => {
@@ -58,7 +60,8 @@ impl BackSeat {
             }
             _ => {
                 let value = msg.as_number().filter(|value| value.is_finite());
-                self.refusals.add(Refusal::BadNumber, u64::from(value.is_none()));
+                self.refusals
+                    .add(Refusal::BadNumber, u64::from(value.is_none()));
                 // An unreadable request ends the previous one: the boat holds.
                 self.desired[place] = value.map(|value| Desired { value, at: now });
             }
@@ -81,17 +84,24 @@ impl BackSeat {
             return Order::Hold;
         }
         let recent = |place: usize| {
-            self.desired[place].filter(|desired| (now - desired.at).as_s() <= ttl_s).map(|desired| desired.value)
+            self.desired[place]
+                .filter(|desired| (now - desired.at).as_s() <= ttl_s)
+                .map(|desired| desired.value)
         };
         let share = |percent: f64| (percent / 100.0).clamp(-1.0, 1.0);
         let order = match [0, 1, 2, 3, 4, 5].map(recent) {
-            [.., Some(left), Some(right)] => Order::Thrust { port: share(left), starboard: share(right) },
-            [_, _, Some(thrust), Some(rudder), ..] => {
-                Order::Thrust { port: share(thrust + rudder), starboard: share(thrust - rudder) }
-            }
-            [Some(heading_deg), Some(speed_m_s), ..] => {
-                Order::Steer { heading_rad: rad_from_compass_deg(heading_deg), speed_m_s }
-            }
+            [.., Some(left), Some(right)] => Order::Thrust {
+                port: share(left),
+                starboard: share(right),
+            },
+            [_, _, Some(thrust), Some(rudder), ..] => Order::Thrust {
+                port: share(thrust + rudder),
+                starboard: share(thrust - rudder),
+            },
+            [Some(heading_deg), Some(speed_m_s), ..] => Order::Steer {
+                heading_rad: rad_from_compass_deg(heading_deg),
+                speed_m_s,
+            },
             _ => Order::Hold,
         };
         order.check().unwrap_or_else(|_| {
@@ -103,9 +113,17 @@ impl BackSeat {
     /// Why the boat holds although it has requests, for its node report.
     pub(crate) fn mode(&self) -> &str {
         match self {
-            BackSeat { is_overridden: true, .. } => "MANUAL",
-            BackSeat { is_undeployed: true, .. } => "PARK",
-            BackSeat { all_stop: Some(_), .. } => "ALLSTOP",
+            BackSeat {
+                is_overridden: true,
+                ..
+            } => "MANUAL",
+            BackSeat {
+                is_undeployed: true,
+                ..
+            } => "PARK",
+            BackSeat {
+                all_stop: Some(_), ..
+            } => "ALLSTOP",
             _ => "DRIVE",
         }
     }
@@ -120,7 +138,10 @@ mod tests {
     fn seat(values: &[(&str, f64)]) -> BackSeat {
         let mut seat = BackSeat::default();
         for (key, value) in values {
-            assert!(seat.receive(&Msg::number(Kind::NOTIFY, key, *value, 0.0), SimTime::ZERO), "{key}");
+            assert!(
+                seat.receive(&Msg::number(Kind::NOTIFY, key, *value, 0.0), SimTime::ZERO),
+                "{key}"
+            );
         }
         seat
     }
@@ -129,24 +150,44 @@ mod tests {
         seat(values).order(SimTime::ZERO, 1.0)
     }
 
-    const EAST: Order = Order::Steer { heading_rad: FRAC_PI_2, speed_m_s: 1.5 };
+    const EAST: Order = Order::Steer {
+        heading_rad: FRAC_PI_2,
+        speed_m_s: 1.5,
+    };
     const COURSE: [(&str, f64); 2] = [("DESIRED_HEADING", 90.0), ("DESIRED_SPEED", 1.5)];
 
     #[test]
     fn requests_become_orders_and_a_controllers_output_comes_before_its_input() {
         let thrust = |port, starboard| Order::Thrust { port, starboard };
-        let pid =
-            |thrust, rudder| [COURSE.to_vec(), vec![("DESIRED_THRUST", thrust), ("DESIRED_RUDDER", rudder)]].concat();
+        let pid = |thrust, rudder| {
+            [
+                COURSE.to_vec(),
+                vec![("DESIRED_THRUST", thrust), ("DESIRED_RUDDER", rudder)],
+            ]
+            .concat()
+        };
         for (values, want) in [
             (COURSE.to_vec(), EAST),
             (COURSE[..1].to_vec(), Order::Hold),
             (pid(50.0, 25.0), thrust(0.75, 0.25)),
             (pid(100.0, -40.0), thrust(0.6, 1.0)),
             (pid(0.0, 0.0)[..3].to_vec(), EAST),
-            (vec![("DESIRED_THRUST_L", -30.0), ("DESIRED_THRUST_R", 200.0)], thrust(-0.3, 1.0)),
-            (vec![("DESIRED_HEADING", 90.0), ("DESIRED_SPEED", -1.0)], Order::Hold),
-            (vec![("DESIRED_HEADING", f64::NAN), ("DESIRED_SPEED", 1.0)], Order::Hold),
-            (vec![("DESIRED_HEADING", 1e9), ("DESIRED_SPEED", f64::INFINITY)], Order::Hold),
+            (
+                vec![("DESIRED_THRUST_L", -30.0), ("DESIRED_THRUST_R", 200.0)],
+                thrust(-0.3, 1.0),
+            ),
+            (
+                vec![("DESIRED_HEADING", 90.0), ("DESIRED_SPEED", -1.0)],
+                Order::Hold,
+            ),
+            (
+                vec![("DESIRED_HEADING", f64::NAN), ("DESIRED_SPEED", 1.0)],
+                Order::Hold,
+            ),
+            (
+                vec![("DESIRED_HEADING", 1e9), ("DESIRED_SPEED", f64::INFINITY)],
+                Order::Hold,
+            ),
         ] {
             assert_eq!(order(&values), want, "{values:?}");
         }
@@ -156,7 +197,10 @@ mod tests {
             seat.refusals.of(Refusal::BadNumber)
         };
         assert_eq!(refused(&COURSE), 0);
-        assert_eq!(refused(&[("DESIRED_HEADING", 0.0), ("DESIRED_SPEED", -1.0)]), 1);
+        assert_eq!(
+            refused(&[("DESIRED_HEADING", 0.0), ("DESIRED_SPEED", -1.0)]),
+            1
+        );
         assert_eq!(refused(&[("DESIRED_HEADING", f64::NAN)]), 1);
     }
 
@@ -164,14 +208,21 @@ mod tests {
     fn a_silent_helm_a_person_and_an_all_stop_stop_the_boat() {
         let mut seat = seat(&COURSE);
         let at = |s: f64| SimTime((s * 1e9) as i64);
-        assert_eq!([seat.order(at(1.0), 1.0), seat.order(at(1.1), 1.0)], [EAST, Order::Hold]);
+        assert_eq!(
+            [seat.order(at(1.0), 1.0), seat.order(at(1.1), 1.0)],
+            [EAST, Order::Hold]
+        );
         for (key, stops, goes) in [
             ("DEPLOY", "false", "true"),
             ("MOOS_MANUAL_OVERRIDE", "true", "false"),
             ("MOOS_MANUAL_OVERIDE", "true", "false"),
             ("IVPHELM_ALLSTOP", "ManualOverride", "clear"),
         ] {
-            for (value, want) in [(stops, Order::Hold), ("nonsense", Order::Hold), (goes, EAST)] {
+            for (value, want) in [
+                (stops, Order::Hold),
+                ("nonsense", Order::Hold),
+                (goes, EAST),
+            ] {
                 seat.receive(&Msg::text(Kind::NOTIFY, key, value, 0.0), SimTime::ZERO);
                 assert_eq!(
                     (seat.order(SimTime::ZERO, 1.0), seat.mode() == "DRIVE"),
@@ -180,7 +231,11 @@ mod tests {
                 );
             }
         }
-        assert_eq!(seat.refusals.of(Refusal::Garbage), 3, "nonsense changes nothing");
+        assert_eq!(
+            seat.refusals.of(Refusal::Garbage),
+            3,
+            "nonsense changes nothing"
+        );
         assert!(!seat.receive(&Msg::number(Kind::NOTIFY, "NAV_X", 1.0, 0.0), SimTime::ZERO));
     }
 }

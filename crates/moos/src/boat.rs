@@ -20,7 +20,11 @@ use std::sync::Arc;
 
 /// The variables of a community that the bridge reads.
 pub fn reads() -> BTreeSet<String> {
-    back_seat::READS.iter().chain(&requests::READS).map(|name| (*name).to_owned()).collect()
+    back_seat::READS
+        .iter()
+        .chain(&requests::READS)
+        .map(|name| (*name).to_owned())
+        .collect()
 }
 
 /// The values that a community starts with: a game begins without an operator who presses a button.
@@ -118,29 +122,64 @@ impl BoatMind {
         ] {
             community.publish(key, Value::Number(value));
         }
-        let mode = if own.tagged { "TAGGED" } else { self.back_seat.mode() };
-        self.report(community, "NODE_REPORT_LOCAL", (own.vehicle, nav, mode), self.moos.now_s());
+        let mode = if own.tagged {
+            "TAGGED"
+        } else {
+            self.back_seat.mode()
+        };
+        self.report(
+            community,
+            "NODE_REPORT_LOCAL",
+            (own.vehicle, nav, mode),
+            self.moos.now_s(),
+        );
     }
 
     /// Reports the mates, and each new sighting of other boats, with its time.
     fn publish_others(&mut self, community: &mut Community, picture: &Picture) {
         let now_s = self.moos.now_s();
-        for mate in picture.own.iter().filter(|mate| mate.vehicle != self.vehicle) {
+        for mate in picture
+            .own
+            .iter()
+            .filter(|mate| mate.vehicle != self.vehicle)
+        {
             let mode = mode_of(mate.tagged, mate.carrying);
-            self.report(community, "NODE_REPORT", (mate.vehicle, &mate.nav, mode), now_s);
+            self.report(
+                community,
+                "NODE_REPORT",
+                (mate.vehicle, &mate.nav, mode),
+                now_s,
+            );
         }
         for contact in &picture.contacts {
             let is_known = contact.vehicle.index() < self.scenario.vehicles.len();
-            if is_known && self.seen.insert(contact.vehicle, contact.seen_ns) != Some(contact.seen_ns) {
+            if is_known
+                && self.seen.insert(contact.vehicle, contact.seen_ns) != Some(contact.seen_ns)
+            {
                 let seen_s = now_s - (picture.stamp.valid_ns - contact.seen_ns).as_s().max(0.0);
                 let mode = mode_of(contact.tagged, contact.carrying);
-                self.report(community, "NODE_REPORT", (contact.vehicle, &nav_of(contact), mode), seen_s);
+                self.report(
+                    community,
+                    "NODE_REPORT",
+                    (contact.vehicle, &nav_of(contact), mode),
+                    seen_s,
+                );
             }
         }
     }
 
-    fn report(&self, community: &mut Community, key: &str, boat: (VehicleId, &Nav, &str), at_s: f64) {
-        community.publish_at(key, game::node_report(&self.scenario, &self.frame, boat, at_s), at_s);
+    fn report(
+        &self,
+        community: &mut Community,
+        key: &str,
+        boat: (VehicleId, &Nav, &str),
+        at_s: f64,
+    ) {
+        community.publish_at(
+            key,
+            game::node_report(&self.scenario, &self.frame, boat, at_s),
+            at_s,
+        );
     }
 
     fn publish_game(&mut self, community: &mut Community, picture: &Picture, own: &OwnBoat) {
@@ -148,10 +187,14 @@ impl BoatMind {
         let team = scenario.team_of(own.vehicle);
         let field = &scenario.field;
         let at = own.nav.at();
-        let is_home = field.own_flags(team).any(|(_, home)| home.distance(at) < scenario.rules.untag_radius_m);
+        let is_home = field
+            .own_flags(team)
+            .any(|(_, home)| home.distance(at) < scenario.rules.untag_radius_m);
         if is_home && !std::mem::replace(&mut self.was_home, is_home) {
             // Missions set `TAGGED` themselves to send a boat home: there it is true again.
-            ["TAGGED", "HAS_FLAG"].iter().for_each(|key| community.forget(key));
+            ["TAGGED", "HAS_FLAG"]
+                .iter()
+                .for_each(|key| community.forget(key));
         }
         self.was_home = is_home;
         let is_intruder = |contact: &&Contact| {
@@ -163,22 +206,40 @@ impl BoatMind {
             ("ONFIELD", !own.outside),
             ("CANTAG", Ability::from(own).may_tag(picture.stamp.valid_ns)),
             ("SELF_IN_MY_ZONE", field.is_own_side(team, at)),
-            ("ENEMY_IN_ZONE", picture.contacts.iter().any(|contact| is_intruder(&contact))),
+            (
+                "ENEMY_IN_ZONE",
+                picture.contacts.iter().any(|contact| is_intruder(&contact)),
+            ),
         ] {
             community.publish_change(key, flag_of(value));
         }
-        let own_tagged = picture.own.iter().filter(|boat| boat.tagged).map(|boat| boat.vehicle);
-        let tagged = picture.contacts.iter().filter(|boat| boat.tagged).map(|boat| boat.vehicle);
+        let own_tagged = picture
+            .own
+            .iter()
+            .filter(|boat| boat.tagged)
+            .map(|boat| boat.vehicle);
+        let tagged = picture
+            .contacts
+            .iter()
+            .filter(|boat| boat.tagged)
+            .map(|boat| boat.vehicle);
         let mut tagged: Vec<VehicleId> = own_tagged.chain(tagged).collect();
         tagged.retain(|vehicle| vehicle.index() < scenario.vehicles.len());
         tagged.sort_unstable();
-        game::publish(community, scenario, (&picture.flags, &picture.score, &tagged), &mut |_| {});
+        game::publish(
+            community,
+            scenario,
+            (&picture.flags, &picture.score, &tagged),
+            &mut |_| {},
+        );
     }
 }
 
 impl Mind for BoatMind {
     fn decide(&mut self, picture: &Picture) -> Order {
-        let Some(own) = picture.own(self.vehicle).copied() else { return Order::Hold };
+        let Some(own) = picture.own(self.vehicle).copied() else {
+            return Order::Hold;
+        };
         let community = Arc::clone(&self.community);
         community.visit(|community| self.step(community, picture, &own))
     }
@@ -222,12 +283,26 @@ mod tests {
 
     const MOOS: MoosClock = MoosClock { warp: 1.0 };
 
-    /// A picture of the first boat, which is tagged, and an opponent in its zone, seen half a second before.
+    /// A picture of the first boat, which is tagged, and an opponent in its zone, seen half a
+    /// second before.
     fn picture(scenario: &Scenario, s: f64) -> Picture {
-        let stamp = Stamp { valid_ns: SimTime::from_s(s), seq: 1, ..Stamp::default() };
+        let stamp = Stamp {
+            valid_ns: SimTime::from_s(s),
+            seq: 1,
+            ..Stamp::default()
+        };
         let at = scenario.field.flags[0].home;
-        let nav = Nav { north_m: at.north + 20.0, east_m: at.east, psi_rad: 1.0, surge_m_s: 1.5, ..Nav::default() };
-        let own = OwnBoat { tagged: true, ..OwnBoat::new(VehicleId(0), nav) };
+        let nav = Nav {
+            north_m: at.north + 20.0,
+            east_m: at.east,
+            psi_rad: 1.0,
+            surge_m_s: 1.5,
+            ..Nav::default()
+        };
+        let own = OwnBoat {
+            tagged: true,
+            ..OwnBoat::new(VehicleId(0), nav)
+        };
         let contact = Contact {
             vehicle: VehicleId(2),
             team: TeamId(1),
@@ -241,23 +316,39 @@ mod tests {
             carrying: 0,
         };
         let flags = vec![FlagView { carrier: 2 }, FlagView { carrier: -1 }];
-        Picture { stamp, own: vec![own], contacts: vec![contact], flags, score: vec![0, 1], ..Picture::default() }
+        Picture {
+            stamp,
+            own: vec![own],
+            contacts: vec![contact],
+            flags,
+            score: vec![0, 1],
+            ..Picture::default()
+        }
     }
 
     /// A boat and an application in its community that reads these variables.
     fn boat(scenario: &Scenario, variables: &[&str]) -> (BoatMind, Community) {
         let address: Address = ":0".parse().unwrap();
         let served = Community::open("blue_one", &address, reads(), MOOS).unwrap();
-        let place = served.place.strip_prefix("MOOSDB at ").expect("its address").to_owned();
+        let place = served
+            .place
+            .strip_prefix("MOOSDB at ")
+            .expect("its address")
+            .to_owned();
         let variables = variables.iter().map(|name| (*name).to_owned()).collect();
-        let application = Community::open("peer", &Address::Connect(place), variables, MOOS).unwrap();
+        let application =
+            Community::open("peer", &Address::Connect(place), variables, MOOS).unwrap();
         let served = Arc::new(Watched::new(served));
-        (BoatMind::new(Arc::new(scenario.clone()), VehicleId(0), served, MOOS), application)
+        (
+            BoatMind::new(Arc::new(scenario.clone()), VehicleId(0), served, MOOS),
+            application,
+        )
     }
 
     #[test]
     fn applications_read_pictures_as_variables_and_their_requests_become_orders() {
-        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
+        let file =
+            Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
         let scenario = scenario::load(&file).unwrap_or_else(|e| panic!("{e}"));
         let flag = scenario.field.flags[0].home;
         let expected = [
@@ -272,15 +363,26 @@ mod tests {
             ("AQUATICUS_GAME", "play".to_owned()),
             ("DEPLOY", "true".to_owned()),
         ];
-        let names: Vec<&str> = expected.iter().map(|(name, _)| *name).chain(["NODE_REPORT"]).collect();
+        let names: Vec<&str> = expected
+            .iter()
+            .map(|(name, _)| *name)
+            .chain(["NODE_REPORT"])
+            .collect();
         let (mut mind, mut application) = boat(&scenario, &names);
         let mut values = BTreeMap::new();
         let start = bus::clock::now();
         let mut s = 1.0;
         while values.len() < names.len() || mind.decide(&picture(&scenario, s)) == Order::Hold {
-            assert!(bus::clock::since(start) < Duration::from_secs(20), "{values:?}");
+            assert!(
+                bus::clock::since(start) < Duration::from_secs(20),
+                "{values:?}"
+            );
             for msg in application.take_heard() {
-                values.insert(msg.key.clone(), msg.as_text().map_or_else(|| msg.number.to_string(), str::to_owned));
+                values.insert(
+                    msg.key.clone(),
+                    msg.as_text()
+                        .map_or_else(|| msg.number.to_string(), str::to_owned),
+                );
             }
             application.publish("DESIRED_HEADING", Value::Number(90.0));
             application.publish("DESIRED_SPEED", Value::Number(1.5));
@@ -291,7 +393,15 @@ mod tests {
             assert_eq!(values.get(*name), Some(want), "{name}");
         }
         let report = &values["NODE_REPORT"];
-        for part in ["NAME=red_one,", "SPD=0.50,", "HDG=0.00,", "GROUP=red,", "MODE=CARRYING,", "LAT=", "LON="] {
+        for part in [
+            "NAME=red_one,",
+            "SPD=0.50,",
+            "HDG=0.00,",
+            "GROUP=red,",
+            "MODE=CARRYING,",
+            "LAT=",
+            "LON=",
+        ] {
             assert!(report.contains(part), "{report} lacks {part}");
         }
         s += 2.0;
@@ -299,6 +409,13 @@ mod tests {
         drop(application);
         mind.decide(&picture(&scenario, s));
         assert_eq!(mind.decide(&silent), Order::Hold, "the helm is silent");
-        assert_eq!(mind.decide(&Picture { own: vec![], ..silent }), Order::Hold, "its own boat is unknown");
+        assert_eq!(
+            mind.decide(&Picture {
+                own: vec![],
+                ..silent
+            }),
+            Order::Hold,
+            "its own boat is unknown"
+        );
     }
 }

@@ -117,16 +117,31 @@ pub fn serve(settings: &Settings, tell: Tell<'_>) -> Result<(), BridgeError> {
         shoreside::check_keys(&bus)?;
     }
     let open = |name: &str, address: &Address, reads: BTreeSet<String>| {
-        Community::open(name, address, reads, moos).map(|community| Arc::new(Watched::new(community)))
+        Community::open(name, address, reads, moos)
+            .map(|community| Arc::new(Watched::new(community)))
     };
     let boats = boats(settings, &scenario)?;
-    let boats: Result<Vec<_>, String> =
-        boats.iter().map(|(name, address)| open(name, address, boat::reads())).collect();
+    let boats: Result<Vec<_>, String> = boats
+        .iter()
+        .map(|(name, address)| open(name, address, boat::reads()))
+        .collect();
     let boats = boats?;
     let shore = settings.shore.as_ref();
-    let shore = shore.map(|address| open("shoreside", address, shoreside::reads(&scenario))).transpose()?;
+    let shore = shore
+        .map(|address| open("shoreside", address, shoreside::reads(&scenario)))
+        .transpose()?;
     let is_over = AtomicBool::new(false);
-    let bridge = Bridge { bus, game, scenario, moos, boats, shore, settings, tell, is_over };
+    let bridge = Bridge {
+        bus,
+        game,
+        scenario,
+        moos,
+        boats,
+        shore,
+        settings,
+        tell,
+        is_over,
+    };
     tell(News::Open(bridge.opened()));
     bridge.run()
 }
@@ -155,12 +170,18 @@ impl Bridge<'_> {
             newest.visit(|speed| *speed = state.and_then(|state| state.speed));
         };
         let _run_state = self.bus.subscribe(topic::run(&self.game), receive)?;
-        let is_ended = || self.is_over.load(Ordering::Relaxed) || self.settings.stop.load(Ordering::Relaxed);
+        let is_ended =
+            || self.is_over.load(Ordering::Relaxed) || self.settings.stop.load(Ordering::Relaxed);
         let played = std::thread::scope(|scope| {
             scope.spawn(|| self.report(&speed, &is_ended));
-            let shore =
-                shoreside.as_mut().map(|shoreside| scope.spawn(|| shoreside.serve(&self.bus, &self.game, &is_ended)));
-            let played = if self.boats.is_empty() { Ok(()) } else { self.play() };
+            let shore = shoreside
+                .as_mut()
+                .map(|shoreside| scope.spawn(|| shoreside.serve(&self.bus, &self.game, &is_ended)));
+            let played = if self.boats.is_empty() {
+                Ok(())
+            } else {
+                self.play()
+            };
             if !self.boats.is_empty() {
                 clock::rest(LINGER);
                 self.is_over.store(true, Ordering::Relaxed);
@@ -175,16 +196,31 @@ impl Bridge<'_> {
 
     /// Plays with the boats until the game is over.
     fn play(&self) -> Result<(), BridgeError> {
-        let name = |community: &Arc<Watched<Community>>| community.visit(|community| community.name.clone());
+        let name = |community: &Arc<Watched<Community>>| {
+            community.visit(|community| community.name.clone())
+        };
         let boats = self.boats.clone();
         let moos = self.moos;
-        let make = move |scenario: &Scenario, vehicle: primitives::VehicleId| -> Box<dyn agent::Mind> {
-            let wanted = &scenario.vehicles[vehicle.index()].name;
-            let community = boats.iter().find(|community| name(community) == *wanted);
-            let community = Arc::clone(community.expect("only boats with a community are requested"));
-            Box::new(BoatMind::new(Arc::new(scenario.clone()), vehicle, community, moos))
-        };
-        let Settings { place, wait, silence, stop, .. } = self.settings;
+        let make =
+            move |scenario: &Scenario, vehicle: primitives::VehicleId| -> Box<dyn agent::Mind> {
+                let wanted = &scenario.vehicles[vehicle.index()].name;
+                let community = boats.iter().find(|community| name(community) == *wanted);
+                let community =
+                    Arc::clone(community.expect("only boats with a community are requested"));
+                Box::new(BoatMind::new(
+                    Arc::new(scenario.clone()),
+                    vehicle,
+                    community,
+                    moos,
+                ))
+            };
+        let Settings {
+            place,
+            wait,
+            silence,
+            stop,
+            ..
+        } = self.settings;
         let settings = agent::node::Settings {
             game: Some(self.game.clone()),
             place: place.clone(),
@@ -204,23 +240,34 @@ impl Bridge<'_> {
             agent::node::News::Left { .. } => {}
         };
         let played = agent::node::serve(&settings, &mut tell);
-        self.boats.iter().for_each(|community| community.visit(boat::publish_end));
+        self.boats
+            .iter()
+            .for_each(|community| community.visit(boat::publish_end));
         Ok(played?)
     }
 
     fn shoreside(&self) -> Result<Option<Shoreside<'_>>, BridgeError> {
-        let Some(community) = self.shore.clone() else { return Ok(None) };
-        let Settings { share_to, share_listen, .. } = self.settings;
+        let Some(community) = self.shore.clone() else {
+            return Ok(None);
+        };
+        let Settings {
+            share_to,
+            share_listen,
+            ..
+        } = self.settings;
         let any: SocketAddr = (Ipv4Addr::UNSPECIFIED, 0).into();
         let open = |listen| {
-            Share::open(listen, share_to.clone()).map_err(|e| format!("cannot open pShare's port at {listen}: {e}"))
+            Share::open(listen, share_to.clone())
+                .map_err(|e| format!("cannot open pShare's port at {listen}: {e}"))
         };
         let is_shared = share_listen.is_some() || !share_to.is_empty();
         Ok(Some(Shoreside {
             scenario: &self.scenario,
             frame: LocalFrame::new(self.scenario.field.plan.datum),
             community,
-            share: is_shared.then(|| open(share_listen.unwrap_or(any))).transpose()?,
+            share: is_shared
+                .then(|| open(share_listen.unwrap_or(any)))
+                .transpose()?,
             boats: self.boats.clone(),
             moos: self.moos,
             redraw_s: f64::NEG_INFINITY,
@@ -238,19 +285,39 @@ impl Bridge<'_> {
             due = if is_due { clock::now() } else { due };
             for (community, last) in self.boats.iter().chain(&self.shore).zip(&mut last) {
                 let (notes, counts) = community.visit(|community| {
-                    let (dropped, refused) = (community.dropped().to_string(), community.refusals.to_string());
-                    let texts: Vec<String> = [dropped, refused].into_iter().filter(|text| !text.is_empty()).collect();
-                    (community.tend(), format!("{}: dropped or refused: {}", community.name, texts.join(", ")))
+                    let (dropped, refused) = (
+                        community.dropped().to_string(),
+                        community.refusals.to_string(),
+                    );
+                    let texts: Vec<String> = [dropped, refused]
+                        .into_iter()
+                        .filter(|text| !text.is_empty())
+                        .collect();
+                    (
+                        community.tend(),
+                        format!(
+                            "{}: dropped or refused: {}",
+                            community.name,
+                            texts.join(", ")
+                        ),
+                    )
                 });
-                notes.into_iter().for_each(|note| (self.tell)(News::Note(note)));
+                notes
+                    .into_iter()
+                    .for_each(|note| (self.tell)(News::Note(note)));
                 if is_due && !counts.ends_with(": ") && *last != counts {
                     (self.tell)(News::Note(counts.clone()));
                     *last = counts;
                 }
             }
-            if let Some(speed) = speed.visit(|speed| speed.take()).filter(|speed| *speed != told_speed) {
+            if let Some(speed) = speed
+                .visit(|speed| speed.take())
+                .filter(|speed| *speed != told_speed)
+            {
                 let warp = self.moos.warp;
-                (self.tell)(News::Note(format!("the game now runs at {speed}x, but MOOSTimeWarp stays {warp}")));
+                (self.tell)(News::Note(format!(
+                    "the game now runs at {speed}x, but MOOSTimeWarp stays {warp}"
+                )));
                 told_speed = speed;
             }
         }
@@ -264,10 +331,22 @@ fn boats(settings: &Settings, scenario: &Scenario) -> Result<Vec<(String, Addres
         scenario.vehicle_named(name).map_err(|e| e.to_string())?;
     }
     if let Some(team) = &settings.team {
-        let names = || scenario.teams.iter().map(|team| team.name.clone()).collect::<Vec<_>>().join(", ");
+        let names = || {
+            scenario
+                .teams
+                .iter()
+                .map(|team| team.name.clone())
+                .collect::<Vec<_>>()
+                .join(", ")
+        };
         let index = scenario.teams.iter().position(|known| known.name == *team);
-        let index = index.ok_or_else(|| format!("there is no team {team:?}; there are {}", names()))?;
-        for boat in scenario.vehicles.iter().filter(|boat| boat.team.index() == index) {
+        let index =
+            index.ok_or_else(|| format!("there is no team {team:?}; there are {}", names()))?;
+        for boat in scenario
+            .vehicles
+            .iter()
+            .filter(|boat| boat.team.index() == index)
+        {
             if wanted.iter().all(|(name, _)| *name != boat.name) {
                 wanted.push((boat.name.clone(), None));
             }
@@ -276,7 +355,9 @@ fn boats(settings: &Settings, scenario: &Scenario) -> Result<Vec<(String, Addres
     let mut ports = settings.first_port..=u16::MAX;
     let addressed = wanted.into_iter().map(|(name, address)| {
         let next = || Some(Address::Serve((Ipv4Addr::LOCALHOST, ports.next()?).into()));
-        let address = address.or_else(next).ok_or("there are not enough ports above --port")?;
+        let address = address
+            .or_else(next)
+            .ok_or("there are not enough ports above --port")?;
         Ok((name, address))
     });
     addressed.collect()

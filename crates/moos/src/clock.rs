@@ -26,12 +26,17 @@ impl MoosClock {
                     .to_owned());
             }
             "realtime" => 1.0,
-            factor => factor.strip_suffix('x').and_then(|factor| factor.parse().ok()).unwrap_or(f64::NAN),
+            factor => factor
+                .strip_suffix('x')
+                .and_then(|factor| factor.parse().ok())
+                .unwrap_or(f64::NAN),
         };
         if warp > 0.0 && warp <= WARP_MAX {
             return Ok(MoosClock { warp });
         }
-        Err(format!("the pace of the game is {pace}, expected at most {WARP_MAX}x, the highest time warp of MOOS"))
+        Err(format!(
+            "the pace of the game is {pace}, expected at most {WARP_MAX}x, the highest time warp of MOOS"
+        ))
     }
 
     /// The current MOOS time, s.
@@ -46,10 +51,23 @@ mod tests {
 
     #[test]
     fn the_warp_is_the_pace_and_lockstep_has_none() {
-        for (pace, want) in [("realtime", Some(1.0)), ("4x", Some(4.0)), ("0.5x", Some(0.5)), ("500x", None)] {
-            assert_eq!(MoosClock::of_pace(pace).ok().map(|clock| clock.warp), want, "{pace}");
+        for (pace, want) in [
+            ("realtime", Some(1.0)),
+            ("4x", Some(4.0)),
+            ("0.5x", Some(0.5)),
+            ("500x", None),
+        ] {
+            assert_eq!(
+                MoosClock::of_pace(pace).ok().map(|clock| clock.warp),
+                want,
+                "{pace}"
+            );
         }
-        assert!(MoosClock::of_pace("lockstep").unwrap_err().contains("--pace realtime"));
+        assert!(
+            MoosClock::of_pace("lockstep")
+                .unwrap_err()
+                .contains("--pace realtime")
+        );
         let fast_s = MoosClock { warp: 10.0 }.now_s();
         assert!((fast_s / MoosClock { warp: 1.0 }.now_s() - 10.0).abs() < 1e-6);
     }

@@ -25,15 +25,26 @@ impl FromStr for Address {
     /// Parses `:9001`, `0.0.0.0:9001` or `tcp/HOST:9001`.
     fn from_str(text: &str) -> Result<Address, String> {
         let wrong = || {
-            format!("the address is {text:?}, expected :PORT or IP:PORT to serve a MOOSDB, or tcp/HOST:PORT to use one")
+            format!(
+                "the address is {text:?}, expected :PORT or IP:PORT to serve a MOOSDB, or tcp/HOST:PORT to use one"
+            )
         };
         if let Some(place) = text.strip_prefix("tcp/") {
-            let port = place.rsplit_once(':').filter(|(host, _)| !host.is_empty()).map(|(_, port)| port.parse::<u16>());
-            return if let Some(Ok(1..)) = port { Ok(Address::Connect(place.to_owned())) } else { Err(wrong()) };
+            let port = place
+                .rsplit_once(':')
+                .filter(|(host, _)| !host.is_empty())
+                .map(|(_, port)| port.parse::<u16>());
+            return if let Some(Ok(1..)) = port {
+                Ok(Address::Connect(place.to_owned()))
+            } else {
+                Err(wrong())
+            };
         }
         let port = text.strip_prefix(':').map(str::parse::<u16>);
         match port {
-            Some(port) => port.map(|port| Address::Serve((Ipv4Addr::LOCALHOST, port).into())).map_err(|_| wrong()),
+            Some(port) => port
+                .map(|port| Address::Serve((Ipv4Addr::LOCALHOST, port).into()))
+                .map_err(|_| wrong()),
             None => text.parse().map(Address::Serve).map_err(|_| wrong()),
         }
     }
@@ -76,17 +87,25 @@ impl Community {
     ///
     /// # Errors
     /// What is wrong with the address.
-    pub fn open(name: &str, address: &Address, reads: BTreeSet<String>, moos: MoosClock) -> Result<Community, String> {
-        let failed = |e: std::io::Error| format!("cannot open the MOOSDB of {name} at {address}: {e}");
+    pub fn open(
+        name: &str,
+        address: &Address,
+        reads: BTreeSet<String>,
+        moos: MoosClock,
+    ) -> Result<Community, String> {
+        let failed =
+            |e: std::io::Error| format!("cannot open the MOOSDB of {name} at {address}: {e}");
         let (link, place) = match address {
             Address::Serve(at) => {
-                let server = Server::open(*at, Database::new(name, reads, moos.now_s()), moos).map_err(failed)?;
+                let server = Server::open(*at, Database::new(name, reads, moos.now_s()), moos)
+                    .map_err(failed)?;
                 let place = format!("MOOSDB at {}", server.address);
                 (Link::Served(server), place)
             }
-            Address::Connect(at) => {
-                (Link::Remote(Remote::open(at, reads, moos).map_err(failed)?), format!("client of the MOOSDB at {at}"))
-            }
+            Address::Connect(at) => (
+                Link::Remote(Remote::open(at, reads, moos).map_err(failed)?),
+                format!("client of the MOOSDB at {at}"),
+            ),
         };
         let published = BTreeMap::new();
         Ok(Community {
@@ -112,9 +131,15 @@ impl Community {
             Value::Number(number) => Msg::number(Kind::NOTIFY, key, number, time_s),
             Value::Text(text) => Msg::text(Kind::NOTIFY, key, &text, time_s),
         };
-        let msg = Msg { source: BRIDGE.to_owned(), community: self.name.clone(), ..msg };
+        let msg = Msg {
+            source: BRIDGE.to_owned(),
+            community: self.name.clone(),
+            ..msg
+        };
         match &self.link {
-            Link::Served(server) => server.visit(|database, now_s| database.notify(msg.clone(), now_s)),
+            Link::Served(server) => {
+                server.visit(|database, now_s| database.notify(msg.clone(), now_s))
+            }
             Link::Remote(remote) => remote.publish(&msg),
         }
         msg
@@ -138,7 +163,11 @@ impl Community {
 
     /// Publishes a person's command from the shoreside, for applications and for the bridge.
     pub(crate) fn command(&mut self, msg: Msg) {
-        let msg = Msg { kind: Kind::NOTIFY, source: "shoreside".to_owned(), ..msg };
+        let msg = Msg {
+            kind: Kind::NOTIFY,
+            source: "shoreside".to_owned(),
+            ..msg
+        };
         match &self.link {
             Link::Served(server) => {
                 server.visit(|database, now_s| database.receive("shoreside", vec![msg], now_s));
@@ -192,7 +221,10 @@ impl Community {
             Link::Served(server) => server.visit(|database, _| database.dropped),
             Link::Remote(remote) => remote.dropped(),
         };
-        Dropped { malformed: dropped.malformed + self.malformed, ..dropped }
+        Dropped {
+            malformed: dropped.malformed + self.malformed,
+            ..dropped
+        }
     }
 }
 
@@ -216,12 +248,30 @@ mod tests {
             (":9001", serve("127.0.0.1:9001")),
             ("0.0.0.0:9001", serve("0.0.0.0:9001")),
             ("[::1]:0", serve("[::1]:0")),
-            ("tcp/boat.local:9000", Ok(Address::Connect("boat.local:9000".to_owned()))),
+            (
+                "tcp/boat.local:9000",
+                Ok(Address::Connect("boat.local:9000".to_owned())),
+            ),
         ] {
             assert_eq!(text.parse::<Address>(), want);
         }
-        for text in ["", "9001", ":", ":70000", "boat:9001", "tcp/9001", "tcp/:9001", "tcp/boat:0", "udp/boat:1"] {
-            assert!(text.parse::<Address>().unwrap_err().contains("tcp/HOST:PORT"), "{text}");
+        for text in [
+            "",
+            "9001",
+            ":",
+            ":70000",
+            "boat:9001",
+            "tcp/9001",
+            "tcp/:9001",
+            "tcp/boat:0",
+            "udp/boat:1",
+        ] {
+            assert!(
+                text.parse::<Address>()
+                    .unwrap_err()
+                    .contains("tcp/HOST:PORT"),
+                "{text}"
+            );
         }
     }
 }

@@ -56,8 +56,11 @@ impl std::fmt::Display for Dropped {
             (self.refused, "refused connections"),
             (self.stalled, "stalled connections"),
         ];
-        let texts: Vec<String> =
-            texts.iter().filter(|(count, _)| *count > 0).map(|(count, text)| format!("{count} x {text}")).collect();
+        let texts: Vec<String> = texts
+            .iter()
+            .filter(|(count, _)| *count > 0)
+            .map(|(count, text)| format!("{count} x {text}"))
+            .collect();
         f.write_str(&texts.join(", "))
     }
 }
@@ -73,7 +76,14 @@ struct Subscription {
 
 impl Subscription {
     fn new(interval_s: f64) -> Subscription {
-        Subscription { interval_s: if interval_s.is_finite() { interval_s } else { 0.0 }, sent_s: f64::NEG_INFINITY }
+        Subscription {
+            interval_s: if interval_s.is_finite() {
+                interval_s
+            } else {
+                0.0
+            },
+            sent_s: f64::NEG_INFINITY,
+        }
     }
 }
 
@@ -137,11 +147,16 @@ impl Database {
     /// The reason for a refusal.
     pub fn admit(&mut self, hello: &Msg, now_s: f64) -> Result<(Msg, Arc<Watched<Mail>>), String> {
         let name = hello.as_text().unwrap_or_default().trim();
-        let is_taken = name.eq_ignore_ascii_case(BRIDGE) || self.clients.iter().any(|client| client.name == name);
+        let is_taken = name.eq_ignore_ascii_case(BRIDGE)
+            || self.clients.iter().any(|client| client.name == name);
         let refusal = match name {
-            _ if name.is_empty() || name.len() > NAME_MAX => Some(format!("a name has 1 to {NAME_MAX} bytes")),
+            _ if name.is_empty() || name.len() > NAME_MAX => {
+                Some(format!("a name has 1 to {NAME_MAX} bytes"))
+            }
             _ if is_taken => Some(format!("the name {name} is in use")),
-            _ if self.clients.len() >= CLIENTS_MAX => Some(format!("there are already {CLIENTS_MAX} clients")),
+            _ if self.clients.len() >= CLIENTS_MAX => {
+                Some(format!("there are already {CLIENTS_MAX} clients"))
+            }
             _ => None,
         };
         if let Some(reason) = refusal {
@@ -149,7 +164,11 @@ impl Database {
             return Err(reason);
         }
         // The difference of two clocks at most: the packet was on its way as well.
-        let skew_s = if hello.time_s.is_finite() { now_s - hello.time_s } else { 0.0 };
+        let skew_s = if hello.time_s.is_finite() {
+            now_s - hello.time_s
+        } else {
+            0.0
+        };
         let is_other = skew_s.abs() > SKEW_MAX_S;
         if is_other && self.skewed.len() < CLIENTS_MAX && self.skewed.insert(name.to_owned()) {
             let community = &self.community;
@@ -170,30 +189,50 @@ impl Database {
         self.publish_clients(now_s);
         let welcome = Msg::text(Kind::WELCOME, "", wire::ASYNCHRONOUS, now_s);
         let source_aux = "hostname=localhost".to_owned();
-        Ok((Msg { number: skew_s, source_aux, community: self.community.clone(), ..welcome }, mail))
+        Ok((
+            Msg {
+                number: skew_s,
+                source_aux,
+                community: self.community.clone(),
+                ..welcome
+            },
+            mail,
+        ))
     }
 
     /// Removes a client.
     pub fn remove(&mut self, name: &str, now_s: f64) {
         if let Some(at) = self.clients.iter().position(|client| client.name == name) {
-            self.clients.swap_remove(at).mail.visit(|mail| mail.is_closed = true);
+            self.clients
+                .swap_remove(at)
+                .mail
+                .visit(|mail| mail.is_closed = true);
             self.publish_clients(now_s);
         }
     }
 
-    /// Processes a client's packet. Returns the answer to its clock comparison, if it contained one.
+    /// Processes a client's packet. Returns the answer to its clock comparison, if it contained
+    /// one.
     pub fn receive(&mut self, name: &str, messages: Vec<Msg>, now_s: f64) -> Option<Msg> {
         let mut timing = None;
         for msg in messages {
             match msg.kind {
                 Kind::NOTIFY => {
-                    let msg = Msg { source: name.to_owned(), ..msg };
+                    let msg = Msg {
+                        source: name.to_owned(),
+                        ..msg
+                    };
                     if self.reads.contains(&msg.key) {
                         self.heard.insert(msg.key.clone(), msg.clone());
                     }
                     self.notify(msg, now_s);
                 }
-                Kind::TIMING => timing = Some(Msg { number: now_s, ..msg }),
+                Kind::TIMING => {
+                    timing = Some(Msg {
+                        number: now_s,
+                        ..msg
+                    })
+                }
                 Kind::REGISTER => self.register(name, &msg, now_s),
                 Kind::WILDCARD => self.register_wildcard(name, &msg),
                 Kind::REQUEST => self.answer(name, &msg, now_s),
@@ -203,7 +242,9 @@ impl Database {
                 Kind::WILDCARD_END => {
                     let [sources, variables, _] = patterns(&msg);
                     self.change(name, |client| {
-                        client.wildcards.retain(|one| (&one.sources, &one.variables) != (&sources, &variables));
+                        client
+                            .wildcards
+                            .retain(|one| (&one.sources, &one.variables) != (&sources, &variables));
                         client.matched.clear();
                     });
                 }
@@ -227,7 +268,10 @@ impl Database {
             return;
         }
         let stored = self.stored + msg.bytes.len() - before.map_or(0, |before| before.bytes.len());
-        if stored > STORED_MAX || (before.is_none() && self.variables.len() >= VARIABLES_MAX) || msg.key.is_empty() {
+        if stored > STORED_MAX
+            || (before.is_none() && self.variables.len() >= VARIABLES_MAX)
+            || msg.key.is_empty()
+        {
             self.dropped.over_limit += 1;
             return;
         }
@@ -255,14 +299,23 @@ impl Database {
         if now_s - self.status_s >= STATUS_S {
             self.status_s = now_s;
             for (key, value) in [("DB_TIME", now_s), ("DB_UPTIME", now_s - self.opened_s)] {
-                self.notify(Msg { source: BRIDGE.to_owned(), ..Msg::number(Kind::NOTIFY, key, value, now_s) }, now_s);
+                self.notify(
+                    Msg {
+                        source: BRIDGE.to_owned(),
+                        ..Msg::number(Kind::NOTIFY, key, value, now_s)
+                    },
+                    now_s,
+                );
             }
         }
     }
 
     /// The newest values for the bridge since the last call, and notes for the person who runs it.
     pub fn take_heard(&mut self) -> (Vec<Msg>, Vec<String>) {
-        (std::mem::take(&mut self.heard).into_values().collect(), self.take_notes())
+        (
+            std::mem::take(&mut self.heard).into_values().collect(),
+            self.take_notes(),
+        )
     }
 
     /// Notes for the person who runs the bridge since the last call.
@@ -271,9 +324,24 @@ impl Database {
     }
 
     fn publish_clients(&mut self, now_s: f64) {
-        let names: String = self.clients.iter().map(|client| format!("{},", client.name)).collect();
-        let text = Msg::text(Kind::NOTIFY, "DB_CLIENTS", &format!("{BRIDGE},{names}"), now_s);
-        self.notify(Msg { source: BRIDGE.to_owned(), ..text }, now_s);
+        let names: String = self
+            .clients
+            .iter()
+            .map(|client| format!("{},", client.name))
+            .collect();
+        let text = Msg::text(
+            Kind::NOTIFY,
+            "DB_CLIENTS",
+            &format!("{BRIDGE},{names}"),
+            now_s,
+        );
+        self.notify(
+            Msg {
+                source: BRIDGE.to_owned(),
+                ..text
+            },
+            now_s,
+        );
     }
 
     fn change(&mut self, name: &str, change: impl FnOnce(&mut Client)) {
@@ -287,7 +355,9 @@ impl Database {
         let mut encoded = Vec::new();
         wire::encode(msg, &mut encoded);
         let mut displaced = 0;
-        self.change(name, |client| displaced = client.mail.visit(|mail| mail.push(&encoded.into())));
+        self.change(name, |client| {
+            displaced = client.mail.visit(|mail| mail.push(&encoded.into()))
+        });
         self.dropped.unread += displaced;
     }
 
@@ -296,7 +366,10 @@ impl Database {
         self.change(name, |client| {
             is_full = client.subscriptions.len() >= SUBSCRIPTIONS_MAX;
             if !is_full {
-                let subscription = Subscription { sent_s: now_s, ..Subscription::new(msg.number) };
+                let subscription = Subscription {
+                    sent_s: now_s,
+                    ..Subscription::new(msg.number)
+                };
                 client.subscriptions.insert(msg.key.clone(), subscription);
             }
         });
@@ -322,18 +395,44 @@ impl Database {
             }
         });
         self.dropped.over_limit += u64::from(is_full);
-        let is_known = |value: &&Msg| matches(&sources, &value.source) && matches(&variables, &value.key);
-        let known: Vec<Msg> = self.variables.values().filter(is_known).filter(|_| !is_full).cloned().collect();
+        let is_known =
+            |value: &&Msg| matches(&sources, &value.source) && matches(&variables, &value.key);
+        let known: Vec<Msg> = self
+            .variables
+            .values()
+            .filter(is_known)
+            .filter(|_| !is_full)
+            .cloned()
+            .collect();
         known.iter().for_each(|value| self.deliver(name, value));
     }
 
     /// Answers a request to the database: `ALL` values, or the `VAR_SUMMARY` of names.
     fn answer(&mut self, name: &str, msg: &Msg, now_s: f64) {
-        let names = || self.variables.keys().map(String::as_str).collect::<Vec<_>>().join(",");
+        let names = || {
+            self.variables
+                .keys()
+                .map(String::as_str)
+                .collect::<Vec<_>>()
+                .join(",")
+        };
         let answers = match msg.key.as_str() {
-            "ALL" => self.variables.values().map(|value| Msg { id: msg.id, ..value.clone() }).collect(),
-            "VAR_SUMMARY" => vec![Msg { id: msg.id, ..Msg::text(Kind::NOTIFY, &msg.key, &names(), now_s) }],
-            _ => vec![Msg { id: msg.id, ..Msg::number(Kind::NULL, "", 0.0, now_s) }],
+            "ALL" => self
+                .variables
+                .values()
+                .map(|value| Msg {
+                    id: msg.id,
+                    ..value.clone()
+                })
+                .collect(),
+            "VAR_SUMMARY" => vec![Msg {
+                id: msg.id,
+                ..Msg::text(Kind::NOTIFY, &msg.key, &names(), now_s)
+            }],
+            _ => vec![Msg {
+                id: msg.id,
+                ..Msg::number(Kind::NULL, "", 0.0, now_s)
+            }],
         };
         answers.iter().for_each(|answer| self.deliver(name, answer));
     }
@@ -345,126 +444,13 @@ impl Client {
         if self.wildcards.is_empty() {
             return None;
         }
-        let is_meant = |one: &&Wildcard| matches(&one.sources, &msg.source) && matches(&one.variables, &msg.key);
+        let is_meant = |one: &&Wildcard| {
+            matches(&one.sources, &msg.source) && matches(&one.variables, &msg.key)
+        };
         let found = self.wildcards.iter().find(is_meant)?.subscription;
         Some(self.matched.entry(msg.key.clone()).or_insert(found))
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::mail::MAIL_MAX;
-    use crate::wire::Framer;
-
-    const NOW_S: f64 = 1_000.0;
-
-    fn notify(key: &str, number: f64) -> Msg {
-        Msg::number(Kind::NOTIFY, key, number, -1.0)
-    }
-
-    /// A database with a client of each of these names, and their mail.
-    fn database(names: &[&str]) -> (Database, Vec<Arc<Watched<Mail>>>) {
-        let mut database = Database::new("blue_one", BTreeSet::from(["DESIRED_SPEED".to_owned()]), NOW_S);
-        let mut admit = |name: &&str| database.admit(&Msg::text(Kind::DATA, "", name, NOW_S), NOW_S).unwrap().1;
-        let mail = names.iter().map(&mut admit).collect();
-        (database, mail)
-    }
-
-    fn read(mail: &Watched<Mail>) -> Vec<(String, f64)> {
-        let Some(packet) = mail.visit(|mail| mail.take_packet(None)) else { return vec![] };
-        let mut framer = Framer::default();
-        framer.push(&packet);
-        let messages = framer.next_packet().unwrap().unwrap();
-        messages.into_iter().map(|msg| (msg.key.clone(), msg.as_number().unwrap_or(f64::NAN))).collect()
-    }
-
-    fn pairs(expected: &[(&str, f64)]) -> Vec<(String, f64)> {
-        expected.iter().map(|(key, number)| ((*key).to_owned(), *number)).collect()
-    }
-
-    #[test]
-    fn subscribers_get_the_last_value_and_then_each_new_one_at_their_interval() {
-        let (mut database, mail) = database(&["pA", "pB"]);
-        database.receive("pA", vec![notify("NAV_X", 1.0), notify("NAV_X", 2.0)], NOW_S);
-        let register = Msg::number(Kind::REGISTER, "NAV_X", 0.0, NOW_S);
-        database.receive("pA", vec![register.clone()], NOW_S);
-        database.receive("pB", vec![Msg { number: 10.0, ..register.clone() }], NOW_S);
-        assert_eq!([read(&mail[0]), read(&mail[1])], [pairs(&[("NAV_X", 2.0)]), pairs(&[("NAV_X", 2.0)])]);
-        for (passed_s, number) in [(4.0, 3.0), (10.0, 4.0), (12.0, 5.0)] {
-            database.receive("pB", vec![notify("NAV_X", number)], NOW_S + passed_s);
-        }
-        assert_eq!(read(&mail[0]), pairs(&[("NAV_X", 3.0), ("NAV_X", 4.0), ("NAV_X", 5.0)]));
-        assert_eq!(read(&mail[1]), pairs(&[("NAV_X", 4.0)]), "at most every 10 s");
-        database.receive("pA", vec![Msg { kind: Kind::UNREGISTER, ..register }, notify("NAV_X", 6.0)], NOW_S + 30.0);
-        assert_eq!(read(&mail[0]), []);
-    }
-
-    #[test]
-    fn patterns_choose_source_and_variable_and_include_variables_to_come() {
-        let (mut database, mail) = database(&["uXMS", "pA"]);
-        database.receive("pA", vec![notify("NAV_X", 1.0), notify("DEPTH", 1.0)], NOW_S);
-        // As MOOS clients and as `pymoos2` write it.
-        for (spec, want) in [
-            ("AppPattern=p?,VarPattern=NAV_*,Interval=0", &[("NAV_X", 1.0), ("NAV_X", 2.0), ("NAV_Y", 3.0)][..]),
-            ("AppPattern=* VarPattern=NAV_Y Interval=0.0", &[("NAV_Y", 3.0), ("NAV_Y", 3.0)]),
-            ("AppPattern=q*,VarPattern=*,Interval=0", &[]),
-        ] {
-            let wildcard = Msg::text(Kind::WILDCARD, "uXMS", spec, NOW_S);
-            database.receive("uXMS", vec![wildcard.clone()], NOW_S);
-            database.receive("pA", vec![notify("NAV_X", 2.0), notify("NAV_Y", 3.0)], NOW_S);
-            assert_eq!(read(&mail[0]), pairs(want), "{spec}");
-            database.receive("uXMS", vec![Msg { kind: Kind::WILDCARD_END, ..wildcard }], NOW_S);
-            database.receive("pA", vec![notify("NAV_X", 1.0)], NOW_S);
-            assert_eq!(read(&mail[0]), [], "{spec}");
-        }
-    }
-
-    #[test]
-    fn the_first_writer_fixes_the_type_and_only_chosen_variables_reach_the_bridge() {
-        let (mut database, mail) = database(&["pHelmIvP"]);
-        database.receive("pHelmIvP", vec![Msg::number(Kind::REGISTER, "DESIRED_SPEED", 0.0, NOW_S)], NOW_S);
-        database.receive("pHelmIvP", vec![notify("DESIRED_SPEED", 1.0), notify("OTHER", 1.0)], NOW_S);
-        let text = Msg::text(Kind::NOTIFY, "DESIRED_SPEED", "fast", NOW_S);
-        database.notify(text, NOW_S);
-        assert_eq!(read(&mail[0]), pairs(&[("DESIRED_SPEED", 1.0)]));
-        assert_eq!(database.dropped, Dropped { wrong_type: 1, ..Dropped::default() });
-        let (heard, notes) = database.take_heard();
-        let heard: Vec<(&str, &str)> = heard.iter().map(|msg| (msg.key.as_str(), msg.source.as_str())).collect();
-        assert_eq!((heard, notes.len()), (vec![("DESIRED_SPEED", "pHelmIvP")], 0));
-    }
-
-    #[test]
-    fn a_name_is_used_once_and_clocks_of_another_warp_are_reported() {
-        let (mut database, _mail) = database(&["pHelmIvP"]);
-        for (name, want) in
-            [("pHelmIvP", "in use"), (BRIDGE, "in use"), ("", "1 to 128"), (&"x".repeat(200), "1 to 128")]
-        {
-            let refusal = database.admit(&Msg::text(Kind::DATA, "", name, NOW_S), NOW_S).map(|_| ()).unwrap_err();
-            assert!(refusal.contains(want), "{refusal}");
-        }
-        database.remove("pHelmIvP", NOW_S);
-        let (welcome, _) = database.admit(&Msg::text(Kind::DATA, "", "pHelmIvP", NOW_S / 4.0), NOW_S).unwrap();
-        assert_eq!((welcome.number, welcome.as_text()), (750.0, Some(wire::ASYNCHRONOUS)));
-        assert!(database.take_heard().1[0].contains("differs by 750 s"));
-        assert_eq!(database.dropped.refused, 4);
-    }
-
-    #[test]
-    fn clients_cannot_fill_the_memory() {
-        let (mut database, mail) = database(&["pA"]);
-        let big = |key: &str| Msg { bytes: vec![b'x'; 200_000], ..Msg::text(Kind::NOTIFY, key, "", NOW_S) };
-        database.receive("pA", vec![Msg::number(Kind::REGISTER, "IMAGE", 0.0, NOW_S)], NOW_S);
-        (0..100).for_each(|_| database.notify(big("IMAGE"), NOW_S));
-        let unread = mail[0].visit(|mail| mail.bytes);
-        assert!(unread <= MAIL_MAX && database.dropped.unread > 50, "{unread} {:?}", database.dropped);
-        (0..500).for_each(|i| database.notify(big(&format!("IMAGE_{i}")), NOW_S));
-        assert!(database.stored <= STORED_MAX && database.dropped.over_limit > 100, "{:?}", database.dropped);
-        (0..VARIABLES_MAX).for_each(|i| database.notify(notify(&format!("X{i}"), 0.0), NOW_S));
-        assert_eq!(database.variables.len(), VARIABLES_MAX);
-        let flood: Vec<Msg> = (0..9000).map(|i| notify("DESIRED_SPEED", f64::from(i))).collect();
-        database.receive("pA", flood, NOW_S);
-        let heard: Vec<f64> = database.take_heard().0.iter().map(|msg| msg.number).collect();
-        assert_eq!(heard, [8999.0], "the newest value alone");
-    }
-}
+mod tests;

@@ -20,7 +20,11 @@ pub(crate) fn node_report(
 ) -> Value {
     let at = frame.lat_lon(nav.at());
     let report = alog::node_report(scenario, (vehicle.index(), nav), time_s, mode);
-    Value::Text(format!("{report},LAT={},LON={}", decimal(at.lat_deg, 7), decimal(at.lon_deg, 7)))
+    Value::Text(format!(
+        "{report},LAT={},LON={}",
+        decimal(at.lat_deg, 7),
+        decimal(at.lon_deg, 7)
+    ))
 }
 
 /// `true` or `false`, as missions compare it.
@@ -30,7 +34,10 @@ pub(crate) fn flag_of(is_so: bool) -> Value {
 
 pub(crate) fn colour(scenario: &Scenario, team: TeamId) -> &str {
     let name = scenario.teams[team.index()].name.as_str();
-    COLOURS.iter().find(|colour| **colour == name).map_or("white", |_| name)
+    COLOURS
+        .iter()
+        .find(|colour| **colour == name)
+        .map_or("white", |_| name)
 }
 
 /// A flag as a marker: where it is, or with its carrier.
@@ -50,7 +57,11 @@ pub(crate) fn marker(scenario: &Scenario, i: usize, at: Ned) -> String {
 pub(crate) fn flag_label(scenario: &Scenario, i: usize) -> String {
     let flags = &scenario.field.flags;
     let team = &scenario.teams[flags[i].team.index()].name;
-    match flags[..i].iter().filter(|flag| flag.team == flags[i].team).count() {
+    match flags[..i]
+        .iter()
+        .filter(|flag| flag.team == flags[i].team)
+        .count()
+    {
         0 => team.clone(),
         earlier => format!("{team}_{}", earlier + 1),
     }
@@ -64,16 +75,28 @@ pub(crate) fn publish(
     out: &mut dyn FnMut(crate::wire::Msg),
 ) {
     let name = |vehicle: VehicleId| scenario.vehicles[vehicle.index()].name.as_str();
-    let mut publish = |key: &str, value: Value| community.publish_change(key, value).into_iter().for_each(&mut *out);
+    let mut publish = |key: &str, value: Value| {
+        community
+            .publish_change(key, value)
+            .into_iter()
+            .for_each(&mut *out)
+    };
     for (team, points) in scenario.teams.iter().zip(score) {
-        publish(&format!("{}_SCORES", team.name.to_uppercase()), Value::Number(f64::from(*points)));
+        publish(
+            &format!("{}_SCORES", team.name.to_uppercase()),
+            Value::Number(f64::from(*points)),
+        );
     }
     let tagged: Vec<&str> = tagged.iter().map(|vehicle| name(*vehicle)).collect();
     publish("TAGGED_VEHICLES", Value::Text(tagged.join(",")));
     let mut summary = Vec::new();
     for (i, (flag, view)) in scenario.field.flags.iter().zip(flags).enumerate() {
-        let carrier = usize::try_from(view.carrier).ok().filter(|carrier| *carrier < scenario.vehicles.len());
-        let owner = carrier.map_or_else(String::new, |carrier| format!(",owner={}", name(VehicleId::at(carrier))));
+        let carrier = usize::try_from(view.carrier)
+            .ok()
+            .filter(|carrier| *carrier < scenario.vehicles.len());
+        let owner = carrier.map_or_else(String::new, |carrier| {
+            format!(",owner={}", name(VehicleId::at(carrier)))
+        });
         summary.push(format!("{}{owner}", marker(scenario, i, flag.home)));
         let label = flag_label(scenario, i).to_uppercase();
         publish(&format!("{label}_FLAG_GRABBED"), flag_of(carrier.is_some()));
@@ -86,8 +109,14 @@ pub(crate) fn publish(
 
 /// A team's side of the field as a polygon to draw.
 pub(crate) fn zone(scenario: &Scenario, team: TeamId) -> String {
-    let fill = if scenario.teams[team.index()].name == "red" { "pink" } else { "light_blue" };
-    let Some(zone) = scenario.field.zones.get(team.index()) else { return String::new() };
+    let fill = if scenario.teams[team.index()].name == "red" {
+        "pink"
+    } else {
+        "light_blue"
+    };
+    let Some(zone) = scenario.field.zones.get(team.index()) else {
+        return String::new();
+    };
     format!(
         "{},label={},edge_color=gray50,vertex_color=gray50,fill_color={fill},vertex_size=1,edge_size=1,\
          fill_transparency=0.1",
@@ -99,5 +128,8 @@ pub(crate) fn zone(scenario: &Scenario, team: TeamId) -> String {
 /// The corners of a polygon.
 pub(crate) fn points(corners: &[Ned]) -> String {
     let point = |at: &Ned| format!("{},{}", decimal(at.east, 2), decimal(at.north, 2));
-    format!("pts={{{}}}", corners.iter().map(point).collect::<Vec<_>>().join(":"))
+    format!(
+        "pts={{{}}}",
+        corners.iter().map(point).collect::<Vec<_>>().join(":")
+    )
 }

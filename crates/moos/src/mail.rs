@@ -28,7 +28,9 @@ impl Mail {
         // As MOOS clients do with unsent mail: half of it goes, so that this stays rare.
         if self.bytes > MAIL_MAX {
             while self.bytes > MAIL_MAX / 2 {
-                let Some(old) = self.messages.pop_front() else { break };
+                let Some(old) = self.messages.pop_front() else {
+                    break;
+                };
                 self.bytes -= old.len();
                 displaced += 1;
             }
@@ -39,7 +41,9 @@ impl Mail {
     /// Unread mail as one packet that begins with `first`; none without any message.
     pub fn take_packet(&mut self, first: Option<&Msg>) -> Option<Vec<u8>> {
         let mut encoded = Vec::new();
-        first.into_iter().for_each(|msg| wire::encode(msg, &mut encoded));
+        first
+            .into_iter()
+            .for_each(|msg| wire::encode(msg, &mut encoded));
         let mut length = encoded.len();
         let fits = |message: &&Arc<[u8]>| {
             length += message.len();
@@ -50,6 +54,12 @@ impl Mail {
         self.bytes -= taken.iter().map(|message| message.len()).sum::<usize>();
         let first = first.map(|_| encoded.as_slice());
         let is_empty = first.is_none() && taken.is_empty();
-        (!is_empty).then(|| wire::packet(first.into_iter().chain(taken.iter().map(|message| &**message))))
+        (!is_empty).then(|| {
+            wire::packet(
+                first
+                    .into_iter()
+                    .chain(taken.iter().map(|message| &**message)),
+            )
+        })
     }
 }

@@ -7,11 +7,20 @@ use crate::wire::Msg;
 pub(crate) fn patterns(msg: &Msg) -> [String; 3] {
     let text = msg.as_text().unwrap_or_default();
     let value = |name: &str| {
-        let words = text.split([',', ' ']).filter_map(|word| word.split_once('='));
-        words.filter(|(key, _)| key.trim().eq_ignore_ascii_case(name)).map(|(_, value)| value.trim().to_owned()).next()
+        let words = text
+            .split([',', ' '])
+            .filter_map(|word| word.split_once('='));
+        words
+            .filter(|(key, _)| key.trim().eq_ignore_ascii_case(name))
+            .map(|(_, value)| value.trim().to_owned())
+            .next()
     };
     let pattern = |name| value(name).unwrap_or_else(|| "*".to_owned());
-    [pattern("AppPattern"), pattern("VarPattern"), value("Interval").unwrap_or_default()]
+    [
+        pattern("AppPattern"),
+        pattern("VarPattern"),
+        value("Interval").unwrap_or_default(),
+    ]
 }
 
 /// Whether a pattern matches: `*` any characters, `?` one.
@@ -28,7 +37,9 @@ pub(crate) fn matches(pattern: &str, text: &str) -> bool {
             }
             Some(wanted) if *wanted == b'?' || *wanted == text[t] => (p, t) = (p + 1, t + 1),
             _ => {
-                let Some((after_star, under_star)) = resume else { return false };
+                let Some((after_star, under_star)) = resume else {
+                    return false;
+                };
                 resume = Some((after_star, under_star + 1));
                 (p, t) = (after_star, under_star + 1);
             }
@@ -43,7 +54,12 @@ mod tests {
 
     #[test]
     fn stars_and_question_marks_match() {
-        for (pattern, text, want) in [("*", "", true), ("a*c", "abcbc", true), ("a*c", "ab", false), ("", "a", false)] {
+        for (pattern, text, want) in [
+            ("*", "", true),
+            ("a*c", "abcbc", true),
+            ("a*c", "ab", false),
+            ("", "a", false),
+        ] {
             assert_eq!(matches(pattern, text), want, "{pattern} {text}");
         }
     }

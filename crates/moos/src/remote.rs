@@ -44,8 +44,16 @@ impl Remote {
     ///
     /// # Errors
     /// If the system cannot start a thread.
-    pub(crate) fn open(address: &str, reads: BTreeSet<String>, moos: MoosClock) -> io::Result<Remote> {
-        let remote = Remote { state: Arc::default(), mail: Arc::default(), is_closed: Arc::default() };
+    pub(crate) fn open(
+        address: &str,
+        reads: BTreeSet<String>,
+        moos: MoosClock,
+    ) -> io::Result<Remote> {
+        let remote = Remote {
+            state: Arc::default(),
+            mail: Arc::default(),
+            is_closed: Arc::default(),
+        };
         let link = Link {
             state: Arc::clone(&remote.state),
             mail: Arc::clone(&remote.mail),
@@ -62,7 +70,13 @@ impl Remote {
     pub(crate) fn publish(&self, msg: &Msg) {
         if self.state.visit(|state| state.is_connected) {
             let mut encoded = Vec::new();
-            wire::encode(&Msg { source: NAME.to_owned(), ..msg.clone() }, &mut encoded);
+            wire::encode(
+                &Msg {
+                    source: NAME.to_owned(),
+                    ..msg.clone()
+                },
+                &mut encoded,
+            );
             let displaced = self.mail.visit(|mail| mail.push(&encoded.into()));
             self.state.visit(|state| state.dropped.unread += displaced);
         }
@@ -108,11 +122,17 @@ impl Link {
                 drop(stream.shutdown(Shutdown::Both));
                 ended
             });
-            let was_connected = self.state.visit(|state| std::mem::take(&mut state.is_connected));
+            let was_connected = self
+                .state
+                .visit(|state| std::mem::take(&mut state.is_connected));
             if let Err(problem) = problem
                 && (was_connected || problem != told)
             {
-                self.state.visit(|state| state.notes.push(format!("MOOSDB at {}: {problem}", self.address)));
+                self.state.visit(|state| {
+                    state
+                        .notes
+                        .push(format!("MOOSDB at {}: {problem}", self.address))
+                });
                 told = problem;
             }
             clock::rest(RETRY);
@@ -123,34 +143,54 @@ impl Link {
     fn connect(&self) -> Result<TcpStream, String> {
         let mut addresses = self.address.to_socket_addrs().map_err(|e| e.to_string())?;
         let address = addresses.next().ok_or("the name has no address")?;
-        let stream = TcpStream::connect_timeout(&address, CONNECT_MAX).map_err(|e| e.to_string())?;
+        let stream =
+            TcpStream::connect_timeout(&address, CONNECT_MAX).map_err(|e| e.to_string())?;
         let set_up = stream
             .set_nodelay(true)
             .and_then(|()| stream.set_read_timeout(Some(RETRY)))
             .and_then(|()| stream.set_write_timeout(Some(CONNECT_MAX)));
         let hello = Msg::text(Kind::DATA, wire::ASYNCHRONOUS, NAME, self.moos.now_s());
         let greeting = [wire::GREETING.to_vec(), wire::packet_of(&[hello])].concat();
-        set_up.and_then(|()| (&stream).write_all(&greeting)).map_err(|e| e.to_string())?;
+        set_up
+            .and_then(|()| (&stream).write_all(&greeting))
+            .map_err(|e| e.to_string())?;
         Ok(stream)
     }
 
     /// Reads until the connection ends.
     fn converse(&self, stream: &TcpStream) -> Result<(), String> {
         let mut packets = Packets::new(stream, &self.is_closed);
-        let answer = packets.next_packet().and_then(|packet| packet.into_iter().next());
+        let answer = packets
+            .next_packet()
+            .and_then(|packet| packet.into_iter().next());
         match answer {
             Some(msg) if msg.kind == Kind::WELCOME => {}
             Some(msg) if msg.kind == Kind::POISON => {
-                return Err(format!("it refuses {NAME}: {}", msg.as_text().unwrap_or("without a reason")));
+                return Err(format!(
+                    "it refuses {NAME}: {}",
+                    msg.as_text().unwrap_or("without a reason")
+                ));
             }
             _ => return Err("it does not answer like a MOOSDB".to_owned()),
         }
-        let registers = self.reads.iter().map(|key| Msg::number(Kind::REGISTER, key, 0.0, self.moos.now_s()));
-        let registers: Vec<Msg> = registers.map(|msg| Msg { source: NAME.to_owned(), ..msg }).collect();
-        (&mut &*stream).write_all(&wire::packet_of(&registers)).map_err(|e| e.to_string())?;
+        let registers = self
+            .reads
+            .iter()
+            .map(|key| Msg::number(Kind::REGISTER, key, 0.0, self.moos.now_s()));
+        let registers: Vec<Msg> = registers
+            .map(|msg| Msg {
+                source: NAME.to_owned(),
+                ..msg
+            })
+            .collect();
+        (&mut &*stream)
+            .write_all(&wire::packet_of(&registers))
+            .map_err(|e| e.to_string())?;
         self.mail.visit(|mail| *mail = Mail::default());
         self.state.visit(|state| state.is_connected = true);
-        let writer = stream.try_clone().and_then(|stream| self.start_writer(stream));
+        let writer = stream
+            .try_clone()
+            .and_then(|stream| self.start_writer(stream));
         writer.map_err(|e| e.to_string())?;
         while let Some(messages) = packets.next_packet() {
             self.state.visit(|state| state.keep(messages, &self.reads));
@@ -175,7 +215,9 @@ impl Link {
         start_thread("moos mail", move || {
             let mut timed = clock::now();
             while state.visit(|state| state.is_connected) {
-                mail.wait(TIMING / 2, |mail| !mail.messages.is_empty() || mail.is_closed);
+                mail.wait(TIMING / 2, |mail| {
+                    !mail.messages.is_empty() || mail.is_closed
+                });
                 let now_s = moos.now_s();
                 let is_due = clock::since(timed) >= TIMING;
                 let timing = is_due.then(|| Msg::number(Kind::TIMING, "_async_timing", 0.0, now_s));
@@ -194,7 +236,10 @@ impl Link {
 impl State {
     /// Keeps values of other applications.
     fn keep(&mut self, messages: Vec<Msg>, reads: &BTreeSet<String>) {
-        for msg in messages.into_iter().filter(|msg| msg.kind == Kind::NOTIFY && msg.source != NAME) {
+        for msg in messages
+            .into_iter()
+            .filter(|msg| msg.kind == Kind::NOTIFY && msg.source != NAME)
+        {
             if reads.contains(&msg.key) {
                 self.heard.insert(msg.key.clone(), msg);
             }
@@ -216,7 +261,12 @@ mod tests {
     }
 
     fn server(address: SocketAddr) -> Server {
-        Server::open(address, Database::new("blue_one", reads(), MOOS.now_s()), MOOS).unwrap()
+        Server::open(
+            address,
+            Database::new("blue_one", reads(), MOOS.now_s()),
+            MOOS,
+        )
+        .unwrap()
     }
 
     /// The keys that reach the client and the server until each has one.
@@ -248,7 +298,10 @@ mod tests {
         drop(first);
         let start = clock::now();
         while remote.take_heard().2 {
-            assert!(clock::since(start) < Duration::from_secs(20), "the loss is noticed");
+            assert!(
+                clock::since(start) < Duration::from_secs(20),
+                "the loss is noticed"
+            );
             clock::rest(Duration::from_millis(10));
         }
         let second = server(address);

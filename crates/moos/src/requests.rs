@@ -33,7 +33,9 @@ impl Requests {
         (key, text): (&str, &str),
     ) -> Option<Answer> {
         let name = &scenario.vehicles[own.vehicle.index()].name;
-        let asked_by = text.split(',').find_map(|word| word.trim().strip_prefix("vname="));
+        let asked_by = text
+            .split(',')
+            .find_map(|word| word.trim().strip_prefix("vname="));
         let is_own = asked_by == Some(name.as_str());
         let rules = &scenario.rules;
         let until = |look: SimTime| Some(picture.stamp.valid_ns + look + scenario.decision() * 2);
@@ -41,7 +43,12 @@ impl Requests {
             let refused = match own {
                 _ if !is_own => Some("invalid_vehicle_name"),
                 OwnBoat { tagged: true, .. } => Some("selftagged"),
-                _ if !scenario.field.is_own_side(scenario.team_of(own.vehicle), own.nav.at()) => Some("zone"),
+                _ if !scenario
+                    .field
+                    .is_own_side(scenario.team_of(own.vehicle), own.nav.at()) =>
+                {
+                    Some("zone")
+                }
                 _ if !Ability::from(own).may_tag(picture.stamp.valid_ns) => Some("freq"),
                 _ => None,
             };
@@ -72,22 +79,38 @@ impl Requests {
 
     /// The answers after a picture: what the referee decided, requested or not, and to whom it
     /// gave nothing in time.
-    pub(crate) fn judge(&mut self, scenario: &Scenario, picture: &Picture, own: VehicleId) -> Vec<Answer> {
+    pub(crate) fn judge(
+        &mut self,
+        scenario: &Scenario,
+        picture: &Picture,
+        own: VehicleId,
+    ) -> Vec<Answer> {
         let name = |vehicle: VehicleId| scenario.vehicles[vehicle.index()].name.as_str();
         let mut answers = Vec::new();
-        for event in picture.events.iter().filter_map(messages::EventRecord::logged).map(|logged| logged.event) {
+        for event in picture
+            .events
+            .iter()
+            .filter_map(messages::EventRecord::logged)
+            .map(|logged| logged.event)
+        {
             if !scenario.has(event) {
                 continue;
             }
             match event {
-                Event::Tagged { vehicle, cause: TagCause::Opponent(by) } if by == own => {
+                Event::Tagged {
+                    vehicle,
+                    cause: TagCause::Opponent(by),
+                } if by == own => {
                     self.tag_until = None;
                     answers.push(self.tag_answer(name(own), &format!("tagged={}", name(vehicle))));
                 }
                 Event::Grabbed { vehicle, flag } if vehicle == own => {
                     self.grab_until = None;
                     let team = scenario.field.flags[flag.index()].team;
-                    answers.push(grab_answer(&format!("grabbed={}", scenario.teams[team.index()].name)));
+                    answers.push(grab_answer(&format!(
+                        "grabbed={}",
+                        scenario.teams[team.index()].name
+                    )));
                 }
                 _ => {}
             }
@@ -105,7 +128,10 @@ impl Requests {
     fn tag_answer(&mut self, name: &str, result: &str) -> Answer {
         self.count += 1;
         let text = format!("event={},source={name},{result}", self.count);
-        (format!("TAG_RESULT_{}", name.to_uppercase()), Value::Text(text))
+        (
+            format!("TAG_RESULT_{}", name.to_uppercase()),
+            Value::Text(text),
+        )
     }
 }
 
@@ -124,23 +150,48 @@ mod tests {
     use std::path::Path;
 
     fn scenario() -> Scenario {
-        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
+        let file =
+            Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
         scenario::load(&file).unwrap_or_else(|e| panic!("{e}"))
     }
 
     fn at(point: Ned) -> OwnBoat {
-        OwnBoat::new(VehicleId(0), Nav { north_m: point.north, east_m: point.east, ..Nav::default() })
+        OwnBoat::new(
+            VehicleId(0),
+            Nav {
+                north_m: point.north,
+                east_m: point.east,
+                ..Nav::default()
+            },
+        )
     }
 
     fn picture(s: f64, events: &[Event]) -> Picture {
         let now = SimTime::from_s(s);
-        let record = |event: &Event| EventRecord::from(Logged { tick: 1, at: now, event: *event });
-        let stamp = Stamp { valid_ns: now, ..Stamp::default() };
-        Picture { stamp, events: events.iter().map(record).collect(), ..Picture::default() }
+        let record = |event: &Event| {
+            EventRecord::from(Logged {
+                tick: 1,
+                at: now,
+                event: *event,
+            })
+        };
+        let stamp = Stamp {
+            valid_ns: now,
+            ..Stamp::default()
+        };
+        Picture {
+            stamp,
+            events: events.iter().map(record).collect(),
+            ..Picture::default()
+        }
     }
 
     fn text(answer: &Answer) -> &str {
-        if let Value::Text(text) = &answer.1 { text } else { panic!("{answer:?}") }
+        if let Value::Text(text) = &answer.1 {
+            text
+        } else {
+            panic!("{answer:?}")
+        }
     }
 
     #[test]
@@ -150,17 +201,78 @@ mod tests {
         let away = at(scenario.field.flags[1].home);
         let never = SimTime::from_s(1e6);
         for (own, key, value, want) in [
-            (home, "TAG_REQUEST", "vname=red_one", "result=rejected_invalid_vehicle_name"),
-            (home, "TAG_REQUEST", "", "result=rejected_invalid_vehicle_name"),
-            (OwnBoat { tagged: true, ..home }, "TAG_REQUEST", "vname=blue_one", "result=rejected_selftagged"),
-            (away, "TAG_REQUEST", "vname=blue_one", "result=rejected_zone"),
-            (OwnBoat { tag_ready_ns: never, ..home }, "TAG_REQUEST", "vname=blue_one", "result=rejected_freq"),
-            (away, "FLAG_GRAB_REQUEST", "vname=x", "Nothing grabbed - invalid_vehicle_name"),
-            (OwnBoat { carrying: 1, ..away }, "FLAG_GRAB_REQUEST", "vname=blue_one", "already has flag"),
-            (OwnBoat { tagged: true, ..away }, "FLAG_GRAB_REQUEST", "vname=blue_one", "is tagged"),
-            (OwnBoat { outside: true, ..away }, "FLAG_GRAB_REQUEST", "vname=blue_one", "out of play"),
+            (
+                home,
+                "TAG_REQUEST",
+                "vname=red_one",
+                "result=rejected_invalid_vehicle_name",
+            ),
+            (
+                home,
+                "TAG_REQUEST",
+                "",
+                "result=rejected_invalid_vehicle_name",
+            ),
+            (
+                OwnBoat {
+                    tagged: true,
+                    ..home
+                },
+                "TAG_REQUEST",
+                "vname=blue_one",
+                "result=rejected_selftagged",
+            ),
+            (
+                away,
+                "TAG_REQUEST",
+                "vname=blue_one",
+                "result=rejected_zone",
+            ),
+            (
+                OwnBoat {
+                    tag_ready_ns: never,
+                    ..home
+                },
+                "TAG_REQUEST",
+                "vname=blue_one",
+                "result=rejected_freq",
+            ),
+            (
+                away,
+                "FLAG_GRAB_REQUEST",
+                "vname=x",
+                "Nothing grabbed - invalid_vehicle_name",
+            ),
+            (
+                OwnBoat {
+                    carrying: 1,
+                    ..away
+                },
+                "FLAG_GRAB_REQUEST",
+                "vname=blue_one",
+                "already has flag",
+            ),
+            (
+                OwnBoat {
+                    tagged: true,
+                    ..away
+                },
+                "FLAG_GRAB_REQUEST",
+                "vname=blue_one",
+                "is tagged",
+            ),
+            (
+                OwnBoat {
+                    outside: true,
+                    ..away
+                },
+                "FLAG_GRAB_REQUEST",
+                "vname=blue_one",
+                "out of play",
+            ),
         ] {
-            let answer = Requests::default().receive(&scenario, &picture(1.0, &[]), &own, (key, value));
+            let answer =
+                Requests::default().receive(&scenario, &picture(1.0, &[]), &own, (key, value));
             let answer = answer.unwrap_or_else(|| panic!("{key} {value} {own:?}"));
             assert!(text(&answer).contains(want), "{answer:?}, expected {want}");
         }
@@ -172,23 +284,47 @@ mod tests {
         let own = at(scenario.field.flags[0].home);
         let mut requests = Requests::default();
         for key in READS {
-            assert_eq!(requests.receive(&scenario, &picture(1.0, &[]), &own, (key, "vname=blue_one")), None, "{key}");
+            assert_eq!(
+                requests.receive(&scenario, &picture(1.0, &[]), &own, (key, "vname=blue_one")),
+                None,
+                "{key}"
+            );
         }
-        assert_eq!(requests.judge(&scenario, &picture(1.1, &[]), own.vehicle), []);
+        assert_eq!(
+            requests.judge(&scenario, &picture(1.1, &[]), own.vehicle),
+            []
+        );
         let none = requests.judge(&scenario, &picture(2.0, &[]), own.vehicle);
         assert_eq!(
             none.iter().map(text).collect::<Vec<_>>(),
             ["event=1,source=blue_one,tagged=none", "nothing_grabbed"]
         );
-        assert_eq!(requests.judge(&scenario, &picture(3.0, &[]), own.vehicle), [], "once");
-        let tag = |by| Event::Tagged { vehicle: VehicleId(2), cause: TagCause::Opponent(VehicleId(by)) };
-        let grab = |by| Event::Grabbed { vehicle: VehicleId(by), flag: FlagId(1) };
+        assert_eq!(
+            requests.judge(&scenario, &picture(3.0, &[]), own.vehicle),
+            [],
+            "once"
+        );
+        let tag = |by| Event::Tagged {
+            vehicle: VehicleId(2),
+            cause: TagCause::Opponent(VehicleId(by)),
+        };
+        let grab = |by| Event::Grabbed {
+            vehicle: VehicleId(by),
+            flag: FlagId(1),
+        };
         let others = picture(3.5, &[tag(1), grab(1), tag(99)]);
-        assert_eq!(requests.judge(&scenario, &others, own.vehicle), [], "other boats' successes");
+        assert_eq!(
+            requests.judge(&scenario, &others, own.vehicle),
+            [],
+            "other boats' successes"
+        );
         let events = [tag(0), grab(0)];
         let decided = requests.judge(&scenario, &picture(4.0, &events), own.vehicle);
         assert_eq!(
-            decided.iter().map(|answer| answer.0.as_str()).collect::<Vec<_>>(),
+            decided
+                .iter()
+                .map(|answer| answer.0.as_str())
+                .collect::<Vec<_>>(),
             ["TAG_RESULT_BLUE_ONE", "FLAG_GRAB_REPORT"]
         );
         assert_eq!(

@@ -51,12 +51,23 @@ impl Server {
     ///
     /// # Errors
     /// If the port is in use or the system refuses.
-    pub(crate) fn open(address: SocketAddr, database: Database, moos: MoosClock) -> io::Result<Server> {
+    pub(crate) fn open(
+        address: SocketAddr,
+        database: Database,
+        moos: MoosClock,
+    ) -> io::Result<Server> {
         let listener = TcpListener::bind(address)?;
         let address = listener.local_addr()?;
-        let shared = Shared { database: Arc::new(Watched::new(database)), moos };
+        let shared = Shared {
+            database: Arc::new(Watched::new(database)),
+            moos,
+        };
         let is_closed = Arc::new(AtomicBool::new(false));
-        let server = Server { shared: shared.clone(), address, is_closed: Arc::clone(&is_closed) };
+        let server = Server {
+            shared: shared.clone(),
+            address,
+            is_closed: Arc::clone(&is_closed),
+        };
         start_thread("moosdb", move || accept(&listener, &shared, &is_closed))?;
         Ok(server)
     }
@@ -64,14 +75,17 @@ impl Server {
     /// Reads or changes the database at the current MOOS time.
     pub(crate) fn visit<R>(&self, visit: impl FnOnce(&mut Database, f64) -> R) -> R {
         let now_s = self.shared.moos.now_s();
-        self.shared.database.visit(|database| visit(database, now_s))
+        self.shared
+            .database
+            .visit(|database| visit(database, now_s))
     }
 }
 
 impl Drop for Server {
     fn drop(&mut self) {
         self.is_closed.store(true, Ordering::Relaxed);
-        // Ends the wait for the next client; without a route to itself, the thread ends with the process.
+        // Ends the wait for the next client; without a route to itself, the thread ends with the
+        // process.
         drop(TcpStream::connect_timeout(&self.address, LOOK_AGAIN));
     }
 }
@@ -89,7 +103,9 @@ fn accept(listener: &TcpListener, shared: &Shared, is_closed: &Arc<AtomicBool>) 
         };
         let connection = Connection(Arc::clone(&connections));
         if connections.fetch_add(1, Ordering::Relaxed) >= 2 * CLIENTS_MAX {
-            shared.database.visit(|database| database.dropped.refused += 1);
+            shared
+                .database
+                .visit(|database| database.dropped.refused += 1);
             continue;
         }
         let shared = shared.clone();
@@ -128,8 +144,13 @@ fn serve(shared: &Shared, stream: &TcpStream, is_closed: &AtomicBool) {
     };
     let name = hello.as_text().unwrap_or_default().trim().to_owned();
     let is_asynchronous = hello.key == wire::ASYNCHRONOUS;
-    if (&mut &*stream).write_all(&wire::packet_of(&[welcome])).is_ok() {
-        let writer = is_asynchronous.then(|| start_writer(stream, &mail, database)).transpose();
+    if (&mut &*stream)
+        .write_all(&wire::packet_of(&[welcome]))
+        .is_ok()
+    {
+        let writer = is_asynchronous
+            .then(|| start_writer(stream, &mail, database))
+            .transpose();
         if writer.is_ok() {
             read(shared, &mut packets, (&name, &mail, is_asynchronous));
         }
@@ -144,7 +165,11 @@ fn serve(shared: &Shared, stream: &TcpStream, is_closed: &AtomicBool) {
 }
 
 /// Processes a client's packets.
-fn read(shared: &Shared, packets: &mut Packets<'_>, (name, mail, is_asynchronous): (&str, &Watched<Mail>, bool)) {
+fn read(
+    shared: &Shared,
+    packets: &mut Packets<'_>,
+    (name, mail, is_asynchronous): (&str, &Watched<Mail>, bool),
+) {
     let Shared { database, moos } = shared;
     while let Some(messages) = packets.next_packet() {
         let now_s = moos.now_s();
@@ -158,7 +183,10 @@ fn read(shared: &Shared, packets: &mut Packets<'_>, (name, mail, is_asynchronous
         // A synchronous client waits for exactly one packet, with the time in front.
         let null = Msg::number(Kind::NULL, "", moos.now_s(), now_s);
         let answer = mail.visit(|mail| mail.take_packet(Some(&null)));
-        if (&mut &*packets.stream).write_all(&answer.unwrap_or_default()).is_err() {
+        if (&mut &*packets.stream)
+            .write_all(&answer.unwrap_or_default())
+            .is_err()
+        {
             packets.end = End::Stalled;
             return;
         }
@@ -166,13 +194,19 @@ fn read(shared: &Shared, packets: &mut Packets<'_>, (name, mail, is_asynchronous
 }
 
 /// Starts the thread that writes a client's mail.
-fn start_writer(stream: &TcpStream, mail: &Arc<Watched<Mail>>, database: &Arc<Watched<Database>>) -> io::Result<()> {
+fn start_writer(
+    stream: &TcpStream,
+    mail: &Arc<Watched<Mail>>,
+    database: &Arc<Watched<Database>>,
+) -> io::Result<()> {
     let mut stream = stream.try_clone()?;
     let mail = Arc::clone(mail);
     let database = Arc::clone(database);
     start_thread("moos mail", move || {
         loop {
-            mail.wait(LOOK_AGAIN, |mail| !mail.messages.is_empty() || mail.timing.is_some() || mail.is_closed);
+            mail.wait(LOOK_AGAIN, |mail| {
+                !mail.messages.is_empty() || mail.timing.is_some() || mail.is_closed
+            });
             let (packet, is_closed) = mail.visit(|mail| {
                 let timing = mail.timing.take();
                 (mail.take_packet(timing.as_ref()), mail.is_closed)
@@ -214,7 +248,12 @@ pub(crate) struct Packets<'a> {
 
 impl<'a> Packets<'a> {
     pub(crate) fn new(stream: &'a TcpStream, is_closed: &'a AtomicBool) -> Packets<'a> {
-        Packets { stream, framer: Framer::default(), is_closed, end: End::Closed }
+        Packets {
+            stream,
+            framer: Framer::default(),
+            is_closed,
+            end: End::Closed,
+        }
     }
 
     /// The name in a client's handshake; none if it is not a MOOS client.
@@ -229,8 +268,15 @@ impl<'a> Packets<'a> {
                 return None;
             }
         }
-        let hello = if greeting == wire::GREETING { self.next_packet()? } else { return None };
-        hello.into_iter().next().filter(|msg| msg.kind == Kind::DATA)
+        let hello = if greeting == wire::GREETING {
+            self.next_packet()?
+        } else {
+            return None;
+        };
+        hello
+            .into_iter()
+            .next()
+            .filter(|msg| msg.kind == Kind::DATA)
     }
 
     /// The messages of the next packet; none at the end of the connection.
@@ -266,7 +312,9 @@ impl<'a> Packets<'a> {
             Err(error) => {
                 let is_timeout = matches!(
                     error.kind(),
-                    io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut | io::ErrorKind::Interrupted
+                    io::ErrorKind::WouldBlock
+                        | io::ErrorKind::TimedOut
+                        | io::ErrorKind::Interrupted
                 );
                 is_timeout.then_some(0)
             }
@@ -295,12 +343,18 @@ mod tests {
 
     impl Peer {
         fn connect(server: &Server, name: &str, key: &str) -> Peer {
-            let mut peer = Peer(TcpStream::connect(server.address).unwrap(), Framer::default());
+            let mut peer = Peer(
+                TcpStream::connect(server.address).unwrap(),
+                Framer::default(),
+            );
             peer.0.set_read_timeout(Some(LIMIT)).unwrap();
             peer.0.write_all(&wire::GREETING).unwrap();
             peer.send(&[Msg::text(Kind::DATA, key, name, MOOS.now_s())]);
             let welcome = peer.next_packet().unwrap();
-            assert_eq!((welcome[0].kind, welcome[0].community.as_str()), (Kind::WELCOME, "blue_one"));
+            assert_eq!(
+                (welcome[0].kind, welcome[0].community.as_str()),
+                (Kind::WELCOME, "blue_one")
+            );
             peer
         }
 
@@ -340,32 +394,62 @@ mod tests {
         helm.send(&[Msg::number(Kind::TIMING, "_async_timing", 0.0, sent_s)]);
         let timing = helm.next_packet().unwrap().remove(0);
         assert_eq!((timing.kind, timing.time_s), (Kind::TIMING, sent_s));
-        assert!((timing.number - sent_s).abs() < 4.0 * LIMIT.as_secs_f64(), "{timing:?}");
+        assert!(
+            (timing.number - sent_s).abs() < 4.0 * LIMIT.as_secs_f64(),
+            "{timing:?}"
+        );
         let register = Msg::number(Kind::REGISTER, "NAV_X", 0.0, sent_s);
         viewer.send(&[register.clone(), Msg::number(Kind::NULL, "", 0.0, sent_s)]);
         let null = viewer.next_packet().unwrap();
-        assert_eq!((null.len(), null[0].kind, null[0].data), (1, Kind::NULL, DataType::Double));
+        assert_eq!(
+            (null.len(), null[0].kind, null[0].data),
+            (1, Kind::NULL, DataType::Double)
+        );
         helm.send(&[register, Msg::number(Kind::NOTIFY, "NAV_X", 7.0, sent_s)]);
         let mail = helm.next_packet().unwrap();
-        assert_eq!((mail[0].key.as_str(), mail[0].number, mail[0].source.as_str()), ("NAV_X", 7.0, "pHelmIvP"));
+        assert_eq!(
+            (
+                mail[0].key.as_str(),
+                mail[0].number,
+                mail[0].source.as_str()
+            ),
+            ("NAV_X", 7.0, "pHelmIvP")
+        );
         viewer.send(&[Msg::number(Kind::NULL, "", 0.0, sent_s)]);
-        let kinds: Vec<Kind> = viewer.next_packet().unwrap().iter().map(|msg| msg.kind).collect();
+        let kinds: Vec<Kind> = viewer
+            .next_packet()
+            .unwrap()
+            .iter()
+            .map(|msg| msg.kind)
+            .collect();
         assert_eq!(kinds, [Kind::NULL, Kind::NOTIFY]);
         drop(helm);
-        wait_for(clock::now(), "a name is free again after its client has left", || {
-            server.visit(|database, now_s| {
-                let admitted = database.admit(&Msg::text(Kind::DATA, "", "pHelmIvP", now_s), now_s).is_ok();
-                database.remove(if admitted { "pHelmIvP" } else { "" }, now_s);
-                admitted
-            })
-        });
+        wait_for(
+            clock::now(),
+            "a name is free again after its client has left",
+            || {
+                server.visit(|database, now_s| {
+                    let admitted = database
+                        .admit(&Msg::text(Kind::DATA, "", "pHelmIvP", now_s), now_s)
+                        .is_ok();
+                    database.remove(if admitted { "pHelmIvP" } else { "" }, now_s);
+                    admitted
+                })
+            },
+        );
     }
 
     #[test]
     fn clients_that_send_garbage_or_read_nothing_harm_nobody() {
         let server = server();
-        let mut stranger = Peer(TcpStream::connect(server.address).unwrap(), Framer::default());
-        stranger.0.write_all(b"GET / HTTP/1.1\r\nHost: localhost\r\n\r\n").unwrap();
+        let mut stranger = Peer(
+            TcpStream::connect(server.address).unwrap(),
+            Framer::default(),
+        );
+        stranger
+            .0
+            .write_all(b"GET / HTTP/1.1\r\nHost: localhost\r\n\r\n")
+            .unwrap();
         assert_eq!(stranger.next_packet(), None, "no MOOS client");
         let mut liar = Peer::connect(&server, "pLiar", wire::ASYNCHRONOUS);
         liar.0.write_all(&i32::MAX.to_le_bytes()).unwrap();
@@ -373,7 +457,12 @@ mod tests {
         assert_eq!(liar.next_packet(), None, "a packet of 2 GiB");
         let mut deaf = Peer::connect(&server, "pDeaf", wire::ASYNCHRONOUS);
         let mut other = Peer::connect(&server, "pOther", wire::ASYNCHRONOUS);
-        deaf.send(&[Msg::text(Kind::WILDCARD, "pDeaf", "AppPattern=*,VarPattern=*,Interval=0", MOOS.now_s())]);
+        deaf.send(&[Msg::text(
+            Kind::WILDCARD,
+            "pDeaf",
+            "AppPattern=*,VarPattern=*,Interval=0",
+            MOOS.now_s(),
+        )]);
         other.send(&[Msg::number(Kind::REGISTER, "COUNT", 0.0, MOOS.now_s())]);
         let start = clock::now();
         let mut count = 0.0;
@@ -381,7 +470,10 @@ mod tests {
         wait_for(start, "the deaf client is dropped", || {
             count += 1.0;
             server.visit(|database, now_s| {
-                database.notify(Msg::text(Kind::NOTIFY, "IMAGE", &"x".repeat(200_000), now_s), now_s);
+                database.notify(
+                    Msg::text(Kind::NOTIFY, "IMAGE", &"x".repeat(200_000), now_s),
+                    now_s,
+                );
                 database.notify(Msg::number(Kind::NOTIFY, "COUNT", count, now_s), now_s);
             });
             let got = other.next_packet().unwrap();

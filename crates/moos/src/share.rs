@@ -25,7 +25,11 @@ impl Share {
     pub fn open(listen: SocketAddr, to: Vec<SocketAddr>) -> io::Result<Share> {
         let socket = UdpSocket::bind(listen)?;
         socket.set_nonblocking(true)?;
-        Ok(Share { socket, to, malformed: 0 })
+        Ok(Share {
+            socket,
+            to,
+            malformed: 0,
+        })
     }
 
     /// The address at which it listens.
@@ -41,7 +45,9 @@ impl Share {
         let mut datagram = Vec::new();
         wire::encode(msg, &mut datagram);
         if datagram.len() <= DATAGRAM_MAX {
-            self.to.iter().for_each(|to| drop(self.socket.send_to(&datagram, to)));
+            self.to
+                .iter()
+                .for_each(|to| drop(self.socket.send_to(&datagram, to)));
         }
     }
 
@@ -50,7 +56,9 @@ impl Share {
         let mut bytes = vec![0; DATAGRAM_MAX + 1];
         let mut received = Vec::new();
         for _ in 0..READ_MAX {
-            let Ok((length, _)) = self.socket.recv_from(&mut bytes) else { break };
+            let Ok((length, _)) = self.socket.recv_from(&mut bytes) else {
+                break;
+            };
             match wire::decode(&bytes[..length]) {
                 Ok(msg) => received.push(msg),
                 Err(_) => self.malformed += 1,
@@ -73,13 +81,22 @@ mod tests {
         let boat = Share::open(local, vec![shore.address().unwrap()]).unwrap();
         let msg = Msg::text(Kind::NOTIFY, "DEPLOY_ALL", "true", 1.0);
         boat.send(&msg);
-        boat.send(&Msg { bytes: vec![0; DATAGRAM_MAX], ..msg.clone() });
-        boat.socket.send_to(b"no message", shore.address().unwrap()).unwrap();
+        boat.send(&Msg {
+            bytes: vec![0; DATAGRAM_MAX],
+            ..msg.clone()
+        });
+        boat.socket
+            .send_to(b"no message", shore.address().unwrap())
+            .unwrap();
         let mut received = Vec::new();
         let start = bus::clock::now();
         while shore.malformed == 0 && bus::clock::since(start) < Duration::from_secs(5) {
             received.extend(shore.receive());
         }
-        assert_eq!((received, shore.malformed), (vec![msg], 1), "the message that is too long is not sent");
+        assert_eq!(
+            (received, shore.malformed),
+            (vec![msg], 1),
+            "the message that is too long is not sent"
+        );
     }
 }

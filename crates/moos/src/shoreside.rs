@@ -23,7 +23,13 @@ const LOOK_AGAIN: Duration = Duration::from_millis(100);
 /// How far a flag is drawn behind its carrier, m.
 const ASTERN_M: f64 = 3.0;
 /// The variables that people at the shoreside set for all boats (`_ALL`) or one of them.
-const COMMANDS: [&str; 5] = ["DEPLOY", "RETURN", "STATION_KEEP", "MOOS_MANUAL_OVERRIDE", "ACTION"];
+const COMMANDS: [&str; 5] = [
+    "DEPLOY",
+    "RETURN",
+    "STATION_KEEP",
+    "MOOS_MANUAL_OVERRIDE",
+    "ACTION",
+];
 
 /// The communities of boats to which the shoreside passes commands.
 pub(crate) type Boats = Vec<Arc<Watched<Community>>>;
@@ -42,9 +48,14 @@ pub(crate) struct Shoreside<'a> {
 
 /// The variables that the shoreside reads: commands, and the start of a viewer.
 pub(crate) fn reads(scenario: &Scenario) -> BTreeSet<String> {
-    let names = scenario.vehicles.iter().map(|vehicle| vehicle.name.to_uppercase());
+    let names = scenario
+        .vehicles
+        .iter()
+        .map(|vehicle| vehicle.name.to_uppercase());
     let names: Vec<String> = names.chain(["ALL".to_owned()]).collect();
-    let commands = COMMANDS.iter().flat_map(|command| names.iter().map(move |name| format!("{command}_{name}")));
+    let commands = COMMANDS
+        .iter()
+        .flat_map(|command| names.iter().map(move |name| format!("{command}_{name}")));
     commands.chain(["PMV_CONNECT".to_owned()]).collect()
 }
 
@@ -83,27 +94,57 @@ impl Shoreside<'_> {
         let scenario = self.scenario;
         let now_s = self.moos.now_s();
         let mut sent = Vec::new();
-        for (i, boat) in frame.vehicles.iter().enumerate().take(scenario.vehicles.len()) {
+        for (i, boat) in frame
+            .vehicles
+            .iter()
+            .enumerate()
+            .take(scenario.vehicles.len())
+        {
             let vehicle = VehicleId::at(i);
             let name = scenario.vehicles[i].name.to_uppercase();
-            let mode = if boat.agent_lost { "MINDLESS" } else { mode_of(boat.tagged, boat.carrying) };
-            let report = game::node_report(scenario, &self.frame, (vehicle, &boat.nav, mode), now_s);
+            let mode = if boat.agent_lost {
+                "MINDLESS"
+            } else {
+                mode_of(boat.tagged, boat.carrying)
+            };
+            let report =
+                game::node_report(scenario, &self.frame, (vehicle, &boat.nav, mode), now_s);
             sent.push(community.publish("NODE_REPORT", report));
-            for (key, value) in [("HAS_FLAG", boat.carrying >= 0), ("TAGGED", boat.tagged), ("ONFIELD", !boat.outside)]
-            {
+            for (key, value) in [
+                ("HAS_FLAG", boat.carrying >= 0),
+                ("TAGGED", boat.tagged),
+                ("ONFIELD", !boat.outside),
+            ] {
                 sent.extend(community.publish_change(&format!("{key}_{name}"), flag_of(value)));
             }
         }
-        let tagged = frame.vehicles.iter().enumerate().filter(|(_, boat)| boat.tagged);
+        let tagged = frame
+            .vehicles
+            .iter()
+            .enumerate()
+            .filter(|(_, boat)| boat.tagged);
         let tagged: Vec<VehicleId> = tagged.map(|(i, _)| VehicleId::at(i)).collect();
         let state = if frame.over { "stop" } else { "play" };
         sent.extend(community.publish_change("AQUATICUS_GAME_ALL", Value::Text(state.to_owned())));
-        game::publish(community, scenario, (&frame.flags, &frame.score, &tagged), &mut |msg| sent.push(msg));
+        game::publish(
+            community,
+            scenario,
+            (&frame.flags, &frame.score, &tagged),
+            &mut |msg| sent.push(msg),
+        );
         for (i, flag) in scenario.field.flags.iter().enumerate() {
-            let carrier = frame.flags.get(i).and_then(|view| frame.vehicles.get(usize::try_from(view.carrier).ok()?));
-            let astern =
-                |nav: &messages::picture::Nav| nav.at() + Ned::toward_deg(nav.psi_rad.to_degrees()).scaled(-ASTERN_M);
-            let marker = game::marker(scenario, i, carrier.map_or(flag.home, |boat| astern(&boat.nav)));
+            let carrier = frame
+                .flags
+                .get(i)
+                .and_then(|view| frame.vehicles.get(usize::try_from(view.carrier).ok()?));
+            let astern = |nav: &messages::picture::Nav| {
+                nav.at() + Ned::toward_deg(nav.psi_rad.to_degrees()).scaled(-ASTERN_M)
+            };
+            let marker = game::marker(
+                scenario,
+                i,
+                carrier.map_or(flag.home, |boat| astern(&boat.nav)),
+            );
             let key = format!("VIEW_MARKER {i}");
             // One variable draws all flags; a change is looked for flag by flag.
             if community.is_change(&key, &marker) {
@@ -122,14 +163,25 @@ impl Shoreside<'_> {
 
     fn draw_field(&self, community: &mut Community) -> Vec<Msg> {
         let scenario = self.scenario;
-        let mut polygons: Vec<String> = (0..2).map(|team| game::zone(scenario, TeamId(team))).collect();
-        polygons.push(format!("{},label=field,edge_color=white,vertex_size=1", game::points(&scenario.field.corners)));
+        let mut polygons: Vec<String> = (0..2)
+            .map(|team| game::zone(scenario, TeamId(team)))
+            .collect();
+        polygons.push(format!(
+            "{},label=field,edge_color=white,vertex_size=1",
+            game::points(&scenario.field.corners)
+        ));
         for (i, obstacle) in scenario.field.plan.obstacles.iter().enumerate() {
             if let rules::field::Obstacle::Polygon { corners } = obstacle {
-                polygons.push(format!("{},label=obstacle_{i},edge_color=gray,fill_color=gray", game::points(corners)));
+                polygons.push(format!(
+                    "{},label=obstacle_{i},edge_color=gray,fill_color=gray",
+                    game::points(corners)
+                ));
             }
         }
-        polygons.into_iter().map(|polygon| community.publish("VIEW_POLYGON", Value::Text(polygon))).collect()
+        polygons
+            .into_iter()
+            .map(|polygon| community.publish("VIEW_POLYGON", Value::Text(polygon)))
+            .collect()
     }
 
     /// Passes people's commands to the boats of this bridge.
@@ -137,7 +189,12 @@ impl Shoreside<'_> {
         let mut heard = community.take_heard();
         if let Some(share) = &mut self.share {
             let known = reads(self.scenario);
-            heard.extend(share.receive().into_iter().filter(|msg| known.contains(&msg.key)));
+            heard.extend(
+                share
+                    .receive()
+                    .into_iter()
+                    .filter(|msg| known.contains(&msg.key)),
+            );
             community.malformed = share.malformed;
         }
         for msg in heard {
@@ -146,11 +203,16 @@ impl Shoreside<'_> {
             }
             for boat in &self.boats {
                 boat.visit(|boat| {
-                    let command = msg.key.strip_suffix(&format!("_{}", boat.name.to_uppercase()));
+                    let command = msg
+                        .key
+                        .strip_suffix(&format!("_{}", boat.name.to_uppercase()));
                     let command = command.or_else(|| msg.key.strip_suffix("_ALL"));
-                    command
-                        .into_iter()
-                        .for_each(|command| boat.command(Msg { key: command.to_owned(), ..msg.clone() }));
+                    command.into_iter().for_each(|command| {
+                        boat.command(Msg {
+                            key: command.to_owned(),
+                            ..msg.clone()
+                        })
+                    });
                 });
             }
         }
@@ -161,7 +223,12 @@ impl Shoreside<'_> {
 pub(crate) fn check_keys(bus: &Bus) -> Result<(), String> {
     use bus::keys::Identity;
     match &bus.keys {
-        Some(keys) if !matches!(keys.identity, Identity::Observer | Identity::Operator | Identity::Gateway(_)) => {
+        Some(keys)
+            if !matches!(
+                keys.identity,
+                Identity::Observer | Identity::Operator | Identity::Gateway(_)
+            ) =>
+        {
             Err(format!(
                 "{}: the keys of {} do not show the true state of the game: start the shoreside in a second `squall moos` \
                  with the keys of the observer",

@@ -61,7 +61,11 @@ pub enum DataType {
 }
 
 impl DataType {
-    const ALL: [(DataType, u8); 3] = [(DataType::Double, b'D'), (DataType::String, b'S'), (DataType::Binary, b'B')];
+    const ALL: [(DataType, u8); 3] = [
+        (DataType::Double, b'D'),
+        (DataType::String, b'S'),
+        (DataType::Binary, b'B'),
+    ];
 }
 
 /// A message.
@@ -94,17 +98,29 @@ pub struct Msg {
 impl Msg {
     /// A message of this kind with a number.
     pub fn number(kind: Kind, key: &str, number: f64, time_s: f64) -> Msg {
-        Msg { kind, key: key.to_owned(), number, time_s, ..Msg::default() }
+        Msg {
+            kind,
+            key: key.to_owned(),
+            number,
+            time_s,
+            ..Msg::default()
+        }
     }
 
     /// A message of this kind with text.
     pub fn text(kind: Kind, key: &str, text: &str, time_s: f64) -> Msg {
-        Msg { data: DataType::String, bytes: text.as_bytes().to_vec(), ..Msg::number(kind, key, 0.0, time_s) }
+        Msg {
+            data: DataType::String,
+            bytes: text.as_bytes().to_vec(),
+            ..Msg::number(kind, key, 0.0, time_s)
+        }
     }
 
     /// The text, if the value is valid text.
     pub fn as_text(&self) -> Option<&str> {
-        std::str::from_utf8(&self.bytes).ok().filter(|_| self.data == DataType::String)
+        std::str::from_utf8(&self.bytes)
+            .ok()
+            .filter(|_| self.data == DataType::String)
     }
 
     /// The number, if the value is a number or text that spells one.
@@ -117,7 +133,11 @@ impl Msg {
 
     /// The truth value of `true`, `false` and numbers.
     pub fn as_bool(&self) -> Option<bool> {
-        match self.as_text().map(|text| text.trim().to_ascii_lowercase()).as_deref() {
+        match self
+            .as_text()
+            .map(|text| text.trim().to_ascii_lowercase())
+            .as_deref()
+        {
             Some("true" | "yes" | "on") => Some(true),
             Some("false" | "no" | "off") => Some(false),
             _ => self.as_number().map(|number| number != 0.0),
@@ -147,13 +167,19 @@ struct Reader<'a>(&'a [u8]);
 
 impl<'a> Reader<'a> {
     fn bytes(&mut self, length: usize) -> Result<&'a [u8], Malformed> {
-        let (read, rest) = self.0.split_at_checked(length).ok_or(Malformed::Length(length as i64))?;
+        let (read, rest) = self
+            .0
+            .split_at_checked(length)
+            .ok_or(Malformed::Length(length as i64))?;
         self.0 = rest;
         Ok(read)
     }
 
     fn array<const N: usize>(&mut self) -> Result<[u8; N], Malformed> {
-        Ok(self.bytes(N)?.try_into().expect("as many bytes as were read"))
+        Ok(self
+            .bytes(N)?
+            .try_into()
+            .expect("as many bytes as were read"))
     }
 
     fn i32(&mut self) -> Result<i32, Malformed> {
@@ -167,7 +193,10 @@ impl<'a> Reader<'a> {
     /// A length from `min` to `max`.
     fn length(&mut self, min: usize, max: usize) -> Result<usize, Malformed> {
         let given = self.i32()?;
-        usize::try_from(given).ok().filter(|length| (min..=max).contains(length)).ok_or(Malformed::Length(given.into()))
+        usize::try_from(given)
+            .ok()
+            .filter(|length| (min..=max).contains(length))
+            .ok_or(Malformed::Length(given.into()))
     }
 
     fn sized(&mut self) -> Result<&'a [u8], Malformed> {
@@ -176,7 +205,9 @@ impl<'a> Reader<'a> {
     }
 
     fn name(&mut self) -> Result<String, Malformed> {
-        std::str::from_utf8(self.sized()?).map(str::to_owned).map_err(|_| Malformed::Name)
+        std::str::from_utf8(self.sized()?)
+            .map(str::to_owned)
+            .map_err(|_| Malformed::Name)
     }
 
     fn message(&mut self) -> Result<Msg, Malformed> {
@@ -193,7 +224,19 @@ impl<'a> Reader<'a> {
         let [time_s, number, number2] = [body.f64()?, body.f64()?, body.f64()?];
         let bytes = body.sized()?.to_vec();
         // Newer programs may append fields; each message states its length.
-        Ok(Msg { id, kind: Kind(kind), data, source, source_aux, community, key, time_s, number, number2, bytes })
+        Ok(Msg {
+            id,
+            kind: Kind(kind),
+            data,
+            source,
+            source_aux,
+            community,
+            key,
+            time_s,
+            number,
+            number2,
+            bytes,
+        })
     }
 }
 
@@ -207,7 +250,12 @@ pub fn decode(bytes: &[u8]) -> Result<Msg, Malformed> {
 
 /// Appends the encoded message.
 pub fn encode(msg: &Msg, out: &mut Vec<u8>) {
-    let texts = [msg.source.as_bytes(), msg.source_aux.as_bytes(), msg.community.as_bytes(), msg.key.as_bytes()];
+    let texts = [
+        msg.source.as_bytes(),
+        msg.source_aux.as_bytes(),
+        msg.community.as_bytes(),
+        msg.key.as_bytes(),
+    ];
     let length = FIXED + texts.iter().map(|text| text.len()).sum::<usize>() + msg.bytes.len();
     out.reserve(length);
     let sized = |out: &mut Vec<u8>, bytes: &[u8]| {
@@ -216,10 +264,15 @@ pub fn encode(msg: &Msg, out: &mut Vec<u8>) {
     };
     out.extend((length as i32).to_le_bytes());
     out.extend(msg.id.to_le_bytes());
-    let data = DataType::ALL.iter().find(|(data, _)| *data == msg.data).map_or(b'D', |(_, byte)| *byte);
+    let data = DataType::ALL
+        .iter()
+        .find(|(data, _)| *data == msg.data)
+        .map_or(b'D', |(_, byte)| *byte);
     out.extend([msg.kind.0, data]);
     texts.iter().for_each(|text| sized(out, text));
-    [msg.time_s, msg.number, msg.number2].iter().for_each(|number| out.extend(number.to_le_bytes()));
+    [msg.time_s, msg.number, msg.number2]
+        .iter()
+        .for_each(|number| out.extend(number.to_le_bytes()));
     sized(out, &msg.bytes);
 }
 
@@ -292,7 +345,8 @@ mod tests {
 
     fn bytes(hex: &str) -> Vec<u8> {
         let digits: Vec<u8> = hex.bytes().filter(u8::is_ascii_hexdigit).collect();
-        let byte = |pair: &[u8]| u8::from_str_radix(std::str::from_utf8(pair).unwrap(), 16).unwrap();
+        let byte =
+            |pair: &[u8]| u8::from_str_radix(std::str::from_utf8(pair).unwrap(), 16).unwrap();
         digits.chunks(2).map(byte).collect()
     }
 
@@ -302,13 +356,23 @@ mod tests {
         let mut framer = Framer::default();
         for (i, byte) in captured.iter().enumerate() {
             framer.push(&[*byte]);
-            assert_eq!(framer.next_packet().unwrap().is_some(), i + 1 == captured.len(), "byte {i}");
+            assert_eq!(
+                framer.next_packet().unwrap().is_some(),
+                i + 1 == captured.len(),
+                "byte {i}"
+            );
         }
         framer.push(&captured);
         let read = framer.next_packet().unwrap().unwrap();
         let msg = &read[0];
-        assert_eq!((msg.kind, msg.key.as_str(), msg.source.as_str()), (Kind::NOTIFY, "DESIRED_SPEED", "pHelmIvP"));
-        assert_eq!((msg.id, msg.as_number(), msg.time_s), (7, Some(1.5), 1_732_692_935.08));
+        assert_eq!(
+            (msg.kind, msg.key.as_str(), msg.source.as_str()),
+            (Kind::NOTIFY, "DESIRED_SPEED", "pHelmIvP")
+        );
+        assert_eq!(
+            (msg.id, msg.as_number(), msg.time_s),
+            (7, Some(1.5), 1_732_692_935.08)
+        );
         assert_eq!(packet_of(&read), captured);
     }
 
@@ -332,7 +396,10 @@ mod tests {
             framer.push(&broken);
             assert_eq!(framer.next_packet(), Err(want), "{value} at {at}");
         }
-        for (at, byte, want) in [(18, b'X', Malformed::DataType(b'X')), (8, 1, Malformed::Compressed)] {
+        for (at, byte, want) in [
+            (18, b'X', Malformed::DataType(b'X')),
+            (8, 1, Malformed::Compressed),
+        ] {
             let mut framer = Framer::default();
             let mut broken = sound.clone();
             broken[at] = byte;
@@ -343,9 +410,21 @@ mod tests {
 
     #[test]
     fn values_read_as_people_write_them() {
-        for (text, want) in [("true", Some(true)), ("FALSE", Some(false)), ("1", Some(true)), ("maybe", None)] {
-            assert_eq!(Msg::text(Kind::NOTIFY, "DEPLOY", text, 0.0).as_bool(), want, "{text}");
+        for (text, want) in [
+            ("true", Some(true)),
+            ("FALSE", Some(false)),
+            ("1", Some(true)),
+            ("maybe", None),
+        ] {
+            assert_eq!(
+                Msg::text(Kind::NOTIFY, "DEPLOY", text, 0.0).as_bool(),
+                want,
+                "{text}"
+            );
         }
-        assert_eq!(Msg::number(Kind::NOTIFY, "DEPLOY", 0.0, 0.0).as_bool(), Some(false));
+        assert_eq!(
+            Msg::number(Kind::NOTIFY, "DEPLOY", 0.0, 0.0).as_bool(),
+            Some(false)
+        );
     }
 }

@@ -19,21 +19,37 @@ fn between(random: &mut ChaCha8Rng, least: f32, most: f32) -> f32 {
 fn layer(random: &mut ChaCha8Rng, inputs: usize, outputs: usize) -> Layer {
     // The sums are about one, where activations are neither saturated nor linear.
     let most = (3.0 / inputs as f32).sqrt();
-    let weights = (0..inputs * outputs).map(|_| between(random, -most, most)).collect();
-    Layer { inputs, outputs, weights, biases: vec![0.1; outputs] }
+    let weights = (0..inputs * outputs)
+        .map(|_| between(random, -most, most))
+        .collect();
+    Layer {
+        inputs,
+        outputs,
+        weights,
+        biases: vec![0.1; outputs],
+    }
 }
 
 fn network(random: &mut ChaCha8Rng, width: usize) -> Network {
     let hidden = vec![layer(random, INPUTS, width), layer(random, width, width)];
-    let heads = vec![Head { name: "logits".to_owned(), layer: layer(random, width, ACTIONS) }];
-    let policy = Perceptron { hidden, heads, bounded: false, metadata: BTreeMap::new() };
+    let heads = vec![Head {
+        name: "logits".to_owned(),
+        layer: layer(random, width, ACTIONS),
+    }];
+    let policy = Perceptron {
+        hidden,
+        heads,
+        bounded: false,
+        metadata: BTreeMap::new(),
+    };
     Network::read(&policy.onnx().expect("the sizes match")).expect("a valid network")
 }
 
 fn evaluate(criterion: &mut Criterion) {
     let mut random = ChaCha8Rng::seed_from_u64(1);
-    let rows: Vec<[f32; INPUTS]> =
-        (0..ROWS).map(|_| std::array::from_fn(|_| between(&mut random, -1.7, 1.7))).collect();
+    let rows: Vec<[f32; INPUTS]> = (0..ROWS)
+        .map(|_| std::array::from_fn(|_| between(&mut random, -1.7, 1.7)))
+        .collect();
     let mut group = criterion.benchmark_group("network 45-n-n-17");
     for width in [128, 256] {
         let mut network = network(&mut random, width);

@@ -7,8 +7,15 @@
 /// longer than the layer's sums.
 #[inline]
 pub fn tanh(x: f32) -> f32 {
-    const ODD: [f32; 7] =
-        [-2.760_768_5e-16, 2.000_188e-13, -8.604_672e-11, 5.122_297e-8, 1.485_722_4e-5, 6.372_619_3e-4, 4.893_524_6e-3];
+    const ODD: [f32; 7] = [
+        -2.760_768_5e-16,
+        2.000_188e-13,
+        -8.604_672e-11,
+        5.122_297e-8,
+        1.485_722_4e-5,
+        6.372_619_3e-4,
+        4.893_524_6e-3,
+    ];
     const EVEN: [f32; 4] = [1.198_258_4e-6, 1.185_347_1e-4, 2.268_434_6e-3, 4.893_525e-3];
     /// From here on the result is 1 in single precision.
     const END: f32 = 7.905_311;
@@ -17,8 +24,11 @@ pub fn tanh(x: f32) -> f32 {
     let above = if x < -END { -END } else { x };
     let inside = if above > END { END } else { above };
     let square = inside * inside;
-    let [of_odd, of_even] =
-        [&ODD[..], &EVEN].map(|factors| factors.iter().fold(0.0, |sum, factor| sum * square + factor));
+    let [of_odd, of_even] = [&ODD[..], &EVEN].map(|factors| {
+        factors
+            .iter()
+            .fold(0.0, |sum, factor| sum * square + factor)
+    });
     let quotient = inside * of_odd / of_even;
     if x.abs() < LINEAR { x } else { quotient }
 }
@@ -30,7 +40,11 @@ pub(super) fn sigmoid(x: f32) -> f32 {
 
 /// ln(1 + exp(x)), which does not overflow.
 pub(super) fn softplus(x: f32) -> f32 {
-    if x > 0.0 { x + libm::log1pf(libm::expf(-x)) } else { libm::log1pf(libm::expf(x)) }
+    if x > 0.0 {
+        x + libm::log1pf(libm::expf(-x))
+    } else {
+        libm::log1pf(libm::expf(x))
+    }
 }
 
 /// The Gaussian error linear unit: x times the normal distribution function.
@@ -54,7 +68,8 @@ mod tests {
         const ERROR_MAX: f32 = 4.0 * f32::EPSILON;
         let mut worst = (0.0, 0.0);
         // From 1e-9 to 30 in steps of a tenth of a percent, with both signs.
-        let numbers = std::iter::successors(Some(1e-9_f32), |x| Some(x * 1.001)).take_while(|x| *x < 30.0);
+        let numbers =
+            std::iter::successors(Some(1e-9_f32), |x| Some(x * 1.001)).take_while(|x| *x < 30.0);
         for x in numbers.flat_map(|x| [x, -x]) {
             let got = tanh(x);
             let want = libm::tanhf(x);

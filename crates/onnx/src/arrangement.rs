@@ -17,14 +17,18 @@ pub(super) fn constant(_: &mut Planner, node: &Node) -> Result<Value, NetworkErr
         return Err(node.wrong(format!("{} attributes", node.proto.attribute.len()), "one"));
     };
     let output = node.proto.output.first().map_or("", String::as_str);
-    let integers = |shape: Vec<usize>, integers: Vec<i64>| Tensor::new(shape, Numbers::Integers(integers));
+    let integers =
+        |shape: Vec<usize>, integers: Vec<i64>| Tensor::new(shape, Numbers::Integers(integers));
     let tensor = match attribute.name.as_str() {
         "value_int" => integers(vec![], vec![node.integer("value_int", 0)?]),
         "value_ints" => {
             let numbers = node.integers("value_ints")?.unwrap_or_default();
             integers(vec![numbers.len()], numbers.to_vec())
         }
-        "value_float" => Tensor::new(vec![], Numbers::Floats(vec![node.float("value_float", 0.0)?])),
+        "value_float" => Tensor::new(
+            vec![],
+            Numbers::Floats(vec![node.float("value_float", 0.0)?]),
+        ),
         "value_floats" => {
             let numbers = node.floats("value_floats")?.unwrap_or_default();
             if numbers.iter().any(|number| !number.is_finite()) {
@@ -32,7 +36,10 @@ pub(super) fn constant(_: &mut Planner, node: &Node) -> Result<Value, NetworkErr
             }
             Tensor::new(vec![numbers.len()], Numbers::Floats(numbers.to_vec()))
         }
-        _ => match node.tensor("value")?.and_then(|attribute| attribute.t.as_ref()) {
+        _ => match node
+            .tensor("value")?
+            .and_then(|attribute| attribute.t.as_ref())
+        {
             Some(proto) => Tensor::read(proto, output)?,
             None => return Err(node.wrong("no tensor", "one")),
         },
@@ -49,7 +56,10 @@ pub(super) fn cast(planner: &mut Planner, node: &Node) -> Result<Value, NetworkE
     } else if is_among(&proto::INTEGERS) {
         Element::Integer
     } else {
-        return Err(node.wrong(format!("a Cast to {}", data_type_name(to)), "a Cast to FLOAT or INT64"));
+        return Err(node.wrong(
+            format!("a Cast to {}", data_type_name(to)),
+            "a Cast to FLOAT or INT64",
+        ));
     };
     Ok(match planner.value(node, 0)? {
         Value::Computed(row) if row.element == Element::Float && element == Element::Integer => {
@@ -91,7 +101,10 @@ pub(super) fn reshape(planner: &mut Planner, node: &Node) -> Result<Value, Netwo
     let before = shape_of(&value);
     let wrong = || {
         let text: Vec<String> = asked.iter().map(i64::to_string).collect();
-        node.wrong(format!("{} reshaped to ({})", shape_text(before), text.join(", ")), "a shape of the same size")
+        node.wrong(
+            format!("{} reshaped to ({})", shape_text(before), text.join(", ")),
+            "a shape of the same size",
+        )
     };
     let mut shape = vec![];
     let mut left_out = None;
@@ -106,7 +119,9 @@ pub(super) fn reshape(planner: &mut Planner, node: &Node) -> Result<Value, Netwo
         });
     }
     if let Some(i) = left_out {
-        let others = product(&shape).filter(|others| *others > 0).ok_or_else(wrong)?;
+        let others = product(&shape)
+            .filter(|others| *others > 0)
+            .ok_or_else(wrong)?;
         shape[i] = product(before).unwrap_or(0) / others;
     }
     if product(&shape) != product(before) {
@@ -130,16 +145,26 @@ pub(super) fn squeeze(planner: &mut Planner, node: &Node) -> Result<Value, Netwo
     }
     let is_left_out = |(dim, keeps): (&usize, &bool)| !keeps && *dim != 1;
     if shape.iter().zip(&keeps).any(is_left_out) {
-        return Err(node.wrong(format!("axes of {} that are not 1", shape_text(shape)), "axes of 1"));
+        return Err(node.wrong(
+            format!("axes of {} that are not 1", shape_text(shape)),
+            "axes of 1",
+        ));
     }
-    let shape = shape.iter().zip(keeps).filter(|(_, keeps)| *keeps).map(|(dim, _)| *dim).collect();
+    let shape = shape
+        .iter()
+        .zip(keeps)
+        .filter(|(_, keeps)| *keeps)
+        .map(|(dim, _)| *dim)
+        .collect();
     reshaped(node, value, shape)
 }
 
 /// Plans `Unsqueeze`, which inserts dimensions of 1.
 pub(super) fn unsqueeze(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
     let value = planner.value(node, 0)?;
-    let Some(axes) = axes(planner, node)? else { return Err(node.wrong("no axes", "axes")) };
+    let Some(axes) = axes(planner, node)? else {
+        return Err(node.wrong("no axes", "axes"));
+    };
     let rank = shape_of(&value).len() + axes.len();
     let mut is_new = vec![false; rank];
     for axis in axes {
@@ -149,7 +174,10 @@ pub(super) fn unsqueeze(planner: &mut Planner, node: &Node) -> Result<Value, Net
         }
     }
     let mut old = shape_of(&value).iter().copied();
-    let shape = is_new.iter().map(|is_new| if *is_new { 1 } else { old.next().unwrap_or(1) }).collect();
+    let shape = is_new
+        .iter()
+        .map(|is_new| if *is_new { 1 } else { old.next().unwrap_or(1) })
+        .collect();
     reshaped(node, value, shape)
 }
 
@@ -157,7 +185,9 @@ pub(super) fn concat(planner: &mut Planner, node: &Node) -> Result<Value, Networ
     if let Some(joined) = joined_integers(planner, node)? {
         return Ok(Value::Constant(joined));
     }
-    let rows = (0..node.proto.input.len()).map(|i| planner.row(node, i)).collect::<Result<Vec<Row>, _>>()?;
+    let rows = (0..node.proto.input.len())
+        .map(|i| planner.row(node, i))
+        .collect::<Result<Vec<Row>, _>>()?;
     let mut shape = rows[0].shape.clone();
     if !node.has("axis") {
         return Err(node.wrong("no axis", "an axis"));
@@ -179,8 +209,16 @@ pub(super) fn concat(planner: &mut Planner, node: &Node) -> Result<Value, Networ
     let mut at = 0;
     for row in rows {
         let size = row.place.len() / count;
-        let work = Work::Spread { size, offset: at, distance: whole };
-        planner.steps.push(Step { work, input: row.place, output: output.place.clone() });
+        let work = Work::Spread {
+            size,
+            offset: at,
+            distance: whole,
+        };
+        planner.steps.push(Step {
+            work,
+            input: row.place,
+            output: output.place.clone(),
+        });
         at += size;
     }
     Ok(Value::Computed(output))
@@ -190,15 +228,22 @@ pub(super) fn concat(planner: &mut Planner, node: &Node) -> Result<Value, Networ
 fn joined_integers(planner: &mut Planner, node: &Node) -> Result<Option<Tensor>, NetworkError> {
     let mut joined = vec![];
     for index in 0..node.proto.input.len() {
-        let Value::Constant(tensor) = planner.value(node, index)? else { return Ok(None) };
+        let Value::Constant(tensor) = planner.value(node, index)? else {
+            return Ok(None);
+        };
         match &*tensor.numbers {
-            Numbers::Integers(integers) if tensor.shape.len() == 1 => joined.extend_from_slice(integers),
+            Numbers::Integers(integers) if tensor.shape.len() == 1 => {
+                joined.extend_from_slice(integers)
+            }
             _ => return Ok(None),
         }
         at_most("numbers of a constant", Some(joined.len()), PARAMETERS_MAX)?;
     }
     planner.count_weights(Some(joined.len()), 0)?;
-    Ok(Some(Tensor::new(vec![joined.len()], Numbers::Integers(joined))))
+    Ok(Some(Tensor::new(
+        vec![joined.len()],
+        Numbers::Integers(joined),
+    )))
 }
 
 /// Plans `Slice`, one axis after the other.
@@ -207,12 +252,25 @@ pub(super) fn slice(planner: &mut Planner, node: &Node) -> Result<Value, Network
     let starts = integers(planner, node, 1, "starts")?;
     let ends = integers(planner, node, 2, "ends")?;
     let axes = integers(planner, node, 3, "axes")?;
-    let (Some(starts), Some(ends)) = (starts, ends) else { return Err(node.wrong("no bounds", "starts and ends")) };
+    let (Some(starts), Some(ends)) = (starts, ends) else {
+        return Err(node.wrong("no bounds", "starts and ends"));
+    };
     let axes = axes.unwrap_or_else(|| (0..).take(starts.len()).collect());
-    let steps = planner.integers(node, 4)?.unwrap_or_else(|| vec![1; starts.len()]);
-    if starts.len() > RANK_MAX || [ends.len(), axes.len(), steps.len()].iter().any(|length| *length != starts.len()) {
-        let found =
-            format!("{} starts, {} ends, {} axes and {} steps", starts.len(), ends.len(), axes.len(), steps.len());
+    let steps = planner
+        .integers(node, 4)?
+        .unwrap_or_else(|| vec![1; starts.len()]);
+    if starts.len() > RANK_MAX
+        || [ends.len(), axes.len(), steps.len()]
+            .iter()
+            .any(|length| *length != starts.len())
+    {
+        let found = format!(
+            "{} starts, {} ends, {} axes and {} steps",
+            starts.len(),
+            ends.len(),
+            axes.len(),
+            steps.len()
+        );
         return Err(node.wrong(found, "the same number of each, one per axis"));
     }
     for (i, axis) in axes.iter().enumerate() {
@@ -239,7 +297,10 @@ fn slice_axis(
         0 => return Err(node.wrong("step 0", "another step")),
         1.. => {
             let range = start_at.clamp(0, length)..end_at.clamp(0, length);
-            range.step_by(usize::try_from(step).unwrap_or(usize::MAX)).map(|i| i as usize).collect()
+            range
+                .step_by(usize::try_from(step).unwrap_or(usize::MAX))
+                .map(|i| i as usize)
+                .collect()
         }
         _ => {
             let range = end_at.clamp(-1, length - 1) + 1..=start_at.clamp(-1, length - 1);
@@ -248,7 +309,10 @@ fn slice_axis(
         }
     };
     if selected.is_empty() {
-        let found = format!("the empty range {start} to {end} of axis {axis} of {}", shape_text(&shape));
+        let found = format!(
+            "the empty range {start} to {end} of axis {axis} of {}",
+            shape_text(&shape)
+        );
         return Err(node.wrong(found, "at least one number"));
     }
     select(planner, value, axis, &selected, &[selected.len()])
@@ -266,9 +330,15 @@ pub(super) fn gather(planner: &mut Planner, node: &Node) -> Result<Value, Networ
     let length = shape[axis];
     let index = |index: &i64| match usize::try_from(from_start(*index, length)) {
         Ok(at) if at < length => Ok(at),
-        _ => Err(node.wrong(format!("index {index}"), format!("an index of {length} numbers"))),
+        _ => Err(node.wrong(
+            format!("index {index}"),
+            format!("an index of {length} numbers"),
+        )),
     };
-    let selected = integers.iter().map(index).collect::<Result<Vec<usize>, _>>()?;
+    let selected = integers
+        .iter()
+        .map(index)
+        .collect::<Result<Vec<usize>, _>>()?;
     select(planner, value, axis, &selected, &indices.shape)
 }
 
@@ -286,8 +356,10 @@ fn select(
     let length = before[axis];
     let shape = [&before[..axis], dims, &before[axis + 1..]].concat();
     rearranged(planner, value, shape, || {
-        let rows = (0..outer).flat_map(|row| selected.iter().map(move |index| row * length + index));
-        rows.flat_map(|row| (0..inner).map(move |i| (row * inner + i) as u32)).collect()
+        let rows =
+            (0..outer).flat_map(|row| selected.iter().map(move |index| row * length + index));
+        rows.flat_map(|row| (0..inner).map(move |i| (row * inner + i) as u32))
+            .collect()
     })
 }
 
@@ -295,21 +367,31 @@ pub(super) fn transpose(planner: &mut Planner, node: &Node) -> Result<Value, Net
     let value = planner.value(node, 0)?;
     let rank = shape_of(&value).len();
     let order = match node.integers("perm")? {
-        Some(axes) => axes.iter().map(|axis| node.axis(*axis, rank)).collect::<Result<Vec<usize>, _>>()?,
+        Some(axes) => axes
+            .iter()
+            .map(|axis| node.axis(*axis, rank))
+            .collect::<Result<Vec<usize>, _>>()?,
         None => (0..rank).rev().collect(),
     };
     let mut sorted = order.clone();
     sorted.sort_unstable();
     if !sorted.into_iter().eq(0..rank) {
         let found = shown(&format!("{order:?}"));
-        return Err(node.wrong(format!("perm = {found}"), format!("each of {rank} axes once")));
+        return Err(node.wrong(
+            format!("perm = {found}"),
+            format!("each of {rank} axes once"),
+        ));
     }
     let (shape, strides) = permuted(shape_of(&value), &order);
     rearranged(planner, value, shape.clone(), || strided(&shape, &strides))
 }
 
 /// The row with its axes in another order.
-pub(super) fn transposed_row(planner: &mut Planner, row: Row, order: &[usize]) -> Result<Row, NetworkError> {
+pub(super) fn transposed_row(
+    planner: &mut Planner,
+    row: Row,
+    order: &[usize],
+) -> Result<Row, NetworkError> {
     let (shape, strides) = permuted(&row.shape, order);
     picked(planner, row, shape.clone(), || strided(&shape, &strides))
 }
@@ -317,7 +399,10 @@ pub(super) fn transposed_row(planner: &mut Planner, row: Row, order: &[usize]) -
 /// The dimensions and strides of a shape in another order of its axes.
 fn permuted(before: &[usize], order: &[usize]) -> (Vec<usize>, Vec<usize>) {
     let strides = strides(before);
-    order.iter().map(|axis| (before[*axis], strides[*axis])).unzip()
+    order
+        .iter()
+        .map(|axis| (before[*axis], strides[*axis]))
+        .unzip()
 }
 
 /// Plans `Expand` to a constant shape.
@@ -334,7 +419,11 @@ pub(super) fn expand(planner: &mut Planner, node: &Node) -> Result<Value, Networ
 }
 
 /// The row, repeated to a shape along its dimensions of 1.
-pub(super) fn expanded_row(planner: &mut Planner, row: Row, shape: &[usize]) -> Result<Row, NetworkError> {
+pub(super) fn expanded_row(
+    planner: &mut Planner,
+    row: Row,
+    shape: &[usize],
+) -> Result<Row, NetworkError> {
     let before = row.shape.clone();
     picked(planner, row, shape.to_vec(), || repeated(&before, shape))
 }
@@ -342,13 +431,23 @@ pub(super) fn expanded_row(planner: &mut Planner, row: Row, shape: &[usize]) -> 
 /// The indices of a shape's numbers, repeated to another shape along its dimensions of 1 and along
 /// new leading ones.
 pub(super) fn repeated(before: &[usize], shape: &[usize]) -> Vec<u32> {
-    let own = strides(before).into_iter().zip(before).map(|(stride, dim)| if *dim == 1 { 0 } else { stride });
-    let strides: Vec<usize> = vec![0; shape.len() - before.len()].into_iter().chain(own).collect();
+    let own = strides(before)
+        .into_iter()
+        .zip(before)
+        .map(|(stride, dim)| if *dim == 1 { 0 } else { stride });
+    let strides: Vec<usize> = vec![0; shape.len() - before.len()]
+        .into_iter()
+        .chain(own)
+        .collect();
     strided(shape, &strides)
 }
 
 /// Input `index` of a node, a shape: as typed, and its dimensions if none is negative.
-fn asked_shape(planner: &Planner, node: &Node, index: usize) -> Result<(Vec<i64>, Option<Vec<usize>>), NetworkError> {
+fn asked_shape(
+    planner: &Planner,
+    node: &Node,
+    index: usize,
+) -> Result<(Vec<i64>, Option<Vec<usize>>), NetworkError> {
     let asked = planner.integers(node, index)?.unwrap_or_default();
     let dims = asked.iter().map(|dim| usize::try_from(*dim).ok()).collect();
     Ok((asked, dims))
@@ -363,7 +462,10 @@ pub(super) fn shape(planner: &mut Planner, node: &Node) -> Result<Value, Network
     let start = at(node.integer("start", 0)?);
     let end = at(node.integer("end", rank as i64)?);
     let dims = dims.get(start..end).unwrap_or_default().to_vec();
-    Ok(Value::Constant(Tensor::new(vec![dims.len()], Numbers::Integers(dims))))
+    Ok(Value::Constant(Tensor::new(
+        vec![dims.len()],
+        Numbers::Integers(dims),
+    )))
 }
 
 /// Plans `ConstantOfShape`.
@@ -372,22 +474,34 @@ pub(super) fn constant_of_shape(planner: &mut Planner, node: &Node) -> Result<Va
     let size = dims.as_deref().and_then(product);
     let size = at_most("numbers of a constant", size, VALUES_MAX)?;
     planner.count_weights(Some(size), 0)?;
-    let value = match node.tensor("value")?.and_then(|attribute| attribute.t.as_ref()) {
+    let value = match node
+        .tensor("value")?
+        .and_then(|attribute| attribute.t.as_ref())
+    {
         Some(proto) => Some(Tensor::read(proto, "value")?),
         None => None,
     };
     let numbers = match value.as_ref().map(|tensor| &*tensor.numbers) {
         None => Numbers::Floats(vec![0.0; size]),
-        Some(Numbers::Floats(floats)) if floats.len() == 1 => Numbers::Floats(vec![floats[0]; size]),
-        Some(Numbers::Integers(integers)) if integers.len() == 1 => Numbers::Integers(vec![integers[0]; size]),
+        Some(Numbers::Floats(floats)) if floats.len() == 1 => {
+            Numbers::Floats(vec![floats[0]; size])
+        }
+        Some(Numbers::Integers(integers)) if integers.len() == 1 => {
+            Numbers::Integers(vec![integers[0]; size])
+        }
         Some(_) => return Err(node.wrong("several values", "a single number")),
     };
-    Ok(Value::Constant(Tensor::new(dims.unwrap_or_default(), numbers)))
+    Ok(Value::Constant(Tensor::new(
+        dims.unwrap_or_default(),
+        numbers,
+    )))
 }
 
 /// The distance between neighbours along each dimension.
 fn strides(shape: &[usize]) -> Vec<usize> {
-    (0..shape.len()).map(|axis| product(&shape[axis + 1..]).unwrap_or(0)).collect()
+    (0..shape.len())
+        .map(|axis| product(&shape[axis + 1..]).unwrap_or(0))
+        .collect()
 }
 
 /// The indices of a shape's numbers, in order, if each dimension has this stride.
@@ -413,18 +527,28 @@ fn rearranged(
 ) -> Result<Value, NetworkError> {
     if shape.len() > RANK_MAX {
         let found = format!("{} dimensions", shape.len());
-        return Err(NetworkError::at("a value of the model", found, format!("at most {RANK_MAX}")));
+        return Err(NetworkError::at(
+            "a value of the model",
+            found,
+            format!("at most {RANK_MAX}"),
+        ));
     }
     match value {
-        Value::Constant(_) if product(&shape) == Some(0) => {
-            Err(NetworkError::at("a constant of the model", "no numbers", "at least one"))
-        }
+        Value::Constant(_) if product(&shape) == Some(0) => Err(NetworkError::at(
+            "a constant of the model",
+            "no numbers",
+            "at least one",
+        )),
         Value::Constant(tensor) => {
             planner.count_weights(product(&shape), 0)?;
             let from = from();
             let numbers = match &*tensor.numbers {
-                Numbers::Floats(floats) => Numbers::Floats(from.iter().map(|i| floats[*i as usize]).collect()),
-                Numbers::Integers(integers) => Numbers::Integers(from.iter().map(|i| integers[*i as usize]).collect()),
+                Numbers::Floats(floats) => {
+                    Numbers::Floats(from.iter().map(|i| floats[*i as usize]).collect())
+                }
+                Numbers::Integers(integers) => {
+                    Numbers::Integers(from.iter().map(|i| integers[*i as usize]).collect())
+                }
             };
             Ok(Value::Constant(Tensor::new(shape, numbers)))
         }
@@ -440,13 +564,25 @@ fn picked(
     from: impl FnOnce() -> Vec<u32>,
 ) -> Result<Row, NetworkError> {
     // The shape is checked first: `from` is as long.
-    let output = Row { element: row.element, ..planner.new_row(shape)? };
-    planner.steps.push(Step { work: Work::Pick(from()), input: row.place, output: output.place.clone() });
+    let output = Row {
+        element: row.element,
+        ..planner.new_row(shape)?
+    };
+    planner.steps.push(Step {
+        work: Work::Pick(from()),
+        input: row.place,
+        output: output.place.clone(),
+    });
     Ok(output)
 }
 
 /// Integers that are an attribute in old files and an input in newer ones.
-fn integers(planner: &Planner, node: &Node, input: usize, name: &str) -> Result<Option<Vec<i64>>, NetworkError> {
+fn integers(
+    planner: &Planner,
+    node: &Node,
+    input: usize,
+    name: &str,
+) -> Result<Option<Vec<i64>>, NetworkError> {
     Ok(match planner.integers(node, input)? {
         Some(integers) => Some(integers),
         None => node.integers(name)?.map(<[i64]>::to_vec),
@@ -456,9 +592,10 @@ fn integers(planner: &Planner, node: &Node, input: usize, name: &str) -> Result<
 /// The axes of a `Squeeze`, `Unsqueeze` or `Reduce…`.
 pub(super) fn axes(planner: &Planner, node: &Node) -> Result<Option<Vec<i64>>, NetworkError> {
     match integers(planner, node, 1, "axes")? {
-        Some(axes) if axes.len() > RANK_MAX => {
-            Err(node.wrong(format!("{} axes", axes.len()), format!("at most {RANK_MAX}")))
-        }
+        Some(axes) if axes.len() > RANK_MAX => Err(node.wrong(
+            format!("{} axes", axes.len()),
+            format!("at most {RANK_MAX}"),
+        )),
         axes => Ok(axes),
     }
 }
@@ -476,7 +613,10 @@ fn reshaped(node: &Node, value: Value, shape: Vec<usize>) -> Result<Value, Netwo
         let output = node.proto.output.first();
         let found = format!("{} dimensions", shape.len());
         let name = shown(output.map_or("", String::as_str));
-        return Err(node.wrong(format!("{found} of `{name}`"), format!("at most {RANK_MAX}")));
+        return Err(node.wrong(
+            format!("{found} of `{name}`"),
+            format!("at most {RANK_MAX}"),
+        ));
     }
     Ok(match value {
         Value::Constant(tensor) => Value::Constant(Tensor { shape, ..tensor }),

@@ -62,32 +62,59 @@ impl Function {
         match self {
             Function::Absolute => each(input, output, f32::abs),
             Function::Celu { alpha } => {
-                each(input, output, |x| if x < 0.0 { alpha * (libm::expf(x / alpha) - 1.0) } else { x });
+                each(input, output, |x| {
+                    if x < 0.0 {
+                        alpha * (libm::expf(x / alpha) - 1.0)
+                    } else {
+                        x
+                    }
+                });
             }
             Function::Clip { min, max } => each(input, output, |x| clip_to(x, min, max)),
             Function::Elu { alpha } => {
-                each(input, output, |x| if x < 0.0 { alpha * (libm::expf(x) - 1.0) } else { x });
+                each(input, output, |x| {
+                    if x < 0.0 {
+                        alpha * (libm::expf(x) - 1.0)
+                    } else {
+                        x
+                    }
+                });
             }
             Function::Erf => each(input, output, libm::erff),
             Function::Exp => each(input, output, libm::expf),
             Function::Gelu => each(input, output, activation::gelu),
             Function::GeluByTanh => each(input, output, activation::gelu_by_tanh),
-            Function::HardSigmoid { alpha, beta } => each(input, output, |x| clip_to(alpha * x + beta, 0.0, 1.0)),
+            Function::HardSigmoid { alpha, beta } => {
+                each(input, output, |x| clip_to(alpha * x + beta, 0.0, 1.0))
+            }
             Function::HardSwish => each(input, output, |x| x * clip_to(x / 6.0 + 0.5, 0.0, 1.0)),
-            Function::LeakyRelu { alpha } => each(input, output, |x| if x < 0.0 { alpha * x } else { x }),
+            Function::LeakyRelu { alpha } => {
+                each(input, output, |x| if x < 0.0 { alpha * x } else { x })
+            }
             Function::Logarithm => each(input, output, libm::logf),
-            Function::Mish => each(input, output, |x| x * activation::tanh(activation::softplus(x))),
+            Function::Mish => each(input, output, |x| {
+                x * activation::tanh(activation::softplus(x))
+            }),
             Function::Negative => each(input, output, |x| -x),
             Function::Reciprocal => each(input, output, |x| 1.0 / x),
             Function::Relu => each(input, output, |x| if x < 0.0 { 0.0 } else { x }),
             Function::Selu { alpha, gamma } => {
-                each(input, output, |x| gamma * if x < 0.0 { alpha * (libm::expf(x) - 1.0) } else { x });
+                each(input, output, |x| {
+                    gamma
+                        * if x < 0.0 {
+                            alpha * (libm::expf(x) - 1.0)
+                        } else {
+                            x
+                        }
+                });
             }
             Function::Sigmoid => each(input, output, activation::sigmoid),
             Function::Softplus => each(input, output, activation::softplus),
             Function::Softsign => each(input, output, |x| x / (1.0 + x.abs())),
             Function::SquareRoot => each(input, output, f32::sqrt),
-            Function::Swish { alpha } => each(input, output, |x| x * activation::sigmoid(alpha * x)),
+            Function::Swish { alpha } => {
+                each(input, output, |x| x * activation::sigmoid(alpha * x))
+            }
             Function::Tanh => each(input, output, activation::tanh),
             Function::Truncate => each(input, output, f32::trunc),
         }
@@ -131,8 +158,20 @@ impl Operation {
             Operation::Multiply => pairs(left, right, output, |a, b| a * b),
             Operation::Divide => pairs(left, right, output, |a, b| a / b),
             Operation::Equal => pairs(left, right, output, |a, b| f32::from(u8::from(a == b))),
-            Operation::Least => pairs(left, right, output, |a, b| if b < a || b.is_nan() { b } else { a }),
-            Operation::Greatest => pairs(left, right, output, |a, b| if b > a || b.is_nan() { b } else { a }),
+            Operation::Least => pairs(
+                left,
+                right,
+                output,
+                |a, b| if b < a || b.is_nan() { b } else { a },
+            ),
+            Operation::Greatest => {
+                pairs(
+                    left,
+                    right,
+                    output,
+                    |a, b| if b > a || b.is_nan() { b } else { a },
+                )
+            }
             Operation::Power => pairs(left, right, output, power),
             Operation::Slope => pairs(left, right, output, |a, b| if a < 0.0 { a * b } else { a }),
         }
@@ -146,7 +185,11 @@ fn pairs(left: &[f32], right: &[f32], output: &mut [f32], operation: impl Fn(f32
             *to = operation(*a, *b);
         }
     } else {
-        for ((to, a), b) in output.iter_mut().zip(left.iter().cycle()).zip(right.iter().cycle()) {
+        for ((to, a), b) in output
+            .iter_mut()
+            .zip(left.iter().cycle())
+            .zip(right.iter().cycle())
+        {
             *to = operation(*a, *b);
         }
     }
@@ -154,16 +197,28 @@ fn pairs(left: &[f32], right: &[f32], output: &mut [f32], operation: impl Fn(f32
 
 /// Squares, which normalisations use, are exact products.
 fn power(base: f32, exponent: f32) -> f32 {
-    if exponent == 2.0 { base * base } else { libm::powf(base, exponent) }
+    if exponent == 2.0 {
+        base * base
+    } else {
+        libm::powf(base, exponent)
+    }
 }
 
 /// Plans a function of single numbers.
-pub(super) fn function(planner: &mut Planner, node: &Node, function: Function) -> Result<Value, NetworkError> {
+pub(super) fn function(
+    planner: &mut Planner,
+    node: &Node,
+    function: Function,
+) -> Result<Value, NetworkError> {
     let input = planner.row(node, 0)?;
     Ok(Value::Computed(apply(planner, function, input)?))
 }
 
-pub(super) fn apply(planner: &mut Planner, function: Function, input: Row) -> Result<Row, NetworkError> {
+pub(super) fn apply(
+    planner: &mut Planner,
+    function: Function,
+    input: Row,
+) -> Result<Row, NetworkError> {
     planner.add(Work::Function(function), input.place, input.shape)
 }
 
@@ -177,19 +232,34 @@ pub(super) fn gelu(planner: &mut Planner, node: &Node) -> Result<Value, NetworkE
 
 /// Plans `Clip`. In old files its bounds are attributes.
 pub(super) fn clip(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
-    let min = planner.bound(node, 1)?.map_or_else(|| node.float("min", f32::MIN), Ok)?;
-    let max = planner.bound(node, 2)?.map_or_else(|| node.float("max", f32::MAX), Ok)?;
+    let min = planner
+        .bound(node, 1)?
+        .map_or_else(|| node.float("min", f32::MIN), Ok)?;
+    let max = planner
+        .bound(node, 2)?
+        .map_or_else(|| node.float("max", f32::MAX), Ok)?;
     function(planner, node, Function::Clip { min, max })
 }
 
 /// Plans a function of pairs of numbers, from left to right if there are more than two inputs.
-pub(super) fn binary(planner: &mut Planner, node: &Node, operation: Operation) -> Result<Value, NetworkError> {
+pub(super) fn binary(
+    planner: &mut Planner,
+    node: &Node,
+    operation: Operation,
+) -> Result<Value, NetworkError> {
     if let Some(integers) = integers(planner, node, operation)? {
         return Ok(Value::Constant(integers));
     }
     // Sums and the like of integers of up to 24 bits are exact in floats, unlike quotients.
-    let is_whole = !matches!(operation, Operation::Divide | Operation::Power | Operation::Slope);
-    let is_of_integers = |index| planner.value(node, index).is_ok_and(|value| value.is_integer());
+    let is_whole = !matches!(
+        operation,
+        Operation::Divide | Operation::Power | Operation::Slope
+    );
+    let is_of_integers = |index| {
+        planner
+            .value(node, index)
+            .is_ok_and(|value| value.is_integer())
+    };
     let element = match is_whole && (0..node.proto.input.len()).all(is_of_integers) {
         true => Element::Integer,
         false => Element::Float,
@@ -203,11 +273,17 @@ pub(super) fn binary(planner: &mut Planner, node: &Node, operation: Operation) -
 }
 
 /// The result of an operation on two constants with integers, such as parts of a shape.
-fn integers(planner: &mut Planner, node: &Node, operation: Operation) -> Result<Option<Tensor>, NetworkError> {
+fn integers(
+    planner: &mut Planner,
+    node: &Node,
+    operation: Operation,
+) -> Result<Option<Tensor>, NetworkError> {
     if node.proto.input.len() != 2 {
         return Ok(None);
     }
-    let [Value::Constant(left), Value::Constant(right)] = [planner.value(node, 0)?, planner.value(node, 1)?] else {
+    let [Value::Constant(left), Value::Constant(right)] =
+        [planner.value(node, 0)?, planner.value(node, 1)?]
+    else {
         return Ok(None);
     };
     let function: fn(i64, i64) -> Option<i64> = match operation {
@@ -220,12 +296,21 @@ fn integers(planner: &mut Planner, node: &Node, operation: Operation) -> Result<
         Operation::Equal => |a, b| Some((a == b).into()),
         Operation::Power | Operation::Slope => return Ok(None),
     };
-    if [&left, &right].iter().any(|tensor| matches!(&*tensor.numbers, Numbers::Floats(_))) {
+    if [&left, &right]
+        .iter()
+        .any(|tensor| matches!(&*tensor.numbers, Numbers::Floats(_)))
+    {
         return Ok(None);
     }
     let (shape, [a, b]) = alike(planner, node, [&left, &right])?;
-    let numbers = a.into_iter().zip(b).map(|(a, b)| function(a, b)).collect::<Option<Vec<i64>>>();
-    let Some(numbers) = numbers else { return Err(node.wrong("an integer beyond 64 bits", "a smaller one")) };
+    let numbers = a
+        .into_iter()
+        .zip(b)
+        .map(|(a, b)| function(a, b))
+        .collect::<Option<Vec<i64>>>();
+    let Some(numbers) = numbers else {
+        return Err(node.wrong("an integer beyond 64 bits", "a smaller one"));
+    };
     Ok(Some(Tensor::new(shape, Numbers::Integers(numbers))))
 }
 
@@ -256,12 +341,18 @@ fn alike<const COUNT: usize>(
 
 /// Plans `Where` for constant integers.
 pub(super) fn choose(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
-    let [condition, if_true, if_false] =
-        [planner.constant(node, 0)?, planner.constant(node, 1)?, planner.constant(node, 2)?];
+    let [condition, if_true, if_false] = [
+        planner.constant(node, 0)?,
+        planner.constant(node, 1)?,
+        planner.constant(node, 2)?,
+    ];
     let (shape, [conditions, a, b]) = alike(planner, node, [&condition, &if_true, &if_false])?;
     let choices = conditions.into_iter().zip(a.into_iter().zip(b));
     let chosen = choices.map(|(is_true, (a, b))| if is_true == 0 { b } else { a });
-    Ok(Value::Constant(Tensor::new(shape, Numbers::Integers(chosen.collect()))))
+    Ok(Value::Constant(Tensor::new(
+        shape,
+        Numbers::Integers(chosen.collect()),
+    )))
 }
 
 /// Applies an operation to two rows of equal shapes, or of shapes that broadcast to one.
@@ -273,7 +364,11 @@ pub(super) fn combine(
     right: Row,
 ) -> Result<Row, NetworkError> {
     let Some(shape) = broadcast(&left.shape, &right.shape) else {
-        let found = format!("{} with {}", shape_text(&left.shape), shape_text(&right.shape));
+        let found = format!(
+            "{} with {}",
+            shape_text(&left.shape),
+            shape_text(&right.shape)
+        );
         return Err(node.wrong(found, "shapes whose dimensions are equal or 1"));
     };
     let left = repeatable(planner, left, &shape)?;
@@ -283,7 +378,11 @@ pub(super) fn combine(
 
 /// The place of a row that repeats to this shape: its own if, without leading ones, its shape is a
 /// suffix of it.
-fn repeatable(planner: &mut Planner, row: Row, shape: &[usize]) -> Result<Range<usize>, NetworkError> {
+fn repeatable(
+    planner: &mut Planner,
+    row: Row,
+    shape: &[usize],
+) -> Result<Range<usize>, NetworkError> {
     let ones = row.shape.iter().take_while(|dim| **dim == 1).count();
     if shape.ends_with(&row.shape[ones..]) {
         return Ok(row.place);
@@ -293,7 +392,11 @@ fn repeatable(planner: &mut Planner, row: Row, shape: &[usize]) -> Result<Range<
 
 /// The common shape of two shapes, if each dimension, counted from the last, is equal or 1.
 pub(super) fn broadcast(left: &[usize], right: &[usize]) -> Option<Vec<usize>> {
-    let (long, short) = if left.len() >= right.len() { (left, right) } else { (right, left) };
+    let (long, short) = if left.len() >= right.len() {
+        (left, right)
+    } else {
+        (right, left)
+    };
     let mut shape = long.to_vec();
     let offset = long.len() - short.len();
     for (dim, other) in shape[offset..].iter_mut().zip(short) {

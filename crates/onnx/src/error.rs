@@ -32,15 +32,27 @@ pub enum NetworkError {
 }
 
 impl NetworkError {
-    pub(super) fn at(place: impl Into<String>, found: impl Into<String>, expected: impl Into<String>) -> NetworkError {
-        NetworkError::Refused { place: place.into(), found: found.into(), expected: expected.into() }
+    pub(super) fn at(
+        place: impl Into<String>,
+        found: impl Into<String>,
+        expected: impl Into<String>,
+    ) -> NetworkError {
+        NetworkError::Refused {
+            place: place.into(),
+            found: found.into(),
+            expected: expected.into(),
+        }
     }
 
     pub(super) fn model(found: impl Into<String>, expected: impl Into<String>) -> NetworkError {
         NetworkError::at("the model", found, expected)
     }
 
-    pub(super) fn tensor(tensor: &str, found: impl Into<String>, expected: impl Into<String>) -> NetworkError {
+    pub(super) fn tensor(
+        tensor: &str,
+        found: impl Into<String>,
+        expected: impl Into<String>,
+    ) -> NetworkError {
         NetworkError::at(format!("tensor `{}`", shown(tensor)), found, expected)
     }
 }
@@ -57,5 +69,13 @@ pub(super) fn shape_text(shape: &[usize]) -> String {
         return "a single number".to_owned();
     }
     let head: Vec<String> = shape.iter().take(16).map(usize::to_string).collect();
-    format!("the shape {}{}", head.join(" x "), if shape.len() > head.len() { " x …" } else { "" })
+    format!(
+        "the shape {}{}",
+        head.join(" x "),
+        if shape.len() > head.len() {
+            " x …"
+        } else {
+            ""
+        }
+    )
 }

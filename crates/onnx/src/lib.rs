@@ -63,7 +63,10 @@ impl Network {
     /// unsupported shape or operator; or if weights are non-finite or outside the file.
     pub fn read(bytes: &[u8]) -> Result<Network, NetworkError> {
         let (plan, values) = reader::read(bytes)?;
-        Ok(Network { plan: Arc::new(plan), values })
+        Ok(Network {
+            plan: Arc::new(plan),
+            values,
+        })
     }
 
     /// The inputs, in the order of [`Network::evaluate`].
@@ -101,7 +104,11 @@ impl Network {
     /// # Panics
     /// If the number of values is not [`Network::input_size`].
     pub fn evaluate(&mut self, input: &[f32]) {
-        assert_eq!(input.len(), self.plan.input_size, "length of the network's input");
+        assert_eq!(
+            input.len(),
+            self.plan.input_size,
+            "length of the network's input"
+        );
         self.values[..input.len()].copy_from_slice(input);
         for step in &self.plan.steps {
             step.take(&mut self.values);
@@ -120,6 +127,9 @@ impl Network {
 impl fmt::Debug for Network {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut shown = formatter.debug_struct("Network");
-        shown.field("inputs", &self.inputs()).field("outputs", &self.outputs()).finish_non_exhaustive()
+        shown
+            .field("inputs", &self.inputs())
+            .field("outputs", &self.outputs())
+            .finish_non_exhaustive()
     }
 }

@@ -22,7 +22,11 @@ pub(super) const RANK_MAX: usize = 8;
 pub(super) fn at_most(what: &str, found: Option<usize>, max: usize) -> Result<usize, NetworkError> {
     let found = found.unwrap_or(usize::MAX);
     if found > max {
-        return Err(NetworkError::at(what, found.to_string(), format!("at most {max}")));
+        return Err(NetworkError::at(
+            what,
+            found.to_string(),
+            format!("at most {max}"),
+        ));
     }
     Ok(found)
 }
@@ -68,7 +72,11 @@ fn content(kind: Kind, number: u64) -> Content {
 /// Rejects files that are too long, have too many fields, or have badly nested fields.
 pub(super) fn check(file: &[u8]) -> Result<(), NetworkError> {
     at_most("bytes of the file", Some(file.len()), FILE_BYTES_MAX)?;
-    let mut fields = Fields { file, at: 0, count: 0 };
+    let mut fields = Fields {
+        file,
+        at: 0,
+        count: 0,
+    };
     fields.walk(Kind::Model, file.len())
 }
 
@@ -112,7 +120,11 @@ impl Fields<'_> {
     }
 
     fn add(&mut self, count: usize) -> Result<(), NetworkError> {
-        self.count = at_most("fields of the file", self.count.checked_add(count), FIELDS_MAX)?;
+        self.count = at_most(
+            "fields of the file",
+            self.count.checked_add(count),
+            FIELDS_MAX,
+        )?;
         Ok(())
     }
 
@@ -120,7 +132,9 @@ impl Fields<'_> {
         let left = end - self.at;
         match usize::try_from(length) {
             Ok(length) if length <= left => Ok(self.at + length),
-            _ => Err(self.wrong(format!("a field of {length} bytes with {left} bytes remaining"))),
+            _ => Err(self.wrong(format!(
+                "a field of {length} bytes with {left} bytes remaining"
+            ))),
         }
     }
 
@@ -138,6 +152,9 @@ impl Fields<'_> {
     }
 
     fn wrong(&self, found: String) -> NetworkError {
-        NetworkError::NotOnnx { byte: self.at, found }
+        NetworkError::NotOnnx {
+            byte: self.at,
+            found,
+        }
     }
 }

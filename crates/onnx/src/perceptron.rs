@@ -2,7 +2,8 @@
 
 use super::proto::{
     AttributeProto, DimensionProto, FLOAT, GraphProto, ModelProto, NodeProto, OperatorSetIdProto,
-    StringStringEntryProto, TensorProto, TensorShapeProto, TensorTypeProto, TypeProto, ValueInfoProto,
+    StringStringEntryProto, TensorProto, TensorShapeProto, TensorTypeProto, TypeProto,
+    ValueInfoProto,
 };
 use super::{Network, NetworkError};
 use prost::Message;
@@ -57,9 +58,15 @@ impl Perceptron {
     /// If sizes do not match, a number is non-finite, or [`Network::read`] would reject the file
     /// for another reason.
     pub fn onnx(&self) -> Result<Vec<u8>, NetworkError> {
-        let first = self.hidden.first().or_else(|| self.heads.first().map(|head| &head.layer));
+        let first = self
+            .hidden
+            .first()
+            .or_else(|| self.heads.first().map(|head| &head.layer));
         let inputs = first.map_or(0, |layer| layer.inputs);
-        let mut graph = GraphProto { name: "policy".to_owned(), ..GraphProto::default() };
+        let mut graph = GraphProto {
+            name: "policy".to_owned(),
+            ..GraphProto::default()
+        };
         graph.input.push(port(INPUT, inputs));
         let mut last = INPUT.to_owned();
         for (i, layer) in self.hidden.iter().enumerate() {
@@ -69,18 +76,29 @@ impl Perceptron {
             graph.node.push(node("Tanh", [&sums], &last));
         }
         for (i, head) in self.heads.iter().enumerate() {
-            let sums = if self.bounded { format!("head.{i}.sums") } else { head.name.clone() };
+            let sums = if self.bounded {
+                format!("head.{i}.sums")
+            } else {
+                head.name.clone()
+            };
             dense(&mut graph, &format!("head.{i}"), &head.layer, &last, &sums);
-            graph.node.extend(self.bounded.then(|| node("Tanh", [&sums], &head.name)));
+            graph
+                .node
+                .extend(self.bounded.then(|| node("Tanh", [&sums], &head.name)));
             graph.output.push(port(&head.name, head.layer.outputs));
         }
-        let entry =
-            |(key, value): (&String, &String)| StringStringEntryProto { key: key.clone(), value: value.clone() };
+        let entry = |(key, value): (&String, &String)| StringStringEntryProto {
+            key: key.clone(),
+            value: value.clone(),
+        };
         let model = ModelProto {
             ir_version: IR_VERSION,
             producer_name: "squall".to_owned(),
             graph: Some(graph),
-            opset_import: vec![OperatorSetIdProto { domain: String::new(), version: OPERATORS_VERSION }],
+            opset_import: vec![OperatorSetIdProto {
+                domain: String::new(),
+                version: OPERATORS_VERSION,
+            }],
             metadata_props: self.metadata.iter().map(entry).collect(),
         };
         let bytes = model.encode_to_vec();
@@ -92,11 +110,26 @@ impl Perceptron {
 
 fn dense(graph: &mut GraphProto, name: &str, layer: &Layer, input: &str, output: &str) {
     let [weight, bias] = ["weight", "bias"].map(|part| format!("{name}.{part}"));
-    graph.initializer.push(tensor(&weight, &[layer.outputs, layer.inputs], &layer.weights));
-    graph.initializer.push(tensor(&bias, &[layer.outputs], &layer.biases));
-    let transposed = AttributeProto { name: "transB".to_owned(), i: Some(1), r#type: 2, ..AttributeProto::default() };
+    graph.initializer.push(tensor(
+        &weight,
+        &[layer.outputs, layer.inputs],
+        &layer.weights,
+    ));
+    graph
+        .initializer
+        .push(tensor(&bias, &[layer.outputs], &layer.biases));
+    let transposed = AttributeProto {
+        name: "transB".to_owned(),
+        i: Some(1),
+        r#type: 2,
+        ..AttributeProto::default()
+    };
     let gemm = node("Gemm", [input, &weight, &bias], output);
-    graph.node.push(NodeProto { name: name.to_owned(), attribute: vec![transposed], ..gemm });
+    graph.node.push(NodeProto {
+        name: name.to_owned(),
+        attribute: vec![transposed],
+        ..gemm
+    });
 }
 
 fn node<const INPUTS: usize>(operator: &str, inputs: [&str; INPUTS], output: &str) -> NodeProto {
@@ -114,16 +147,35 @@ fn tensor(name: &str, shape: &[usize], numbers: &[f32]) -> TensorProto {
         dims: shape.iter().map(|dim| *dim as i64).collect(),
         data_type: FLOAT,
         name: name.to_owned(),
-        raw_data: Some(numbers.iter().flat_map(|number| number.to_le_bytes()).collect()),
+        raw_data: Some(
+            numbers
+                .iter()
+                .flat_map(|number| number.to_le_bytes())
+                .collect(),
+        ),
         ..TensorProto::default()
     }
 }
 
 /// An input or output with a batch dimension.
 fn port(name: &str, size: usize) -> ValueInfoProto {
-    let batch = DimensionProto { dim_param: Some("batch".to_owned()), ..DimensionProto::default() };
-    let row = DimensionProto { dim_value: Some(size as i64), ..DimensionProto::default() };
-    let shape = Some(TensorShapeProto { dim: vec![batch, row] });
-    let tensor_type = Some(TensorTypeProto { elem_type: FLOAT, shape });
-    ValueInfoProto { name: name.to_owned(), r#type: Some(TypeProto { tensor_type }) }
+    let batch = DimensionProto {
+        dim_param: Some("batch".to_owned()),
+        ..DimensionProto::default()
+    };
+    let row = DimensionProto {
+        dim_value: Some(size as i64),
+        ..DimensionProto::default()
+    };
+    let shape = Some(TensorShapeProto {
+        dim: vec![batch, row],
+    });
+    let tensor_type = Some(TensorTypeProto {
+        elem_type: FLOAT,
+        shape,
+    });
+    ValueInfoProto {
+        name: name.to_owned(),
+        r#type: Some(TypeProto { tensor_type }),
+    }
 }

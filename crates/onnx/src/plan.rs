@@ -72,7 +72,11 @@ impl Planner {
     /// Assigns a value to a name that has none yet.
     pub(super) fn define(&mut self, name: &str, value: Value) -> Result<(), NetworkError> {
         if self.known.contains_key(name) {
-            return Err(NetworkError::tensor(name, "a second definition", "each name defined once"));
+            return Err(NetworkError::tensor(
+                name,
+                "a second definition",
+                "each name defined once",
+            ));
         }
         self.known.insert(name.to_owned(), value);
         Ok(())
@@ -91,18 +95,36 @@ impl Planner {
     /// Input `index` of a node as floats that steps can read.
     pub(super) fn row(&mut self, node: &Node, index: usize) -> Result<Row, NetworkError> {
         let tensor = match self.value(node, index)? {
-            Value::Computed(Row { element: Element::Integer, .. }) => {
-                return Err(node.wrong(format!("integers as input {index}"), "FLOAT numbers; add a Cast before it"));
+            Value::Computed(Row {
+                element: Element::Integer,
+                ..
+            }) => {
+                return Err(node.wrong(
+                    format!("integers as input {index}"),
+                    "FLOAT numbers; add a Cast before it",
+                ));
             }
             Value::Computed(row) => return Ok(row),
             Value::Constant(tensor) => tensor,
         };
-        let place = self.place(node.input(index).unwrap_or_default(), floats(node, index, &tensor)?)?;
-        Ok(Row { place, shape: tensor.shape, element: Element::Float })
+        let place = self.place(
+            node.input(index).unwrap_or_default(),
+            floats(node, index, &tensor)?,
+        )?;
+        Ok(Row {
+            place,
+            shape: tensor.shape,
+            element: Element::Float,
+        })
     }
 
     /// Input `index` of a node as numbers of this kind.
-    pub(super) fn row_of(&mut self, node: &Node, index: usize, element: Element) -> Result<Row, NetworkError> {
+    pub(super) fn row_of(
+        &mut self,
+        node: &Node,
+        index: usize,
+        element: Element,
+    ) -> Result<Row, NetworkError> {
         if element == Element::Float {
             return self.row(node, index);
         }
@@ -113,8 +135,14 @@ impl Planner {
         let Numbers::Integers(integers) = &*tensor.numbers else {
             return Err(node.wrong(format!("floats as input {index}"), "INT64 numbers"));
         };
-        if let Some(large) = integers.iter().find(|integer| integer.unsigned_abs() > INTEGER_MAX) {
-            return Err(node.wrong(format!("the integer {large}"), format!("at most {INTEGER_MAX}")));
+        if let Some(large) = integers
+            .iter()
+            .find(|integer| integer.unsigned_abs() > INTEGER_MAX)
+        {
+            return Err(node.wrong(
+                format!("the integer {large}"),
+                format!("at most {INTEGER_MAX}"),
+            ));
         }
         let floats: Vec<f32> = integers.iter().map(|integer| *integer as f32).collect();
         let row = self.new_constant(tensor.shape, &floats)?;
@@ -122,7 +150,11 @@ impl Planner {
     }
 
     /// The place of this constant among the values.
-    pub(super) fn place(&mut self, name: &str, floats: &[f32]) -> Result<Range<usize>, NetworkError> {
+    pub(super) fn place(
+        &mut self,
+        name: &str,
+        floats: &[f32],
+    ) -> Result<Range<usize>, NetworkError> {
         if let Some(place) = self.placed.get(name) {
             return Ok(place.clone());
         }
@@ -135,12 +167,19 @@ impl Planner {
     pub(super) fn constant(&self, node: &Node, index: usize) -> Result<Tensor, NetworkError> {
         match self.value(node, index)? {
             Value::Constant(tensor) => Ok(tensor),
-            Value::Computed(_) => Err(node.wrong(format!("a computed input {index}"), "a constant (initializer)")),
+            Value::Computed(_) => Err(node.wrong(
+                format!("a computed input {index}"),
+                "a constant (initializer)",
+            )),
         }
     }
 
     /// Input `index` of a node as constant integers, if any.
-    pub(super) fn integers(&self, node: &Node, index: usize) -> Result<Option<Vec<i64>>, NetworkError> {
+    pub(super) fn integers(
+        &self,
+        node: &Node,
+        index: usize,
+    ) -> Result<Option<Vec<i64>>, NetworkError> {
         if node.input(index).is_none() {
             return Ok(None);
         }
@@ -150,41 +189,68 @@ impl Planner {
                 let found = format!("{} integers as input {index}", integers.len());
                 Err(node.wrong(found, format!("at most {RANK_MAX}")))
             }
-            Numbers::Floats(_) => Err(node.wrong(format!("floats as input {index}"), "INT64 numbers")),
+            Numbers::Floats(_) => {
+                Err(node.wrong(format!("floats as input {index}"), "INT64 numbers"))
+            }
         }
     }
 
     /// A new constant that steps can read.
-    pub(super) fn new_constant(&mut self, shape: Vec<usize>, floats: &[f32]) -> Result<Row, NetworkError> {
+    pub(super) fn new_constant(
+        &mut self,
+        shape: Vec<usize>,
+        floats: &[f32],
+    ) -> Result<Row, NetworkError> {
         let place = self.room(Some(floats.len()))?;
         self.values[place.clone()].copy_from_slice(floats);
-        Ok(Row { place, shape, element: Element::Float })
+        Ok(Row {
+            place,
+            shape,
+            element: Element::Float,
+        })
     }
 
     /// Evaluates the steps from number `first` on, which read only constants, and takes them and
     /// their values off the plan.
-    pub(super) fn fold(&mut self, first: usize, values: usize, row: Row) -> Result<Value, NetworkError> {
+    pub(super) fn fold(
+        &mut self,
+        first: usize,
+        values: usize,
+        row: Row,
+    ) -> Result<Value, NetworkError> {
         for step in self.steps.drain(first..) {
             step.take(&mut self.values);
         }
         let floats = self.values[row.place].to_vec();
         if floats.iter().any(|float| float.is_nan()) {
-            return Err(NetworkError::at("a constant of the model", "NaN", "numbers"));
+            return Err(NetworkError::at(
+                "a constant of the model",
+                "NaN",
+                "numbers",
+            ));
         }
         self.values.truncate(values);
         self.placed.retain(|_, place| place.end <= values);
         self.count_weights(Some(floats.len()), 0)?;
         let numbers = match row.element {
             Element::Float => Numbers::Floats(floats),
-            Element::Integer => Numbers::Integers(floats.into_iter().map(|float| float as i64).collect()),
+            Element::Integer => {
+                Numbers::Integers(floats.into_iter().map(|float| float as i64).collect())
+            }
         };
         Ok(Value::Constant(Tensor::new(row.shape, numbers)))
     }
 
     /// Whether all inputs of a node are constants.
     pub(super) fn is_constant(&self, node: &Node) -> bool {
-        let mut names = node.proto.input.iter().filter(|name| !name.is_empty()).peekable();
-        names.peek().is_some() && names.all(|name| matches!(self.known.get(name), Some(Value::Constant(_))))
+        let mut names = node
+            .proto
+            .input
+            .iter()
+            .filter(|name| !name.is_empty())
+            .peekable();
+        names.peek().is_some()
+            && names.all(|name| matches!(self.known.get(name), Some(Value::Constant(_))))
     }
 
     /// Input `index` of a node as a bound: a single constant number, possibly infinite, if any.
@@ -195,26 +261,46 @@ impl Planner {
         let tensor = self.constant(node, index)?;
         match numbers(node, index, &tensor)? {
             [number] => Ok(Some(*number)),
-            several => Err(node.wrong(format!("{} numbers as input {index}", several.len()), "a single number")),
+            several => Err(node.wrong(
+                format!("{} numbers as input {index}", several.len()),
+                "a single number",
+            )),
         }
     }
 
     /// Reserves a place for a node's output.
     pub(super) fn new_row(&mut self, shape: Vec<usize>) -> Result<Row, NetworkError> {
         let place = self.room(product(&shape))?;
-        Ok(Row { place, shape, element: Element::Float })
+        Ok(Row {
+            place,
+            shape,
+            element: Element::Float,
+        })
     }
 
     /// Adds a step with an output of this shape. Returns the output.
-    pub(super) fn add(&mut self, work: Work, input: Range<usize>, shape: Vec<usize>) -> Result<Row, NetworkError> {
+    pub(super) fn add(
+        &mut self,
+        work: Work,
+        input: Range<usize>,
+        shape: Vec<usize>,
+    ) -> Result<Row, NetworkError> {
         let output = self.new_row(shape)?;
-        self.steps.push(Step { work, input, output: output.place.clone() });
+        self.steps.push(Step {
+            work,
+            input,
+            output: output.place.clone(),
+        });
         Ok(output)
     }
 
     fn room(&mut self, size: Option<usize>) -> Result<Range<usize>, NetworkError> {
         if size == Some(0) {
-            return Err(NetworkError::at("a value of the model", "no numbers", "at least one"));
+            return Err(NetworkError::at(
+                "a value of the model",
+                "no numbers",
+                "at least one",
+            ));
         }
         let start = self.values.len();
         let end = size.and_then(|size| start.checked_add(size));
@@ -224,10 +310,15 @@ impl Planner {
     }
 
     /// Counts weights, each multiplied by `rows` numbers.
-    pub(super) fn count_weights(&mut self, weights: Option<usize>, rows: usize) -> Result<(), NetworkError> {
+    pub(super) fn count_weights(
+        &mut self,
+        weights: Option<usize>,
+        rows: usize,
+    ) -> Result<(), NetworkError> {
         let parameters = weights.and_then(|weights| weights.checked_add(self.parameters));
         self.parameters = at_most("weights", parameters, PARAMETERS_MAX)?;
-        let products = weights.and_then(|weights| weights.checked_mul(rows)?.checked_add(self.products));
+        let products =
+            weights.and_then(|weights| weights.checked_mul(rows)?.checked_add(self.products));
         self.products = at_most("multiplications in an evaluation", products, PRODUCTS_MAX)?;
         Ok(())
     }
@@ -237,16 +328,32 @@ impl Planner {
         match self.known.get(name).cloned() {
             Some(Value::Computed(row)) => Ok(row),
             Some(Value::Constant(Tensor { shape, numbers })) => match &*numbers {
-                Numbers::Floats(floats) => Ok(Row { place: self.place(name, floats)?, shape, element: Element::Float }),
-                Numbers::Integers(_) => Err(NetworkError::tensor(name, "constant integers as an output", "floats")),
+                Numbers::Floats(floats) => Ok(Row {
+                    place: self.place(name, floats)?,
+                    shape,
+                    element: Element::Float,
+                }),
+                Numbers::Integers(_) => Err(NetworkError::tensor(
+                    name,
+                    "constant integers as an output",
+                    "floats",
+                )),
             },
-            None => Err(NetworkError::tensor(name, "an output that no node computes", "the output of a node")),
+            None => Err(NetworkError::tensor(
+                name,
+                "an output that no node computes",
+                "the output of a node",
+            )),
         }
     }
 }
 
 /// A constant of a node as a non-empty list of finite floats.
-pub(super) fn floats<'a>(node: &Node, index: usize, tensor: &'a Tensor) -> Result<&'a [f32], NetworkError> {
+pub(super) fn floats<'a>(
+    node: &Node,
+    index: usize,
+    tensor: &'a Tensor,
+) -> Result<&'a [f32], NetworkError> {
     let floats = numbers(node, index, tensor)?;
     if floats.iter().all(|float| float.is_finite()) {
         return Ok(floats);
@@ -259,9 +366,12 @@ pub(super) fn floats<'a>(node: &Node, index: usize, tensor: &'a Tensor) -> Resul
 fn numbers<'a>(node: &Node, index: usize, tensor: &'a Tensor) -> Result<&'a [f32], NetworkError> {
     match &*tensor.numbers {
         Numbers::Floats(floats) if !floats.is_empty() => Ok(floats),
-        Numbers::Floats(_) => {
-            Err(node.wrong(format!("{} as input {index}", shape_text(&tensor.shape)), "at least one number"))
+        Numbers::Floats(_) => Err(node.wrong(
+            format!("{} as input {index}", shape_text(&tensor.shape)),
+            "at least one number",
+        )),
+        Numbers::Integers(_) => {
+            Err(node.wrong(format!("integers as input {index}"), "FLOAT numbers"))
         }
-        Numbers::Integers(_) => Err(node.wrong(format!("integers as input {index}"), "FLOAT numbers")),
     }
 }

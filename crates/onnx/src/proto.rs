@@ -49,8 +49,13 @@ const DATA_TYPES: [&str; 17] = [
 
 /// The name of an element type or, for unknown types, its number.
 pub(super) fn data_type_name(data_type: i64) -> String {
-    let known = usize::try_from(data_type).ok().and_then(|i| DATA_TYPES.get(i));
-    known.map_or_else(|| format!("element type {data_type}"), |name| format!("{name} numbers"))
+    let known = usize::try_from(data_type)
+        .ok()
+        .and_then(|i| DATA_TYPES.get(i));
+    known.map_or_else(
+        || format!("element type {data_type}"),
+        |name| format!("{name} numbers"),
+    )
 }
 
 #[derive(Clone, PartialEq, Message)]

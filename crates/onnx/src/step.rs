@@ -53,19 +53,33 @@ impl Step {
         let output = &mut after[..self.output.len()];
         match &self.work {
             Work::Function(function) => function.apply(input, output),
-            Work::Binary { operation, right } => operation.apply(input, &before[right.clone()], output),
+            Work::Binary { operation, right } => {
+                operation.apply(input, &before[right.clone()], output)
+            }
             Work::Linear(linear) => linear.apply(input, output),
             Work::Softmax { scale, row_size } => scale.apply(*row_size, input, output),
             Work::ArgMax { tie, row_size } => tie.apply(*row_size, input, output),
-            Work::Reduce { reduction, row_size } => reduction.apply(*row_size, input, output),
-            Work::Spread { size, offset, distance } => {
+            Work::Reduce {
+                reduction,
+                row_size,
+            } => reduction.apply(*row_size, input, output),
+            Work::Spread {
+                size,
+                offset,
+                distance,
+            } => {
                 for (i, block) in input.chunks_exact(*size).enumerate() {
                     let at = offset + i * distance;
                     output[at..at + size].copy_from_slice(block);
                 }
             }
-            Work::Pick(from) => output.iter_mut().zip(from).for_each(|(to, from)| *to = input[*from as usize]),
-            Work::Lookup { row_size, indices } => look_up(*row_size, input, &before[indices.clone()], output),
+            Work::Pick(from) => output
+                .iter_mut()
+                .zip(from)
+                .for_each(|(to, from)| *to = input[*from as usize]),
+            Work::Lookup { row_size, indices } => {
+                look_up(*row_size, input, &before[indices.clone()], output)
+            }
         }
     }
 }
@@ -77,8 +91,16 @@ fn look_up(row_size: usize, input: &[f32], indices: &[f32], output: &mut [f32]) 
     let indices = indices.chunks_exact(per_row);
     for ((row, indices), to) in rows.zip(indices).zip(output.chunks_exact_mut(per_row)) {
         for (to, index) in to.iter_mut().zip(indices) {
-            let from_start = if *index < 0.0 { index + row_size as f32 } else { *index };
-            *to = if from_start >= 0.0 { row.get(from_start as usize).copied().unwrap_or(f32::NAN) } else { f32::NAN };
+            let from_start = if *index < 0.0 {
+                index + row_size as f32
+            } else {
+                *index
+            };
+            *to = if from_start >= 0.0 {
+                row.get(from_start as usize).copied().unwrap_or(f32::NAN)
+            } else {
+                f32::NAN
+            };
         }
     }
 }

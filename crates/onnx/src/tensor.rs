@@ -3,7 +3,9 @@
 use super::NetworkError;
 use super::error::{shape_text, shown};
 use super::limit::{PARAMETERS_MAX, RANK_MAX, at_most};
-use super::proto::{BFLOAT16, BOOL, DOUBLE, EXTERNAL, FLOAT, FLOAT16, INT32, INT64, TensorProto, data_type_name};
+use super::proto::{
+    BFLOAT16, BOOL, DOUBLE, EXTERNAL, FLOAT, FLOAT16, INT32, INT64, TensorProto, data_type_name,
+};
 use half::{bf16, f16};
 use std::rc::Rc;
 
@@ -23,44 +25,83 @@ pub(super) enum Numbers {
 
 impl Tensor {
     pub(super) fn new(shape: Vec<usize>, numbers: Numbers) -> Tensor {
-        Tensor { shape, numbers: Rc::new(numbers) }
+        Tensor {
+            shape,
+            numbers: Rc::new(numbers),
+        }
     }
 
     /// Reads a tensor. `name` appears in errors.
     pub(super) fn read(proto: &TensorProto, name: &str) -> Result<Tensor, NetworkError> {
         if proto.data_location == EXTERNAL || !proto.external_data.is_empty() {
             let expected = "its numbers: export the model with external_data=False";
-            return Err(NetworkError::tensor(name, "a reference to another file", expected));
+            return Err(NetworkError::tensor(
+                name,
+                "a reference to another file",
+                expected,
+            ));
         }
         if proto.dims.len() > RANK_MAX {
             let found = format!("{} dimensions", proto.dims.len());
-            return Err(NetworkError::tensor(name, found, format!("at most {RANK_MAX}")));
+            return Err(NetworkError::tensor(
+                name,
+                found,
+                format!("at most {RANK_MAX}"),
+            ));
         }
-        let shape = proto.dims.iter().map(|dim| usize::try_from(*dim).ok()).collect::<Option<Vec<usize>>>();
+        let shape = proto
+            .dims
+            .iter()
+            .map(|dim| usize::try_from(*dim).ok())
+            .collect::<Option<Vec<usize>>>();
         let Some(shape) = shape else {
-            return Err(NetworkError::tensor(name, "a negative dimension", "dimensions of 0 or more"));
+            return Err(NetworkError::tensor(
+                name,
+                "a negative dimension",
+                "dimensions of 0 or more",
+            ));
         };
         // Only lists can be empty, such as the shape of a single number.
         if product(&shape) == Some(0) && shape.len() > 1 {
-            return Err(NetworkError::tensor(name, shape_text(&shape), "dimensions of 1 or more"));
+            return Err(NetworkError::tensor(
+                name,
+                shape_text(&shape),
+                "dimensions of 1 or more",
+            ));
         }
-        let count = at_most(&format!("numbers of tensor `{}`", shown(name)), product(&shape), PARAMETERS_MAX)?;
+        let count = at_most(
+            &format!("numbers of tensor `{}`", shown(name)),
+            product(&shape),
+            PARAMETERS_MAX,
+        )?;
         // Fields hold 16-bit floats and booleans as 32-bit integers.
         let bits = || listed(proto, &low_halves(&proto.int32_data), u16::from_le_bytes).into_iter();
         let numbers = match proto.data_type {
             FLOAT => Numbers::Floats(listed(proto, &proto.float_data, f32::from_le_bytes)),
             FLOAT16 => Numbers::Floats(bits().map(|bits| f16::from_bits(bits).to_f32()).collect()),
-            BFLOAT16 => Numbers::Floats(bits().map(|bits| bf16::from_bits(bits).to_f32()).collect()),
+            BFLOAT16 => {
+                Numbers::Floats(bits().map(|bits| bf16::from_bits(bits).to_f32()).collect())
+            }
             BOOL => Numbers::Integers(match &proto.raw_data {
                 Some(raw) => raw.iter().map(|byte| i64::from(*byte)).collect(),
-                None => proto.int32_data.iter().map(|number| i64::from(*number)).collect(),
+                None => proto
+                    .int32_data
+                    .iter()
+                    .map(|number| i64::from(*number))
+                    .collect(),
             }),
             DOUBLE => Numbers::Floats(
-                listed(proto, &proto.double_data, f64::from_le_bytes).into_iter().map(|number| number as f32).collect(),
+                listed(proto, &proto.double_data, f64::from_le_bytes)
+                    .into_iter()
+                    .map(|number| number as f32)
+                    .collect(),
             ),
             INT64 => Numbers::Integers(listed(proto, &proto.int64_data, i64::from_le_bytes)),
             INT32 => Numbers::Integers(
-                listed(proto, &proto.int32_data, i32::from_le_bytes).into_iter().map(i64::from).collect(),
+                listed(proto, &proto.int32_data, i32::from_le_bytes)
+                    .into_iter()
+                    .map(i64::from)
+                    .collect(),
             ),
             other => {
                 let found = data_type_name(other.into());
@@ -77,7 +118,11 @@ impl Tensor {
         };
         if found != count || !whole(proto) {
             let found = format!("{found} numbers");
-            return Err(NetworkError::tensor(name, found, format!("{count} for {}", shape_text(&shape))));
+            return Err(NetworkError::tensor(
+                name,
+                found,
+                format!("{count} for {}", shape_text(&shape)),
+            ));
         }
         if has_nan {
             return Err(NetworkError::tensor(name, "NaN", "numbers"));
@@ -96,11 +141,21 @@ impl Tensor {
 /// The size of a shape, unless it overflows.
 pub(super) fn product(shape: &[usize]) -> Option<usize> {
     // A zero dimension makes the product zero, however large the others are.
-    if shape.contains(&0) { Some(0) } else { shape.iter().try_fold(1_usize, |all, dim| all.checked_mul(*dim)) }
+    if shape.contains(&0) {
+        Some(0)
+    } else {
+        shape
+            .iter()
+            .try_fold(1_usize, |all, dim| all.checked_mul(*dim))
+    }
 }
 
 /// The numbers of a tensor: its raw data, or the field of their type.
-fn listed<T: Copy, const SIZE: usize>(proto: &TensorProto, field: &[T], read: fn([u8; SIZE]) -> T) -> Vec<T> {
+fn listed<T: Copy, const SIZE: usize>(
+    proto: &TensorProto,
+    field: &[T],
+    read: fn([u8; SIZE]) -> T,
+) -> Vec<T> {
     match &proto.raw_data {
         Some(raw) => raw.as_chunks().0.iter().map(|bytes| read(*bytes)).collect(),
         None => field.to_vec(),
@@ -119,5 +174,8 @@ fn whole(proto: &TensorProto) -> bool {
         DOUBLE | INT64 => 8,
         _ => 4,
     };
-    proto.raw_data.as_ref().is_none_or(|raw| raw.len() % size == 0)
+    proto
+        .raw_data
+        .as_ref()
+        .is_none_or(|raw| raw.len() % size == 0)
 }

@@ -1,7 +1,7 @@
 //! Networks allocate nothing in an evaluation, and little when reading a file.
 //!
-//! `stats_alloc` counts; see `sim/tests/allocation.rs`. There is a single test because it counts the
-//! whole process.
+//! `stats_alloc` counts; see `sim/tests/allocation.rs`. There is a single test because it counts
+//! the whole process.
 
 use onnx::Network;
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
@@ -28,7 +28,8 @@ fn field(number: u8, content: &[u8]) -> Vec<u8> {
 #[test]
 fn an_evaluation_takes_nothing_from_the_heap_and_a_hostile_file_little() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/network/operators.onnx");
-    let mut network = Network::read(&std::fs::read(path).expect("the model can be read")).expect("a valid network");
+    let mut network = Network::read(&std::fs::read(path).expect("the model can be read"))
+        .expect("a valid network");
     // The test harness must have started this thread completely.
     (0..1_000).for_each(|i| network.evaluate(&[i as f32; 6]));
     let heap = Region::new(HEAP);
@@ -37,12 +38,22 @@ fn an_evaluation_takes_nothing_from_the_heap_and_a_hostile_file_little() {
     assert_eq!(used.allocations + used.reallocations, 0, "{used:?}");
 
     // A megabyte of empty messages: nodes, tensors, or attributes of one node.
-    for file in [[0x0a, 0x00], [0x2a, 0x00], [0x2a, 0x00]].map(|pair| pair.repeat(1 << 19)).into_iter().enumerate() {
+    for file in [[0x0a, 0x00], [0x2a, 0x00], [0x2a, 0x00]]
+        .map(|pair| pair.repeat(1 << 19))
+        .into_iter()
+        .enumerate()
+    {
         let (i, messages) = file;
-        let graph = if i == 2 { field(1, &messages) } else { messages };
+        let graph = if i == 2 {
+            field(1, &messages)
+        } else {
+            messages
+        };
         let bytes = field(7, &graph);
         let heap = Region::new(HEAP);
-        let error = Network::read(&bytes).expect_err("too many fields").to_string();
+        let error = Network::read(&bytes)
+            .expect_err("too many fields")
+            .to_string();
         let used = heap.change().bytes_allocated;
         assert!(error.starts_with("fields of the file"), "{error}");
         assert!(used < FILE_COST_MAX, "file {i}: {used} bytes");

@@ -32,11 +32,19 @@ mod tests {
 
     #[test]
     fn a_turn_and_a_bit_is_just_the_bit() {
-        for (input_deg, want_deg) in
-            [(0.0, 0.0), (190.0, -170.0), (-190.0, 170.0), (540.0, 180.0), (-180.0, 180.0), (725.0, 5.0)]
-        {
+        for (input_deg, want_deg) in [
+            (0.0, 0.0),
+            (190.0, -170.0),
+            (-190.0, 170.0),
+            (540.0, 180.0),
+            (-180.0, 180.0),
+            (725.0, 5.0),
+        ] {
             let got_deg = wrap_pi(f64::to_radians(input_deg)).to_degrees();
-            assert!((got_deg - want_deg).abs() < 1e-9, "{input_deg} -> {got_deg}");
+            assert!(
+                (got_deg - want_deg).abs() < 1e-9,
+                "{input_deg} -> {got_deg}"
+            );
         }
     }
 
@@ -44,7 +52,10 @@ mod tests {
     fn a_compass_never_shows_360() {
         for (input_rad, want_deg) in [(0.0, 0.0), (-1e-18, 0.0), (-PI / 2.0, 270.0), (TAU, 0.0)] {
             let got_deg = compass_deg_from_rad(input_rad);
-            assert!((got_deg - want_deg).abs() < 1e-9, "{input_rad} -> {got_deg}");
+            assert!(
+                (got_deg - want_deg).abs() < 1e-9,
+                "{input_rad} -> {got_deg}"
+            );
         }
     }
 }

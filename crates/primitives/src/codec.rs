@@ -57,7 +57,8 @@ pub fn encode_plain<T: Serialize>(message: &T) -> Vec<u8> {
     // Large enough for most messages: growing costs as much as writing.
     let mut bytes = Vec::with_capacity(4096);
     bytes.extend(ENCAPSULATION);
-    cdr_encoding::to_writer::<T, LittleEndian, _>(&mut bytes, message).expect("a plain struct always encodes");
+    cdr_encoding::to_writer::<T, LittleEndian, _>(&mut bytes, message)
+        .expect("a plain struct always encodes");
     bytes
 }
 
@@ -77,15 +78,26 @@ pub fn decode<M: Message + DeserializeOwned>(bytes: &[u8]) -> Result<M, DecodeEr
     let schema = M::SCHEMA;
     let body = bytes
         .strip_prefix(&ENCAPSULATION)
-        .ok_or_else(|| DecodeError::Encapsulation { found: bytes.iter().take(4).copied().collect() })?;
+        .ok_or_else(|| DecodeError::Encapsulation {
+            found: bytes.iter().take(4).copied().collect(),
+        })?;
     let layout = |reason: String| DecodeError::Layout { schema, reason };
-    let (stamp, _) = cdr_encoding::from_bytes::<Stamp, LittleEndian>(body).map_err(|e| layout(e.to_string()))?;
+    let (stamp, _) =
+        cdr_encoding::from_bytes::<Stamp, LittleEndian>(body).map_err(|e| layout(e.to_string()))?;
     if !(M::OLDEST..=M::VERSION).contains(&stamp.version) {
-        return Err(DecodeError::Version { schema, found: stamp.version, expected: M::VERSION });
+        return Err(DecodeError::Version {
+            schema,
+            found: stamp.version,
+            expected: M::VERSION,
+        });
     }
-    let (message, used) = cdr_encoding::from_bytes::<M, LittleEndian>(body).map_err(|e| layout(e.to_string()))?;
+    let (message, used) =
+        cdr_encoding::from_bytes::<M, LittleEndian>(body).map_err(|e| layout(e.to_string()))?;
     if used != body.len() {
-        return Err(layout(format!("{} bytes follow its end", body.len() - used)));
+        return Err(layout(format!(
+            "{} bytes follow its end",
+            body.len() - used
+        )));
     }
     Ok(message)
 }

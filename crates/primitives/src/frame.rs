@@ -69,7 +69,10 @@ pub struct LatLon {
 impl Ned {
     /// The vector (`x` east, `y` north) of files and charts.
     pub fn from_xy(x_east: f64, y_north: f64) -> Ned {
-        Ned { north: y_north, east: x_east }
+        Ned {
+            north: y_north,
+            east: x_east,
+        }
     }
 
     /// The unit vector along a compass bearing in degrees, exact at quarter turns.
@@ -80,7 +83,10 @@ impl Ned {
     /// This vector times `factor`.
     #[inline]
     pub fn scaled(self, factor: f64) -> Ned {
-        Ned { north: self.north * factor, east: self.east * factor }
+        Ned {
+            north: self.north * factor,
+            east: self.east * factor,
+        }
     }
 
     /// The scalar product with `other`.
@@ -111,7 +117,10 @@ impl Ned {
 
     /// The nearest of `places`; the first of equals.
     pub fn nearest_of(self, places: impl Iterator<Item = Ned>) -> Option<Ned> {
-        places.min_by(|x, y| self.distance_squared(*x).total_cmp(&self.distance_squared(*y)))
+        places.min_by(|x, y| {
+            self.distance_squared(*x)
+                .total_cmp(&self.distance_squared(*y))
+        })
     }
 
     /// The bearing of `other` from here, radians clockwise from north.
@@ -131,7 +140,10 @@ impl std::ops::Add for Ned {
     type Output = Ned;
     #[inline]
     fn add(self, other: Ned) -> Ned {
-        Ned { north: self.north + other.north, east: self.east + other.east }
+        Ned {
+            north: self.north + other.north,
+            east: self.east + other.east,
+        }
     }
 }
 
@@ -139,7 +151,10 @@ impl std::ops::Sub for Ned {
     type Output = Ned;
     #[inline]
     fn sub(self, other: Ned) -> Ned {
-        Ned { north: self.north - other.north, east: self.east - other.east }
+        Ned {
+            north: self.north - other.north,
+            east: self.east - other.east,
+        }
     }
 }
 
@@ -163,19 +178,28 @@ impl Rotation {
     /// The rotation for a heading further clockwise by `by`.
     #[inline]
     pub fn turned(self, by: Rotation) -> Rotation {
-        Rotation { sin: self.sin * by.cos + self.cos * by.sin, cos: self.cos * by.cos - self.sin * by.sin }
+        Rotation {
+            sin: self.sin * by.cos + self.cos * by.sin,
+            cos: self.cos * by.cos - self.sin * by.sin,
+        }
     }
 
     /// The unit vector ahead.
     #[inline]
     pub fn ahead(self) -> Ned {
-        Ned { north: self.cos, east: self.sin }
+        Ned {
+            north: self.cos,
+            east: self.sin,
+        }
     }
 
     /// The unit vector to starboard.
     #[inline]
     pub fn starboard(self) -> Ned {
-        Ned { north: -self.sin, east: self.cos }
+        Ned {
+            north: -self.sin,
+            east: self.cos,
+        }
     }
 }
 
@@ -212,15 +236,38 @@ mod tests {
     #[test]
     fn ahead_of_a_boat_that_points_east_is_east() {
         let turn = Rotation::from_heading_deg(90.0);
-        let ned = ned_from_body(turn, Body { ahead: 2.0, starboard: 1.0 });
-        assert_eq!(ned, Ned { north: -1.0, east: 2.0 });
-        assert_eq!(body_from_ned(turn, ned), Body { ahead: 2.0, starboard: 1.0 });
+        let ned = ned_from_body(
+            turn,
+            Body {
+                ahead: 2.0,
+                starboard: 1.0,
+            },
+        );
+        assert_eq!(
+            ned,
+            Ned {
+                north: -1.0,
+                east: 2.0
+            }
+        );
+        assert_eq!(
+            body_from_ned(turn, ned),
+            Body {
+                ahead: 2.0,
+                starboard: 1.0
+            }
+        );
     }
 
     #[test]
     fn bearings_are_clockwise_from_north() {
         let home = Ned::default();
-        for (x, y, want_deg) in [(0.0, 1.0, 0.0), (1.0, 0.0, 90.0), (0.0, -1.0, 180.0), (-1.0, 0.0, -90.0)] {
+        for (x, y, want_deg) in [
+            (0.0, 1.0, 0.0),
+            (1.0, 0.0, 90.0),
+            (0.0, -1.0, 180.0),
+            (-1.0, 0.0, -90.0),
+        ] {
             let got_deg = home.bearing_rad(Ned::from_xy(x, y)).to_degrees();
             assert!((got_deg - want_deg).abs() < 1e-12, "{x},{y} -> {got_deg}");
         }

@@ -19,7 +19,10 @@ pub fn open(path: &Path) -> Result<File, Error> {
     // Some regular files of `/proc` never end: reading `kmsg` waits for the kernel's next message.
     // For files on disk this flag has no effect.
     let flags = rustix::fs::OFlags::NONBLOCK.bits() as i32;
-    let file = OpenOptions::new().read(true).custom_flags(flags).open(path)?;
+    let file = OpenOptions::new()
+        .read(true)
+        .custom_flags(flags)
+        .open(path)?;
     is_file(&file.metadata()?)?;
     Ok(file)
 }
@@ -31,12 +34,22 @@ pub fn open(path: &Path) -> Result<File, Error> {
 /// The system's error, that it is not a regular file, or that it is too long.
 pub fn read(path: &Path, bytes_max: u64) -> Result<Vec<u8>, Error> {
     let mut bytes = vec![];
-    let length = open(path)?.take(bytes_max.saturating_add(1)).read_to_end(&mut bytes).map_err(|error| {
-        let waits = error.kind() == ErrorKind::WouldBlock;
-        if waits { Error::new(ErrorKind::InvalidInput, "it has no end") } else { error }
-    })?;
+    let length = open(path)?
+        .take(bytes_max.saturating_add(1))
+        .read_to_end(&mut bytes)
+        .map_err(|error| {
+            let waits = error.kind() == ErrorKind::WouldBlock;
+            if waits {
+                Error::new(ErrorKind::InvalidInput, "it has no end")
+            } else {
+                error
+            }
+        })?;
     if length as u64 > bytes_max {
-        return Err(Error::new(ErrorKind::FileTooLarge, format!("it is longer than {bytes_max} bytes")));
+        return Err(Error::new(
+            ErrorKind::FileTooLarge,
+            format!("it is longer than {bytes_max} bytes"),
+        ));
     }
     Ok(bytes)
 }
@@ -46,11 +59,12 @@ pub fn read(path: &Path, bytes_max: u64) -> Result<Vec<u8>, Error> {
 /// # Errors
 /// As above, or that it is not UTF-8.
 pub fn read_text(path: &Path, bytes_max: u64) -> Result<String, Error> {
-    String::from_utf8(read(path, bytes_max)?).map_err(|_| Error::new(ErrorKind::InvalidData, "it is not UTF-8"))
+    String::from_utf8(read(path, bytes_max)?)
+        .map_err(|_| Error::new(ErrorKind::InvalidData, "it is not UTF-8"))
 }
 
-/// A text in UTF-8. Programs of Windows write UTF-16 with a byte order mark as "Unicode text", which is
-/// converted.
+/// A text in UTF-8. Programs of Windows write UTF-16 with a byte order mark as "Unicode text",
+/// which is converted.
 ///
 /// # Errors
 /// If such a text is damaged.
@@ -61,7 +75,8 @@ pub fn utf_8(bytes: Vec<u8>) -> Result<Vec<u8>, String> {
         _ => return Ok(bytes),
     };
     let (units, rest) = bytes[2..].as_chunks();
-    let text = char::decode_utf16(units.iter().map(|unit| order(*unit))).collect::<Result<String, _>>();
+    let text =
+        char::decode_utf16(units.iter().map(|unit| order(*unit))).collect::<Result<String, _>>();
     match text {
         Ok(text) if rest.is_empty() => Ok(text.into_bytes()),
         _ => Err("damaged UTF-16 text, expected UTF-8".to_owned()),
@@ -93,11 +108,21 @@ mod tests {
     #[cfg(target_os = "linux")]
     fn what_has_no_end_is_not_read() {
         // Both report a size of 0. The first must be read in units of eight bytes.
-        assert_eq!(std::fs::metadata("/proc/self/pagemap").expect("it is there").len(), 0);
+        assert_eq!(
+            std::fs::metadata("/proc/self/pagemap")
+                .expect("it is there")
+                .len(),
+            0
+        );
         let endless = read(Path::new("/proc/self/pagemap"), 1023).expect_err("it is refused");
         assert_eq!(endless.kind(), ErrorKind::FileTooLarge);
         // Only root may open it; others are refused immediately.
         assert!(read(Path::new("/proc/kmsg"), 1 << 20).is_err());
-        assert_eq!(read(Path::new("/dev/zero"), 10).expect_err("it is refused").kind(), ErrorKind::InvalidInput);
+        assert_eq!(
+            read(Path::new("/dev/zero"), 10)
+                .expect_err("it is refused")
+                .kind(),
+            ErrorKind::InvalidInput
+        );
     }
 }

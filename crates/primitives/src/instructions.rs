@@ -34,7 +34,10 @@ pub trait Kernel {
 impl Instructions {
     /// All instruction sets that this machine supports, baseline first.
     pub fn of_this_machine() -> Vec<Instructions> {
-        #[cfg_attr(not(target_arch = "x86_64"), expect(unused_mut, reason = "there is one"))]
+        #[cfg_attr(
+            not(target_arch = "x86_64"),
+            expect(unused_mut, reason = "there is one")
+        )]
         let mut sets = vec![Instructions(Set::Baseline)];
         #[cfg(target_arch = "x86_64")]
         {
@@ -54,7 +57,9 @@ impl Instructions {
 
     /// The fastest instruction set that this machine supports.
     pub fn best() -> Instructions {
-        Instructions::of_this_machine().pop().unwrap_or(Instructions(Set::Baseline))
+        Instructions::of_this_machine()
+            .pop()
+            .unwrap_or(Instructions(Set::Baseline))
     }
 
     /// Runs a calculation with these instructions.

@@ -46,7 +46,11 @@ pub fn interpolate(points: impl IntoIterator<Item = (f64, f64)>, x: f64) -> f64 
     for after in points {
         if x < after.0 {
             let part = (after.1 - before.1) * (x - before.0) / (after.0 - before.0);
-            return if x > before.0 { before.1 + part } else { before.1 };
+            return if x > before.0 {
+                before.1 + part
+            } else {
+                before.1
+            };
         }
         before = after;
     }
@@ -63,7 +67,11 @@ pub fn length(x: f64, y: f64) -> f64 {
 /// them.
 pub fn decimal(number: f64, places: usize) -> String {
     let text = format!("{number:.places$}");
-    if text.trim_start_matches(['-', '0', '.']).is_empty() { text.trim_start_matches('-').to_owned() } else { text }
+    if text.trim_start_matches(['-', '0', '.']).is_empty() {
+        text.trim_start_matches('-').to_owned()
+    } else {
+        text
+    }
 }
 
 #[cfg(test)]
@@ -72,7 +80,13 @@ mod tests {
 
     #[test]
     fn a_line_goes_through_its_points_and_is_level_beyond_them() {
-        let line = [(-100.0, -2.0), (0.0, 0.0), (40.0, 1.0), (80.0, 3.0), (100.0, 3.0)];
+        let line = [
+            (-100.0, -2.0),
+            (0.0, 0.0),
+            (40.0, 1.0),
+            (80.0, 3.0),
+            (100.0, 3.0),
+        ];
         for (x, want) in [
             (-101.0, -2.0),
             (-100.0, -2.0),
@@ -87,6 +101,10 @@ mod tests {
             assert_eq!(interpolate(line, x), want, "{x}");
         }
         assert_eq!(interpolate([(1.0, 5.0)], 7.0), 5.0);
-        assert_eq!(interpolate(line.map(|(x, y)| (y, x)), 3.0), 100.0, "of two points at one place the last counts");
+        assert_eq!(
+            interpolate(line.map(|(x, y)| (y, x)), 3.0),
+            100.0,
+            "of two points at one place the last counts"
+        );
     }
 }

@@ -43,7 +43,12 @@ impl Near {
         for a in 0..count {
             let here = at(a);
             for b in a + 1..count {
-                push_if_near(&mut self.pairs, (a as u16, b as u16), here.distance_squared(at(b)), reach_m);
+                push_if_near(
+                    &mut self.pairs,
+                    (a as u16, b as u16),
+                    here.distance_squared(at(b)),
+                    reach_m,
+                );
             }
         }
     }
@@ -53,7 +58,8 @@ impl Near {
             return;
         }
         self.keys.clear();
-        self.keys.extend((0..count).map(|i| key(at(i), reach_m, i as u16)));
+        self.keys
+            .extend((0..count).map(|i| key(at(i), reach_m, i as u16)));
         self.keys.sort_unstable();
         let mut row_to_the_north = 0;
         for (i, &key) in self.keys.iter().enumerate() {
@@ -64,15 +70,28 @@ impl Near {
             let cell = key & !u64::from(u16::MAX);
             let start = cell + ROW - COLUMN;
             let end = cell + ROW + 2 * COLUMN;
-            while self.keys.get(row_to_the_north).is_some_and(|key| *key < start) {
+            while self
+                .keys
+                .get(row_to_the_north)
+                .is_some_and(|key| *key < start)
+            {
                 row_to_the_north += 1;
             }
-            let this = self.keys[i + 1..].iter().take_while(|key| **key < cell + 2 * COLUMN);
-            let north = self.keys[row_to_the_north..].iter().take_while(|key| **key < end);
+            let this = self.keys[i + 1..]
+                .iter()
+                .take_while(|key| **key < cell + 2 * COLUMN);
+            let north = self.keys[row_to_the_north..]
+                .iter()
+                .take_while(|key| **key < end);
             for &key in this.chain(north) {
                 let there = at(vehicle(key));
                 let b = key as u16;
-                push_if_near(&mut self.pairs, (a.min(b), a.max(b)), here.distance_squared(there), reach_m);
+                push_if_near(
+                    &mut self.pairs,
+                    (a.min(b), a.max(b)),
+                    here.distance_squared(there),
+                    reach_m,
+                );
             }
         }
         self.pairs.sort_unstable_by_key(|pair| (pair.a, pair.b));
@@ -100,7 +119,11 @@ fn vehicle(key: u64) -> usize {
 #[inline]
 fn push_if_near(pairs: &mut Vec<Pair>, (a, b): (u16, u16), distance_squared: f64, reach_m: f64) {
     if distance_squared < reach_m * reach_m {
-        pairs.push(Pair { a, b, distance_squared });
+        pairs.push(Pair {
+            a,
+            b,
+            distance_squared,
+        });
     }
 }
 
@@ -114,7 +137,10 @@ mod tests {
         for (seed, count) in [(1, 33), (2, 60), (3, 300)] {
             let mut stream = Stream::new(seed, "near");
             let fleet: Vec<Ned> = (0..count)
-                .map(|_| Ned { north: stream.between(-40.0, 40.0), east: stream.between(-80.0, 80.0) })
+                .map(|_| Ned {
+                    north: stream.between(-40.0, 40.0),
+                    east: stream.between(-80.0, 80.0),
+                })
                 .collect();
             let mut all = Near::default();
             let mut cells = Near::default();
@@ -127,7 +153,12 @@ mod tests {
 
     #[test]
     fn boats_astray_and_boats_that_need_no_reach_do_no_harm() {
-        let fleet: Vec<Ned> = (0..40).map(|i| Ned { north: 1e300, east: f64::from(i) * -1e12 }).collect();
+        let fleet: Vec<Ned> = (0..40)
+            .map(|i| Ned {
+                north: 1e300,
+                east: f64::from(i) * -1e12,
+            })
+            .collect();
         let mut near = Near::default();
         assert_eq!(near.pairs(|i| fleet[i], 40, 7.0), []);
         assert_eq!(near.pairs(|_| fleet[3], 40, 7.0).len(), 40 * 39 / 2);

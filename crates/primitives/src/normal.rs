@@ -16,7 +16,10 @@ const AREA: f64 = 0.004_928_673_233_974_658;
 
 /// The layers from the bottom, and a closing entry at the top.
 static LAYER: LazyLock<[Layer; LAYERS + 1]> = LazyLock::new(|| {
-    let layer = |edge| Layer { edge, bell: bell(edge) };
+    let layer = |edge| Layer {
+        edge,
+        bell: bell(edge),
+    };
     let mut layers = [layer(0.0); LAYERS + 1];
     // The lowest is as wide as a rectangle of its area.
     (layers[0], layers[1]) = (layer(AREA / bell(TAIL_FROM)), layer(TAIL_FROM));
@@ -60,7 +63,11 @@ fn inside(drawn: u64) -> Result<f64, (usize, f64)> {
     let layers = &*LAYER;
     let layer = (drawn % LAYERS as u64) as usize;
     let x = (2.0 * unit(drawn) - 1.0) * layers[layer].edge;
-    if x.abs() < layers[layer + 1].edge { Ok(x) } else { Err((layer, x)) }
+    if x.abs() < layers[layer + 1].edge {
+        Ok(x)
+    } else {
+        Err((layer, x))
+    }
 }
 
 /// Retries until a number is accepted.
@@ -114,7 +121,8 @@ mod tests {
             let area = LAYER[i].edge * (LAYER[i + 1].bell - LAYER[i].bell);
             assert!((area / AREA - 1.0).abs() < 1e-9, "layer {i}: {area}");
         }
-        let tail = (std::f64::consts::PI / 2.0).sqrt() * libm::erfc(TAIL_FROM / std::f64::consts::SQRT_2);
+        let tail =
+            (std::f64::consts::PI / 2.0).sqrt() * libm::erfc(TAIL_FROM / std::f64::consts::SQRT_2);
         let lowest = TAIL_FROM * bell(TAIL_FROM) + tail;
         assert!((lowest / AREA - 1.0).abs() < 1e-9, "{lowest}");
     }
@@ -127,13 +135,19 @@ mod tests {
         drawn.sort_by(f64::total_cmp);
         let share = |x: f64| 0.5 * libm::erfc(-x / std::f64::consts::SQRT_2);
         // Kolmogorov-Smirnov test at a significance of 0.1 %.
-        let off = drawn.iter().enumerate().map(|(i, x)| (share(*x) - (i as f64 + 0.5) / f64::from(n)).abs());
+        let off = drawn
+            .iter()
+            .enumerate()
+            .map(|(i, x)| (share(*x) - (i as f64 + 0.5) / f64::from(n)).abs());
         assert!(off.fold(0.0, f64::max) < 1.95 / f64::from(n).sqrt());
         for edge in [3.0, TAIL_FROM, 4.2] {
             let want = f64::from(n) * share(-edge);
             for side in [-1.0, 1.0] {
                 let got = drawn.iter().filter(|x| side * **x > edge).count() as f64;
-                assert!((got - want).abs() < 4.0 * want.sqrt(), "beyond {edge} on side {side}: {got} of {want}");
+                assert!(
+                    (got - want).abs() < 4.0 * want.sqrt(),
+                    "beyond {edge} on side {side}: {got} of {want}"
+                );
             }
         }
     }

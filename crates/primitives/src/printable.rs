@@ -11,7 +11,9 @@ const TAIL: usize = 400;
 /// A text of many lines. Escapes control characters except line breaks and tabs as in JSON, and
 /// characters that change the writing direction.
 pub fn text(text: &str) -> Cow<'_, str> {
-    spelt(text, |character| !matches!(character, '\n' | '\t') && steers(character))
+    spelt(text, |character| {
+        !matches!(character, '\n' | '\t') && steers(character)
+    })
 }
 
 /// The same for a text that may have colours (`ESC [ numbers m`).
@@ -20,7 +22,9 @@ pub fn coloured(text: &str) -> String {
     let mut shown = self::text(parts.next().unwrap_or_default()).into_owned();
     for part in parts {
         let numbers = |c: char| c.is_ascii_digit() || c == ';';
-        let is_colour = part.strip_prefix('[').is_some_and(|rest| rest.trim_start_matches(numbers).starts_with('m'));
+        let is_colour = part
+            .strip_prefix('[')
+            .is_some_and(|rest| rest.trim_start_matches(numbers).starts_with('m'));
         shown += if is_colour { "\x1b" } else { "\\u001b" };
         shown += &self::text(part);
     }
@@ -39,7 +43,10 @@ pub fn message(text: &str) -> String {
 
 /// The same for a message that may have colours.
 pub fn coloured_message(text: &str) -> String {
-    text.split('\n').map(|line| shortened(&coloured(line)).into_owned()).collect::<Vec<_>>().join("\n")
+    text.split('\n')
+        .map(|line| shortened(&coloured(line)).into_owned())
+        .collect::<Vec<_>>()
+        .join("\n")
 }
 
 fn steers(character: char) -> bool {
@@ -64,7 +71,11 @@ fn spelt(text: &str, is_spelt: impl Fn(char) -> bool) -> Cow<'_, str> {
 
 fn shortened(text: &str) -> Cow<'_, str> {
     // The byte count is known, and at least the character count.
-    let surplus = if text.len() > LINE_MAX { text.chars().count().saturating_sub(LINE_MAX) } else { 0 };
+    let surplus = if text.len() > LINE_MAX {
+        text.chars().count().saturating_sub(LINE_MAX)
+    } else {
+        0
+    };
     if surplus == 0 {
         return Cow::Borrowed(text);
     }
@@ -87,7 +98,10 @@ mod tests {
     fn no_text_controls_the_terminal() {
         for (raw, want) in [
             ("blue_one → 5 m\n\tand on", "blue_one → 5 m\n\tand on"),
-            ("\x1b[2J\x1b]0;owned\x07", "\\u001b[2J\\u001b]0;owned\\u0007"),
+            (
+                "\x1b[2J\x1b]0;owned\x07",
+                "\\u001b[2J\\u001b]0;owned\\u0007",
+            ),
             ("over\rwritten\x08", "over\\u000dwritten\\u0008"),
             ("\u{9b}31m\u{7f}", "\\u009b31m\\u007f"),
             ("\u{202e}txt.exe", "\\u202etxt.exe"),
@@ -106,7 +120,11 @@ mod tests {
     fn of_a_very_long_line_both_ends_are_shown() {
         let long = format!("key {} is unknown, expected a name", "ß".repeat(1_000_000));
         let shown = line(&long);
-        assert!(shown.chars().count() < LINE_MAX + 50, "{} characters", shown.chars().count());
+        assert!(
+            shown.chars().count() < LINE_MAX + 50,
+            "{} characters",
+            shown.chars().count()
+        );
         assert!(shown.starts_with("key ßß") && shown.ends_with("ß is unknown, expected a name"));
         assert_eq!(line(&"x".repeat(LINE_MAX)), "x".repeat(LINE_MAX));
     }

@@ -30,14 +30,23 @@ pub struct Seeds {
 
 impl From<u64> for Seeds {
     fn from(seed: u64) -> Seeds {
-        Seeds { first: seed, later: vec![] }
+        Seeds {
+            first: seed,
+            later: vec![],
+        }
     }
 }
 
 impl Seeds {
     /// The first seed and its replacements, by ascending time.
     pub fn new(first: u64, reseed: &[Reseed]) -> Seeds {
-        Seeds { first, later: reseed.iter().map(|one| (SimTime::from_s(one.after_s), one.seed)).collect() }
+        Seeds {
+            first,
+            later: reseed
+                .iter()
+                .map(|one| (SimTime::from_s(one.after_s), one.seed))
+                .collect(),
+        }
     }
 
     /// The seed of draws for the whole game.
@@ -52,8 +61,14 @@ impl Seeds {
 
     /// The noise `name` of this game.
     pub fn noise(&self, name: &str) -> TimedNoise {
-        let later = self.later.iter().map(|(after, seed)| (*after, Noise::new(*seed, name)));
-        TimedNoise { first: Noise::new(self.first, name), later: later.collect() }
+        let later = self
+            .later
+            .iter()
+            .map(|(after, seed)| (*after, Noise::new(*seed, name)));
+        TimedNoise {
+            first: Noise::new(self.first, name),
+            later: later.collect(),
+        }
     }
 }
 
@@ -72,7 +87,11 @@ impl TimedNoise {
         // the time of a branch. In return, a branch is a game like any other, with a seed and a key
         // on the command line, minds included.
         let begun = |(after, _): &&(SimTime, Noise)| *after < now;
-        self.later.iter().rev().find(begun).map_or(self.first, |(_, noise)| *noise)
+        self.later
+            .iter()
+            .rev()
+            .find(begun)
+            .map_or(self.first, |(_, noise)| *noise)
     }
 }
 
@@ -84,9 +103,23 @@ mod tests {
     fn each_seed_counts_from_after_its_time_on() {
         let reseed = [(10.0, 2), (20.0, 3)].map(|(after_s, seed)| Reseed { after_s, seed });
         let noise = Seeds::new(1, &reseed).noise("gps/a");
-        for (at_s, seed) in [(0.0, 1), (10.0, 1), (10.001, 2), (20.0, 2), (20.1, 3), (1e4, 3)] {
-            assert_eq!(noise.at(SimTime::from_s(at_s)), Noise::new(seed, "gps/a"), "{at_s} s");
+        for (at_s, seed) in [
+            (0.0, 1),
+            (10.0, 1),
+            (10.001, 2),
+            (20.0, 2),
+            (20.1, 3),
+            (1e4, 3),
+        ] {
+            assert_eq!(
+                noise.at(SimTime::from_s(at_s)),
+                Noise::new(seed, "gps/a"),
+                "{at_s} s"
+            );
         }
-        assert_eq!(Seeds::from(1).noise("gps/a").at(SimTime::from_s(15.0)), Noise::new(1, "gps/a"));
+        assert_eq!(
+            Seeds::from(1).noise("gps/a").at(SimTime::from_s(15.0)),
+            Noise::new(1, "gps/a")
+        );
     }
 }

@@ -83,7 +83,9 @@ impl Noise {
     /// 64 uniform random bits.
     #[inline]
     pub fn bits(&self, count: u64) -> u64 {
-        let mut z = self.0.wrapping_add(count.wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15));
+        let mut z = self
+            .0
+            .wrapping_add(count.wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15));
         z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
         z ^ (z >> 31)
@@ -106,7 +108,13 @@ impl Noise {
     /// derive from the first.
     pub fn normal(&self, count: u64) -> f64 {
         let first = self.bits(count);
-        normal(|asked| if asked == 0 { first } else { Noise(first).bits(asked) })
+        normal(|asked| {
+            if asked == 0 {
+                first
+            } else {
+                Noise(first).bits(asked)
+            }
+        })
     }
 
     /// An exponentially distributed number of mean 1.
@@ -141,7 +149,11 @@ mod tests {
     }
 
     /// Recorded once; a change makes old games unplayable.
-    const PINNED: [u64; 3] = [16_757_449_972_422_118_870, 3_474_384_729_306_545_788, 10_929_957_793_316_752_716];
+    const PINNED: [u64; 3] = [
+        16_757_449_972_422_118_870,
+        3_474_384_729_306_545_788,
+        10_929_957_793_316_752_716,
+    ];
 
     #[test]
     fn units_have_the_mean_and_variance_of_a_uniform_number() {
@@ -174,10 +186,30 @@ mod tests {
             ("mean", mean(&|i| pairs[i].0), 0.0, 0.0112),
             ("variance", mean(&|i| square(pairs[i].0)), 1.0, 0.0158),
             ("variance", mean(&|i| square(pairs[i].1)), 1.0, 0.0158),
-            ("fourth moment", mean(&|i| square(square(pairs[i].0))), 3.0, 0.11),
-            ("correlation in a pair", mean(&|i| pairs[i].0 * pairs[i].1), 0.0, 0.0112),
-            ("correlation of neighbours", mean(&|i| pairs[i].0 * pairs[i + 1].0), 0.0, 0.0112),
-            ("exponential", mean(&|i| noise.exponential(i as u64)), 1.0, 0.0112),
+            (
+                "fourth moment",
+                mean(&|i| square(square(pairs[i].0))),
+                3.0,
+                0.11,
+            ),
+            (
+                "correlation in a pair",
+                mean(&|i| pairs[i].0 * pairs[i].1),
+                0.0,
+                0.0112,
+            ),
+            (
+                "correlation of neighbours",
+                mean(&|i| pairs[i].0 * pairs[i + 1].0),
+                0.0,
+                0.0112,
+            ),
+            (
+                "exponential",
+                mean(&|i| noise.exponential(i as u64)),
+                1.0,
+                0.0112,
+            ),
         ] {
             assert!((got - want).abs() < within, "{what}: {got}");
         }

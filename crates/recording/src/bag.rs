@@ -124,7 +124,11 @@ impl RecordedMessage<'_> {
     /// # Errors
     /// [`RecordingError::Damaged`] if it does not decode.
     pub fn read<M: Message + DeserializeOwned>(&self) -> Result<M, RecordingError> {
-        let damaged = |reason| RecordingError::Damaged { topic: self.topic.to_owned(), number: self.number, reason };
+        let damaged = |reason| RecordingError::Damaged {
+            topic: self.topic.to_owned(),
+            number: self.number,
+            reason,
+        };
         codec::decode(&self.bytes).map_err(damaged)
     }
 
@@ -133,7 +137,11 @@ impl RecordedMessage<'_> {
     /// # Errors
     /// [`RecordingError::Json`] if it does not parse.
     pub fn read_json<T: DeserializeOwned>(&self) -> Result<T, RecordingError> {
-        let strange = |reason| RecordingError::Json { topic: self.topic.to_owned(), number: self.number, reason };
+        let strange = |reason| RecordingError::Json {
+            topic: self.topic.to_owned(),
+            number: self.number,
+            reason,
+        };
         serde_json::from_slice(&self.bytes).map_err(strange)
     }
 }
@@ -144,7 +152,10 @@ impl Bag {
     /// # Errors
     /// [`RecordingError`] if it cannot be read, is not a recording, or is from another version.
     pub fn open(path: &Path) -> Result<Bag, RecordingError> {
-        let file = |reason| RecordingError::File { path: path.to_owned(), reason };
+        let file = |reason| RecordingError::File {
+            path: path.to_owned(),
+            reason,
+        };
         Bag::of_source(Source::open(path).map_err(file)?)
     }
 
@@ -158,14 +169,28 @@ impl Bag {
 
     fn of_source(source: Source) -> Result<Bag, RecordingError> {
         let mut found = Found::default();
-        let Extent { is_cut, damage } =
-            for_each_record(&source, |record, place, chunk| found.take(record, &place, chunk))?;
+        let Extent { is_cut, damage } = for_each_record(&source, |record, place, chunk| {
+            found.take(record, &place, chunk)
+        })?;
         let (kind, facts) = found.header()?;
         let began_utc_ns = facts.get(BEGAN).map_or("", String::as_str).parse();
-        let began_utc_ns = began_utc_ns.map_err(|e| RecordingError::not_understood("beginning", e))?;
+        let began_utc_ns =
+            began_utc_ns.map_err(|e| RecordingError::not_understood("beginning", e))?;
         let result = found.metadata.remove(RESULT);
-        let Found { channels, index, .. } = found;
-        Ok(Bag { source, kind, facts, began_utc_ns, result, is_cut, damage, channels, index })
+        let Found {
+            channels, index, ..
+        } = found;
+        Ok(Bag {
+            source,
+            kind,
+            facts,
+            began_utc_ns,
+            result,
+            is_cut,
+            damage,
+            channels,
+            index,
+        })
     }
 
     /// A fact of the header; empty if missing.
@@ -190,9 +215,18 @@ impl Bag {
 
     /// The positions of the messages of one topic, for [`Bag::message`].
     pub fn places(&self, topic: &str) -> impl Iterator<Item = usize> {
-        let wanted = self.channels.iter().find(|(_, channel)| channel.topic == topic).map(|(id, _)| *id);
+        let wanted = self
+            .channels
+            .iter()
+            .find(|(_, channel)| channel.topic == topic)
+            .map(|(id, _)| *id);
         let is_wanted = move |place: &usize| {
-            wanted.is_some() && self.index.entry(&self.source, *place).map(|entry| entry.channel) == wanted
+            wanted.is_some()
+                && self
+                    .index
+                    .entry(&self.source, *place)
+                    .map(|entry| entry.channel)
+                    == wanted
         };
         (0..self.index.count).filter(is_wanted)
     }
@@ -204,17 +238,29 @@ impl Bag {
     pub fn message(&self, place: usize) -> RecordedMessage<'_> {
         let entry = self.index.entry(&self.source, place);
         let channel = entry.and_then(|entry| self.channels.get(&entry.channel));
-        let read = |entry: IndexEntry| self.source.read(entry.from..entry.from + u64::from(entry.length)).ok();
+        let read = |entry: IndexEntry| {
+            self.source
+                .read(entry.from..entry.from + u64::from(entry.length))
+                .ok()
+        };
         let bytes = entry.and_then(read).unwrap_or_default();
-        let (number, log_ns, utc_ns) = entry.map_or((0, 0, 0), |entry| (entry.number, entry.log_ns, entry.utc_ns));
+        let (number, log_ns, utc_ns) = entry.map_or((0, 0, 0), |entry| {
+            (entry.number, entry.log_ns, entry.utc_ns)
+        });
         let is_json = channel.is_some_and(|channel| channel.is_json);
         RecordedMessage {
             topic: channel.map_or("", |channel| &channel.topic),
             schema: channel.and_then(|channel| channel.schema.as_deref()),
             number,
-            at: SimTime(i64::try_from(log_ns.saturating_sub(self.began_utc_ns)).unwrap_or(i64::MAX)),
+            at: SimTime(
+                i64::try_from(log_ns.saturating_sub(self.began_utc_ns)).unwrap_or(i64::MAX),
+            ),
             utc_ns,
-            bytes: if is_json { json_string::text_of(bytes) } else { bytes },
+            bytes: if is_json {
+                json_string::text_of(bytes)
+            } else {
+                bytes
+            },
         }
     }
 
@@ -227,7 +273,10 @@ impl Bag {
     pub fn topics(&self) -> BTreeMap<&str, usize> {
         let mut topics = BTreeMap::new();
         for (channel, count) in &self.index.counts {
-            let topic = self.channels.get(channel).map_or("", |channel| channel.topic.as_str());
+            let topic = self
+                .channels
+                .get(channel)
+                .map_or("", |channel| channel.topic.as_str());
             *topics.entry(topic).or_insert(0) += count;
         }
         topics
@@ -249,16 +298,29 @@ impl Found {
         self.index.add(&record, place, chunk);
         match record {
             Record::Schema { header, .. } => {
-                self.schemas.insert(header.id, (header.name, header.encoding));
+                self.schemas
+                    .insert(header.id, (header.name, header.encoding));
             }
             Record::Channel(channel) => {
-                let schema = self.schemas.get(&channel.schema_id).filter(|(_, encoding)| encoding == "ros2msg");
+                let schema = self
+                    .schemas
+                    .get(&channel.schema_id)
+                    .filter(|(_, encoding)| encoding == "ros2msg");
                 let schema = schema.map(|(name, _)| name.clone());
                 let is_json = schema.as_deref() == Some(json_string::SCHEMA);
                 let schema = schema.filter(|_| !is_json);
-                self.channels.insert(channel.id, Channel { topic: channel.topic, schema, is_json });
+                self.channels.insert(
+                    channel.id,
+                    Channel {
+                        topic: channel.topic,
+                        schema,
+                        is_json,
+                    },
+                );
             }
-            Record::Metadata(metadata) => drop(self.metadata.insert(metadata.name, metadata.metadata)),
+            Record::Metadata(metadata) => {
+                drop(self.metadata.insert(metadata.name, metadata.metadata))
+            }
             _ => {}
         }
     }
@@ -266,8 +328,11 @@ impl Found {
     /// The header, after checking its checksum and version.
     fn header(&mut self) -> Result<(Kind, Facts), RecordingError> {
         let foreign = |reason: &str| RecordingError::Foreign(reason.to_owned());
-        let header = Kind::ALL.into_iter().find_map(|kind| Some((kind, self.metadata.remove(kind.header())?)));
-        let (kind, facts) = header.ok_or_else(|| foreign("it has neither the metadata \"squall\" nor \"gateway\""))?;
+        let header = Kind::ALL
+            .into_iter()
+            .find_map(|kind| Some((kind, self.metadata.remove(kind.header())?)));
+        let (kind, facts) = header
+            .ok_or_else(|| foreign("it has neither the metadata \"squall\" nor \"gateway\""))?;
         let version = facts.get(VERSION).cloned().unwrap_or_default();
         if version != primitives::VERSION {
             return Err(RecordingError::Version { found: version });

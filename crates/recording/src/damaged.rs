@@ -26,13 +26,23 @@ impl Damaged {
 
     /// The sum of both counts.
     pub fn and(self, others: &Damaged) -> Damaged {
-        Damaged { count: self.count + others.count, first: self.first.or_else(|| others.first.clone()) }
+        Damaged {
+            count: self.count + others.count,
+            first: self.first.or_else(|| others.first.clone()),
+        }
     }
 
     /// A note for the user if any message is damaged.
     pub fn remark(&self) -> Option<String> {
         let first = self.first.as_ref()?;
-        let messages = if self.count == 1 { "message is" } else { "messages are" };
-        Some(format!("{} {messages} damaged and left out; {first}", self.count))
+        let messages = if self.count == 1 {
+            "message is"
+        } else {
+            "messages are"
+        };
+        Some(format!(
+            "{} {messages} damaged and left out; {first}",
+            self.count
+        ))
     }
 }

@@ -57,7 +57,10 @@ impl Header {
     /// The opening of this game's recording.
     pub fn opening(&self) -> Opening {
         let scenario = &self.info.scenario;
-        let drawn = scenario.drawn.iter().map(|drawn| (drawn.parameter.clone(), drawn.value.to_string()));
+        let drawn = scenario
+            .drawn
+            .iter()
+            .map(|drawn| (drawn.parameter.clone(), drawn.value.to_string()));
         Opening {
             kind: Kind::Game,
             began_utc_ns: self.began_utc_ns,
@@ -71,20 +74,31 @@ impl Header {
                 ("water", json(&self.water)),
             ]),
             more: vec![("drawn", drawn.collect())],
-            teams: scenario.teams.iter().map(|team| team.name.clone()).collect(),
+            teams: scenario
+                .teams
+                .iter()
+                .map(|team| team.name.clone())
+                .collect(),
         }
     }
 
     fn of(bag: &Bag) -> Result<Header, RecordingError> {
-        let scenario: Scenario =
-            serde_json::from_str(bag.fact("scenario")).map_err(|e| RecordingError::not_understood("scenario", e))?;
-        scenario.check_received().map_err(|e| RecordingError::not_understood("scenario", e))?;
+        let scenario: Scenario = serde_json::from_str(bag.fact("scenario"))
+            .map_err(|e| RecordingError::not_understood("scenario", e))?;
+        scenario
+            .check_received()
+            .map_err(|e| RecordingError::not_understood("scenario", e))?;
         Ok(Header {
             commit: bag.fact("commit").to_owned(),
             game: bag.fact("game").to_owned(),
             began_utc_ns: bag.began_utc_ns,
-            info: GameInfo { version: bag.fact("version").to_owned(), pace: bag.fact("pace").to_owned(), scenario },
-            water: serde_json::from_str(bag.fact("water")).map_err(|e| RecordingError::not_understood("water", e))?,
+            info: GameInfo {
+                version: bag.fact("version").to_owned(),
+                pace: bag.fact("pace").to_owned(),
+                scenario,
+            },
+            water: serde_json::from_str(bag.fact("water"))
+                .map_err(|e| RecordingError::not_understood("water", e))?,
         })
     }
 }
@@ -143,11 +157,19 @@ impl Recording {
     /// [`RecordingError`] if it is of another kind, or its header is invalid.
     pub fn of_bag(bag: Bag) -> Result<Recording, RecordingError> {
         if bag.kind != Kind::Game {
-            return Err(RecordingError::Kind { wanted: Kind::Game, found: bag.kind });
+            return Err(RecordingError::Kind {
+                wanted: Kind::Game,
+                found: bag.kind,
+            });
         }
         let header = Header::of(&bag)?;
         let ending = bag.result.as_ref().and_then(Ending::of);
-        Ok(Recording { header, ending, frames: OnceLock::new(), bag })
+        Ok(Recording {
+            header,
+            ending,
+            frames: OnceLock::new(),
+            bag,
+        })
     }
 
     /// The underlying recording.
@@ -185,7 +207,8 @@ impl Recording {
     /// # Panics
     /// If `i` is out of range.
     pub fn frame(&self, i: usize) -> RecordedMessage<'_> {
-        self.bag.message(self.frames.get_or_init(|| self.bag.places(FRAME).collect())[i])
+        self.bag
+            .message(self.frames.get_or_init(|| self.bag.places(FRAME).collect())[i])
     }
 
     /// All frames.

@@ -28,7 +28,9 @@ pub(crate) struct IndexEntry {
 impl IndexEntry {
     /// The entry of a message record with this byte range; none for other records.
     fn of(record: &Record<'_>, place: &Range<u64>) -> Option<IndexEntry> {
-        let Record::Message { header, .. } = record else { return None };
+        let Record::Message { header, .. } = record else {
+            return None;
+        };
         Some(IndexEntry {
             channel: header.channel_id,
             number: header.sequence,
@@ -69,11 +71,19 @@ pub(crate) struct Index {
 impl Index {
     /// Adds a record if it is a message: the next in the file, in the chunk that starts at `chunk`.
     pub(crate) fn add(&mut self, record: &Record<'_>, place: &Range<u64>, chunk: u64) {
-        let Some(entry) = IndexEntry::of(record, place) else { return };
-        let is_full = self.stretches.last().is_none_or(|last| self.count - last.first >= MESSAGES_MAX);
+        let Some(entry) = IndexEntry::of(record, place) else {
+            return;
+        };
+        let is_full = self
+            .stretches
+            .last()
+            .is_none_or(|last| self.count - last.first >= MESSAGES_MAX);
         if is_full || self.chunk != Some(chunk) {
             let from = place.start.saturating_sub(records::MESSAGE_PREFIX);
-            self.stretches.push(Stretch { first: self.count, place: from..place.end });
+            self.stretches.push(Stretch {
+                first: self.count,
+                place: from..place.end,
+            });
         }
         if let Some(last) = self.stretches.last_mut() {
             last.place.end = place.end;
@@ -96,7 +106,10 @@ impl Index {
     /// If `place` is out of range.
     pub(crate) fn entry(&self, source: &Source, place: usize) -> Option<IndexEntry> {
         assert!(place < self.count, "message {place} of {}", self.count);
-        let number = self.stretches.partition_point(|stretch| stretch.first <= place) - 1;
+        let number = self
+            .stretches
+            .partition_point(|stretch| stretch.first <= place)
+            - 1;
         let stretch = &self.stretches[number];
         let mut recent = self.recent.lock();
         let entries = match &*recent {
@@ -114,7 +127,9 @@ impl Index {
 /// The messages in a stretch.
 fn entries_in(source: &Source, place: Range<u64>) -> Vec<IndexEntry> {
     let mut entries = Vec::new();
-    let read = records::records_in(source, place, &mut |record, place| entries.extend(IndexEntry::of(&record, &place)));
+    let read = records::records_in(source, place, &mut |record, place| {
+        entries.extend(IndexEntry::of(&record, &place))
+    });
     // The first read succeeded; if this one fails, the missing messages count as unreadable.
     drop(read);
     entries

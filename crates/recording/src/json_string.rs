@@ -23,7 +23,10 @@ pub(crate) fn wrap(text: &[u8]) -> Vec<u8> {
 /// JSON.
 pub(crate) fn text_of(mut message: Vec<u8>) -> Vec<u8> {
     let text = BEFORE..message.len().saturating_sub(1);
-    if message.get(text.clone()).is_some_and(|text| wrap(text) == message) {
+    if message
+        .get(text.clone())
+        .is_some_and(|text| wrap(text) == message)
+    {
         message.truncate(text.end);
         message.drain(..text.start);
     }
@@ -37,7 +40,11 @@ mod tests {
     #[test]
     fn a_text_is_found_where_it_was_put_and_nothing_else_is_taken_for_one() {
         let message = wrap(b"{}");
-        assert_eq!(message, [0, 1, 0, 0, 3, 0, 0, 0, b'{', b'}', 0], "as CDR lays a string");
+        assert_eq!(
+            message,
+            [0, 1, 0, 0, 3, 0, 0, 0, b'{', b'}', 0],
+            "as CDR lays a string"
+        );
         assert_eq!(text_of(message.clone()), b"{}");
         for (at, other) in [(0, 1), (1, 0), (4, 2), (7, 9), (10, b' ')] {
             let mut damaged = message.clone();

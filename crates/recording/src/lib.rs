@@ -99,7 +99,9 @@ const CHECKSUM: &str = "checksum";
 fn checksum(facts: &Facts) -> String {
     let mut hasher = crc32fast::Hasher::new();
     for (key, value) in facts.iter().filter(|(key, _)| *key != CHECKSUM) {
-        [key, "\0", value, "\0"].iter().for_each(|text| hasher.update(text.as_bytes()));
+        [key, "\0", value, "\0"]
+            .iter()
+            .for_each(|text| hasher.update(text.as_bytes()));
     }
     hasher.finalize().to_string()
 }

@@ -37,7 +37,11 @@ impl NewFile {
     pub fn create(path: &Path) -> Result<NewFile, RecordError> {
         let mut file = File::create_new(path)?;
         // If a later step fails, dropping `new` removes the file.
-        let new = NewFile { path: path.to_owned(), file: Some(file.try_clone()?), is_lent: false };
+        let new = NewFile {
+            path: path.to_owned(),
+            file: Some(file.try_clone()?),
+            is_lent: false,
+        };
         file.write_all(&[0; SPACE_MIN])?;
         file.rewind()?;
         file.set_len(0)?;
@@ -75,7 +79,11 @@ impl NewFile {
         if file.metadata()?.len() > 0 {
             return Err(Error::from(ErrorKind::AlreadyExists).into());
         }
-        Ok(NewFile { path: path.to_owned(), file: Some(file), is_lent: true })
+        Ok(NewFile {
+            path: path.to_owned(),
+            file: Some(file),
+            is_lent: true,
+        })
     }
 
     /// Lends the file to a child process.
@@ -127,10 +135,14 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let stem = stem("strategy_4_vs_3", 7);
         assert!(stem.ends_with("_strategy_4_vs_3_7"), "{stem}");
-        let create = |_| NewFile::create_numbered(folder.path(), &stem).unwrap_or_else(|e| panic!("{e}"));
+        let create =
+            |_| NewFile::create_numbered(folder.path(), &stem).unwrap_or_else(|e| panic!("{e}"));
         let files: Vec<NewFile> = std::thread::scope(|scope| {
             let threads: Vec<_> = (0..8).map(|i| scope.spawn(move || create(i))).collect();
-            threads.into_iter().map(|thread| thread.join().expect("no panic")).collect()
+            threads
+                .into_iter()
+                .map(|thread| thread.join().expect("no panic"))
+                .collect()
         });
         let mut paths: Vec<PathBuf> = files.iter().map(|file| file.path().to_owned()).collect();
         paths.sort();
@@ -144,7 +156,9 @@ mod tests {
     fn a_child_records_into_the_file_of_its_parent_and_nowhere_else() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("game.mcap");
-        let lent = NewFile::create(&path).unwrap_or_else(|e| panic!("{e}")).lend();
+        let lent = NewFile::create(&path)
+            .unwrap_or_else(|e| panic!("{e}"))
+            .lend();
         drop(NewFile::of_child(lent.path()).unwrap_or_else(|e| panic!("{e}")));
         assert!(path.exists(), "the parent removes it");
         drop(lent);

@@ -71,9 +71,17 @@ impl Recorder {
     /// # Panics
     /// Never: a new file is used once.
     pub fn begin(mut file: NewFile, opening: &Opening) -> Result<Recorder, RecordError> {
-        let open = file.file.as_ref().expect("a new file is there until it is used").try_clone()?;
-        let begun =
-            Recorder::over(BufWriter::with_capacity(BUFFER, open), file.path().to_owned(), opening, WAITING_BYTES)?;
+        let open = file
+            .file
+            .as_ref()
+            .expect("a new file is there until it is used")
+            .try_clone()?;
+        let begun = Recorder::over(
+            BufWriter::with_capacity(BUFFER, open),
+            file.path().to_owned(),
+            opening,
+            WAITING_BYTES,
+        )?;
         file.file = None;
         Ok(begun)
     }
@@ -86,7 +94,11 @@ impl Recorder {
     ) -> Result<Recorder, RecordError> {
         let writer = Writer::begin(file, opening)?;
         let (sender, jobs) = sync_channel(WAITING);
-        let queue = Queue { jobs: sender, waiting_max, shared: Arc::default() };
+        let queue = Queue {
+            jobs: sender,
+            waiting_max,
+            shared: Arc::default(),
+        };
         let theirs = Arc::clone(&queue.shared);
         let size_of = path.clone();
         let thread = std::thread::Builder::new().name("recorder".to_owned());
@@ -94,13 +106,20 @@ impl Recorder {
         // wait for or which would miss messages. The game passes copies; `benches/recording.rs`
         // measures the cost.
         let thread = thread.spawn(move || write(writer, &jobs, &theirs, &size_of))?;
-        Ok(Recorder { path, queue, thread: Some(thread) })
+        Ok(Recorder {
+            path,
+            queue,
+            thread: Some(thread),
+        })
     }
 
     /// Records an entry; drops and counts it if the disk is too slow.
     pub fn record(&self, entry: Entry) {
         let is_taken = self.queue.offer(entry, WAITING, self.queue.waiting_max);
-        self.queue.shared.dropped.fetch_add(u64::from(!is_taken), Ordering::Relaxed);
+        self.queue
+            .shared
+            .dropped
+            .fetch_add(u64::from(!is_taken), Ordering::Relaxed);
     }
 
     /// A recorder of optional data into the same file, valid as long as this recorder exists.
@@ -126,18 +145,30 @@ impl Recorder {
     /// Completes the file with this result, to which it adds the number of dropped messages.
     /// Returns the final state.
     pub fn end(mut self, mut result: Facts) -> RecordingState {
-        result.insert("dropped".to_owned(), self.queue.shared.dropped.load(Ordering::Relaxed).to_string());
+        result.insert(
+            "dropped".to_owned(),
+            self.queue
+                .shared
+                .dropped
+                .load(Ordering::Relaxed)
+                .to_string(),
+        );
         self.complete(result);
         self.state()
     }
 
     /// Completes the file, once. Later entries of bulk recorders are dropped.
     fn complete(&mut self, result: Facts) {
-        let Some(thread) = self.thread.take() else { return };
+        let Some(thread) = self.thread.take() else {
+            return;
+        };
         // If the thread has ended, it has already reported the reason.
         drop(self.queue.jobs.send(Job::End(result)));
         if thread.join().is_err() {
-            self.queue.shared.failed.get_or_init(|| "its thread panicked".to_owned());
+            self.queue
+                .shared
+                .failed
+                .get_or_init(|| "its thread panicked".to_owned());
         }
     }
 }
@@ -152,7 +183,10 @@ impl BulkRecorder {
     /// Records an entry; drops and counts it if half of the queue is full.
     pub fn record(&self, entry: Entry) {
         let is_taken = self.0.offer(entry, WAITING / 2, self.0.waiting_max / 2);
-        self.0.shared.bulk_dropped.fetch_add(u64::from(!is_taken), Ordering::Relaxed);
+        self.0
+            .shared
+            .bulk_dropped
+            .fetch_add(u64::from(!is_taken), Ordering::Relaxed);
     }
 }
 
@@ -182,7 +216,12 @@ impl Shared {
 }
 
 /// Writes entries until the end. On a write error, it drops entries and reports the reason.
-fn write<W: Write + Seek>(mut writer: Writer<W>, jobs: &Receiver<Job>, shared: &Shared, path: &Path) {
+fn write<W: Write + Seek>(
+    mut writer: Writer<W>,
+    jobs: &Receiver<Job>,
+    shared: &Shared,
+    path: &Path,
+) {
     let mut flushed = now();
     let update_size = || {
         let size = std::fs::metadata(path).map_or(0, |metadata| metadata.len());
@@ -193,8 +232,14 @@ fn write<W: Write + Seek>(mut writer: Writer<W>, jobs: &Receiver<Job>, shared: &
     let result = loop {
         let written = match jobs.try_recv() {
             Ok(Job::Write(entry, utc_ns)) => {
-                let written = if is_broken() { Ok(()) } else { writer.write(&entry, utc_ns) };
-                shared.dropped.fetch_add(u64::from(is_broken()), Ordering::Relaxed);
+                let written = if is_broken() {
+                    Ok(())
+                } else {
+                    writer.write(&entry, utc_ns)
+                };
+                shared
+                    .dropped
+                    .fetch_add(u64::from(is_broken()), Ordering::Relaxed);
                 shared.written(entry.size());
                 written
             }
@@ -206,7 +251,11 @@ fn write<W: Write + Seek>(mut writer: Writer<W>, jobs: &Receiver<Job>, shared: &
             Err(TryRecvError::Disconnected) => break Facts::new(),
         };
         let is_due = now().duration_since(flushed) >= FLUSH;
-        let written = if is_due && !is_broken() { written.and_then(|()| writer.flush()) } else { written };
+        let written = if is_due && !is_broken() {
+            written.and_then(|()| writer.flush())
+        } else {
+            written
+        };
         if is_due {
             flushed = now();
             update_size();
@@ -222,12 +271,18 @@ fn write<W: Write + Seek>(mut writer: Writer<W>, jobs: &Receiver<Job>, shared: &
 }
 
 /// Lets entries accumulate. The recording threads need not wake this one.
-#[expect(clippy::disallowed_methods, reason = "entries are written in batches, by the clock")]
+#[expect(
+    clippy::disallowed_methods,
+    reason = "entries are written in batches, by the clock"
+)]
 fn rest() {
     std::thread::sleep(GATHER);
 }
 
-#[expect(clippy::disallowed_methods, reason = "writes are timed by the wall clock")]
+#[expect(
+    clippy::disallowed_methods,
+    reason = "writes are timed by the wall clock"
+)]
 fn now() -> Instant {
     Instant::now()
 }
@@ -256,7 +311,11 @@ mod tests {
         fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
             let mut written = self.0.lock().expect("nobody panics");
             let room = self.1.saturating_sub(written.get_ref().len());
-            if room == 0 { Err(ErrorKind::StorageFull.into()) } else { written.write(&bytes[..bytes.len().min(room)]) }
+            if room == 0 {
+                Err(ErrorKind::StorageFull.into())
+            } else {
+                written.write(&bytes[..bytes.len().min(room)])
+            }
         }
         fn flush(&mut self) -> std::io::Result<()> {
             Ok(())
@@ -270,50 +329,88 @@ mod tests {
     }
 
     fn opening() -> Opening {
-        Opening { kind: Kind::Game, began_utc_ns: 0, facts: Facts::new(), more: vec![], teams: vec![] }
+        Opening {
+            kind: Kind::Game,
+            began_utc_ns: 0,
+            facts: Facts::new(),
+            more: vec![],
+            teams: vec![],
+        }
     }
 
     #[test]
     fn a_full_disk_is_told_and_everything_after_it_counted() {
         let full = |room| Recorder::over(Disk::of(room), PathBuf::new(), &opening(), WAITING_BYTES);
-        assert!(full(4).is_err_and(|e| e.to_string().contains("no storage space")), "not even the beginning fits");
+        assert!(
+            full(4).is_err_and(|e| e.to_string().contains("no storage space")),
+            "not even the beginning fits"
+        );
         let recorder = full(20_000).expect("it begins");
         (0..2000).for_each(|_| recorder.record(Entry::Decision(Box::default())));
         let state = recorder.end(Facts::new());
-        assert!(state.failed.is_some_and(|reason| reason.contains("no storage space")), "{:?}", state.dropped);
+        assert!(
+            state
+                .failed
+                .is_some_and(|reason| reason.contains("no storage space")),
+            "{:?}",
+            state.dropped
+        );
     }
 
     #[test]
     fn a_slow_disk_loses_the_newest_data_and_does_not_delay_the_game() {
         let disk = Disk::of(usize::MAX);
-        let recorder = Recorder::over(disk.clone(), PathBuf::new(), &opening(), 100_000).expect("it begins");
+        let recorder =
+            Recorder::over(disk.clone(), PathBuf::new(), &opening(), 100_000).expect("it begins");
         let stuck = disk.0.lock().expect("nobody panics");
         let mut recorded = 0;
         while recorder.state().dropped < 3 {
-            let stamp = Stamp { valid_ns: SimTime(recorded), seq: recorded as u64, version: Frame::VERSION };
-            let frame = Frame { stamp, ..Frame::default() }.into();
-            recorder.record(Entry::Decision(Box::new(Decision { frame, ..Decision::default() })));
+            let stamp = Stamp {
+                valid_ns: SimTime(recorded),
+                seq: recorded as u64,
+                version: Frame::VERSION,
+            };
+            let frame = Frame {
+                stamp,
+                ..Frame::default()
+            }
+            .into();
+            recorder.record(Entry::Decision(Box::new(Decision {
+                frame,
+                ..Decision::default()
+            })));
             recorded += 1;
         }
         drop(stuck);
         let state = recorder.end(Facts::new());
         assert_eq!((state.dropped, state.failed), (3, None));
-        let bag = Bag::of(disk.0.lock().expect("nobody panics").get_ref().clone()).expect("a recording");
-        assert_eq!(bag.result.as_ref().map(|result| result["dropped"].as_str()), Some("3"));
+        let bag =
+            Bag::of(disk.0.lock().expect("nobody panics").get_ref().clone()).expect("a recording");
+        assert_eq!(
+            bag.result.as_ref().map(|result| result["dropped"].as_str()),
+            Some("3")
+        );
         for topic in [FRAME, INPUTS] {
             assert_eq!(bag.on(topic).count() + 3, recorded as usize, "{topic}");
         }
     }
 
     fn message(topic: &str, size: usize) -> Entry {
-        Entry::Message { topic: topic.to_owned(), schema: None, bytes: vec![b'1'; size], at: SimTime::ZERO }
+        Entry::Message {
+            topic: topic.to_owned(),
+            schema: None,
+            bytes: vec![b'1'; size],
+            at: SimTime::ZERO,
+        }
     }
 
     #[test]
-    fn bulk_leaves_room_for_everything_else_and_the_file_is_completed_though_somebody_still_records_bulk() {
+    fn bulk_leaves_room_for_everything_else_and_the_file_is_completed_though_somebody_still_records_bulk()
+     {
         for (size, waiting_max) in [(1000, 100_000), (1, WAITING_BYTES)] {
             let disk = Disk::of(usize::MAX);
-            let recorder = Recorder::over(disk.clone(), PathBuf::new(), &opening(), waiting_max).expect("it begins");
+            let recorder = Recorder::over(disk.clone(), PathBuf::new(), &opening(), waiting_max)
+                .expect("it begins");
             let stuck = disk.0.lock().expect("nobody panics");
             let bulk = recorder.bulk();
             while recorder.bulk_dropped() < 1000 {
@@ -324,8 +421,13 @@ mod tests {
             drop(stuck);
             assert_eq!(recorder.end(Facts::new()).failed, None);
             bulk.record(message("payload/camera", size));
-            let bag = Bag::of(disk.0.lock().expect("nobody panics").get_ref().clone()).expect("a recording");
-            assert_eq!((bag.on("link/blue_one").count(), bag.is_cut), (40, false), "pieces of {size} bytes");
+            let bag = Bag::of(disk.0.lock().expect("nobody panics").get_ref().clone())
+                .expect("a recording");
+            assert_eq!(
+                (bag.on("link/blue_one").count(), bag.is_cut),
+                (40, false),
+                "pieces of {size} bytes"
+            );
             assert!(bag.on("payload/camera").count() > 40);
         }
     }

@@ -39,7 +39,10 @@ pub(crate) fn for_each_record(
     mut take: impl FnMut(Record<'_>, Range<u64>, u64),
 ) -> Result<Extent, RecordingError> {
     const MAGIC: usize = mcap::MAGIC.len();
-    if source.array::<MAGIC>(0)?.is_none_or(|magic| magic != *mcap::MAGIC) {
+    if source
+        .array::<MAGIC>(0)?
+        .is_none_or(|magic| magic != *mcap::MAGIC)
+    {
         return Err(RecordingError::Foreign("it is not an MCAP file".to_owned()));
     }
     let end = source.length;
@@ -55,7 +58,9 @@ pub(crate) fn for_each_record(
                 damage.push(inner.clone());
             }
             let chunk = inner.start;
-            match records_in(source, inner, &mut |record, place| take(record, place, chunk)) {
+            match records_in(source, inner, &mut |record, place| {
+                take(record, place, chunk)
+            }) {
                 Err(RecordingError::Foreign(_)) if is_damaged => {}
                 other => other?,
             }
@@ -66,7 +71,9 @@ pub(crate) fn for_each_record(
                     damage.push(0..place);
                 }
             }
-            give(source, opcode, body.clone(), &mut |record, place| take(record, place, 0))?;
+            give(source, opcode, body.clone(), &mut |record, place| {
+                take(record, place, 0)
+            })?;
         }
         place = body.end;
         if !is_cut {
@@ -84,11 +91,19 @@ fn agrees(source: &Source, checksum_at: u64, place: Range<u64>) -> Result<bool, 
 }
 
 /// Opcode and body of the record at `place`; the body may extend beyond the available bytes.
-fn record_at(source: &Source, place: u64, end: u64) -> Result<Option<(u8, Range<u64>)>, RecordingError> {
-    let Some(from) = place.checked_add(PREFIX).filter(|from| *from <= end) else { return Ok(None) };
+fn record_at(
+    source: &Source,
+    place: u64,
+    end: u64,
+) -> Result<Option<(u8, Range<u64>)>, RecordingError> {
+    let Some(from) = place.checked_add(PREFIX).filter(|from| *from <= end) else {
+        return Ok(None);
+    };
     let opcode = source.array::<1>(place)?;
     let length = source.array(place + 1)?.map(u64::from_le_bytes);
-    let body = length.and_then(|length| from.checked_add(length)).map(|end| from..end);
+    let body = length
+        .and_then(|length| from.checked_add(length))
+        .map(|end| from..end);
     Ok(opcode.map(|[opcode]| opcode).zip(body))
 }
 
@@ -99,7 +114,9 @@ pub(crate) fn records_in(
     take: &mut impl FnMut(Record<'_>, Range<u64>),
 ) -> Result<(), RecordingError> {
     let mut place = inner.start;
-    while let Some((opcode, body)) = record_at(source, place, inner.end)?.filter(|(_, body)| body.end <= inner.end) {
+    while let Some((opcode, body)) =
+        record_at(source, place, inner.end)?.filter(|(_, body)| body.end <= inner.end)
+    {
         place = body.end;
         give(source, opcode, body, take)?;
     }
@@ -113,7 +130,10 @@ fn give(
     take: &mut impl FnMut(Record<'_>, Range<u64>),
 ) -> Result<(), RecordingError> {
     let damaged = |reason: &dyn Display| {
-        RecordingError::Foreign(format!("the record at byte {} is damaged: {reason}", body.start))
+        RecordingError::Foreign(format!(
+            "the record at byte {} is damaged: {reason}",
+            body.start
+        ))
     };
     // Per opcode: the texts it contains, the bytes before them, and whether a list of texts
     // follows. Other opcodes are ignored.
@@ -126,9 +146,15 @@ fn give(
     };
     let length = body.end - body.start;
     if length > RECORD_MAX {
-        return Err(damaged(&format_args!("it is {length} bytes long, expected at most {RECORD_MAX}")));
+        return Err(damaged(&format_args!(
+            "it is {length} bytes long, expected at most {RECORD_MAX}"
+        )));
     }
-    let bytes_from = if opcode == op::MESSAGE { body.end.min(body.start + MESSAGE_HEADER) } else { body.end };
+    let bytes_from = if opcode == op::MESSAGE {
+        body.end.min(body.start + MESSAGE_HEADER)
+    } else {
+        body.end
+    };
     let content = source.read(body.start..bytes_from)?;
     // The library allocates whatever a length field says before checking that the bytes exist.
     if texts_of(&content, fixed, texts, has_list).is_none() {
@@ -145,7 +171,11 @@ fn texts_of(content: &[u8], fixed: usize, texts: usize, has_list: bool) -> Optio
     for _ in 0..texts {
         (_, rest) = text(rest)?;
     }
-    let (mut list, _) = if has_list { text(rest)? } else { (&[][..], rest) };
+    let (mut list, _) = if has_list {
+        text(rest)?
+    } else {
+        (&[][..], rest)
+    };
     while !list.is_empty() {
         (_, list) = text(list)?;
     }
@@ -165,13 +195,19 @@ fn chunk_records(source: &Source, body: &Range<u64>) -> Result<Range<u64>, Recor
     /// Longest name shown in a message.
     const NAME_MAX: u64 = 40;
     let end = source.length;
-    let name_length = source.array(body.start + NUMBERS)?.map(|length| u64::from(u32::from_le_bytes(length)));
+    let name_length = source
+        .array(body.start + NUMBERS)?
+        .map(|length| u64::from(u32::from_le_bytes(length)));
     let name_at = body.start + NUMBERS + 4;
-    let Some(name_length) = name_length.filter(|length| name_at + length <= end) else { return Ok(end..end) };
+    let Some(name_length) = name_length.filter(|length| name_at + length <= end) else {
+        return Ok(end..end);
+    };
     if name_length > 0 {
         let name = source.read(name_at..name_at + name_length.min(NAME_MAX))?;
         let name = String::from_utf8_lossy(&name);
-        return Err(RecordingError::Foreign(format!("it is compressed ({name}); recordings of Squall are not")));
+        return Err(RecordingError::Foreign(format!(
+            "it is compressed ({name}); recordings of Squall are not"
+        )));
     }
     let from = name_at + name_length + 8;
     let end = body.end.min(end);

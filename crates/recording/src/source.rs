@@ -49,13 +49,24 @@ impl Source {
     }
 
     fn new(bytes: Box<dyn Bytes>, length: u64) -> Source {
-        Source { reader: Mutex::new(Reader { bytes: BufReader::with_capacity(BUFFER, bytes), at: 0 }), length }
+        Source {
+            reader: Mutex::new(Reader {
+                bytes: BufReader::with_capacity(BUFFER, bytes),
+                at: 0,
+            }),
+            length,
+        }
     }
 
     pub(crate) fn read(&self, place: Range<u64>) -> Result<Vec<u8>, Error> {
         // Allocate only for bytes that exist.
-        let length = place.end.checked_sub(place.start).filter(|_| place.end <= self.length);
-        let length = length.and_then(|length| usize::try_from(length).ok()).ok_or(ErrorKind::UnexpectedEof)?;
+        let length = place
+            .end
+            .checked_sub(place.start)
+            .filter(|_| place.end <= self.length);
+        let length = length
+            .and_then(|length| usize::try_from(length).ok())
+            .ok_or(ErrorKind::UnexpectedEof)?;
         let mut bytes = vec![0; length];
         self.fill(place.start, &mut bytes)?;
         Ok(bytes)
@@ -77,7 +88,9 @@ impl Source {
         let mut at = place.start;
         let mut piece = [0; 16 << 10];
         while at < place.end {
-            let length = usize::try_from(place.end - at).unwrap_or(usize::MAX).min(piece.len());
+            let length = usize::try_from(place.end - at)
+                .unwrap_or(usize::MAX)
+                .min(piece.len());
             self.fill(at, &mut piece[..length])?;
             hasher.update(&piece[..length]);
             at += length as u64;
@@ -114,16 +127,37 @@ mod tests {
     fn any_place_is_read_in_any_order() {
         let all: Vec<u8> = (0..300_000_u32).map(|i| (i * 7 / 3) as u8).collect();
         let source = Source::of(all.clone());
-        for place in [0..10, 299_990..300_000, 5..70_000, 0..300_000, 65_535..65_537, 3..3] {
+        for place in [
+            0..10,
+            299_990..300_000,
+            5..70_000,
+            0..300_000,
+            65_535..65_537,
+            3..3,
+        ] {
             let want = &all[place.start as usize..place.end as usize];
-            assert_eq!(source.read(place.clone()).expect("it is there"), want, "{place:?}");
-            assert_eq!(source.checksum(place).expect("it is there"), crc32fast::hash(want));
+            assert_eq!(
+                source.read(place.clone()).expect("it is there"),
+                want,
+                "{place:?}"
+            );
+            assert_eq!(
+                source.checksum(place).expect("it is there"),
+                crc32fast::hash(want)
+            );
         }
-        assert_eq!(source.array(299_998).expect("no error"), Some([all[299_998], all[299_999]]));
+        assert_eq!(
+            source.array(299_998).expect("no error"),
+            Some([all[299_998], all[299_999]])
+        );
         assert_eq!(source.array::<3>(299_998).expect("no error"), None);
         for beyond in [299_999..300_001, 400_000..400_001, 0..u64::MAX] {
             assert!(source.read(beyond).is_err());
         }
-        assert_eq!(source.read(1..3).expect("it is there"), all[1..3], "an error before does no harm");
+        assert_eq!(
+            source.read(1..3).expect("it is there"),
+            all[1..3],
+            "an error before does no harm"
+        );
     }
 }

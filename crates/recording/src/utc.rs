@@ -5,7 +5,9 @@ use time::UtcDateTime;
 
 /// Three-letter abbreviations of the weekdays from Monday on, and of the months.
 const DAYS: [&str; 7] = ["Mon", "Tue", "Wed", "Thu", "Fri", "Sat", "Sun"];
-const MONTHS: [&str; 12] = ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"];
+const MONTHS: [&str; 12] = [
+    "Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec",
+];
 
 /// The current time, ns since 1970; 0 if the host's clock is earlier than that.
 pub fn now_ns() -> u64 {
@@ -14,9 +16,20 @@ pub fn now_ns() -> u64 {
 
 /// Year, month, day, and hour, minute, second.
 fn parts(utc_ns: u64) -> (UtcDateTime, [u32; 6]) {
-    let at = UtcDateTime::from_unix_timestamp_nanos(i128::from(utc_ns)).unwrap_or(UtcDateTime::UNIX_EPOCH);
+    let at = UtcDateTime::from_unix_timestamp_nanos(i128::from(utc_ns))
+        .unwrap_or(UtcDateTime::UNIX_EPOCH);
     let year = u32::try_from(at.year()).unwrap_or(0);
-    (at, [year, u8::from(at.month()).into(), at.day().into(), at.hour().into(), at.minute().into(), at.second().into()])
+    (
+        at,
+        [
+            year,
+            u8::from(at.month()).into(),
+            at.day().into(),
+            at.hour().into(),
+            at.minute().into(),
+            at.second().into(),
+        ],
+    )
 }
 
 /// Format for file names: `20261121T222000Z`.
@@ -46,12 +59,30 @@ mod tests {
     #[test]
     fn a_time_has_its_date() {
         for (utc_s, want, want_ctime, want_stamp) in [
-            (0, "1970-01-01 00:00:00 UTC", "Thu Jan  1 00:00:00 1970", "19700101T000000Z"),
-            (1_700_000_000, "2023-11-14 22:13:20 UTC", "Tue Nov 14 22:13:20 2023", "20231114T221320Z"),
-            (1_709_164_800, "2024-02-29 00:00:00 UTC", "Thu Feb 29 00:00:00 2024", "20240229T000000Z"),
+            (
+                0,
+                "1970-01-01 00:00:00 UTC",
+                "Thu Jan  1 00:00:00 1970",
+                "19700101T000000Z",
+            ),
+            (
+                1_700_000_000,
+                "2023-11-14 22:13:20 UTC",
+                "Tue Nov 14 22:13:20 2023",
+                "20231114T221320Z",
+            ),
+            (
+                1_709_164_800,
+                "2024-02-29 00:00:00 UTC",
+                "Thu Feb 29 00:00:00 2024",
+                "20240229T000000Z",
+            ),
         ] {
             let utc_ns = utc_s * 1_000_000_000;
-            assert_eq!([text(utc_ns), ctime(utc_ns), file_stamp(utc_ns)], [want, want_ctime, want_stamp]);
+            assert_eq!(
+                [text(utc_ns), ctime(utc_ns), file_stamp(utc_ns)],
+                [want, want_ctime, want_stamp]
+            );
         }
     }
 }

@@ -1,7 +1,8 @@
 //! Encodes entries into a recording.
 
 use crate::{
-    BEGAN, CHECKSUM, FRAME, Facts, INPUTS, Kind, RESULT, RecordError, VERSION, checksum, json_string, picture,
+    BEGAN, CHECKSUM, FRAME, Facts, INPUTS, Kind, RESULT, RecordError, VERSION, checksum,
+    json_string, picture,
 };
 use mcap::records::{MessageHeader, Metadata};
 use messages::input::{Input, Inputs};
@@ -53,9 +54,18 @@ impl Entry {
     pub(crate) fn size(&self) -> usize {
         match self {
             Entry::Decision(decision) => {
-                let Decision { frame, pictures, inputs } = decision.as_ref();
-                let boats = pictures.iter().map(|picture| size_of_val(&*picture.own) + size_of_val(&*picture.contacts));
-                size_of::<Decision>() + size_of_val(&*frame.vehicles) + size_of_val(&**inputs) + boats.sum::<usize>()
+                let Decision {
+                    frame,
+                    pictures,
+                    inputs,
+                } = decision.as_ref();
+                let boats = pictures
+                    .iter()
+                    .map(|picture| size_of_val(&*picture.own) + size_of_val(&*picture.contacts));
+                size_of::<Decision>()
+                    + size_of_val(&*frame.vehicles)
+                    + size_of_val(&**inputs)
+                    + boats.sum::<usize>()
             }
             Entry::Message { topic, bytes, .. } => size_of::<Entry>() + topic.len() + bytes.len(),
         }
@@ -91,25 +101,47 @@ impl<W: Write + Seek> Writer<W> {
     /// # Errors
     /// [`RecordError`] if the file cannot be written.
     pub fn begin(file: W, opening: &Opening) -> Result<Writer<W>, RecordError> {
-        let options = mcap::WriteOptions::new().profile("ros2").library(format!("squall {}", primitives::VERSION));
+        let options = mcap::WriteOptions::new()
+            .profile("ros2")
+            .library(format!("squall {}", primitives::VERSION));
         // A chunk is written only when complete, so the file on disk never needs repair. With
         // compression (zlib), a 2v2 game would be a quarter to half the size. But that needs C, and
         // a truncated file would lose everything from the cut chunk on.
-        let options = options.compression(None).chunk_size(Some(CHUNK)).disable_seeking(true);
+        let options = options
+            .compression(None)
+            .chunk_size(Some(CHUNK))
+            .disable_seeking(true);
         let mut mcap = options.create(file)?;
-        let Opening { kind, began_utc_ns, facts, more, teams } = opening.clone();
+        let Opening {
+            kind,
+            began_utc_ns,
+            facts,
+            more,
+            teams,
+        } = opening.clone();
         let mut header = facts;
-        header.entry(VERSION.to_owned()).or_insert_with(|| primitives::VERSION.to_owned());
+        header
+            .entry(VERSION.to_owned())
+            .or_insert_with(|| primitives::VERSION.to_owned());
         header.insert(BEGAN.to_owned(), began_utc_ns.to_string());
         // The header has its own checksum: a truncated file lacks the one over the whole file, and
         // a header is accepted as a whole or not at all.
         header.insert(CHECKSUM.to_owned(), checksum(&header));
         for (name, facts) in std::iter::once((kind.header(), header)).chain(more) {
-            mcap.write_metadata(&Metadata { name: name.to_owned(), metadata: facts })?;
+            mcap.write_metadata(&Metadata {
+                name: name.to_owned(),
+                metadata: facts,
+            })?;
         }
         mcap.flush()?;
         let pictures = teams.iter().map(|team| picture(team)).collect();
-        Ok(Writer { mcap, began_utc_ns, pictures, channels: BTreeMap::new(), is_dirty: false })
+        Ok(Writer {
+            mcap,
+            began_utc_ns,
+            pictures,
+            channels: BTreeMap::new(),
+            is_dirty: false,
+        })
     }
 
     /// Records an entry at this time (UTC, ns).
@@ -120,10 +152,24 @@ impl<W: Write + Seek> Writer<W> {
         self.is_dirty = true;
         match entry {
             Entry::Decision(decision) => self.decision(decision, utc_ns),
-            Entry::Message { topic, schema: Some(schema), bytes, at } => self.put(topic, schema, *at, utc_ns, bytes),
-            Entry::Message { topic, schema: None, bytes, at } => {
-                self.put(topic, json_string::SCHEMA, *at, utc_ns, &json_string::wrap(bytes))
-            }
+            Entry::Message {
+                topic,
+                schema: Some(schema),
+                bytes,
+                at,
+            } => self.put(topic, schema, *at, utc_ns, bytes),
+            Entry::Message {
+                topic,
+                schema: None,
+                bytes,
+                at,
+            } => self.put(
+                topic,
+                json_string::SCHEMA,
+                *at,
+                utc_ns,
+                &json_string::wrap(bytes),
+            ),
         }
     }
 
@@ -144,7 +190,10 @@ impl<W: Write + Seek> Writer<W> {
     /// [`RecordError`] if the file cannot be written.
     pub fn end(mut self, result: Facts) -> Result<W, RecordError> {
         if !result.is_empty() {
-            self.mcap.write_metadata(&Metadata { name: RESULT.to_owned(), metadata: result })?;
+            self.mcap.write_metadata(&Metadata {
+                name: RESULT.to_owned(),
+                metadata: result,
+            })?;
         }
         self.mcap.finish()?;
         Ok(self.mcap.into_inner())
@@ -152,11 +201,22 @@ impl<W: Write + Seek> Writer<W> {
 
     fn decision(&mut self, decision: &Decision, utc_ns: u64) -> Result<(), RecordError> {
         for picture in &decision.pictures {
-            let topic = self.pictures.get(usize::from(picture.team)).cloned().unwrap_or_default();
+            let topic = self
+                .pictures
+                .get(usize::from(picture.team))
+                .cloned()
+                .unwrap_or_default();
             self.put_message(&topic, picture, picture.stamp, utc_ns)?;
         }
-        let stamp = Stamp { version: Inputs::VERSION, ..decision.frame.stamp };
-        let inputs = decision.inputs.iter().map(|input| (*input).into()).collect();
+        let stamp = Stamp {
+            version: Inputs::VERSION,
+            ..decision.frame.stamp
+        };
+        let inputs = decision
+            .inputs
+            .iter()
+            .map(|input| (*input).into())
+            .collect();
         // Inputs as well as their results: a game, including a field game with real boats, can then
         // be simulated again with another version or in a debugger.
         self.put_message(INPUTS, &Inputs { stamp, inputs }, stamp, utc_ns)?;
@@ -170,10 +230,23 @@ impl<W: Write + Seek> Writer<W> {
         stamp: Stamp,
         utc_ns: u64,
     ) -> Result<(), RecordError> {
-        self.put(topic, M::SCHEMA, stamp.valid_ns, utc_ns, &codec::encode(message))
+        self.put(
+            topic,
+            M::SCHEMA,
+            stamp.valid_ns,
+            utc_ns,
+            &codec::encode(message),
+        )
     }
 
-    fn put(&mut self, topic: &str, schema: &str, at: SimTime, utc_ns: u64, bytes: &[u8]) -> Result<(), RecordError> {
+    fn put(
+        &mut self,
+        topic: &str,
+        schema: &str,
+        at: SimTime,
+        utc_ns: u64,
+        bytes: &[u8],
+    ) -> Result<(), RecordError> {
         let (channel_id, sequence) = match self.channels.get_mut(topic) {
             Some((id, count)) => {
                 *count = count.wrapping_add(1);
@@ -187,8 +260,15 @@ impl<W: Write + Seek> Writer<W> {
         };
         // Tools plot over simulated time: by the wall clock, a lockstep game of ten minutes that
         // took a second and a half would be a spike. The wall-clock time is `publish_time`.
-        let log_time = self.began_utc_ns.saturating_add(u64::try_from(at.0).unwrap_or(0));
-        let header = MessageHeader { channel_id, sequence, log_time, publish_time: utc_ns };
+        let log_time = self
+            .began_utc_ns
+            .saturating_add(u64::try_from(at.0).unwrap_or(0));
+        let header = MessageHeader {
+            channel_id,
+            sequence,
+            log_time,
+            publish_time: utc_ns,
+        };
         Ok(self.mcap.write_to_known_channel(&header, bytes)?)
     }
 
@@ -198,7 +278,9 @@ impl<W: Write + Seek> Writer<W> {
             json_string::SCHEMA => json_string::DEFINITION.to_owned(),
             ours => ros::full_definition(ours).unwrap_or_default(),
         };
-        let schema_id = self.mcap.add_schema(schema, "ros2msg", definition.as_bytes())?;
+        let schema_id = self
+            .mcap
+            .add_schema(schema, "ros2msg", definition.as_bytes())?;
         // The profile requires the offered quality of service: there was none.
         let qos = BTreeMap::from([("offered_qos_profiles".to_owned(), "[]".to_owned())]);
         Ok(self.mcap.add_channel(schema_id, topic, "cdr", &qos)?)

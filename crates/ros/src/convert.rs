@@ -1,9 +1,10 @@
 //! Squall's frames and REP 103: north-east-down with headings clockwise from north becomes
-//! east-north-up with yaw anticlockwise from east. Bodies with starboard and down become bodies with
-//! port and up (`base_link`).
+//! east-north-up with yaw anticlockwise from east. Bodies with starboard and down become bodies
+//! with port and up (`base_link`).
 
 use crate::message::{
-    Header, Imu, NavSatFix, Odometry, Pose, Quaternion, TransformStamped, Twist, TwistStamped, Vector3,
+    Header, Imu, NavSatFix, Odometry, Pose, Quaternion, TransformStamped, Twist, TwistStamped,
+    Vector3,
 };
 use messages::picture::{self, Nav, OwnBoat};
 use messages::{Stamp, VehicleTruth};
@@ -38,17 +39,42 @@ impl Motion {
     pub fn measured(stamp: Stamp, boat: &OwnBoat) -> Motion {
         let (at, nav) = (stamp.valid_ns, boat.nav);
         // A boat does not measure its attitude: level is the estimate that belongs to this picture.
-        Motion { at, fix: boat.fix_ns, nav, heave_m: 0.0, roll_rad: 0.0, pitch_rad: 0.0, imu: Some(boat.imu) }
+        Motion {
+            at,
+            fix: boat.fix_ns,
+            nav,
+            heave_m: 0.0,
+            roll_rad: 0.0,
+            pitch_rad: 0.0,
+            imu: Some(boat.imu),
+        }
     }
 
     /// The truth.
     pub fn truth(stamp: Stamp, boat: &VehicleTruth) -> Motion {
-        let VehicleTruth { nav, heave_m, roll_rad, pitch_rad, .. } = *boat;
-        Motion { at: stamp.valid_ns, fix: stamp.valid_ns, nav, heave_m, roll_rad, pitch_rad, imu: None }
+        let VehicleTruth {
+            nav,
+            heave_m,
+            roll_rad,
+            pitch_rad,
+            ..
+        } = *boat;
+        Motion {
+            at: stamp.valid_ns,
+            fix: stamp.valid_ns,
+            nav,
+            heave_m,
+            roll_rad,
+            pitch_rad,
+            imu: None,
+        }
     }
 
     fn header(&self, frame: &str) -> Header {
-        Header { stamp: self.at.into(), frame_id: frame.to_owned() }
+        Header {
+            stamp: self.at.into(),
+            frame_id: frame.to_owned(),
+        }
     }
 
     /// Position and orientation of `base_link` in [`MAP`].
@@ -64,44 +90,93 @@ impl Motion {
 
     /// `nav_msgs/Odometry`: the pose in [`MAP`], the twist in `base_link`.
     pub fn odometry(&self, base_link: &str) -> Odometry {
-        let Nav { surge_m_s, sway_m_s, yaw_rate_rad_s, .. } = self.nav;
-        let twist = Twist { linear: [surge_m_s, -sway_m_s, 0.0], angular: [0.0, 0.0, -yaw_rate_rad_s] };
+        let Nav {
+            surge_m_s,
+            sway_m_s,
+            yaw_rate_rad_s,
+            ..
+        } = self.nav;
+        let twist = Twist {
+            linear: [surge_m_s, -sway_m_s, 0.0],
+            angular: [0.0, 0.0, -yaw_rate_rad_s],
+        };
         let header = self.header(MAP);
-        Odometry { header, child_frame_id: base_link.to_owned(), pose: self.pose(), twist, ..Odometry::default() }
+        Odometry {
+            header,
+            child_frame_id: base_link.to_owned(),
+            pose: self.pose(),
+            twist,
+            ..Odometry::default()
+        }
     }
 
     /// The transform from [`MAP`] to `base_link`.
     pub fn transform(&self, base_link: &str) -> TransformStamped {
         let header = self.header(MAP);
-        TransformStamped { header, child_frame_id: base_link.to_owned(), transform: self.pose() }
+        TransformStamped {
+            header,
+            child_frame_id: base_link.to_owned(),
+            transform: self.pose(),
+        }
     }
 
     /// `geometry_msgs/TwistStamped`: the velocity over the ground in [`MAP`].
     pub fn velocity(&self) -> TwistStamped {
         let angular = [0.0, 0.0, -self.nav.yaw_rate_rad_s];
-        TwistStamped { header: self.header(MAP), twist: Twist { linear: enu(self.nav.velocity_m_s()), angular } }
+        TwistStamped {
+            header: self.header(MAP),
+            twist: Twist {
+                linear: enu(self.nav.velocity_m_s()),
+                angular,
+            },
+        }
     }
 
     /// `sensor_msgs/NavSatFix` of this position, with the time of the fix.
     pub fn fix(&self, base_link: &str, LatLon { lat_deg, lon_deg }: LatLon) -> NavSatFix {
         const GPS: u16 = 1;
-        let header = Header { stamp: self.fix.into(), frame_id: base_link.to_owned() };
-        NavSatFix { header, service: GPS, latitude: lat_deg, longitude: lon_deg, ..NavSatFix::default() }
+        let header = Header {
+            stamp: self.fix.into(),
+            frame_id: base_link.to_owned(),
+        };
+        NavSatFix {
+            header,
+            service: GPS,
+            latitude: lat_deg,
+            longitude: lon_deg,
+            ..NavSatFix::default()
+        }
     }
 
     /// `sensor_msgs/Imu` in `base_link`. A covariance that begins with -1 marks a missing part.
     pub fn imu(&self, base_link: &str) -> Imu {
         let missing = [-1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
         let orientation = self.pose().orientation;
-        let imu = Imu { header: self.header(base_link), orientation, ..Imu::default() };
+        let imu = Imu {
+            header: self.header(base_link),
+            orientation,
+            ..Imu::default()
+        };
         let Some(measured) = self.imu else {
             let angular_velocity = [0.0, 0.0, -self.nav.yaw_rate_rad_s];
-            return Imu { angular_velocity, linear_acceleration_covariance: missing, ..imu };
+            return Imu {
+                angular_velocity,
+                linear_acceleration_covariance: missing,
+                ..imu
+            };
         };
         let flu = |ahead, starboard: f64, down: f64| [ahead, -starboard, -down];
         Imu {
-            angular_velocity: flu(measured.roll_rate_rad_s, measured.pitch_rate_rad_s, measured.yaw_rate_rad_s),
-            linear_acceleration: flu(measured.ahead_m_s2, measured.starboard_m_s2, measured.down_m_s2),
+            angular_velocity: flu(
+                measured.roll_rate_rad_s,
+                measured.pitch_rate_rad_s,
+                measured.yaw_rate_rad_s,
+            ),
+            linear_acceleration: flu(
+                measured.ahead_m_s2,
+                measured.starboard_m_s2,
+                measured.down_m_s2,
+            ),
             ..imu
         }
     }
@@ -114,8 +189,14 @@ pub fn enu(vector: Ned) -> Vector3 {
 
 /// The orientation after a roll about x, a pitch about y and a yaw about z, in fixed axes.
 pub fn quaternion(roll_rad: f64, pitch_rad: f64, yaw_rad: f64) -> Quaternion {
-    let [(sr, cr), (sp, cp), (sy, cy)] = [roll_rad, pitch_rad, yaw_rad].map(|angle| math::sin_cos(angle / 2.0));
-    [sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy, cr * cp * sy - sr * sp * cy, cr * cp * cy + sr * sp * sy]
+    let [(sr, cr), (sp, cp), (sy, cy)] =
+        [roll_rad, pitch_rad, yaw_rad].map(|angle| math::sin_cos(angle / 2.0));
+    [
+        sr * cp * cy - cr * sp * sy,
+        cr * sp * cy + sr * cp * sy,
+        cr * cp * sy - sr * sp * cy,
+        cr * cp * cy + sr * sp * sy,
+    ]
 }
 
 #[cfg(test)]
@@ -135,18 +216,33 @@ mod tests {
         };
         let (roll_rad, pitch_rad) = (5_f64.to_radians(), 10_f64.to_radians());
         let at = SimTime(12_250_000_000);
-        Motion { at, fix: SimTime(12_000_000_000), nav, heave_m: 0.2, roll_rad, pitch_rad, imu: None }
+        Motion {
+            at,
+            fix: SimTime(12_000_000_000),
+            nav,
+            heave_m: 0.2,
+            roll_rad,
+            pitch_rad,
+            imu: None,
+        }
     }
 
     fn close(got: Vector3, want: [f64; 3]) {
-        let differs = got.iter().zip(want).any(|(got, want)| (got - want).abs() > 1e-9);
+        let differs = got
+            .iter()
+            .zip(want)
+            .any(|(got, want)| (got - want).abs() > 1e-9);
         assert!(!differs, "{got:?}, expected {want:?}");
     }
 
     /// `vector`, turned by the quaternion.
     fn turned([qx, qy, qz, qw]: Quaternion, vector: Vector3) -> Vector3 {
         let cross = |a: [f64; 3], b: [f64; 3]| {
-            [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+            [
+                a[1] * b[2] - a[2] * b[1],
+                a[2] * b[0] - a[0] * b[2],
+                a[0] * b[1] - a[1] * b[0],
+            ]
         };
         let once = cross([qx, qy, qz], vector);
         let twice = cross([qx, qy, qz], once);
@@ -157,10 +253,19 @@ mod tests {
     fn the_field_is_east_north_up() {
         let pose = motion().pose();
         close(pose.position, [4.0, 3.0, 0.2]);
-        let level = Motion { roll_rad: 0.0, pitch_rad: 0.0, ..motion() }.pose().orientation;
+        let level = Motion {
+            roll_rad: 0.0,
+            pitch_rad: 0.0,
+            ..motion()
+        }
+        .pose()
+        .orientation;
         // 30 degrees clockwise from north are 60 degrees anticlockwise from east.
         close(turned(level, [1.0, 0.0, 0.0]), [0.5, 0.75_f64.sqrt(), 0.0]);
-        close(turned(level, [0.0, 1.0, 0.0]), [-(0.75_f64.sqrt()), 0.5, 0.0]);
+        close(
+            turned(level, [0.0, 1.0, 0.0]),
+            [-(0.75_f64.sqrt()), 0.5, 0.0],
+        );
     }
 
     #[test]
@@ -178,7 +283,10 @@ mod tests {
         let odometry = motion().odometry("b/base_link");
         close(odometry.twist.linear, [2.0, -0.5, 0.0]);
         close(odometry.twist.angular, [0.0, 0.0, -0.1]);
-        let (frames, stamp) = ((odometry.header.frame_id, odometry.child_frame_id), odometry.header.stamp);
+        let (frames, stamp) = (
+            (odometry.header.frame_id, odometry.child_frame_id),
+            odometry.header.stamp,
+        );
         assert_eq!(frames, ("map".to_owned(), "b/base_link".to_owned()));
         assert_eq!((stamp.sec, stamp.nanosec), (12, 250_000_000));
         // Ahead is (cos 30, sin 30) in north and east, starboard (-sin 30, cos 30).
@@ -195,16 +303,30 @@ mod tests {
             yaw_rate_rad_s: 0.1,
             ..picture::Imu::default()
         };
-        let imu = Motion { imu: Some(imu), ..motion() }.imu("b/base_link");
+        let imu = Motion {
+            imu: Some(imu),
+            ..motion()
+        }
+        .imu("b/base_link");
         close(imu.linear_acceleration, [0.0, -0.3, 9.81]);
         close(imu.angular_velocity, [0.0, -0.2, -0.1]);
-        assert_eq!(motion().imu("b").linear_acceleration_covariance[0], -1.0, "the truth has no accelerometer");
+        assert_eq!(
+            motion().imu("b").linear_acceleration_covariance[0],
+            -1.0,
+            "the truth has no accelerometer"
+        );
     }
 
     #[test]
     fn a_fix_has_the_time_of_the_fix() {
-        let at = LatLon { lat_deg: 42.0, lon_deg: -71.0 };
+        let at = LatLon {
+            lat_deg: 42.0,
+            lon_deg: -71.0,
+        };
         let fix = motion().fix("b/base_link", at);
-        assert_eq!((fix.latitude, fix.longitude, fix.header.stamp.sec), (42.0, -71.0, 12));
+        assert_eq!(
+            (fix.latitude, fix.longitude, fix.header.stamp.sec),
+            (42.0, -71.0, 12)
+        );
     }
 }

@@ -1,4 +1,5 @@
-//! `diagnostic_msgs/DiagnosticArray`: the bridge itself, and the gateways of real and emulated boats.
+//! `diagnostic_msgs/DiagnosticArray`: the bridge itself, and the gateways of real and emulated
+//! boats.
 
 use crate::message::{DiagnosticArray, DiagnosticStatus, Header};
 use messages::external::GatewayStatus;
@@ -21,13 +22,26 @@ pub fn bridge(game: &str, boats: &[String], refused: Refusals) -> DiagnosticStat
         0 => (OK, format!("in game {game}")),
         _ => (WARN, format!("refused messages: {refused}")),
     };
-    let values = vec![("game".to_owned(), game.to_owned()), ("drives".to_owned(), boats.join(", "))];
-    DiagnosticStatus { level, name: "squall: ROS 2 bridge".to_owned(), message, values, ..DiagnosticStatus::default() }
+    let values = vec![
+        ("game".to_owned(), game.to_owned()),
+        ("drives".to_owned(), boats.join(", ")),
+    ];
+    DiagnosticStatus {
+        level,
+        name: "squall: ROS 2 bridge".to_owned(),
+        message,
+        values,
+        ..DiagnosticStatus::default()
+    }
 }
 
 /// The status of a boat's gateway, received this long ago.
 pub fn gateway(status: &GatewayStatus, age: Duration) -> DiagnosticStatus {
-    let newest = status.failsafes.last().map(|failsafe| failsafe.cause.as_str()).unwrap_or_default();
+    let newest = status
+        .failsafes
+        .last()
+        .map(|failsafe| failsafe.cause.as_str())
+        .unwrap_or_default();
     let (level, message) = if age > SILENCE {
         (STALE, format!("no status for {:.0} s", age.as_secs_f64()))
     } else if status.link != "up" {
@@ -48,17 +62,37 @@ pub fn gateway(status: &GatewayStatus, age: Duration) -> DiagnosticStatus {
         ("last failsafe".to_owned(), newest.to_owned()),
         ("age of the fix, s".to_owned(), number(status.nav_age_s)),
         ("battery, V".to_owned(), number(status.battery_v)),
-        ("clearance of the geofence, m".to_owned(), number(status.geofence.as_ref().and_then(|f| f.clearance_m))),
+        (
+            "clearance of the geofence, m".to_owned(),
+            number(status.geofence.as_ref().and_then(|f| f.clearance_m)),
+        ),
         ("last sentence".to_owned(), status.last_sent.clone()),
     ];
-    values.extend(status.counts.iter().map(|(name, count)| (name.clone(), count.to_string())));
+    values.extend(
+        status
+            .counts
+            .iter()
+            .map(|(name, count)| (name.clone(), count.to_string())),
+    );
     let name = format!("squall: gateway of {}", status.vehicle);
-    DiagnosticStatus { level, name, message, hardware_id: status.vehicle.clone(), values }
+    DiagnosticStatus {
+        level,
+        name,
+        message,
+        hardware_id: status.vehicle.clone(),
+        values,
+    }
 }
 
 /// All statuses at this game time.
 pub fn array(at: SimTime, status: Vec<DiagnosticStatus>) -> DiagnosticArray {
-    DiagnosticArray { header: Header { stamp: at.into(), frame_id: String::new() }, status }
+    DiagnosticArray {
+        header: Header {
+            stamp: at.into(),
+            frame_id: String::new(),
+        },
+        status,
+    }
 }
 
 #[cfg(test)]
@@ -69,12 +103,29 @@ mod tests {
 
     #[test]
     fn the_worst_condition_sets_the_level() {
-        let good =
-            GatewayStatus { vehicle: "b".into(), link: "up".into(), state: "armed".into(), ..Default::default() };
-        let failsafes = vec![FailsafeReport { at_s: 1.0, cause: "leak".into() }];
-        let failed = GatewayStatus { state: "failsafe".into(), failsafes, ..good.clone() };
-        let alarmed = GatewayStatus { alarms: vec!["leak".into()], ..good.clone() };
-        let cut = GatewayStatus { link: "unplugged".into(), ..alarmed.clone() };
+        let good = GatewayStatus {
+            vehicle: "b".into(),
+            link: "up".into(),
+            state: "armed".into(),
+            ..Default::default()
+        };
+        let failsafes = vec![FailsafeReport {
+            at_s: 1.0,
+            cause: "leak".into(),
+        }];
+        let failed = GatewayStatus {
+            state: "failsafe".into(),
+            failsafes,
+            ..good.clone()
+        };
+        let alarmed = GatewayStatus {
+            alarms: vec!["leak".into()],
+            ..good.clone()
+        };
+        let cut = GatewayStatus {
+            link: "unplugged".into(),
+            ..alarmed.clone()
+        };
         for (status, age_s, level, message) in [
             (&good, 0, OK, "armed"),
             (&alarmed, 0, WARN, "leak"),
@@ -83,14 +134,24 @@ mod tests {
             (&good, 4, STALE, "no status for 4 s"),
         ] {
             let got = gateway(status, Duration::from_secs(age_s));
-            assert_eq!((got.level, got.message.as_str(), got.hardware_id.as_str()), (level, message, "b"));
+            assert_eq!(
+                (got.level, got.message.as_str(), got.hardware_id.as_str()),
+                (level, message, "b")
+            );
         }
     }
 
     #[test]
     fn refused_messages_are_a_warning() {
         assert_eq!(bridge("pond", &[], Refusals::default()).level, OK);
-        let warned = bridge("pond", &["b".to_owned()], Refusals::from([(Refusal::Garbage, 2)]));
-        assert_eq!((warned.level, warned.message.as_str()), (WARN, "refused messages: 2 x malformed"));
+        let warned = bridge(
+            "pond",
+            &["b".to_owned()],
+            Refusals::from([(Refusal::Garbage, 2)]),
+        );
+        assert_eq!(
+            (warned.level, warned.message.as_str()),
+            (WARN, "refused messages: 2 x malformed")
+        );
     }
 }

@@ -1,7 +1,10 @@
 //! Messages of ROS 2 as the bridge sends and receives them. Fields, their order and their units are
 //! those of the `.msg` files in ROS 2 Jazzy.
 
-#![expect(missing_docs, reason = "the fields are those of the standard definitions, which document them")]
+#![expect(
+    missing_docs,
+    reason = "the fields are those of the standard definitions, which document them"
+)]
 
 use messages::{Frame, Message, Picture, VehicleOrder};
 use primitives::SimTime;
@@ -26,7 +29,10 @@ impl From<SimTime> for Time {
     fn from(at: SimTime) -> Time {
         const SECOND: i64 = 1_000_000_000;
         let sec = i32::try_from(at.0.div_euclid(SECOND)).unwrap_or(i32::MAX);
-        Time { sec, nanosec: u32::try_from(at.0.rem_euclid(SECOND)).unwrap_or(0) }
+        Time {
+            sec,
+            nanosec: u32::try_from(at.0.rem_euclid(SECOND)).unwrap_or(0),
+        }
     }
 }
 

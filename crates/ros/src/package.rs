@@ -30,7 +30,10 @@ fn manifest() -> String {
 
 /// The build file of the package.
 fn build_file() -> String {
-    let files: Vec<String> = DEFINITIONS.iter().map(|(name, _)| format!("  \"msg/{name}.msg\"\n")).collect();
+    let files: Vec<String> = DEFINITIONS
+        .iter()
+        .map(|(name, _)| format!("  \"msg/{name}.msg\"\n"))
+        .collect();
     format!(
         "cmake_minimum_required(VERSION 3.8)\nproject(squall_msgs)\n\nfind_package(ament_cmake REQUIRED)\n\
          find_package(rosidl_default_generators REQUIRED)\n\nrosidl_generate_interfaces(${{PROJECT_NAME}}\n{})\n\n\

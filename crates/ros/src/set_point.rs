@@ -36,23 +36,35 @@ impl SetPoint {
     /// [`Refusal::BadNumber`] if a number is out of range. Boats have no controlled speed astern.
     pub fn of_twist(twist: &Twist) -> Result<SetPoint, Refusal> {
         let (surge_m_s, yaw_rate_rad_s) = (twist.linear[0], -twist.angular[2]);
-        let steer = Order::Steer { heading_rad: 0.0, speed_m_s: surge_m_s };
-        if steer.check().is_err() || !(-YAW_RATE_MAX_RAD_S..=YAW_RATE_MAX_RAD_S).contains(&yaw_rate_rad_s) {
+        let steer = Order::Steer {
+            heading_rad: 0.0,
+            speed_m_s: surge_m_s,
+        };
+        if steer.check().is_err()
+            || !(-YAW_RATE_MAX_RAD_S..=YAW_RATE_MAX_RAD_S).contains(&yaw_rate_rad_s)
+        {
             return Err(Refusal::BadNumber);
         }
-        Ok(SetPoint::Twist { surge_m_s, yaw_rate_rad_s })
+        Ok(SetPoint::Twist {
+            surge_m_s,
+            yaw_rate_rad_s,
+        })
     }
 
     /// The request in a `squall_msgs/VehicleOrder` for this boat.
     ///
     /// # Errors
-    /// [`Refusal::NotYours`] if it names another boat, [`Refusal::BadNumber`] if its kind is unknown
-    /// or a number is out of range.
+    /// [`Refusal::NotYours`] if it names another boat, [`Refusal::BadNumber`] if its kind is
+    /// unknown or a number is out of range.
     pub fn of_order(boat: VehicleId, order: &VehicleOrder) -> Result<SetPoint, Refusal> {
         if order.vehicle != boat {
             return Err(Refusal::NotYours);
         }
-        let checked = order.order().map(Order::check).transpose().map_err(|_: order::BadOrder| Refusal::BadNumber)?;
+        let checked = order
+            .order()
+            .map(Order::check)
+            .transpose()
+            .map_err(|_: order::BadOrder| Refusal::BadNumber)?;
         checked.map(SetPoint::Order).ok_or(Refusal::BadNumber)
     }
 }
@@ -80,14 +92,23 @@ pub struct Follower {
 impl Follower {
     /// A follower without a request.
     pub fn new(ttl: SimTime) -> Follower {
-        Follower { ttl, newest: None, heading: None }
+        Follower {
+            ttl,
+            newest: None,
+            heading: None,
+        }
     }
 
     /// The order at this decision, given the boat's navigation and the newest request. A boat
     /// without a valid request holds.
     pub fn order(&mut self, now: SimTime, nav: &Nav, request: Option<Numbered>) -> Order {
-        let Some(request) = request else { return self.hold() };
-        let used = self.newest.filter(|(number, _)| *number == request.number).map_or(now, |(_, used)| used);
+        let Some(request) = request else {
+            return self.hold();
+        };
+        let used = self
+            .newest
+            .filter(|(number, _)| *number == request.number)
+            .map_or(now, |(_, used)| used);
         self.newest = Some((request.number, used));
         if now - used > self.ttl {
             return self.hold();
@@ -97,9 +118,15 @@ impl Follower {
                 self.heading = None;
                 order
             }
-            SetPoint::Twist { surge_m_s, yaw_rate_rad_s } => {
+            SetPoint::Twist {
+                surge_m_s,
+                yaw_rate_rad_s,
+            } => {
                 let heading_rad = self.heading(now, nav.psi_rad, yaw_rate_rad_s);
-                Order::Steer { heading_rad, speed_m_s: surge_m_s }
+                Order::Steer {
+                    heading_rad,
+                    speed_m_s: surge_m_s,
+                }
             }
         }
     }
@@ -127,30 +154,47 @@ mod tests {
     const TTL: SimTime = SimTime(500_000_000);
 
     fn twist(x: f64, z: f64) -> Twist {
-        Twist { linear: [x, 0.0, 0.0], angular: [0.0, 0.0, z] }
+        Twist {
+            linear: [x, 0.0, 0.0],
+            angular: [0.0, 0.0, z],
+        }
     }
 
     fn request(number: u64, x: f64, z: f64) -> Option<Numbered> {
-        Some(Numbered { number, set_point: SetPoint::of_twist(&twist(x, z)).unwrap_or_else(|e| panic!("{e:?}")) })
+        Some(Numbered {
+            number,
+            set_point: SetPoint::of_twist(&twist(x, z)).unwrap_or_else(|e| panic!("{e:?}")),
+        })
     }
 
     fn heading_deg(order: Order) -> f64 {
-        let Order::Steer { heading_rad, .. } = order else { panic!("{order:?}") };
+        let Order::Steer { heading_rad, .. } = order else {
+            panic!("{order:?}")
+        };
         heading_rad.to_degrees()
     }
 
     #[test]
     fn a_twist_to_port_turns_the_ordered_heading_anticlockwise() {
         let mut follower = Follower::new(TTL);
-        let nav = Nav { psi_rad: 10_f64.to_radians(), ..Nav::default() };
+        let nav = Nav {
+            psi_rad: 10_f64.to_radians(),
+            ..Nav::default()
+        };
         // 0.5 rad/s are 2.86 degrees in 0.1 s, to port from a heading of 10 degrees.
-        let headings: Vec<f64> =
-            (0..4).map(|i| heading_deg(follower.order(SimTime(100_000_000 * i), &nav, request(1, 1.5, 0.5)))).collect();
+        let headings: Vec<f64> = (0..4)
+            .map(|i| {
+                heading_deg(follower.order(SimTime(100_000_000 * i), &nav, request(1, 1.5, 0.5)))
+            })
+            .collect();
         for (heading, want) in headings.iter().zip([10.0, 7.135_211, 4.270_422, 1.405_633]) {
             assert!((heading - want).abs() < 1e-6, "{headings:?}");
         }
         let last = follower.order(SimTime(400_000_000), &nav, request(2, 1.5, 0.0));
-        assert!((heading_deg(last) - 1.405_633).abs() < 1e-6, "without a rate the heading stays: {last:?}");
+        assert!(
+            (heading_deg(last) - 1.405_633).abs() < 1e-6,
+            "without a rate the heading stays: {last:?}"
+        );
     }
 
     #[test]
@@ -167,7 +211,8 @@ mod tests {
     #[test]
     fn a_stale_twist_is_not_repeated() {
         let mut follower = Follower::new(TTL);
-        let mut at = |ms: i64, request| follower.order(SimTime(1_000_000 * ms), &Nav::default(), request);
+        let mut at =
+            |ms: i64, request| follower.order(SimTime(1_000_000 * ms), &Nav::default(), request);
         assert_eq!(at(0, None), Order::Hold);
         for (ms, number, holds) in [
             (100, 1, false),
@@ -178,24 +223,54 @@ mod tests {
             (1400, 2, false),
             (1500, 2, true),
         ] {
-            assert_eq!(at(ms, request(number, 1.0, 0.0)) == Order::Hold, holds, "at {ms} ms");
+            assert_eq!(
+                at(ms, request(number, 1.0, 0.0)) == Order::Hold,
+                holds,
+                "at {ms} ms"
+            );
         }
         assert_eq!(at(1600, None), Order::Hold);
     }
 
     #[test]
     fn only_sound_requests_are_followed() {
-        for (x, z) in [(f64::NAN, 0.0), (0.0, f64::NAN), (f64::INFINITY, 0.0), (-0.1, 0.0), (101.0, 0.0), (1.0, 10.1)] {
-            assert_eq!(SetPoint::of_twist(&twist(x, z)), Err(Refusal::BadNumber), "{x} {z}");
+        for (x, z) in [
+            (f64::NAN, 0.0),
+            (0.0, f64::NAN),
+            (f64::INFINITY, 0.0),
+            (-0.1, 0.0),
+            (101.0, 0.0),
+            (1.0, 10.1),
+        ] {
+            assert_eq!(
+                SetPoint::of_twist(&twist(x, z)),
+                Err(Refusal::BadNumber),
+                "{x} {z}"
+            );
         }
         let boat = VehicleId(1);
-        let steer = Order::Steer { heading_rad: 1.0, speed_m_s: 2.0 };
+        let steer = Order::Steer {
+            heading_rad: 1.0,
+            speed_m_s: 2.0,
+        };
         let good = VehicleOrder::new(boat, steer);
         assert_eq!(SetPoint::of_order(boat, &good), Ok(SetPoint::Order(steer)));
         for (order, want) in [
-            (VehicleOrder { vehicle: VehicleId(2), ..good }, Refusal::NotYours),
+            (
+                VehicleOrder {
+                    vehicle: VehicleId(2),
+                    ..good
+                },
+                Refusal::NotYours,
+            ),
             (VehicleOrder { kind: 9, ..good }, Refusal::BadNumber),
-            (VehicleOrder { speed_m_s: f64::NAN, ..good }, Refusal::BadNumber),
+            (
+                VehicleOrder {
+                    speed_m_s: f64::NAN,
+                    ..good
+                },
+                Refusal::BadNumber,
+            ),
         ] {
             assert_eq!(SetPoint::of_order(boat, &order), Err(want), "{order:?}");
         }

@@ -1,5 +1,5 @@
-//! Type hashes of ROS 2 (RIHS01): SHA-256 of a canonical JSON description of a type and of all types
-//! nested in it (REP 2016).
+//! Type hashes of ROS 2 (RIHS01): SHA-256 of a canonical JSON description of a type and of all
+//! types nested in it (REP 2016).
 
 use messages::ros::DEFINITIONS;
 use sha2::{Digest, Sha256};
@@ -51,21 +51,39 @@ impl Field {
             return None;
         }
         // In type identifiers an array adds 48, a bounded list 96, any other list 144.
-        let (base, list, capacity) = match kind.strip_suffix(']').and_then(|kind| kind.split_once('[')) {
-            None => (kind, 0, 0),
-            Some((base, "")) => (base, 144, 0),
-            Some((base, count)) => match count.strip_prefix("<=") {
-                Some(limit) => (base, 96, limit.parse().ok()?),
-                None => (base, 48, count.parse().ok()?),
-            },
+        let (base, list, capacity) =
+            match kind.strip_suffix(']').and_then(|kind| kind.split_once('[')) {
+                None => (kind, 0, 0),
+                Some((base, "")) => (base, 144, 0),
+                Some((base, count)) => match count.strip_prefix("<=") {
+                    Some(limit) => (base, 96, limit.parse().ok()?),
+                    None => (base, 48, count.parse().ok()?),
+                },
+            };
+        let basic = BASIC
+            .iter()
+            .find(|(name, _)| *name == base)
+            .map(|(_, id)| *id);
+        let nested = if basic.is_some() {
+            String::new()
+        } else {
+            full_name(base, package)
         };
-        let basic = BASIC.iter().find(|(name, _)| *name == base).map(|(_, id)| *id);
-        let nested = if basic.is_some() { String::new() } else { full_name(base, package) };
-        Some(Field { name: name.to_owned(), type_id: basic.unwrap_or(NESTED) + list, capacity, nested })
+        Some(Field {
+            name: name.to_owned(),
+            type_id: basic.unwrap_or(NESTED) + list,
+            capacity,
+            nested,
+        })
     }
 
     fn json(&self) -> String {
-        let Field { name, type_id, capacity, nested } = self;
+        let Field {
+            name,
+            type_id,
+            capacity,
+            nested,
+        } = self;
         format!(
             r#"{{"name": "{name}", "type": {{"type_id": {type_id}, "capacity": {capacity}, "string_capacity": 0, "nested_type_name": "{nested}"}}}}"#
         )
@@ -85,10 +103,16 @@ fn full_name(name: &str, package: &str) -> String {
 /// The definition of a type, without those nested in it.
 pub fn definition(type_name: &str) -> Option<&'static str> {
     if let Some(own) = type_name.strip_prefix("squall_msgs/msg/") {
-        return DEFINITIONS.iter().find(|(name, _)| *name == own).map(|(_, text)| *text);
+        return DEFINITIONS
+            .iter()
+            .find(|(name, _)| *name == own)
+            .map(|(_, text)| *text);
     }
     let sections = STANDARD.split("MSG: ").skip(1);
-    sections.filter_map(|section| section.split_once('\n')).find(|(name, _)| *name == type_name).map(|(_, text)| text)
+    sections
+        .filter_map(|section| section.split_once('\n'))
+        .find(|(name, _)| *name == type_name)
+        .map(|(_, text)| text)
 }
 
 /// The hash of a message or service type, for example of `std_msgs/msg/Header`.
@@ -101,8 +125,14 @@ pub fn type_hash(type_name: &str) -> String {
     let own = described.remove(type_name).expect("it was just described");
     // A map iterates by name: nested descriptions have to be sorted.
     let nested: Vec<String> = described.into_values().collect();
-    let json = format!(r#"{{"type_description": {own}, "referenced_type_descriptions": [{}]}}"#, nested.join(", "));
-    let digest: String = Sha256::digest(json).iter().map(|byte| format!("{byte:02x}")).collect();
+    let json = format!(
+        r#"{{"type_description": {own}, "referenced_type_descriptions": [{}]}}"#,
+        nested.join(", ")
+    );
+    let digest: String = Sha256::digest(json)
+        .iter()
+        .map(|byte| format!("{byte:02x}"))
+        .collect();
     format!("RIHS01_{digest}")
 }
 
@@ -113,11 +143,20 @@ fn describe(type_name: &str, described: &mut BTreeMap<String, String>) {
     }
     let package = type_name.split('/').next().unwrap_or_default();
     let text = definition(type_name).unwrap_or_else(|| panic!("no definition of {type_name}"));
-    let fields: Vec<Field> = text.lines().filter_map(|line| Field::parse(line, package)).collect();
+    let fields: Vec<Field> = text
+        .lines()
+        .filter_map(|line| Field::parse(line, package))
+        .collect();
     let json: Vec<String> = fields.iter().map(Field::json).collect();
-    let json = format!(r#"{{"type_name": "{type_name}", "fields": [{}]}}"#, json.join(", "));
+    let json = format!(
+        r#"{{"type_name": "{type_name}", "fields": [{}]}}"#,
+        json.join(", ")
+    );
     described.insert(type_name.to_owned(), json);
-    fields.iter().filter(|field| !field.nested.is_empty()).for_each(|field| describe(&field.nested, described));
+    fields
+        .iter()
+        .filter(|field| !field.nested.is_empty())
+        .for_each(|field| describe(&field.nested, described));
 }
 
 #[cfg(test)]
@@ -129,11 +168,26 @@ mod tests {
     #[test]
     fn hashes_are_those_of_ros_2() {
         for (name, want) in [
-            ("geometry_msgs/msg/Twist", "9c45bf16fe0983d80e3cfe750d6835843d265a9a6c46bd2e609fcddde6fb8d2a"),
-            ("sensor_msgs/msg/Imu", "7d9a00ff131080897a5ec7e26e315954b8eae3353c3f995c55faf71574000b5b"),
-            ("nav_msgs/msg/Odometry", "3cc97dc7fb7502f8714462c526d369e35b603cfc34d946e3f2eda2766dfec6e0"),
-            ("diagnostic_msgs/msg/DiagnosticArray", "5a8a36efb05fb25070fa0fb3810290c0e6cd4862b54a8fb975a1ee8dc55a333e"),
-            ("std_srvs/srv/SetBool", "abe9e4bb6b41b40e6789712c00ec8871923e089af3f667a79992a428cff2da0a"),
+            (
+                "geometry_msgs/msg/Twist",
+                "9c45bf16fe0983d80e3cfe750d6835843d265a9a6c46bd2e609fcddde6fb8d2a",
+            ),
+            (
+                "sensor_msgs/msg/Imu",
+                "7d9a00ff131080897a5ec7e26e315954b8eae3353c3f995c55faf71574000b5b",
+            ),
+            (
+                "nav_msgs/msg/Odometry",
+                "3cc97dc7fb7502f8714462c526d369e35b603cfc34d946e3f2eda2766dfec6e0",
+            ),
+            (
+                "diagnostic_msgs/msg/DiagnosticArray",
+                "5a8a36efb05fb25070fa0fb3810290c0e6cd4862b54a8fb975a1ee8dc55a333e",
+            ),
+            (
+                "std_srvs/srv/SetBool",
+                "abe9e4bb6b41b40e6789712c00ec8871923e089af3f667a79992a428cff2da0a",
+            ),
         ] {
             assert_eq!(type_hash(name), format!("RIHS01_{want}"), "{name}");
         }
@@ -142,16 +196,30 @@ mod tests {
     #[test]
     fn lines_of_definitions_become_fields() {
         let field = |name: &str, type_id, capacity, nested: &str| {
-            Some(Field { name: name.to_owned(), type_id, capacity, nested: nested.to_owned() })
+            Some(Field {
+                name: name.to_owned(),
+                type_id,
+                capacity,
+                nested: nested.to_owned(),
+            })
         };
         for (line, want) in [
             ("float64 x", field("x", 11, 0, "")),
             ("uint8 level 3  # a default", field("level", 3, 0, "")),
             ("float64[36] covariance", field("covariance", 59, 36, "")),
             ("char[16] gid", field("gid", 51, 16, "")),
-            ("Nav nav       # as measured = known", field("nav", 1, 0, "squall_msgs/msg/Nav")),
-            ("std_msgs/Header header", field("header", 1, 0, "std_msgs/msg/Header")),
-            ("a/srv/B_Request[<=1] request", field("request", 97, 1, "a/srv/B_Request")),
+            (
+                "Nav nav       # as measured = known",
+                field("nav", 1, 0, "squall_msgs/msg/Nav"),
+            ),
+            (
+                "std_msgs/Header header",
+                field("header", 1, 0, "std_msgs/msg/Header"),
+            ),
+            (
+                "a/srv/B_Request[<=1] request",
+                field("request", 97, 1, "a/srv/B_Request"),
+            ),
             ("string[] names", field("names", 161, 0, "")),
             ("uint8 HOLD=0", None),
             ("uint8 HOLD = 0", None),
@@ -165,7 +233,10 @@ mod tests {
     #[test]
     fn all_own_types_have_definitions_for_what_is_nested_in_them() {
         for (name, _) in DEFINITIONS {
-            assert!(type_hash(&format!("squall_msgs/msg/{name}")).starts_with("RIHS01_"), "{name}");
+            assert!(
+                type_hash(&format!("squall_msgs/msg/{name}")).starts_with("RIHS01_"),
+                "{name}"
+            );
         }
     }
 }

@@ -51,7 +51,18 @@ pub fn tag_wait_s(tag_ready: SimTime, now: SimTime) -> f64 {
 impl From<&VehicleStanding> for Ability {
     #[inline]
     fn from(boat: &VehicleStanding) -> Ability {
-        let VehicleStanding { tagged, disabled, outside, tag_ready, .. } = *boat;
-        Ability { tagged, disabled, outside, tag_ready }
+        let VehicleStanding {
+            tagged,
+            disabled,
+            outside,
+            tag_ready,
+            ..
+        } = *boat;
+        Ability {
+            tagged,
+            disabled,
+            outside,
+            tag_ready,
+        }
     }
 }

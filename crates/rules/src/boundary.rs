@@ -8,7 +8,12 @@ use primitives::id::VehicleId;
 impl Referee {
     /// Records boats that left the field or came back. Outside the field no boat carries a flag
     /// and, with `boundary_tags`, every boat is tagged.
-    pub(super) fn watch_boundary(&self, standing: &mut Standing, at: &impl Fn(usize) -> Ned, events: &mut Vec<Event>) {
+    pub(super) fn watch_boundary(
+        &self,
+        standing: &mut Standing,
+        at: &impl Fn(usize) -> Ned,
+        events: &mut Vec<Event>,
+    ) {
         for i in 0..standing.vehicles.len() {
             let boat = &mut standing.vehicles[i];
             if !boat.in_play {

@@ -26,7 +26,11 @@ impl Claim {
 /// index.
 pub(super) fn settle(claims: &mut Vec<Claim>, choice: TagChoice, resolution: Resolution) {
     claims.sort_unstable_by(|x, y| {
-        let wanted = if choice == TagChoice::Nearest { x.nearer(y) } else { Ordering::Equal };
+        let wanted = if choice == TagChoice::Nearest {
+            x.nearer(y)
+        } else {
+            Ordering::Equal
+        };
         x.by.cmp(&y.by).then(wanted).then(x.on.cmp(&y.on))
     });
     match resolution {
@@ -39,7 +43,10 @@ pub(super) fn settle(claims: &mut Vec<Claim>, choice: TagChoice, resolution: Res
             let mut granted = 0;
             for i in 0..claims.len() {
                 let claim = claims[i];
-                if claims[..granted].iter().all(|other| other.by != claim.by && other.on != claim.on) {
+                if claims[..granted]
+                    .iter()
+                    .all(|other| other.by != claim.by && other.on != claim.on)
+                {
                     claims[granted] = claim;
                     granted += 1;
                 }
@@ -60,17 +67,77 @@ mod tests {
         let at_once = Resolution::AtOnce;
         let in_turn = Resolution::InTurn;
         for (name, claims, choice, resolution, want) in [
-            ("one reaches for two", vec![(0, 5, 4.0), (0, 6, 1.0)], near, at_once, vec![(0, 6)]),
-            ("one takes the first", vec![(0, 6, 1.0), (0, 5, 4.0)], first, at_once, vec![(0, 5)]),
-            ("two reach for one", vec![(0, 5, 4.0), (1, 5, 1.0)], near, at_once, vec![(1, 5)]),
-            ("two reach for the first", vec![(0, 5, 4.0), (1, 5, 1.0)], first, at_once, vec![(1, 5)]),
-            ("equals", vec![(1, 6, 1.0), (1, 5, 1.0), (0, 5, 1.0)], near, at_once, vec![(0, 5)]),
-            ("no second choice", vec![(0, 5, 1.0), (1, 5, 2.0), (1, 6, 3.0)], near, at_once, vec![(0, 5)]),
-            ("each its own", vec![(1, 5, 1.0), (0, 6, 2.0)], near, at_once, vec![(1, 5), (0, 6)]),
+            (
+                "one reaches for two",
+                vec![(0, 5, 4.0), (0, 6, 1.0)],
+                near,
+                at_once,
+                vec![(0, 6)],
+            ),
+            (
+                "one takes the first",
+                vec![(0, 6, 1.0), (0, 5, 4.0)],
+                first,
+                at_once,
+                vec![(0, 5)],
+            ),
+            (
+                "two reach for one",
+                vec![(0, 5, 4.0), (1, 5, 1.0)],
+                near,
+                at_once,
+                vec![(1, 5)],
+            ),
+            (
+                "two reach for the first",
+                vec![(0, 5, 4.0), (1, 5, 1.0)],
+                first,
+                at_once,
+                vec![(1, 5)],
+            ),
+            (
+                "equals",
+                vec![(1, 6, 1.0), (1, 5, 1.0), (0, 5, 1.0)],
+                near,
+                at_once,
+                vec![(0, 5)],
+            ),
+            (
+                "no second choice",
+                vec![(0, 5, 1.0), (1, 5, 2.0), (1, 6, 3.0)],
+                near,
+                at_once,
+                vec![(0, 5)],
+            ),
+            (
+                "each its own",
+                vec![(1, 5, 1.0), (0, 6, 2.0)],
+                near,
+                at_once,
+                vec![(1, 5), (0, 6)],
+            ),
             ("nobody", vec![], near, at_once, vec![]),
-            ("in turn, two reach for one", vec![(0, 5, 4.0), (1, 5, 1.0)], near, in_turn, vec![(0, 5)]),
-            ("in turn, one takes the nearest", vec![(0, 5, 4.0), (0, 6, 1.0)], near, in_turn, vec![(0, 6)]),
-            ("in turn, one takes the first", vec![(0, 6, 1.0), (0, 5, 4.0)], first, in_turn, vec![(0, 5)]),
+            (
+                "in turn, two reach for one",
+                vec![(0, 5, 4.0), (1, 5, 1.0)],
+                near,
+                in_turn,
+                vec![(0, 5)],
+            ),
+            (
+                "in turn, one takes the nearest",
+                vec![(0, 5, 4.0), (0, 6, 1.0)],
+                near,
+                in_turn,
+                vec![(0, 6)],
+            ),
+            (
+                "in turn, one takes the first",
+                vec![(0, 6, 1.0), (0, 5, 4.0)],
+                first,
+                in_turn,
+                vec![(0, 5)],
+            ),
             (
                 "in turn, what is left",
                 vec![(1, 5, 1.0), (1, 6, 3.0), (0, 5, 2.0)],
@@ -79,10 +146,21 @@ mod tests {
                 vec![(0, 5), (1, 6)],
             ),
         ] {
-            let claim = |(by, on, distance_squared)| Claim { by, on, distance_squared };
+            let claim = |(by, on, distance_squared)| Claim {
+                by,
+                on,
+                distance_squared,
+            };
             let mut claims: Vec<Claim> = claims.into_iter().map(claim).collect();
             settle(&mut claims, choice, resolution);
-            assert_eq!(claims.iter().map(|claim| (claim.by, claim.on)).collect::<Vec<_>>(), want, "{name}");
+            assert_eq!(
+                claims
+                    .iter()
+                    .map(|claim| (claim.by, claim.on))
+                    .collect::<Vec<_>>(),
+                want,
+                "{name}"
+            );
         }
     }
 }

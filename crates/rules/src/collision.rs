@@ -19,7 +19,10 @@ impl Referee {
         // Both lists have the same order: one pass over the old one finds every pair of the new
         // one.
         let mut before = standing.touching.iter().peekable();
-        for pair in near.iter().filter(|pair| pair.distance_squared < reach_squared) {
+        for pair in near
+            .iter()
+            .filter(|pair| pair.distance_squared < reach_squared)
+        {
             let first = VehicleId(pair.a);
             let second = VehicleId(pair.b);
             while before.next_if(|old| **old < (first, second)).is_some() {}

@@ -35,7 +35,9 @@ pub struct Tally {
 impl Tally {
     /// The counts of `vehicles` boats before any event.
     pub fn new(vehicles: usize) -> Tally {
-        Tally { vehicles: vec![Counts::default(); vehicles] }
+        Tally {
+            vehicles: vec![Counts::default(); vehicles],
+        }
     }
 
     /// Adds one event.
@@ -65,7 +67,12 @@ impl Tally {
     /// The sum over one team's boats.
     pub fn team(&self, team: TeamId, team_of: impl Fn(usize) -> TeamId) -> Counts {
         let mut sum = Counts::default();
-        for (_, c) in self.vehicles.iter().enumerate().filter(|(i, _)| team_of(*i) == team) {
+        for (_, c) in self
+            .vehicles
+            .iter()
+            .enumerate()
+            .filter(|(i, _)| team_of(*i) == team)
+        {
             sum.grabs += c.grabs;
             sum.captures += c.captures;
             sum.tags += c.tags;

@@ -35,7 +35,10 @@ impl Referee {
         let speed_factor = limit(boat.tagged, self.rules.tagged_speed_factor)
             .min(limit(boat.outside, self.rules.outside_speed_factor));
         let driven = boat.tagged && self.rules.tagged_boat == TaggedBoat::IsDriven;
-        let home = || self.rules.untag_place(&self.field, self.team_of[vehicle.index()], at);
+        let home = || {
+            self.rules
+                .untag_place(&self.field, self.team_of[vehicle.index()], at)
+        };
         match driven.then(home).flatten() {
             Some(to) => Directive::DrivenHome { to, speed_factor },
             None => Directive::Free { speed_factor },

@@ -9,12 +9,19 @@ impl Referee {
     /// reach the winning score in one tick; equal scores are a draw.
     pub(super) fn end(&self, standing: &mut Standing, events: &mut Vec<Event>) {
         let best = standing.score.iter().copied().max().unwrap_or(0);
-        let won = self.rules.win_score.is_some_and(|win_score| best >= win_score);
+        let won = self
+            .rules
+            .win_score
+            .is_some_and(|win_score| best >= win_score);
         if !won && standing.now < self.rules.time_limit {
             return;
         }
         standing.over = true;
-        let mut leaders = standing.score.iter().enumerate().filter(|(_, score)| **score == best);
+        let mut leaders = standing
+            .score
+            .iter()
+            .enumerate()
+            .filter(|(_, score)| **score == best);
         let winner = match (leaders.next(), leaders.next()) {
             (Some((team, _)), None) => Some(TeamId(team as u8)),
             _ => None,

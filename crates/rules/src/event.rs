@@ -134,14 +134,21 @@ impl Event {
             | Event::NavLost(vehicle)
             | Event::NavBack(vehicle) => Some(vehicle),
             Event::Collided { first, .. } => Some(first),
-            Event::EStopped | Event::Released | Event::Halted | Event::WentOn | Event::Ended { .. } => None,
+            Event::EStopped
+            | Event::Released
+            | Event::Halted
+            | Event::WentOn
+            | Event::Ended { .. } => None,
         }
     }
 
     /// The second boat: the tagger, or the other in a collision.
     pub fn other(self) -> Option<VehicleId> {
         match self {
-            Event::Tagged { cause: TagCause::Opponent(by), .. } => Some(by),
+            Event::Tagged {
+                cause: TagCause::Opponent(by),
+                ..
+            } => Some(by),
             Event::Collided { second, .. } => Some(second),
             _ => None,
         }
@@ -150,7 +157,9 @@ impl Event {
     /// The flag involved.
     pub fn flag(self) -> Option<FlagId> {
         match self {
-            Event::Grabbed { flag, .. } | Event::Captured { flag, .. } | Event::FlagReturned { flag, .. } => Some(flag),
+            Event::Grabbed { flag, .. }
+            | Event::Captured { flag, .. }
+            | Event::FlagReturned { flag, .. } => Some(flag),
             _ => None,
         }
     }
@@ -178,8 +187,14 @@ impl From<Logged> for EventRecord {
         let (kind, subject, object) = match logged.event {
             Event::Grabbed { vehicle, flag } => (0, v(vehicle), f(flag)),
             Event::Captured { vehicle, flag } => (1, v(vehicle), f(flag)),
-            Event::Tagged { vehicle, cause: TagCause::Opponent(by) } => (2, v(vehicle), v(by)),
-            Event::Tagged { vehicle, cause: TagCause::Boundary } => (3, v(vehicle), -1),
+            Event::Tagged {
+                vehicle,
+                cause: TagCause::Opponent(by),
+            } => (2, v(vehicle), v(by)),
+            Event::Tagged {
+                vehicle,
+                cause: TagCause::Boundary,
+            } => (3, v(vehicle), -1),
             Event::Untagged(vehicle) => (4, v(vehicle), -1),
             Event::FlagReturned { vehicle, flag } => (5, v(vehicle), f(flag)),
             Event::LeftField(vehicle) => (6, v(vehicle), -1),
@@ -199,7 +214,13 @@ impl From<Logged> for EventRecord {
             Event::WentOn => (21, -1, -1),
             Event::Ended { winner } => (15, winner.map_or(-1, |team| i32::from(team.0)), -1),
         };
-        EventRecord { tick: logged.tick, at_ns: logged.at, kind, subject, object }
+        EventRecord {
+            tick: logged.tick,
+            at_ns: logged.at,
+            kind,
+            subject,
+            object,
+        }
     }
 }
 
@@ -210,22 +231,42 @@ impl EventRecord {
         let other = u16::try_from(self.object).ok().map(VehicleId);
         let flag = u8::try_from(self.object).ok().map(FlagId);
         let event = match self.kind {
-            0 => Event::Grabbed { vehicle: vehicle?, flag: flag? },
-            1 => Event::Captured { vehicle: vehicle?, flag: flag? },
-            2 => Event::Tagged { vehicle: vehicle?, cause: TagCause::Opponent(other?) },
-            3 => Event::Tagged { vehicle: vehicle?, cause: TagCause::Boundary },
+            0 => Event::Grabbed {
+                vehicle: vehicle?,
+                flag: flag?,
+            },
+            1 => Event::Captured {
+                vehicle: vehicle?,
+                flag: flag?,
+            },
+            2 => Event::Tagged {
+                vehicle: vehicle?,
+                cause: TagCause::Opponent(other?),
+            },
+            3 => Event::Tagged {
+                vehicle: vehicle?,
+                cause: TagCause::Boundary,
+            },
             4 => Event::Untagged(vehicle?),
-            5 => Event::FlagReturned { vehicle: vehicle?, flag: flag? },
+            5 => Event::FlagReturned {
+                vehicle: vehicle?,
+                flag: flag?,
+            },
             6 => Event::LeftField(vehicle?),
             7 => Event::ReturnedToField(vehicle?),
-            8 => Event::Collided { first: vehicle?, second: other? },
+            8 => Event::Collided {
+                first: vehicle?,
+                second: other?,
+            },
             9 => Event::EnteredKeepout(vehicle?),
             10 => Event::Disabled(vehicle?),
             11 => Event::Enabled(vehicle?),
             12 => Event::AgentLost(vehicle?),
             13 => Event::AgentBack(vehicle?),
             14 => Event::Quarantined(vehicle?),
-            15 => Event::Ended { winner: u8::try_from(self.subject).ok().map(TeamId) },
+            15 => Event::Ended {
+                winner: u8::try_from(self.subject).ok().map(TeamId),
+            },
             16 => Event::NavLost(vehicle?),
             17 => Event::NavBack(vehicle?),
             18 => Event::EStopped,
@@ -234,6 +275,10 @@ impl EventRecord {
             21 => Event::WentOn,
             _ => return None,
         };
-        Some(Logged { tick: self.tick, at: self.at_ns, event })
+        Some(Logged {
+            tick: self.tick,
+            at: self.at_ns,
+            event,
+        })
     }
 }

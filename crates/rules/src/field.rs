@@ -38,7 +38,8 @@ pub struct Plan<E = f64> {
     /// Extent across, m.
     #[schemars(range(min = 10, max = 20000))]
     pub depth_m: f64,
-    /// Distance of the flags from the ends, m, above 0 and below half the width. Default: width / 8.
+    /// Distance of the flags from the ends, m, above 0 and below half the width. Default: width /
+    /// 8.
     pub flag_inset_m: E,
     /// Flags in addition to each team's default flag.
     #[serde(default)]
@@ -113,7 +114,10 @@ impl Obstacle {
 
 /// The sides of a polygon, from corner to corner and back to the first.
 pub fn sides(corners: &[Ned]) -> impl Iterator<Item = (Ned, Ned)> {
-    corners.iter().copied().zip(corners.iter().copied().cycle().skip(1))
+    corners
+        .iter()
+        .copied()
+        .zip(corners.iter().copied().cycle().skip(1))
 }
 
 /// Whether a polygon contains a place: a ray from there crosses its outline an odd number of times.
@@ -127,7 +131,9 @@ pub fn is_within(corners: &[Ned], at: Ned) -> bool {
 
 /// The distance to the outline of a polygon, m; infinite without corners.
 pub fn distance_to_outline(corners: &[Ned], at: Ned) -> f64 {
-    sides(corners).map(|(a, b)| distance_to_side(a, b, at)).fold(f64::INFINITY, f64::min)
+    sides(corners)
+        .map(|(a, b)| distance_to_side(a, b, at))
+        .fold(f64::INFINITY, f64::min)
 }
 
 /// The distance to the line segment from `a` to `b`, m.
@@ -135,7 +141,11 @@ pub fn distance_to_side(a: Ned, b: Ned, at: Ned) -> f64 {
     let side = b - a;
     let from_a = at - a;
     let length_squared = side.dot(side);
-    let share = if length_squared > 0.0 { (from_a.dot(side) / length_squared).clamp(0.0, 1.0) } else { 0.0 };
+    let share = if length_squared > 0.0 {
+        (from_a.dot(side) / length_squared).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
     from_a.distance(side.scaled(share))
 }
 
@@ -146,7 +156,10 @@ pub fn distance_to_line(corners: &[Ned], (a, b): (Ned, Ned)) -> f64 {
         return 0.0;
     }
     let of_ends = distance_to_outline(corners, a).min(distance_to_outline(corners, b));
-    corners.iter().map(|corner| distance_to_side(a, b, *corner)).fold(of_ends, f64::min)
+    corners
+        .iter()
+        .map(|corner| distance_to_side(a, b, *corner))
+        .fold(of_ends, f64::min)
 }
 
 /// Whether two line segments have a point in common.
@@ -163,7 +176,9 @@ pub fn do_meet((a, b): (Ned, Ned), (c, d): (Ned, Ned)) -> bool {
     // other's line.
     let in_line = c_side == 0.0 && d_side == 0.0;
     let overlaps = |p: f64, q: f64, r: f64, s: f64| p.min(q) <= r.max(s) && r.min(s) <= p.max(q);
-    !in_line || (overlaps(a.north, b.north, c.north, d.north) && overlaps(a.east, b.east, c.east, d.east))
+    !in_line
+        || (overlaps(a.north, b.north, c.north, d.north)
+            && overlaps(a.east, b.east, c.east, d.east))
 }
 
 /// Twice the area of the triangle, positive clockwise on the chart.
@@ -188,16 +203,24 @@ impl Zone {
             let length = a.distance(b);
             // A quarter turn to port of the side's direction: outward, because the corners are
             // clockwise.
-            let out = Ned { north: side.east / length, east: -side.north / length };
+            let out = Ned {
+                north: side.east / length,
+                east: -side.north / length,
+            };
             (out, out.dot(a))
         };
-        Zone { edges: sides(&corners).map(edge).collect(), corners }
+        Zone {
+            edges: sides(&corners).map(edge).collect(),
+            corners,
+        }
     }
 
     /// Whether `at` is inside or on an edge, with a tolerance of 1 nm against rounding.
     #[inline]
     pub fn contains(&self, at: Ned) -> bool {
-        self.edges.iter().all(|(out, limit)| out.dot(at) <= limit + 1e-9)
+        self.edges
+            .iter()
+            .all(|(out, limit)| out.dot(at) <= limit + 1e-9)
     }
 }
 
@@ -223,7 +246,13 @@ pub struct Field {
 }
 
 /// The columns of the named points, from port to starboard facing the opponent's end.
-const COLUMNS: [(&str, f64); 5] = [("PP", 0.0), ("P", 0.25), ("C", 0.5), ("S", 0.75), ("SS", 1.0)];
+const COLUMNS: [(&str, f64); 5] = [
+    ("PP", 0.0),
+    ("P", 0.25),
+    ("C", 0.5),
+    ("S", 0.75),
+    ("SS", 1.0),
+];
 /// The rows of the named points, from the own end: back, flag, half, mid, centre, and their mirror
 /// images.
 const ROWS: [&str; 9] = ["B", "F", "H", "M", "C", "MX", "HX", "FX", "BX"];
@@ -232,15 +261,24 @@ impl Field {
     /// Derives all geometry from the plan. Of the two teams, the first has the end at corner 0.
     pub fn new(plan: Plan) -> Field {
         let along = Ned::toward_deg(plan.along_deg);
-        let across = Ned { north: along.east, east: -along.north };
+        let across = Ned {
+            north: along.east,
+            east: -along.north,
+        };
         let at = |x: f64, y: f64| plan.corner + along.scaled(x) + across.scaled(y);
         let w = plan.width_m;
         let d = plan.depth_m;
         let half = plan.width_m / 2.0;
         let corners = [at(0.0, 0.0), at(0.0, d), at(w, d), at(w, 0.0)];
         let mut flags = vec![
-            Flag { team: TeamId(0), home: at(plan.flag_inset_m, d / 2.0) },
-            Flag { team: TeamId(1), home: at(w - plan.flag_inset_m, d / 2.0) },
+            Flag {
+                team: TeamId(0),
+                home: at(plan.flag_inset_m, d / 2.0),
+            },
+            Flag {
+                team: TeamId(1),
+                home: at(w - plan.flag_inset_m, d / 2.0),
+            },
         ];
         flags.extend(&plan.extra_flags);
         let zones = vec![
@@ -249,7 +287,16 @@ impl Field {
         ];
         let own_corners = vec![[corners[0], corners[1]], [corners[2], corners[3]]];
         let scrimmage = [at(half, 0.0), at(half, d)];
-        Field { along, across, corners, flags, zones, own_corners, scrimmage, plan }
+        Field {
+            along,
+            across,
+            corners,
+            flags,
+            zones,
+            own_corners,
+            scrimmage,
+            plan,
+        }
     }
 
     /// The position `along_m` from the first team's end and `across_m` from the edge at corner 0.
@@ -279,12 +326,18 @@ impl Field {
     /// Distance of `at` from the nearest side of the field, m; negative outside.
     pub fn inside_by_m(&self, at: Ned) -> f64 {
         let (x, y) = self.along_across(at);
-        x.min(self.plan.width_m - x).min(y).min(self.plan.depth_m - y)
+        x.min(self.plan.width_m - x)
+            .min(y)
+            .min(self.plan.depth_m - y)
     }
 
     /// Compass bearing from the end of `team` to its opponent's end, degrees.
     pub fn facing_deg(&self, team: TeamId) -> f64 {
-        if team.index() == 0 { self.plan.along_deg } else { self.plan.along_deg + 180.0 }
+        if team.index() == 0 {
+            self.plan.along_deg
+        } else {
+            self.plan.along_deg + 180.0
+        }
     }
 
     /// Target of a boat of `team` at `at` on its way to a corner of its own end: the nearer of the
@@ -295,10 +348,19 @@ impl Field {
         // second.
         let [first, second] = *self.own_corners.get(team.index())?;
         let ahead = (second - first).scaled(inset_m / first.distance(second));
-        let inward = Ned { north: -ahead.east, east: ahead.north };
+        let inward = Ned {
+            north: -ahead.east,
+            east: ahead.north,
+        };
         let first = first + ahead + inward;
         let second = second - ahead + inward;
-        Some(if at.distance_squared(first) <= at.distance_squared(second) { first } else { second })
+        Some(
+            if at.distance_squared(first) <= at.distance_squared(second) {
+                first
+            } else {
+                second
+            },
+        )
     }
 
     /// The named point of `team`, seen from its own end: a column (`PP P C S SS`, port to
@@ -308,7 +370,9 @@ impl Field {
         let row_names = ROWS.iter().enumerate().rev();
         let (column, row) = row_names
             .filter_map(|(row, row_name)| Some((name.strip_suffix(row_name)?, row)))
-            .find_map(|(rest, row)| Some((COLUMNS.iter().find(|(name, _)| *name == rest)?.1, row)))?;
+            .find_map(|(rest, row)| {
+                Some((COLUMNS.iter().find(|(name, _)| *name == rest)?.1, row))
+            })?;
         let along_m = match row {
             1 => self.plan.flag_inset_m,
             7 => self.plan.width_m - self.plan.flag_inset_m,
@@ -330,7 +394,10 @@ impl Field {
 
     /// All names that [`Field::point`] accepts.
     pub fn point_names() -> Vec<String> {
-        COLUMNS.iter().flat_map(|(column, _)| ROWS.iter().map(move |row| format!("{column}{row}"))).collect()
+        COLUMNS
+            .iter()
+            .flat_map(|(column, _)| ROWS.iter().map(move |row| format!("{column}{row}")))
+            .collect()
     }
 }
 
@@ -345,15 +412,28 @@ mod tests {
     #[test]
     fn a_polygon_knows_its_inside_and_its_distance() {
         let bay = polygon([(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (2.0, 1.0), (0.0, 4.0)]);
-        for (x, y, want) in [(1.0, 0.5, true), (2.0, 2.0, false), (3.9, 3.5, true), (-1.0, 1.0, false)] {
+        for (x, y, want) in [
+            (1.0, 0.5, true),
+            (2.0, 2.0, false),
+            (3.9, 3.5, true),
+            (-1.0, 1.0, false),
+        ] {
             assert_eq!(is_within(&bay, Ned::from_xy(x, y)), want, "{x} {y}");
         }
         let bay = Obstacle::Polygon { corners: bay };
         for (x, y, want_m) in [(2.0, -3.0, 3.0), (-3.0, -4.0, 5.0), (1.0, 0.5, 0.0)] {
-            assert!((bay.distance(Ned::from_xy(x, y)) - want_m).abs() < 1e-12, "{x} {y}");
+            assert!(
+                (bay.distance(Ned::from_xy(x, y)) - want_m).abs() < 1e-12,
+                "{x} {y}"
+            );
         }
-        let round = Obstacle::Circle { centre: Ned::from_xy(1.0, 1.0), radius_m: 2.0 };
-        assert!(round.contains(Ned::from_xy(2.0, 1.0)) && round.distance(Ned::from_xy(2.0, 1.0)) == 0.0);
+        let round = Obstacle::Circle {
+            centre: Ned::from_xy(1.0, 1.0),
+            radius_m: 2.0,
+        };
+        assert!(
+            round.contains(Ned::from_xy(2.0, 1.0)) && round.distance(Ned::from_xy(2.0, 1.0)) == 0.0
+        );
         assert!((round.distance(Ned::from_xy(6.0, 1.0)) - 3.0).abs() < 1e-12);
     }
 
@@ -373,13 +453,31 @@ mod tests {
         }
     }
 
-    fn plan(corner: (f64, f64), along_deg: f64, width_m: f64, depth_m: f64, flag_inset_m: f64) -> Plan {
+    fn plan(
+        corner: (f64, f64),
+        along_deg: f64,
+        width_m: f64,
+        depth_m: f64,
+        flag_inset_m: f64,
+    ) -> Plan {
         let corner = Ned::from_xy(corner.0, corner.1);
-        Plan { corner, along_deg, width_m, depth_m, flag_inset_m, ..Plan::default() }
+        Plan {
+            corner,
+            along_deg,
+            width_m,
+            depth_m,
+            flag_inset_m,
+            ..Plan::default()
+        }
     }
 
     fn assert_near(got: Ned, x: f64, y: f64) {
-        assert!(got.distance(Ned::from_xy(x, y)) < 0.02, "({}, {}) is not ({x}, {y})", got.east, got.north);
+        assert!(
+            got.distance(Ned::from_xy(x, y)) < 0.02,
+            "({}, {}) is not ({x}, {y})",
+            got.east,
+            got.north
+        );
     }
 
     #[test]
@@ -387,7 +485,10 @@ mod tests {
         let field = Field::new(plan((0.0, 0.0), 90.0, 160.0, 80.0, 20.0));
         assert_eq!(field.flags[0].home, Ned::from_xy(20.0, 40.0));
         assert_eq!(field.flags[1].home, Ned::from_xy(140.0, 40.0));
-        assert_eq!(field.scrimmage, [Ned::from_xy(80.0, 0.0), Ned::from_xy(80.0, 80.0)]);
+        assert_eq!(
+            field.scrimmage,
+            [Ned::from_xy(80.0, 0.0), Ned::from_xy(80.0, 80.0)]
+        );
         assert_eq!(field.corners[2], Ned::from_xy(160.0, 80.0));
     }
 
@@ -413,18 +514,34 @@ mod tests {
             (1, (165.0, -5.0), (150.0, 10.0)),
         ] {
             let got = field.inside_own_corner(TeamId(team), Ned::from_xy(from.0, from.1), 10.0);
-            assert_eq!(got, Some(Ned::from_xy(want.0, want.1)), "team {team} from {from:?}");
+            assert_eq!(
+                got,
+                Some(Ned::from_xy(want.0, want.1)),
+                "team {team} from {from:?}"
+            );
         }
         let aslant = Field::new(plan((225.4522, 42.2876), 20.0, 160.0, 80.0, 20.0));
-        let got = aslant.inside_own_corner(TeamId(1), aslant.at(150.0, 90.0), 10.0).expect("it has corners");
+        let got = aslant
+            .inside_own_corner(TeamId(1), aslant.at(150.0, 90.0), 10.0)
+            .expect("it has corners");
         assert!(got.distance(aslant.at(150.0, 70.0)) < 1e-9, "{got:?}");
     }
 
     #[test]
     fn the_scrimmage_line_is_on_both_sides_and_the_boundary_is_out() {
-        for (corner, along_deg) in [((0.0, 0.0), 90.0), ((225.4522, 42.2876), 20.0), ((3.0, -7.0), 251.0)] {
+        for (corner, along_deg) in [
+            ((0.0, 0.0), 90.0),
+            ((225.4522, 42.2876), 20.0),
+            ((3.0, -7.0), 251.0),
+        ] {
             let field = Field::new(plan(corner, along_deg, 160.0, 80.0, 20.0));
-            let side = |x, y| field.zones.iter().map(|z| z.contains(field.at(x, y))).collect::<Vec<_>>();
+            let side = |x, y| {
+                field
+                    .zones
+                    .iter()
+                    .map(|z| z.contains(field.at(x, y)))
+                    .collect::<Vec<_>>()
+            };
             assert_eq!(side(80.0, 30.0), [true, true], "{along_deg}");
             assert_eq!(side(79.9, 30.0), [true, false], "{along_deg}");
             assert_eq!(side(80.1, 30.0), [false, true], "{along_deg}");
@@ -448,12 +565,20 @@ mod tests {
             (0, "CFX", 140.0, 40.0),
             (0, "PMX", 100.0, 60.0),
         ] {
-            assert_eq!(field.point(TeamId(team), name), Some(Ned::from_xy(x, y)), "{name}");
+            assert_eq!(
+                field.point(TeamId(team), name),
+                Some(Ned::from_xy(x, y)),
+                "{name}"
+            );
         }
         for unknown in ["", "C", "X", "QF", "CFF", "cf", "BX"] {
             assert_eq!(field.point(TeamId(0), unknown), None, "{unknown}");
         }
         assert_eq!(Field::point_names().len(), 45);
-        assert!(Field::point_names().iter().all(|name| field.point(TeamId(1), name).is_some()));
+        assert!(
+            Field::point_names()
+                .iter()
+                .all(|name| field.point(TeamId(1), name).is_some())
+        );
     }
 }

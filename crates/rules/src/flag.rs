@@ -11,11 +11,18 @@ impl Referee {
     ///
     /// A boat claims the nearest available flag; [`Resolution`] decides between several boats at
     /// one flag. A flag is available only if it has been home since the last look, except in turn.
-    pub(super) fn grab(&self, standing: &mut Standing, notes: &mut Notes, look: &Look<'_>, events: &mut Vec<Event>) {
+    pub(super) fn grab(
+        &self,
+        standing: &mut Standing,
+        notes: &mut Notes,
+        look: &Look<'_>,
+        events: &mut Vec<Event>,
+    ) {
         let reach_squared = self.rules.grab_radius_m * self.rules.grab_radius_m;
         notes.claims.clear();
         for (on, (flag, state)) in self.field.flags.iter().zip(&standing.flags).enumerate() {
-            let has_just_come = state.moved_at == standing.now && self.rules.resolution == Resolution::AtOnce;
+            let has_just_come =
+                state.moved_at == standing.now && self.rules.resolution == Resolution::AtOnce;
             if state.carrier.is_some() || has_just_come {
                 continue;
             }
@@ -26,7 +33,11 @@ impl Referee {
                 let asks = self.rules.tags_and_grabs == Acting::Automatic || look.asks[by].grab;
                 let distance_squared = look.legs[by].to.distance_squared(flag.home);
                 if asks && distance_squared < reach_squared {
-                    notes.claims.push(Claim { by: by as u16, on: on as u16, distance_squared });
+                    notes.claims.push(Claim {
+                        by: by as u16,
+                        on: on as u16,
+                        distance_squared,
+                    });
                 }
             }
         }
@@ -50,19 +61,34 @@ impl Referee {
     ///
     /// With `capture_needs_own_flag`, all flags of the carrier's own team must be home after the
     /// grabs and before the captures of this look.
-    pub(super) fn capture(&self, standing: &mut Standing, notes: &mut Notes, look: &Look<'_>, events: &mut Vec<Event>) {
+    pub(super) fn capture(
+        &self,
+        standing: &mut Standing,
+        notes: &mut Notes,
+        look: &Look<'_>,
+        events: &mut Vec<Event>,
+    ) {
         notes.claims.clear();
         for (on, state) in standing.flags.iter().enumerate() {
-            let Some(carrier) = state.carrier.filter(|_| state.moved_at != standing.now) else { continue };
+            let Some(carrier) = state.carrier.filter(|_| state.moved_at != standing.now) else {
+                continue;
+            };
             let team = self.team_of[carrier.index()];
             let here = look.legs[carrier.index()];
-            let own_flags_home =
-                || self.field.own_flags(team).all(|(own, _)| standing.flags[own.index()].carrier.is_none());
+            let own_flags_home = || {
+                self.field
+                    .own_flags(team)
+                    .all(|(own, _)| standing.flags[own.index()].carrier.is_none())
+            };
             if standing.vehicles[carrier.index()].acts()
                 && self.rules.is_capture_place(&self.field, team, here)
                 && (!self.rules.capture_needs_own_flag || own_flags_home())
             {
-                notes.claims.push(Claim { by: carrier.0, on: on as u16, distance_squared: 0.0 });
+                notes.claims.push(Claim {
+                    by: carrier.0,
+                    on: on as u16,
+                    distance_squared: 0.0,
+                });
             }
         }
         for claim in &notes.claims {

@@ -10,10 +10,18 @@ impl Referee {
     ///
     /// Home ends at the boundary, although the corners' circles extend beyond it: a boat tagged for
     /// leaving the field is not untagged outside.
-    pub(super) fn untag(&self, standing: &mut Standing, at: &impl Fn(usize) -> Ned, events: &mut Vec<Event>) {
+    pub(super) fn untag(
+        &self,
+        standing: &mut Standing,
+        at: &impl Fn(usize) -> Ned,
+        events: &mut Vec<Event>,
+    ) {
         for (i, boat) in standing.vehicles.iter_mut().enumerate() {
             let was_at_home = boat.at_home;
-            boat.at_home = !boat.outside && self.rules.is_untag_place(&self.field, self.team_of[i], at(i));
+            boat.at_home = !boat.outside
+                && self
+                    .rules
+                    .is_untag_place(&self.field, self.team_of[i], at(i));
             let freed = match self.rules.untag_on {
                 UntagOn::Entering => boat.at_home && !was_at_home,
                 UntagOn::Inside => boat.at_home,

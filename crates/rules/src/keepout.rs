@@ -13,11 +13,17 @@ impl Referee {
         if radius_m <= 0.0 || !standing.vehicles[vehicle.index()].in_play {
             return None;
         }
-        at.nearest_of(self.own_flags_home(standing, self.team_of[vehicle.index()])).map(|centre| (centre, radius_m))
+        at.nearest_of(self.own_flags_home(standing, self.team_of[vehicle.index()]))
+            .map(|centre| (centre, radius_m))
     }
 
     /// Records boats that entered a keep-out circle, or were inside one when the flag came home.
-    pub(super) fn watch_keepouts(&self, standing: &mut Standing, at: &impl Fn(usize) -> Ned, events: &mut Vec<Event>) {
+    pub(super) fn watch_keepouts(
+        &self,
+        standing: &mut Standing,
+        at: &impl Fn(usize) -> Ned,
+        events: &mut Vec<Event>,
+    ) {
         let radius_m = self.rules.flag_keepout_m;
         if radius_m <= 0.0 {
             return;
@@ -25,7 +31,9 @@ impl Referee {
         for i in 0..standing.vehicles.len() {
             let here = at(i);
             let is_inside = |centre| here.distance_squared(centre) < radius_m * radius_m;
-            let inside = self.own_flags_home(standing, self.team_of[i]).any(is_inside);
+            let inside = self
+                .own_flags_home(standing, self.team_of[i])
+                .any(is_inside);
             let boat = &mut standing.vehicles[i];
             if inside && !boat.in_keepout && boat.in_play {
                 events.push(Event::EnteredKeepout(VehicleId::at(i)));

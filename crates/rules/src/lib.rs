@@ -94,12 +94,14 @@ pub struct Rules {
     #[serde(default)]
     #[schemars(extend("default" = "automatic"))]
     pub tags_and_grabs: Acting,
-    /// Interval of checks of boundary, tags and collisions, s, a multiple of the tick; 0: every tick.
+    /// Interval of checks of boundary, tags and collisions, s, a multiple of the tick; 0: every
+    /// tick.
     #[serde(default)]
     #[schemars(rename = "tag_look_period_s", with = "f64", !default, range(min = 0, max = 60))]
     #[schemars(extend("x-field" = "tag_look_period", "default" = 0))]
     pub tag_look_period: SimTime,
-    /// Interval of checks of grabs, captures and untagging, s, a multiple of the tick; 0: every tick.
+    /// Interval of checks of grabs, captures and untagging, s, a multiple of the tick; 0: every
+    /// tick.
     #[serde(default)]
     #[schemars(rename = "flag_look_period_s", with = "f64", !default, range(min = 0, max = 60))]
     #[schemars(extend("x-field" = "flag_look_period", "default" = 0))]

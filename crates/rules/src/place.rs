@@ -32,7 +32,9 @@ impl Rules {
     pub fn capture_place(&self, field: &Field, team: TeamId, at: Ned) -> Option<Ned> {
         match self.capture_at {
             CaptureAt::OwnFlag | CaptureAt::OwnSide => field.nearest_own_flag(team, at),
-            CaptureAt::OwnCorners => field.inside_own_corner(team, at, corner_inset_m(self.capture_radius_m)),
+            CaptureAt::OwnCorners => {
+                field.inside_own_corner(team, at, corner_inset_m(self.capture_radius_m))
+            }
         }
     }
 
@@ -50,7 +52,9 @@ impl Rules {
     pub fn untag_place(&self, field: &Field, team: TeamId, at: Ned) -> Option<Ned> {
         match self.untag_at {
             UntagAt::OwnFlag => field.nearest_own_flag(team, at),
-            UntagAt::OwnCorners => field.inside_own_corner(team, at, corner_inset_m(self.untag_radius_m)),
+            UntagAt::OwnCorners => {
+                field.inside_own_corner(team, at, corner_inset_m(self.untag_radius_m))
+            }
         }
     }
 
@@ -65,12 +69,17 @@ impl Rules {
 
 #[inline]
 fn is_near_own_flag(field: &Field, team: TeamId, at: Ned, radius_m: f64) -> bool {
-    field.own_flags(team).any(|(_, home)| at.distance_squared(home) < radius_m * radius_m)
+    field
+        .own_flags(team)
+        .any(|(_, home)| at.distance_squared(home) < radius_m * radius_m)
 }
 
 #[inline]
 fn is_near_own_corner(field: &Field, team: TeamId, at: Ned, radius_m: f64) -> bool {
-    field.own_corners(team).iter().any(|corner| at.distance_squared(*corner) < radius_m * radius_m)
+    field
+        .own_corners(team)
+        .iter()
+        .any(|corner| at.distance_squared(*corner) < radius_m * radius_m)
 }
 
 /// Inset from both edges for boats that must come within `radius_m` of a corner, m. Half the radius

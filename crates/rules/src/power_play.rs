@@ -16,7 +16,9 @@ impl Referee {
         }
         let mut chosen = Vec::new();
         for team in 0..self.teams() {
-            let boats: Vec<usize> = (0..self.team_of.len()).filter(|i| self.team_of[*i].index() == team).collect();
+            let boats: Vec<usize> = (0..self.team_of.len())
+                .filter(|i| self.team_of[*i].index() == team)
+                .collect();
             if !boats.is_empty() {
                 chosen.push(boats[stream.below(boats.len() as u64) as usize]);
             }
@@ -43,7 +45,12 @@ impl Referee {
         if self.rules.power_play <= SimTime::ZERO {
             return;
         }
-        for (i, (boat, (from, until))) in standing.vehicles.iter_mut().zip(&standing.disabled).enumerate() {
+        for (i, (boat, (from, until))) in standing
+            .vehicles
+            .iter_mut()
+            .zip(&standing.disabled)
+            .enumerate()
+        {
             let vehicle = VehicleId::at(i);
             let disabled = (*from..*until).contains(&standing.now);
             match (boat.disabled, disabled) {

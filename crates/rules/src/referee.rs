@@ -68,7 +68,13 @@ impl Referee {
     /// [`Resolution::InTurn`] uses another order, for comparison with Pyquaticus.
     ///
     /// Nothing happens after the end of the game.
-    pub fn advance(&self, standing: &mut Standing, notes: &mut Notes, look: &Look<'_>, events: &mut Vec<Event>) {
+    pub fn advance(
+        &self,
+        standing: &mut Standing,
+        notes: &mut Notes,
+        look: &Look<'_>,
+        events: &mut Vec<Event>,
+    ) {
         if standing.over {
             return;
         }

@@ -72,7 +72,13 @@ impl Standing {
         Standing {
             now: SimTime::LONG_AGO,
             vehicles: vec![vehicle; vehicles],
-            flags: vec![FlagStanding { carrier: None, moved_at: SimTime::LONG_AGO }; flags],
+            flags: vec![
+                FlagStanding {
+                    carrier: None,
+                    moved_at: SimTime::LONG_AGO
+                };
+                flags
+            ],
             score: vec![0; teams],
             touching: Vec::new(),
             disabled: vec![(SimTime::NEVER, SimTime::NEVER); vehicles],

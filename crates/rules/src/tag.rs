@@ -13,23 +13,42 @@ impl Referee {
     /// Each tagger claims one intruder; [`super::Resolution`] decides between several taggers of
     /// the same one. Only the successful tagger gets the points and the cooldown: a failed or late
     /// tag costs nothing.
-    pub(super) fn tag(&self, standing: &mut Standing, notes: &mut Notes, look: &Look<'_>, events: &mut Vec<Event>) {
+    pub(super) fn tag(
+        &self,
+        standing: &mut Standing,
+        notes: &mut Notes,
+        look: &Look<'_>,
+        events: &mut Vec<Event>,
+    ) {
         let reach_squared = self.rules.tag_radius_m * self.rules.tag_radius_m;
         notes.claims.clear();
-        for &Pair { a, b, distance_squared } in look.near {
+        for &Pair {
+            a,
+            b,
+            distance_squared,
+        } in look.near
+        {
             if distance_squared >= reach_squared {
                 continue;
             }
             for (by, on) in [(a, b), (b, a)] {
                 if self.may_tag(standing, usize::from(by), usize::from(on), look) {
-                    notes.claims.push(Claim { by, on, distance_squared });
+                    notes.claims.push(Claim {
+                        by,
+                        on,
+                        distance_squared,
+                    });
                 }
             }
         }
         if notes.claims.is_empty() {
             return;
         }
-        settle(&mut notes.claims, self.rules.tag_choice, self.rules.resolution);
+        settle(
+            &mut notes.claims,
+            self.rules.tag_choice,
+            self.rules.resolution,
+        );
         for claim in &notes.claims {
             let tagger = VehicleId(claim.by);
             let target = VehicleId(claim.on);

@@ -32,7 +32,9 @@ pub enum Action {
 impl Action {
     /// The discrete action with the largest logit; ties go to the first.
     pub fn likeliest(logits: &[f32]) -> Action {
-        Action::Discrete((1..logits.len()).fold(0, |best, i| if logits[i] > logits[best] { i } else { best }))
+        Action::Discrete(
+            (1..logits.len()).fold(0, |best, i| if logits[i] > logits[best] { i } else { best }),
+        )
     }
 }
 
@@ -60,7 +62,10 @@ impl ActionSpace {
 /// The probabilities of actions with these logits.
 pub fn probabilities(logits: &[f32]) -> Vec<f32> {
     let most = logits.iter().copied().fold(f32::NEG_INFINITY, f32::max);
-    let parts: Vec<f64> = logits.iter().map(|logit| math::exp(f64::from(logit - most))).collect();
+    let parts: Vec<f64> = logits
+        .iter()
+        .map(|logit| math::exp(f64::from(logit - most)))
+        .collect();
     let sum: f64 = parts.iter().sum();
     parts.iter().map(|part| (part / sum) as f32).collect()
 }
@@ -106,32 +111,49 @@ impl ActionSpace {
         let turn_rad = wrap_pi(asked.course_rad - heading_rad);
         let share = (asked.speed_m_s / speed_max_m_s).clamp(0.0, 1.0);
         if self == ActionSpace::Continuous {
-            return Some(Action::Continuous([turn_rad / PI, 2.0 * share - 1.0].map(|number| number as f32)));
+            return Some(Action::Continuous(
+                [turn_rad / PI, 2.0 * share - 1.0].map(|number| number as f32),
+            ));
         }
         // A turn of one radian counts as much as the whole speed range. A stop has no turn.
         let off = |action: usize| {
-            let SetPoint { course_rad, speed_m_s } = self.set_point(Action::Discrete(action), 0.0, 1.0);
-            let by_turn = if speed_m_s == 0.0 { 0.0 } else { wrap_pi(course_rad - turn_rad) };
+            let SetPoint {
+                course_rad,
+                speed_m_s,
+            } = self.set_point(Action::Discrete(action), 0.0, 1.0);
+            let by_turn = if speed_m_s == 0.0 {
+                0.0
+            } else {
+                wrap_pi(course_rad - turn_rad)
+            };
             let by_speed = speed_m_s - share;
             by_turn * by_turn + by_speed * by_speed
         };
-        (0..self.count()?).min_by(|a, b| off(*a).total_cmp(&off(*b))).map(Action::Discrete)
+        (0..self.count()?)
+            .min_by(|a, b| off(*a).total_cmp(&off(*b)))
+            .map(Action::Discrete)
     }
 
     /// The course and speed of an action for a boat with this heading and top speed. Actions of
     /// another space, non-finite ones and options are a stop.
     pub fn set_point(self, action: Action, heading_rad: f64, speed_max_m_s: f64) -> SetPoint {
         let (turn_rad, share) = match (self, action) {
-            (ActionSpace::Pyquaticus, Action::Discrete(i)) if i < SPEEDS.len() * TURNS => {
-                (PI - (i % TURNS) as f64 * 2.0 * PI / TURNS as f64, SPEEDS[i / TURNS])
-            }
-            (ActionSpace::Continuous, Action::Continuous([turn, speed])) if turn.is_finite() && speed.is_finite() => {
+            (ActionSpace::Pyquaticus, Action::Discrete(i)) if i < SPEEDS.len() * TURNS => (
+                PI - (i % TURNS) as f64 * 2.0 * PI / TURNS as f64,
+                SPEEDS[i / TURNS],
+            ),
+            (ActionSpace::Continuous, Action::Continuous([turn, speed]))
+                if turn.is_finite() && speed.is_finite() =>
+            {
                 let [turn, speed] = [turn, speed].map(|number| f64::from(number).clamp(-1.0, 1.0));
                 (turn * PI, 0.5 * (1.0 + speed))
             }
             _ => (0.0, 0.0),
         };
-        SetPoint { course_rad: wrap_pi(heading_rad + turn_rad), speed_m_s: share * speed_max_m_s }
+        SetPoint {
+            course_rad: wrap_pi(heading_rad + turn_rad),
+            speed_m_s: share * speed_max_m_s,
+        }
     }
 }
 
@@ -143,13 +165,19 @@ mod tests {
     fn the_discrete_actions_are_those_of_pyquaticus() {
         let space = ActionSpace::Pyquaticus;
         let turns_deg = [180.0, 135.0, 90.0, 45.0, 0.0, -45.0, -90.0, -135.0];
-        let want =
-            [2.0, 1.0].into_iter().flat_map(|speed_m_s| turns_deg.map(|deg| (speed_m_s, deg))).chain([(0.0, 0.0)]);
+        let want = [2.0, 1.0]
+            .into_iter()
+            .flat_map(|speed_m_s| turns_deg.map(|deg| (speed_m_s, deg)))
+            .chain([(0.0, 0.0)]);
         assert_eq!(space.count(), Some(17));
         for (i, (speed_m_s, turn_deg)) in want.enumerate() {
             let got = space.set_point(Action::Discrete(i), 1.0, 2.0);
-            let off_rad = primitives::angle::wrap_pi(got.course_rad - 1.0 - f64::to_radians(turn_deg));
-            assert!(off_rad.abs() < 1e-12 && (got.speed_m_s - speed_m_s).abs() < 1e-12, "{i}: {got:?}");
+            let off_rad =
+                primitives::angle::wrap_pi(got.course_rad - 1.0 - f64::to_radians(turn_deg));
+            assert!(
+                off_rad.abs() < 1e-12 && (got.speed_m_s - speed_m_s).abs() < 1e-12,
+                "{i}: {got:?}"
+            );
         }
     }
 
@@ -162,17 +190,37 @@ mod tests {
             let asked = space.set_point(action, heading_rad, fastest_m_s);
             assert_eq!(space.nearest(asked, heading_rad, fastest_m_s), Some(action));
         }
-        let asked = ActionSpace::Continuous.set_point(Action::Continuous([-0.25, 0.5]), heading_rad, fastest_m_s);
-        let Some(Action::Continuous([turn, speed])) = ActionSpace::Continuous.nearest(asked, heading_rad, fastest_m_s)
+        let asked = ActionSpace::Continuous.set_point(
+            Action::Continuous([-0.25, 0.5]),
+            heading_rad,
+            fastest_m_s,
+        );
+        let Some(Action::Continuous([turn, speed])) =
+            ActionSpace::Continuous.nearest(asked, heading_rad, fastest_m_s)
         else {
             panic!("no continuous action")
         };
-        assert!((turn + 0.25).abs() < 1e-6 && (speed - 0.5).abs() < 1e-6, "{turn} {speed}");
+        assert!(
+            (turn + 0.25).abs() < 1e-6 && (speed - 0.5).abs() < 1e-6,
+            "{turn} {speed}"
+        );
         // Slowly, 10 degrees to starboard; and almost stopped, in any direction.
-        let slow = |turn_deg: f64, speed_m_s| SetPoint { course_rad: heading_rad + turn_deg.to_radians(), speed_m_s };
-        assert_eq!(space.nearest(slow(10.0, 1.4), heading_rad, fastest_m_s), Some(Action::Discrete(12)));
-        assert_eq!(space.nearest(slow(70.0, 0.1), heading_rad, fastest_m_s), Some(Action::Discrete(16)));
-        assert_eq!(ActionSpace::Options.nearest(asked, heading_rad, fastest_m_s), None);
+        let slow = |turn_deg: f64, speed_m_s| SetPoint {
+            course_rad: heading_rad + turn_deg.to_radians(),
+            speed_m_s,
+        };
+        assert_eq!(
+            space.nearest(slow(10.0, 1.4), heading_rad, fastest_m_s),
+            Some(Action::Discrete(12))
+        );
+        assert_eq!(
+            space.nearest(slow(70.0, 0.1), heading_rad, fastest_m_s),
+            Some(Action::Discrete(16))
+        );
+        assert_eq!(
+            ActionSpace::Options.nearest(asked, heading_rad, fastest_m_s),
+            None
+        );
     }
 
     #[test]
@@ -180,19 +228,38 @@ mod tests {
         let words = |action| ActionSpace::Pyquaticus.words(action);
         assert_eq!(
             [words(0), words(4), words(9)],
-            ["full speed, about", "full speed, straight on", "50 % speed, 135° to starboard"]
+            [
+                "full speed, about",
+                "full speed, straight on",
+                "50 % speed, 135° to starboard"
+            ]
         );
-        assert_eq!([words(6), words(16), words(99)], ["full speed, 90° to port", "stop", "stop"]);
+        assert_eq!(
+            [words(6), words(16), words(99)],
+            ["full speed, 90° to port", "stop", "stop"]
+        );
     }
 
     #[test]
     fn continuous_actions_stay_within_their_limits_and_nonsense_stops_the_boat() {
-        let of = |turn, speed| ActionSpace::Continuous.set_point(Action::Continuous([turn, speed]), 0.5, 3.0);
+        let of = |turn, speed| {
+            ActionSpace::Continuous.set_point(Action::Continuous([turn, speed]), 0.5, 3.0)
+        };
         assert!((of(0.0, 1.0).course_rad - 0.5).abs() < 1e-12 && of(0.0, 9.0).speed_m_s == 3.0);
         assert!((of(0.5, 0.0).course_rad - 0.5 - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
         assert_eq!(of(0.0, 0.0).speed_m_s, 1.5);
         assert_eq!(of(f32::NAN, 1.0).speed_m_s, 0.0);
-        assert_eq!(ActionSpace::Pyquaticus.set_point(Action::Discrete(99), 0.5, 3.0).speed_m_s, 0.0);
-        assert_eq!(ActionSpace::Continuous.set_point(Action::Discrete(0), 0.5, 3.0).speed_m_s, 0.0);
+        assert_eq!(
+            ActionSpace::Pyquaticus
+                .set_point(Action::Discrete(99), 0.5, 3.0)
+                .speed_m_s,
+            0.0
+        );
+        assert_eq!(
+            ActionSpace::Continuous
+                .set_point(Action::Discrete(0), 0.5, 3.0)
+                .speed_m_s,
+            0.0
+        );
     }
 }

@@ -141,7 +141,10 @@ pub struct Kinematic {
 #[derive(JsonSchema)]
 #[schemars(inline)]
 #[expect(dead_code, reason = "the schema of a pair")]
-pub struct ThrustAndSpeed(#[schemars(range(min = -100, max = 100))] f64, #[schemars(range(min = -60, max = 60))] f64);
+pub struct ThrustAndSpeed(
+    #[schemars(range(min = -100, max = 100))] f64,
+    #[schemars(range(min = -60, max = 60))] f64,
+);
 
 /// Gains of pMarinePID.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]

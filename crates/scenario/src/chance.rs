@@ -13,22 +13,31 @@ impl Scenario {
     pub fn is_random(&self) -> bool {
         let starts = |start: &StartPosition| matches!(start, StartPosition::Somewhere { .. });
         self.recipe.is_some()
-            || self.vehicles.iter().any(|vehicle| starts(&vehicle.start_position))
+            || self
+                .vehicles
+                .iter()
+                .any(|vehicle| starts(&vehicle.start_position))
             || self.deals_roles()
             || self.rules.power_play > SimTime::ZERO
             || is_random_sea(&self.sea)
             || self.link.as_ref().is_some_and(is_random_link)
             || is_random_sharing(&self.rules.sharing)
-            || self.boats.iter().any(|boat| are_random_sensors(&boat.sensors))
+            || self
+                .boats
+                .iter()
+                .any(|boat| are_random_sensors(&boat.sensors))
     }
 
     /// Whether a team's boats get different roles in a random order.
     fn deals_roles(&self) -> bool {
         let fellows = |(i, one): (usize, &super::Vehicle)| {
-            let others =
-                self.vehicles[..i].iter().filter(|other| other.team == one.team && other.strategy == one.strategy);
+            let others = self.vehicles[..i]
+                .iter()
+                .filter(|other| other.team == one.team && other.strategy == one.strategy);
             let strategy = &self.strategies[one.strategy];
-            strategy.assignment == Assignment::Seeded && strategy.roles.len() > 1 && others.count() > 0
+            strategy.assignment == Assignment::Seeded
+                && strategy.roles.len() > 1
+                && others.count() > 0
         };
         self.vehicles.iter().enumerate().any(fellows)
     }
@@ -39,8 +48,14 @@ fn is_random_sea(sea: &Sea) -> bool {
         Gusts::None => false,
         Gusts::OrnsteinUhlenbeck { intensity, .. } => intensity > 0.0 && wind.speed_10m_m_s > 0.0,
     });
-    let wander = sea.current.wander.is_some_and(|wander| wander.sigma_m_s > 0.0);
-    let eddies = sea.current.random_eddies.is_some_and(|eddies| eddies.count > 0);
+    let wander = sea
+        .current
+        .wander
+        .is_some_and(|wander| wander.sigma_m_s > 0.0);
+    let eddies = sea
+        .current
+        .random_eddies
+        .is_some_and(|eddies| eddies.count > 0);
     gusts || wander || eddies || sea.waves.as_ref().is_some_and(|waves| waves.hs_m > 0.0)
 }
 
@@ -61,13 +76,21 @@ fn is_chance(share: f64) -> bool {
 fn are_random_sensors(sensors: &Sensors) -> bool {
     let gps = |gps: &Gps| {
         let errors = [gps.bias_m, gps.noise_m, gps.velocity_noise_m_s];
-        let events = [gps.dropout.rate_per_s, gps.freeze.rate_per_s, gps.jump.rate_per_s];
+        let events = [
+            gps.dropout.rate_per_s,
+            gps.freeze.rate_per_s,
+            gps.jump.rate_per_s,
+        ];
         errors.into_iter().chain(events).any(|size| size > 0.0)
     };
     let compass = |compass: &Compass| compass.noise_rad > 0.0;
     let imu = |imu: &Imu| {
-        let errors =
-            [imu.gyro_noise_rad_s, imu.gyro_bias_rad_s, imu.accelerometer_noise_m_s2, imu.accelerometer_bias_m_s2];
+        let errors = [
+            imu.gyro_noise_rad_s,
+            imu.gyro_bias_rad_s,
+            imu.accelerometer_noise_m_s2,
+            imu.accelerometer_bias_m_s2,
+        ];
         errors.into_iter().any(|size| size > 0.0)
     };
     sensors.gps.as_ref().is_some_and(gps)

@@ -41,7 +41,9 @@ impl Diagnostics {
 
     /// Continues from the results of an earlier reading. Returns whether there were any.
     pub(super) fn resume(&mut self, reading: &Reading) -> bool {
-        let Some(known) = &reading.0 else { return false };
+        let Some(known) = &reading.0 else {
+            return false;
+        };
         (self.sources, self.kept) = (**known).clone();
         true
     }
@@ -61,7 +63,9 @@ impl Diagnostics {
 
     /// The file, line and column (from 1) of the value at `at`.
     pub fn position(&self, at: usize) -> (PathBuf, usize, usize) {
-        let Problem { path, line, column, .. } = self.sources.problem(at, String::new());
+        let Problem {
+            path, line, column, ..
+        } = self.sources.problem(at, String::new());
         (path, line, column)
     }
 
@@ -80,19 +84,31 @@ impl Diagnostics {
         self.read(&path, Some(place), F::NAME)
     }
 
-    /// Reads and checks the file at `path`, with numbers drawn for `owner`. If it cannot be read, the
-    /// problem is at `asked_at`, the reference.
-    pub(super) fn read<F: ScenarioFile>(&mut self, path: &Path, asked_at: Option<usize>, owner: &str) -> Option<F> {
+    /// Reads and checks the file at `path`, with numbers drawn for `owner`. If it cannot be read,
+    /// the problem is at `asked_at`, the reference.
+    pub(super) fn read<F: ScenarioFile>(
+        &mut self,
+        path: &Path,
+        asked_at: Option<usize>,
+        owner: &str,
+    ) -> Option<F> {
         let document = read::document(self, Kind::of::<F>(), path, asked_at, owner)?;
         F::check(self, &document)
     }
 
-    /// Reads and checks the file at `path`; its value and the drawn numbers, if there are no faults.
-    pub(super) fn faultless<F: ScenarioFile>(&mut self, path: &Path) -> Result<(F, Vec<Drawn>), Problems> {
+    /// Reads and checks the file at `path`; its value and the drawn numbers, if there are no
+    /// faults.
+    pub(super) fn faultless<F: ScenarioFile>(
+        &mut self,
+        path: &Path,
+    ) -> Result<(F, Vec<Drawn>), Problems> {
         match self.read(path, None, F::NAME) {
             Some(value) if self.problems.is_empty() => Ok((value, std::mem::take(&mut self.drawn))),
             _ => {
-                assert!(!self.problems.is_empty(), "a check failed without saying why");
+                assert!(
+                    !self.problems.is_empty(),
+                    "a check failed without saying why"
+                );
                 self.problems.sort();
                 self.problems.dedup();
                 Err(Problems(std::mem::take(&mut self.problems)))
@@ -110,7 +126,10 @@ impl Diagnostics {
 
     /// Reports that the value at `path` of a file is missing from the table at `at`.
     pub(super) fn note_missing(&mut self, at: usize, path: &str, expected: &str) {
-        let parts: Vec<&str> = path.split('.').filter(|part| part.parse::<usize>().is_err()).collect();
+        let parts: Vec<&str> = path
+            .split('.')
+            .filter(|part| part.parse::<usize>().is_err())
+            .collect();
         let key = parts[parts.len().saturating_sub(2)..].join(".");
         self.note_if_intact(at, format!("{key} is missing, expected {expected}"));
     }

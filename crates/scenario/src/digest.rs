@@ -6,7 +6,10 @@ use std::sync::Arc;
 
 /// The digest of a plan, from its file's meaning and the content of its games' files: hex.
 pub fn digest_of(meaning: &str, files: &[(PathBuf, Arc<[u8]>)]) -> String {
-    let contents: Vec<u128> = files.iter().map(|(_, bytes)| xxhash_rust::xxh3::xxh3_128(bytes)).collect();
+    let contents: Vec<u128> = files
+        .iter()
+        .map(|(_, bytes)| xxhash_rust::xxh3::xxh3_128(bytes))
+        .collect();
     let text = format!("{} {meaning} {contents:x?}", primitives::VERSION);
     format!("{:032x}", xxhash_rust::xxh3::xxh3_128(text.as_bytes()))
 }
@@ -20,9 +23,20 @@ impl Scenario {
     pub fn digest(&self) -> String {
         let texts: Vec<(PathBuf, Arc<[u8]>)> = match &self.recipe {
             None => vec![],
-            Some(recipe) => recipe.files.iter().map(|(path, text)| (path.clone(), text.as_bytes().into())).collect(),
+            Some(recipe) => recipe
+                .files
+                .iter()
+                .map(|(path, text)| (path.clone(), text.as_bytes().into()))
+                .collect(),
         };
-        let meant = Scenario { seed: 0, recipe: None, ..self.clone() };
-        digest_of(&serde_json::to_string(&meant).expect("it has names for keys"), &texts)
+        let meant = Scenario {
+            seed: 0,
+            recipe: None,
+            ..self.clone()
+        };
+        digest_of(
+            &serde_json::to_string(&meant).expect("it has names for keys"),
+            &texts,
+        )
     }
 }

@@ -60,7 +60,9 @@ pub(super) struct Owner<'a> {
 
 /// The kind of distribution that a table is meant to be, if any.
 pub(super) fn distribution_kind(table: &Table) -> Option<&'static str> {
-    ["uniform", "normal", "log_normal", "choice"].into_iter().find(|kind| table.contains_key(*kind))
+    ["uniform", "normal", "log_normal", "choice"]
+        .into_iter()
+        .find(|kind| table.contains_key(*kind))
 }
 
 /// The number drawn from the distribution at `path`; reports an invalid one.
@@ -72,7 +74,11 @@ pub(super) fn draw(
     path: &str,
 ) -> Option<Value> {
     let path = path.get(owner.path_from..).unwrap_or_default();
-    let Some(value) = number(table, diagnostics.drawing, &format!("draw/{}/{path}", owner.name)) else {
+    let Some(value) = number(
+        table,
+        diagnostics.drawing,
+        &format!("draw/{}/{path}", owner.name),
+    ) else {
         let key = path.rsplit('.').next().unwrap_or(path);
         let message = format!(
             "{key} is not a distribution, expected one of {{ uniform = [low, high] }}, {{ normal = [mean, sigma] }}, \
@@ -82,17 +88,26 @@ pub(super) fn draw(
         diagnostics.note(node.at, message);
         return None;
     };
-    diagnostics.drawn.push(Drawn { parameter: format!("{}/{path}", owner.name), value });
+    diagnostics.drawn.push(Drawn {
+        parameter: format!("{}/{path}", owner.name),
+        value,
+    });
     // Whole numbers up to 1e15 are exact, and some keys accept only whole numbers.
     let is_whole = value.fract() == 0.0 && value.abs() < 1e15;
-    Some(if is_whole { Value::Whole(value as i64) } else { Value::Number(value) })
+    Some(if is_whole {
+        Value::Whole(value as i64)
+    } else {
+        Value::Number(value)
+    })
 }
 
 /// The number drawn from a distribution with this stream; none if it is invalid.
 fn number(table: &Table, drawing: Drawing, stream: &str) -> Option<f64> {
     let kind = distribution_kind(table)?;
     let finite = |node: &Node| node.as_number().filter(|number| number.is_finite());
-    let Value::List(items) = &table[kind].value else { return None };
+    let Value::List(items) = &table[kind].value else {
+        return None;
+    };
     let numbers: Vec<f64> = items.iter().map(finite).collect::<Option<_>>()?;
     let times = table.get("times").map_or(Some(1.0), finite)?;
     if !table.keys().all(|key| key == kind || key == "times") {
@@ -106,15 +121,22 @@ fn number(table: &Table, drawing: Drawing, stream: &str) -> Option<f64> {
     };
     match (kind, numbers.as_slice()) {
         ("uniform", &[low, high]) if low <= high => {
-            let (low, high) = ((low * times).min(high * times), (low * times).max(high * times));
+            let (low, high) = (
+                (low * times).min(high * times),
+                (low * times).max(high * times),
+            );
             Some(match drawing {
                 Drawing::Least => low,
                 Drawing::Greatest => high,
                 Drawing::Seed(seed) => stream(seed).between(low, high),
             })
         }
-        ("normal", &[mean, sigma]) if sigma >= 0.0 => Some(mean * times + sigmas() * (sigma * times).abs()),
-        ("log_normal", &[median, sigma]) if median * times > 0.0 && (0.0..=10.0).contains(&sigma) => {
+        ("normal", &[mean, sigma]) if sigma >= 0.0 => {
+            Some(mean * times + sigmas() * (sigma * times).abs())
+        }
+        ("log_normal", &[median, sigma])
+            if median * times > 0.0 && (0.0..=10.0).contains(&sigma) =>
+        {
             Some(median * times * libm::exp(sigmas() * sigma))
         }
         ("choice", choices) => {
@@ -122,7 +144,9 @@ fn number(table: &Table, drawing: Drawing, stream: &str) -> Option<f64> {
             match drawing {
                 Drawing::Least => scaled.reduce(f64::min),
                 Drawing::Greatest => scaled.reduce(f64::max),
-                Drawing::Seed(seed) => scaled.nth(stream(seed).below(choices.len().max(1) as u64) as usize),
+                Drawing::Seed(seed) => {
+                    scaled.nth(stream(seed).below(choices.len().max(1) as u64) as usize)
+                }
             }
         }
         _ => None,

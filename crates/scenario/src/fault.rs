@@ -104,7 +104,10 @@ pub fn fault_spans(
     end: SimTime,
 ) -> Vec<FaultSpan> {
     let mut spans = vec![];
-    for fault in faults.iter().filter(|fault| fault.vehicles.contains(&vehicle)) {
+    for fault in faults
+        .iter()
+        .filter(|fault| fault.vehicles.contains(&vehicle))
+    {
         let stream = |seed: u64| Stream::new(seed, &format!("fault/{}/{name}", fault.name));
         let mut later = seeds.later().iter().peekable();
         let mut drawn = stream(seeds.first());
@@ -112,7 +115,9 @@ pub fn fault_spans(
         let wait = |stream: &mut Stream| {
             let mean_s = fault.every_s?;
             // With a unit of 0 the wait would be infinite.
-            Some(SimTime::from_s((-mean_s * libm::log1p(-stream.unit())).min(1e7)))
+            Some(SimTime::from_s(
+                (-mean_s * libm::log1p(-stream.unit())).min(1e7),
+            ))
         };
         let mut next = fault.at_s.map(SimTime::from_s).or_else(|| wait(&mut drawn));
         let mut over = SimTime::ZERO;
@@ -166,44 +171,101 @@ mod tests {
 
     #[test]
     fn a_fault_with_a_time_happens_then_and_one_without_end_lasts() {
-        let at = Fault { at_s: Some(30.0), ..fault() };
-        let spans = fault_spans(std::slice::from_ref(&at), (VehicleId(0), "a"), &1.into(), HOUR);
+        let at = Fault {
+            at_s: Some(30.0),
+            ..fault()
+        };
+        let spans = fault_spans(
+            std::slice::from_ref(&at),
+            (VehicleId(0), "a"),
+            &1.into(),
+            HOUR,
+        );
         assert_eq!(spans.len(), 1);
         let on = |s: f64| spans[0].is_on(SimTime::from_s(s));
         assert_eq!([29.9, 30.0, 3599.9].map(on), [false, true, true]);
-        let short = fault_spans(&[Fault { for_s: Some(5.0), ..at.clone() }], (VehicleId(1), "b"), &1.into(), HOUR);
-        assert_eq!((short[0].from, short[0].to), (SimTime::from_s(30.0), SimTime::from_s(30.0) + SimTime::from_s(5.0)));
+        let short = fault_spans(
+            &[Fault {
+                for_s: Some(5.0),
+                ..at.clone()
+            }],
+            (VehicleId(1), "b"),
+            &1.into(),
+            HOUR,
+        );
+        assert_eq!(
+            (short[0].from, short[0].to),
+            (
+                SimTime::from_s(30.0),
+                SimTime::from_s(30.0) + SimTime::from_s(5.0)
+            )
+        );
         assert_eq!(fault_spans(&[at], (VehicleId(2), "c"), &1.into(), HOUR), []);
     }
 
     #[test]
     fn drawn_faults_come_as_often_as_stated_and_at_other_times_for_every_boat_and_seed() {
-        let drawn = Fault { every_s: Some(50.0), for_s: Some(10.0), ..fault() };
+        let drawn = Fault {
+            every_s: Some(50.0),
+            for_s: Some(10.0),
+            ..fault()
+        };
         let of = |vehicle: u16, name, seed: u64| {
-            fault_spans(std::slice::from_ref(&drawn), (VehicleId(vehicle), name), &seed.into(), HOUR)
+            fault_spans(
+                std::slice::from_ref(&drawn),
+                (VehicleId(vehicle), name),
+                &seed.into(),
+                HOUR,
+            )
         };
         let count: usize = (0..100).map(|seed| of(0, "a", seed).len()).sum();
         // 3600 s with one every 60 s, over 100 games: 6000, with a standard deviation of about 65.
         assert!((5700..6300).contains(&count), "{count}");
         assert_ne!(of(0, "a", 1)[0].from, of(1, "b", 1)[0].from);
         assert_ne!(of(0, "a", 1)[0].from, of(0, "a", 2)[0].from);
-        assert!(of(0, "a", 1).windows(2).all(|pair| pair[0].to < pair[1].from));
+        assert!(
+            of(0, "a", 1)
+                .windows(2)
+                .all(|pair| pair[0].to < pair[1].from)
+        );
     }
 
     #[test]
     fn another_seed_changes_what_begins_after_its_time_and_neither_what_was_before_nor_how_often() {
-        let drawn = Fault { every_s: Some(50.0), for_s: Some(10.0), ..fault() };
-        let of = |seeds: &Seeds| fault_spans(std::slice::from_ref(&drawn), (VehicleId(0), "a"), seeds, HOUR);
+        let drawn = Fault {
+            every_s: Some(50.0),
+            for_s: Some(10.0),
+            ..fault()
+        };
+        let of = |seeds: &Seeds| {
+            fault_spans(
+                std::slice::from_ref(&drawn),
+                (VehicleId(0), "a"),
+                seeds,
+                HOUR,
+            )
+        };
         let half = SimTime::from_s(1800.0);
         let first = of(&1.into());
         let mut counts = [0, 0];
         for seed in 2..202 {
-            let again = of(&Seeds::new(1, &[Reseed { after_s: 1800.0, seed }]));
-            let until = |spans: &[FaultSpan]| spans.iter().take_while(|span| span.from <= half).count();
+            let again = of(&Seeds::new(
+                1,
+                &[Reseed {
+                    after_s: 1800.0,
+                    seed,
+                }],
+            ));
+            let until =
+                |spans: &[FaultSpan]| spans.iter().take_while(|span| span.from <= half).count();
             assert_eq!(first[..until(&first)], again[..until(&again)]);
             assert_ne!(first[until(&first)..], again[until(&again)..]);
-            let within =
-                |from_s: f64, to_s: f64| again.iter().filter(|span| (from_s..to_s).contains(&span.from.as_s())).count();
+            let within = |from_s: f64, to_s: f64| {
+                again
+                    .iter()
+                    .filter(|span| (from_s..to_s).contains(&span.from.as_s()))
+                    .count()
+            };
             counts[0] += within(1800.0, 1860.0);
             counts[1] += within(2800.0, 2860.0);
         }
@@ -211,7 +273,10 @@ mod tests {
         // independent.
         assert!((160..240).contains(&counts[1]), "{counts:?}");
         // All share the past of `first`, whose last span ends earlier.
-        let last = first.iter().rfind(|span| span.from <= half).expect("there is one");
+        let last = first
+            .iter()
+            .rfind(|span| span.from <= half)
+            .expect("there is one");
         assert!(last.to < half, "the seed of this test leaves no span open");
         // Starting without a fault, a minute has 60/50 waits, less the duration of the spans: 1.03
         // on average.

@@ -15,7 +15,9 @@ const FIELD: &str = "x-field";
 pub(super) fn by_fields(mut values: Map<String, Value>, properties: &Value) -> Value {
     let keys = properties.as_object().into_iter().flatten();
     let marked = keys.filter_map(|(key, about)| Some((key, about.get(FIELD)?.as_str()?)));
-    let moved: Vec<_> = marked.filter_map(|(key, field)| Some((key, field, values.remove(key)?))).collect();
+    let moved: Vec<_> = marked
+        .filter_map(|(key, field)| Some((key, field, values.remove(key)?)))
+        .collect();
     let mut table = Value::Object(values);
     for (key, field, value) in moved {
         match field.split_once('.') {
@@ -32,9 +34,14 @@ pub(super) fn by_fields(mut values: Map<String, Value>, properties: &Value) -> V
 
 fn of_field(key: &str, field: &str, value: &Value) -> Value {
     if let Some([x, y]) = value.as_array().map(Vec::as_slice) {
-        return json!(Ned::from_xy(x.as_f64().unwrap_or_default(), y.as_f64().unwrap_or_default()));
+        return json!(Ned::from_xy(
+            x.as_f64().unwrap_or_default(),
+            y.as_f64().unwrap_or_default()
+        ));
     }
-    let Some(number) = value.as_f64() else { return value.clone() };
+    let Some(number) = value.as_f64() else {
+        return value.clone();
+    };
     match key {
         _ if key.strip_suffix("_s") == Some(field) => json!(SimTime::from_s(number)),
         _ if key.contains("_per_deg") => number.to_degrees().into(),

@@ -36,13 +36,22 @@ impl Files {
     /// Only these files, without access to the disk.
     pub fn kept(files: Vec<(PathBuf, Vec<u8>)>) -> Files {
         let mut read = Read::default();
-        files.into_iter().for_each(|(path, bytes)| read.add(path, bytes.into()));
-        Files { read: Mutex::new(read), is_complete: true }
+        files
+            .into_iter()
+            .for_each(|(path, bytes)| read.add(path, bytes.into()));
+        Files {
+            read: Mutex::new(read),
+            is_complete: true,
+        }
     }
 
     /// The files read so far, in order of first request.
     pub fn list(&self) -> Vec<(PathBuf, Arc<[u8]>)> {
-        self.read.lock().unwrap_or_else(PoisonError::into_inner).files.clone()
+        self.read
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .files
+            .clone()
     }
 
     /// Reads a file of at most `bytes_max` bytes.
@@ -56,7 +65,9 @@ impl Files {
         }
         let bytes: Arc<[u8]> = match (input_file::read(path, bytes_max), built_in(path)) {
             (Ok(bytes), built_in) => {
-                built_in.into_iter().for_each(|built_in| note_override(path, &bytes, built_in));
+                built_in
+                    .into_iter()
+                    .for_each(|built_in| note_override(path, &bytes, built_in));
                 bytes.into()
             }
             // A file on disk always wins, and names work in any folder. Unpacking the built-in
@@ -86,10 +97,19 @@ mod tests {
             std::fs::write(path, "changed").expect("it is written");
         }
         let list = files.list();
-        let read: Vec<(&Path, &[u8])> = list.iter().map(|(path, bytes)| (path.as_path(), &**bytes)).collect();
-        assert_eq!(read, [(first.as_path(), &b"1"[..]), (second.as_path(), b"2")]);
+        let read: Vec<(&Path, &[u8])> = list
+            .iter()
+            .map(|(path, bytes)| (path.as_path(), &**bytes))
+            .collect();
+        assert_eq!(
+            read,
+            [(first.as_path(), &b"1"[..]), (second.as_path(), b"2")]
+        );
         let kept = Files::kept(vec![(first.clone(), b"kept".to_vec())]);
         assert_eq!(&*kept.read(&first, 9).expect("it is kept"), b"kept");
-        assert_eq!(kept.read(&second, 9), Err("it is not among the stored files".to_owned()));
+        assert_eq!(
+            kept.read(&second, 9),
+            Err("it is not among the stored files".to_owned())
+        );
     }
 }

@@ -1,25 +1,34 @@
 //! Suggestions for unknown names.
 
-/// The most similar of `choices`: at most two edits away from `name`, ignoring case, or else with most
-/// of its words.
+/// The most similar of `choices`: at most two edits away from `name`, ignoring case, or else with
+/// most of its words.
 pub(super) fn nearest<'a>(name: &str, choices: &[&'a str]) -> Option<&'a str> {
     let far = name.len().min(5) / 2;
     let name = name.to_lowercase();
-    let distances = choices.iter().map(|choice| (strsim::levenshtein(&name, &choice.to_lowercase()), *choice));
+    let distances = choices
+        .iter()
+        .map(|choice| (strsim::levenshtein(&name, &choice.to_lowercase()), *choice));
     let nearest = distances.filter(|(distance, _)| *distance <= far).min();
     let words: Vec<&str> = name.split('_').collect();
     let shared = |choice: &&'a str| {
-        let shared: Vec<&str> = choice.split('_').filter(|word| words.contains(word)).collect();
+        let shared: Vec<&str> = choice
+            .split('_')
+            .filter(|word| words.contains(word))
+            .collect();
         // Units alone are no similarity.
         let is_near = 2 * shared.len() > words.len().max(choice.split('_').count());
         (is_near && shared.iter().any(|word| word.len() > 2)).then_some((shared.len(), *choice))
     };
-    nearest.or_else(|| choices.iter().filter_map(shared).max()).map(|(_, choice)| choice)
+    nearest
+        .or_else(|| choices.iter().filter_map(shared).max())
+        .map(|(_, choice)| choice)
 }
 
 /// The suggestion as the end of a message: ` (did you mean seed?)`; or an empty text.
 pub fn did_you_mean(name: &str, choices: &[&str]) -> String {
-    nearest(name, choices).map(|guess| format!(" (did you mean {guess}?)")).unwrap_or_default()
+    nearest(name, choices)
+        .map(|guess| format!(" (did you mean {guess}?)"))
+        .unwrap_or_default()
 }
 
 #[cfg(test)]
@@ -28,7 +37,12 @@ mod tests {
 
     #[test]
     fn a_name_with_other_capitals_a_slip_or_another_word_is_recognised() {
-        let choices = ["tag_radius_m", "tag_cooldown_s", "grab_radius_m", "speed_m_s"];
+        let choices = [
+            "tag_radius_m",
+            "tag_cooldown_s",
+            "grab_radius_m",
+            "speed_m_s",
+        ];
         for (name, guess) in [
             ("TAG_RADIUS_M", Some("tag_radius_m")),
             ("tag_radus_m", Some("tag_radius_m")),

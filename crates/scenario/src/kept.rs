@@ -29,7 +29,15 @@ pub(super) struct KeptDocument {
 }
 
 pub(super) fn key(kind: Kind, path: &Path, owner: &str) -> Key {
-    (kind.name(), path.to_owned(), if kind == Kind::STRATEGY { owner.to_owned() } else { String::new() })
+    (
+        kind.name(),
+        path.to_owned(),
+        if kind == Kind::STRATEGY {
+            owner.to_owned()
+        } else {
+            String::new()
+        },
+    )
 }
 
 /// The basis of a game, with the texts that its places refer to. It follows from the texts, so

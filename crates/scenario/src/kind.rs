@@ -17,8 +17,8 @@ use std::collections::BTreeSet;
 use std::fmt;
 use std::path::Path;
 
-/// The checked form of a kind of scenario file, implemented by the crate that uses it; for the files
-/// of a game in `check`.
+/// The checked form of a kind of scenario file, implemented by the crate that uses it; for the
+/// files of a game in `check`.
 pub trait ScenarioFile: Sized + 'static {
     /// The keys of the file; `schema.rs` describes their declaration.
     type Keys: DeserializeOwned + JsonSchema;
@@ -73,7 +73,12 @@ impl Kind {
     pub const STRATEGY: Kind = Kind::of::<Strategy>();
     /// The kind of files read as `F`.
     pub const fn of<F: ScenarioFile>() -> Kind {
-        Kind { name: F::NAME, folder: F::FOLDER, keys: generated::<F::Keys>, check: |path| F::load(path).map(drop) }
+        Kind {
+            name: F::NAME,
+            folder: F::FOLDER,
+            keys: generated::<F::Keys>,
+            check: |path| F::load(path).map(drop),
+        }
     }
 
     /// Its name, also that of its schema file.
@@ -103,7 +108,12 @@ impl Kind {
     /// The kind with the most of these top-level keys; ties go to the first.
     pub fn by_keys(kinds: &[Kind], keys: &BTreeSet<String>) -> Kind {
         // `max_by_key` returns the last of equal elements.
-        kinds.iter().copied().rev().max_by_key(|kind| kind.known(keys)).unwrap_or(Kind::GAME)
+        kinds
+            .iter()
+            .copied()
+            .rev()
+            .max_by_key(|kind| kind.known(keys))
+            .unwrap_or(Kind::GAME)
     }
 
     /// The kind to which a file with these top-level keys clearly belongs, if not to this one: with
@@ -115,7 +125,9 @@ impl Kind {
     /// The number of these top-level keys that the kind has.
     fn known(self, keys: &BTreeSet<String>) -> usize {
         let known = &declared(self)["properties"];
-        keys.iter().filter(|key| known.get(key.as_str()).is_some()).count()
+        keys.iter()
+            .filter(|key| known.get(key.as_str()).is_some())
+            .count()
     }
 }
 

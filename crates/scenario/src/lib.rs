@@ -53,7 +53,8 @@ pub use files::Files;
 pub use guess::did_you_mean;
 pub use kind::{Kind, ScenarioFile};
 pub use load::{
-    GameVariants, check_file, default_of, draw_file, load, load_file, load_with, load_with_files, other_kind,
+    GameVariants, check_file, default_of, draw_file, load, load_file, load_with, load_with_files,
+    other_kind,
 };
 pub use outcome::Outcome;
 pub use overrides::Overrides;
@@ -125,7 +126,10 @@ pub struct Scenario {
 impl Scenario {
     /// The vehicle with this name.
     pub fn vehicle_by_name(&self, name: &str) -> Option<VehicleId> {
-        self.vehicles.iter().position(|vehicle| vehicle.name == name).map(VehicleId::at)
+        self.vehicles
+            .iter()
+            .position(|vehicle| vehicle.name == name)
+            .map(VehicleId::at)
     }
 
     /// The vehicle with this name from a user.
@@ -134,8 +138,15 @@ impl Scenario {
     /// [`UnknownVehicle`] with the existing names.
     pub fn vehicle_named(&self, name: &str) -> Result<VehicleId, UnknownVehicle> {
         self.vehicle_by_name(name).ok_or_else(|| {
-            let known = self.vehicles.iter().map(|vehicle| vehicle.name.clone()).collect();
-            UnknownVehicle { name: name.to_owned(), known }
+            let known = self
+                .vehicles
+                .iter()
+                .map(|vehicle| vehicle.name.clone())
+                .collect();
+            UnknownVehicle {
+                name: name.to_owned(),
+                known,
+            }
         })
     }
 
@@ -146,29 +157,63 @@ impl Scenario {
     /// The first violation, as text.
     pub fn check_received(&self) -> Result<(), String> {
         let within = |what: &str, index: usize, count: usize| {
-            if index < count { Ok(()) } else { Err(format!("{what} is {index}, expected less than {count}")) }
+            if index < count {
+                Ok(())
+            } else {
+                Err(format!("{what} is {index}, expected less than {count}"))
+            }
         };
-        let mut names =
-            self.vehicles.iter().map(|vehicle| &vehicle.name).chain(self.teams.iter().map(|team| &team.name));
+        let mut names = self
+            .vehicles
+            .iter()
+            .map(|vehicle| &vehicle.name)
+            .chain(self.teams.iter().map(|team| &team.name));
         if let Some(name) = names.find(|name| !diagnostics::is_name(name)) {
             return Err(format!("{name:?} is not a valid name of a vehicle or team"));
         }
-        for Vehicle { name, team, boat, strategy, .. } in &self.vehicles {
-            within(&format!("the team of {name}"), team.index(), self.teams.len())?;
+        for Vehicle {
+            name,
+            team,
+            boat,
+            strategy,
+            ..
+        } in &self.vehicles
+        {
+            within(
+                &format!("the team of {name}"),
+                team.index(),
+                self.teams.len(),
+            )?;
             within(&format!("the boat of {name}"), *boat, self.boats.len())?;
-            within(&format!("the strategy of {name}"), *strategy, self.strategies.len())?;
+            within(
+                &format!("the strategy of {name}"),
+                *strategy,
+                self.strategies.len(),
+            )?;
         }
         let mut flags = self.field.flags.iter().enumerate();
-        flags
-            .try_for_each(|(i, flag)| within(&format!("the team of flag {i}"), flag.team.index(), self.teams.len()))?;
+        flags.try_for_each(|(i, flag)| {
+            within(
+                &format!("the team of flag {i}"),
+                flag.team.index(),
+                self.teams.len(),
+            )
+        })?;
         self.check_sizes()
     }
 
     /// Whether everything that an event refers to exists in the game: the sender may be wrong.
     pub fn has(&self, event: Event) -> bool {
         let flag = event.flag();
-        let team = if let Event::Ended { winner } = event { winner } else { None };
-        [event.vehicle(), event.other()].into_iter().flatten().all(|vehicle| vehicle.index() < self.vehicles.len())
+        let team = if let Event::Ended { winner } = event {
+            winner
+        } else {
+            None
+        };
+        [event.vehicle(), event.other()]
+            .into_iter()
+            .flatten()
+            .all(|vehicle| vehicle.index() < self.vehicles.len())
             && flag.is_none_or(|flag| flag.index() < self.field.flags.len())
             && team.is_none_or(|team| team.index() < self.teams.len())
     }
@@ -191,7 +236,12 @@ impl Scenario {
     /// The numbers of mates and enemies of a vehicle.
     pub fn sides_of(&self, vehicle: VehicleId) -> (usize, usize) {
         let team = self.team_of(vehicle);
-        let mates = self.vehicles.iter().filter(|other| other.team == team).count() - 1;
+        let mates = self
+            .vehicles
+            .iter()
+            .filter(|other| other.team == team)
+            .count()
+            - 1;
         (mates, self.vehicles.len() - 1 - mates)
     }
 

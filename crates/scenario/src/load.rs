@@ -36,12 +36,21 @@ pub fn load_with(path: &Path, overrides: &Overrides) -> Result<Scenario, Problem
 ///
 /// # Errors
 /// All faults of all files, as above.
-pub fn load_with_files(path: &Path, overrides: &Overrides, files: &Arc<Files>) -> Result<Scenario, Problems> {
+pub fn load_with_files(
+    path: &Path,
+    overrides: &Overrides,
+    files: &Arc<Files>,
+) -> Result<Scenario, Problems> {
     load_knowing(&Reading::default(), path, overrides, files)
 }
 
 /// As [`load_with_files`], with some files already read with the same settings.
-fn load_knowing(known: &Reading, path: &Path, overrides: &Overrides, files: &Arc<Files>) -> Result<Scenario, Problems> {
+fn load_knowing(
+    known: &Reading,
+    path: &Path,
+    overrides: &Overrides,
+    files: &Arc<Files>,
+) -> Result<Scenario, Problems> {
     let mut diagnostics = Diagnostics::new(Drawing::Least);
     diagnostics.resume(known);
     diagnostics.overrides = overrides.clone();
@@ -52,7 +61,13 @@ fn load_knowing(known: &Reading, path: &Path, overrides: &Overrides, files: &Arc
     }
     let files = diagnostics.sources.texts();
     let reading = Reading::of(diagnostics);
-    let recipe = Recipe { game: path.to_owned(), overrides: overrides.clone(), files, reading, seed: None };
+    let recipe = Recipe {
+        game: path.to_owned(),
+        overrides: overrides.clone(),
+        files,
+        reading,
+        seed: None,
+    };
     // At both ends of every distribution, so that most mistakes are found before any game. The
     // combination of numbers is checked again for each seed, which takes a tenth of a millisecond.
     // Drawing on the checked types would be faster, but would leave estimates from a drawn number
@@ -73,20 +88,46 @@ impl Scenario {
     /// # Errors
     /// Faults of the combination of numbers, each valid alone.
     pub fn of_seed(&self, seed: u64) -> Result<Scenario, Problems> {
-        let Some(recipe) = self.recipe.as_ref().filter(|recipe| recipe.seed != Some(seed)) else {
-            return Ok(Scenario { seed, ..self.clone() });
+        let Some(recipe) = self
+            .recipe
+            .as_ref()
+            .filter(|recipe| recipe.seed != Some(seed))
+        else {
+            return Ok(Scenario {
+                seed,
+                ..self.clone()
+            });
         };
         let (drawn, reading) = self.drawn_again(recipe, Drawing::Seed(seed))?;
-        let reading = if recipe.reading.0.is_some() { recipe.reading.clone() } else { reading };
-        Ok(Scenario { seed, recipe: Some(Recipe { reading, seed: Some(seed), ..recipe.clone() }), ..drawn })
+        let reading = if recipe.reading.0.is_some() {
+            recipe.reading.clone()
+        } else {
+            reading
+        };
+        Ok(Scenario {
+            seed,
+            recipe: Some(Recipe {
+                reading,
+                seed: Some(seed),
+                ..recipe.clone()
+            }),
+            ..drawn
+        })
     }
 
     /// The game of its recipe with numbers drawn like this, and what was read for it.
-    fn drawn_again(&self, recipe: &Recipe, drawing: Drawing) -> Result<(Scenario, Reading), Problems> {
+    fn drawn_again(
+        &self,
+        recipe: &Recipe,
+        drawing: Drawing,
+    ) -> Result<(Scenario, Reading), Problems> {
         let mut diagnostics = Diagnostics::new(drawing);
         diagnostics.overrides.clone_from(&recipe.overrides);
         if !diagnostics.resume(&recipe.reading) {
-            let texts = recipe.files.iter().map(|(path, text)| (path.clone(), text.clone().into_bytes()));
+            let texts = recipe
+                .files
+                .iter()
+                .map(|(path, text)| (path.clone(), text.clone().into_bytes()));
             let models = self.strategies.iter().flat_map(Strategy::models);
             let models = models.map(|model| (model.name.clone().into(), model.bytes().to_vec()));
             diagnostics.files = Arc::new(Files::kept(texts.chain(models).collect()));
@@ -104,8 +145,8 @@ pub fn load_file<F: ScenarioFile>(path: &Path) -> Result<F, Problems> {
     F::load(path)
 }
 
-/// Reads and checks the file at `path` as one of its kind, and draws its numbers as in the game with
-/// this seed.
+/// Reads and checks the file at `path` as one of its kind, and draws its numbers as in the game
+/// with this seed.
 ///
 /// # Errors
 /// All faults of it, its bases and the files it refers to, by file, line and column.
@@ -135,7 +176,11 @@ impl GameVariants {
         diagnostics.overrides = overrides.clone();
         let files = Arc::clone(&diagnostics.files);
         drop(game_of(&mut diagnostics, game));
-        GameVariants { game: game.to_owned(), known: Reading::of_unchanged(diagnostics), files }
+        GameVariants {
+            game: game.to_owned(),
+            known: Reading::of_unchanged(diagnostics),
+            files,
+        }
     }
 
     /// The game with these values.
@@ -166,7 +211,8 @@ pub fn default_of<F: ScenarioFile>() -> Result<F, Problems> {
 /// # Errors
 /// All faults of it, its bases and the files it refers to.
 pub fn check_file(kinds: &[Kind], path: &Path) -> Result<Kind, Problems> {
-    let kind = Kind::by_folder(kinds, path).unwrap_or_else(|| Kind::by_keys(kinds, &top_keys(path)));
+    let kind =
+        Kind::by_folder(kinds, path).unwrap_or_else(|| Kind::by_keys(kinds, &top_keys(path)));
     kind.check(path).map(|()| kind)
 }
 
@@ -181,5 +227,8 @@ pub fn other_kind(kinds: &[Kind], path: &Path, expected: Kind) -> Option<Kind> {
 /// The top-level keys of a file and its bases; the check reports their faults later.
 fn top_keys(path: &Path) -> BTreeSet<String> {
     let tree = read::tree(&mut Diagnostics::new(Drawing::Least), path, None, &[]);
-    tree.iter().flat_map(Node::entries).map(|(key, _)| key.clone()).collect()
+    tree.iter()
+        .flat_map(Node::entries)
+        .map(|(key, _)| key.clone())
+        .collect()
 }

@@ -79,12 +79,17 @@ impl EventOutcome {
         let name = |vehicle: VehicleId| scenario.vehicles[vehicle.index()].name.clone();
         let team = |team: TeamId| scenario.teams[team.index()].name.clone();
         let word = match logged.event {
-            Event::Tagged { cause: TagCause::Boundary, .. } => "tagged_by_boundary",
+            Event::Tagged {
+                cause: TagCause::Boundary,
+                ..
+            } => "tagged_by_boundary",
             event => event.into(),
         };
         let whose = match logged.event {
             Event::Ended { winner } => winner,
-            event => event.flag().map(|flag| scenario.field.flags[flag.index()].team),
+            event => event
+                .flag()
+                .map(|flag| scenario.field.flags[flag.index()].team),
         };
         EventOutcome {
             tick: logged.tick,
@@ -133,13 +138,31 @@ impl EventOutcome {
 impl Outcome {
     /// The outcome of a game with this digest of its final state and all events, after this many
     /// physics ticks, with these points by team index.
-    pub fn new(scenario: &Scenario, digest: u128, ticks: u64, score: &[u32], events: &[Logged]) -> Outcome {
+    pub fn new(
+        scenario: &Scenario,
+        digest: u128,
+        ticks: u64,
+        score: &[u32],
+        events: &[Logged],
+    ) -> Outcome {
         let mut tally = Tally::new(scenario.vehicles.len());
         events.iter().for_each(|logged| tally.add(logged.event));
-        let team_counts = |team: usize| tally.team(TeamId(team as u8), |i| scenario.vehicles[i].team);
+        let team_counts =
+            |team: usize| tally.team(TeamId(team as u8), |i| scenario.vehicles[i].team);
         let team_names = || scenario.teams.iter().map(|team| team.name.clone());
-        let boats = || scenario.vehicles.iter().map(|vehicle| vehicle.name.clone()).zip(&tally.vehicles);
-        let team_of = |vehicle: &Vehicle| (vehicle.name.clone(), scenario.teams[vehicle.team.index()].name.clone());
+        let boats = || {
+            scenario
+                .vehicles
+                .iter()
+                .map(|vehicle| vehicle.name.clone())
+                .zip(&tally.vehicles)
+        };
+        let team_of = |vehicle: &Vehicle| {
+            (
+                vehicle.name.clone(),
+                scenario.teams[vehicle.team.index()].name.clone(),
+            )
+        };
         let winner = events.iter().rev().find_map(|logged| match logged.event {
             Event::Ended { winner } => winner,
             _ => None,
@@ -151,20 +174,32 @@ impl Outcome {
             digest: format!("{:032x}", digest),
             duration_s: (scenario.tick * ticks as i64).as_s(),
             ticks,
-            drawn: scenario.drawn.iter().map(|drawn| (drawn.parameter.clone(), drawn.value)).collect(),
+            drawn: scenario
+                .drawn
+                .iter()
+                .map(|drawn| (drawn.parameter.clone(), drawn.value))
+                .collect(),
             random: scenario.is_random(),
             ends_differ: !scenario.sea.is_at_rest(),
             winner: winner.map(|team| scenario.teams[team.index()].name.clone()),
             boats: scenario.vehicles.iter().map(team_of).collect(),
             score: Standings {
                 teams: team_names().zip(score.iter().copied()).collect(),
-                boats: boats().map(|(name, counts)| (name, scenario.rules.points.of(counts))).collect(),
+                boats: boats()
+                    .map(|(name, counts)| (name, scenario.rules.points.of(counts)))
+                    .collect(),
             },
             counts: Standings {
-                teams: team_names().enumerate().map(|(i, name)| (name, team_counts(i))).collect(),
+                teams: team_names()
+                    .enumerate()
+                    .map(|(i, name)| (name, team_counts(i)))
+                    .collect(),
                 boats: boats().map(|(name, counts)| (name, *counts)).collect(),
             },
-            events: events.iter().map(|logged| EventOutcome::new(scenario, logged)).collect(),
+            events: events
+                .iter()
+                .map(|logged| EventOutcome::new(scenario, logged))
+                .collect(),
         }
     }
 }

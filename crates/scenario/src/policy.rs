@@ -63,14 +63,20 @@ impl PolicyModel {
     /// Reads an ONNX file as a policy. Its metadata must supply the fields missing from `said`.
     ///
     /// # Errors
-    /// If the network is invalid, a field is missing or contradicts `said`, or the inputs and outputs
-    /// do not match: the value found and the allowed values.
+    /// If the network is invalid, a field is missing or contradicts `said`, or the inputs and
+    /// outputs do not match: the value found and the allowed values.
     pub fn read(name: &str, bytes: &[u8], said: PartialSpec) -> Result<PolicyModel, String> {
         let network = Network::read(bytes).map_err(|error| error.to_string())?;
         let spec = spec_of(&network, said)?;
         check_input(&network, spec.observation)?;
         let output = output_of(&network, spec.action)?;
-        Ok(PolicyModel { name: name.to_owned(), spec, output, network, bytes: bytes.into() })
+        Ok(PolicyModel {
+            name: name.to_owned(),
+            spec,
+            output,
+            network,
+            bytes: bytes.into(),
+        })
     }
 
     /// A separate copy of the network for evaluation.
@@ -92,7 +98,10 @@ impl PolicyModel {
     pub fn actions(&self) -> Option<usize> {
         let outputs = self.network.outputs()[self.output].size;
         // A single output is the index of the action.
-        self.spec.action.is_discrete().then(|| self.spec.action.count().unwrap_or(outputs))
+        self.spec
+            .action
+            .is_discrete()
+            .then(|| self.spec.action.count().unwrap_or(outputs))
     }
 
     /// The names of its options, if its metadata has them.
@@ -103,7 +112,9 @@ impl PolicyModel {
 
     /// A discrete action in words: "50 % speed, 45° to port", or the name of the option.
     pub fn words(&self, action: usize) -> String {
-        let option = self.options().and_then(|names| names.get(action).map(|name| (*name).to_owned()));
+        let option = self
+            .options()
+            .and_then(|names| names.get(action).map(|name| (*name).to_owned()));
         option.unwrap_or_else(|| self.spec.action.words(action))
     }
 
@@ -134,19 +145,37 @@ pub fn options_metadata(names: &[String]) -> (String, String) {
 /// The spec of a network from `said` and its metadata.
 fn spec_of(network: &Network, said: PartialSpec) -> Result<PolicySpec, String> {
     let entry = |key: &str| network.metadata().get(key);
-    let wrong =
-        |key: &str, found: &str, expected: String| format!("its metadata has {key} = {found:?}, expected {expected}");
+    let wrong = |key: &str, found: &str, expected: String| {
+        format!("its metadata has {key} = {found:?}, expected {expected}")
+    };
     let observation = entry(OBSERVATION).map(|text| {
         serde_json::from_str::<ObservationSpace>(text).map_err(|error| {
-            let example = json(&ObservationSpace::Squall { mates: 1, enemies: 2, frames: 1 });
-            wrong(OBSERVATION, text, format!("an observation space such as {example} ({error})"))
+            let example = json(&ObservationSpace::Squall {
+                mates: 1,
+                enemies: 2,
+                frames: 1,
+            });
+            wrong(
+                OBSERVATION,
+                text,
+                format!("an observation space such as {example} ({error})"),
+            )
         })
     });
-    let observation = agreed(OBSERVATION, "observation", observation.transpose()?, said.observation)?;
+    let observation = agreed(
+        OBSERVATION,
+        "observation",
+        observation.transpose()?,
+        said.observation,
+    )?;
     if let Some(version) = entry(OBSERVATION_VERSION)
         && *version != observation.version().to_string()
     {
-        return Err(wrong(OBSERVATION_VERSION, version, format!("{}, which is this program's", observation.version())));
+        return Err(wrong(
+            OBSERVATION_VERSION,
+            version,
+            format!("{}, which is this program's", observation.version()),
+        ));
     }
     let action = entry(ACTION).map(|text| {
         serde_json::from_value::<ActionSpace>(text.as_str().into())
@@ -154,7 +183,10 @@ fn spec_of(network: &Network, said: PartialSpec) -> Result<PolicySpec, String> {
     });
     let action = agreed(ACTION, "action", action.transpose()?, said.action)?;
     let period_s = entry(PERIOD_S).map(|text| {
-        let number = text.parse::<f64>().ok().filter(|number| PERIODS_S.contains(number));
+        let number = text
+            .parse::<f64>()
+            .ok()
+            .filter(|number| PERIODS_S.contains(number));
         let allowed = || format!("{} to {} s", PERIODS_S.start(), PERIODS_S.end());
         number.ok_or_else(|| wrong(PERIOD_S, text, allowed()))
     });
@@ -163,16 +195,27 @@ fn spec_of(network: &Network, said: PartialSpec) -> Result<PolicySpec, String> {
         (Some(period_s), _) | (None, Some(period_s)) => period_s,
         (None, None) => return Err(unsaid(PERIOD_S, "period_s")),
     };
-    Ok(PolicySpec { observation, action, period_s })
+    Ok(PolicySpec {
+        observation,
+        action,
+        period_s,
+    })
 }
 
 /// The value from the metadata or from `said`, if at least one gives it and they do not differ.
-fn agreed<T: PartialEq + Serialize>(key: &str, said_by: &str, found: Option<T>, said: Option<T>) -> Result<T, String> {
+fn agreed<T: PartialEq + Serialize>(
+    key: &str,
+    said_by: &str,
+    found: Option<T>,
+    said: Option<T>,
+) -> Result<T, String> {
     match (found, said) {
         (Some(found), Some(said)) if found != said => {
             let found = json(&found);
             let said = json(&said);
-            Err(format!("its metadata has {key} = {found}, expected {said}, as stated here"))
+            Err(format!(
+                "its metadata has {key} = {found}, expected {said}, as stated here"
+            ))
         }
         (_, Some(one)) | (Some(one), None) => Ok(one),
         (None, None) => Err(unsaid(key, said_by)),
@@ -185,15 +228,24 @@ fn unsaid(key: &str, said_by: &str) -> String {
 }
 
 fn check_input(network: &Network, observation: ObservationSpace) -> Result<(), String> {
-    let wrong = |expected: &str| Err(format!("its inputs are {}, expected {expected}", listed(network.inputs())));
-    let [input] = network.inputs() else { return wrong("one input") };
+    let wrong = |expected: &str| {
+        Err(format!(
+            "its inputs are {}, expected {expected}",
+            listed(network.inputs())
+        ))
+    };
+    let [input] = network.inputs() else {
+        return wrong("one input");
+    };
     match observation {
         // The size for a game of 1 against 1, and the size per other boat.
         ObservationSpace::Pyquaticus => {
             let least = observation.size(0, 1);
             let other = observation.size(1, 1) - observation.size(0, 1);
             if input.size < least || !(input.size - least).is_multiple_of(other) {
-                return wrong(&format!("{least} numbers, or {other} more for each other boat"));
+                return wrong(&format!(
+                    "{least} numbers, or {other} more for each other boat"
+                ));
             }
         }
         ObservationSpace::Squall { .. } => {
@@ -212,11 +264,21 @@ fn check_input(network: &Network, observation: ObservationSpace) -> Result<(), S
 fn output_of(network: &Network, action: ActionSpace) -> Result<usize, String> {
     let of_size = |size: usize| -> Vec<usize> {
         let outputs = network.outputs().iter().enumerate();
-        outputs.filter(|(_, port)| port.size == size).map(|(i, _)| i).collect()
+        outputs
+            .filter(|(_, port)| port.size == size)
+            .map(|(i, _)| i)
+            .collect()
     };
-    let wrong = |expected: &str| Err(format!("its outputs are {}, expected {expected}", listed(network.outputs())));
+    let wrong = |expected: &str| {
+        Err(format!(
+            "its outputs are {}, expected {expected}",
+            listed(network.outputs())
+        ))
+    };
     if action == ActionSpace::Options {
-        let several: Vec<usize> = (0..network.outputs().len()).filter(|i| network.outputs()[*i].size > 1).collect();
+        let several: Vec<usize> = (0..network.outputs().len())
+            .filter(|i| network.outputs()[*i].size > 1)
+            .collect();
         let [output] = several[..] else {
             return wrong("one output with a number for each of two options or more");
         };
@@ -224,22 +286,36 @@ fn output_of(network: &Network, action: ActionSpace) -> Result<usize, String> {
     }
     let numbers = action.outputs();
     let whole = of_size(numbers);
-    let mut index = if action.count().is_some() && whole.is_empty() { of_size(1) } else { vec![] };
+    let mut index = if action.count().is_some() && whole.is_empty() {
+        of_size(1)
+    } else {
+        vec![]
+    };
     if index.len() > 1 {
         index.retain(|i| network.outputs()[*i].is_integer);
     }
     match (whole.as_slice(), index.as_slice()) {
         ([output], _) | ([], [output]) => Ok(*output),
         _ => {
-            let or_index = if action.count().is_some() { ", or else one with the number of the action" } else { "" };
-            wrong(&format!("one output of {numbers} numbers for the action space {}{or_index}", json(&action)))
+            let or_index = if action.count().is_some() {
+                ", or else one with the number of the action"
+            } else {
+                ""
+            };
+            wrong(&format!(
+                "one output of {numbers} numbers for the action space {}{or_index}",
+                json(&action)
+            ))
         }
     }
 }
 
 /// Inputs or outputs, as text for a message.
 fn listed(ports: &[Port]) -> String {
-    let shown = ports.iter().take(8).map(|port| format!("{:?} of {} numbers", port.name, port.size));
+    let shown = ports
+        .iter()
+        .take(8)
+        .map(|port| format!("{:?} of {} numbers", port.name, port.size));
     shown.collect::<Vec<_>>().join(", ") + if ports.len() > 8 { ", …" } else { "" }
 }
 
@@ -259,7 +335,10 @@ impl PartialEq for PolicyModel {
 
 impl fmt::Debug for PolicyModel {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("PolicyModel").field("name", &self.name).field("spec", &self.spec).finish_non_exhaustive()
+        f.debug_struct("PolicyModel")
+            .field("name", &self.name)
+            .field("spec", &self.spec)
+            .finish_non_exhaustive()
     }
 }
 
@@ -274,21 +353,44 @@ struct Sent {
 
 impl Serialize for PolicyModel {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        Sent { name: self.name.clone(), spec: self.spec, onnx: BASE64.encode(&self.bytes) }.serialize(serializer)
+        Sent {
+            name: self.name.clone(),
+            spec: self.spec,
+            onnx: BASE64.encode(&self.bytes),
+        }
+        .serialize(serializer)
     }
 }
 
 impl<'de> Deserialize<'de> for PolicyModel {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<PolicyModel, D::Error> {
-        let Sent { name, spec: PolicySpec { observation, action, period_s }, onnx } = Sent::deserialize(deserializer)?;
+        let Sent {
+            name,
+            spec:
+                PolicySpec {
+                    observation,
+                    action,
+                    period_s,
+                },
+            onnx,
+        } = Sent::deserialize(deserializer)?;
         let bytes = BASE64.decode(onnx).map_err(D::Error::custom)?;
         if bytes.len() as u64 > BYTES_MAX {
-            return Err(D::Error::custom(format!("a model of {} bytes, expected at most {BYTES_MAX}", bytes.len())));
+            return Err(D::Error::custom(format!(
+                "a model of {} bytes, expected at most {BYTES_MAX}",
+                bytes.len()
+            )));
         }
         if !PERIODS_S.contains(&period_s) {
-            return Err(D::Error::custom(format!("a period of {period_s} s, expected {PERIODS_S:?}")));
+            return Err(D::Error::custom(format!(
+                "a period of {period_s} s, expected {PERIODS_S:?}"
+            )));
         }
-        let said = PartialSpec { observation: Some(observation), action: Some(action), period_s: Some(period_s) };
+        let said = PartialSpec {
+            observation: Some(observation),
+            action: Some(action),
+            period_s: Some(period_s),
+        };
         PolicyModel::read(&name, &bytes, said).map_err(D::Error::custom)
     }
 }

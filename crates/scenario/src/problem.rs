@@ -22,12 +22,23 @@ pub struct Problem {
 impl Problem {
     /// A problem with a whole file.
     pub fn of_file(path: PathBuf, message: String) -> Problem {
-        Problem { path, line: 1, column: 1, message, source: String::new() }
+        Problem {
+            path,
+            line: 1,
+            column: 1,
+            message,
+            source: String::new(),
+        }
     }
 
     /// Its place, as in `boats/heron.toml:3:17`.
     pub fn place(&self) -> String {
-        format!("{}:{}:{}", printable::line(&self.path.display().to_string()), self.line, self.column)
+        format!(
+            "{}:{}:{}",
+            printable::line(&self.path.display().to_string()),
+            self.line,
+            self.column
+        )
     }
 }
 
@@ -43,5 +54,9 @@ impl fmt::Display for Problem {
 pub struct Problems(pub Vec<Problem>);
 
 fn one_a_line(problems: &[Problem]) -> String {
-    problems.iter().map(Problem::to_string).collect::<Vec<_>>().join("\n")
+    problems
+        .iter()
+        .map(Problem::to_string)
+        .collect::<Vec<_>>()
+        .join("\n")
 }

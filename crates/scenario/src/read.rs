@@ -44,9 +44,13 @@ impl<T> Document<T> {
     /// parents.
     pub fn is_sound(&self, path: &str) -> bool {
         let is_below = |long: &str, short: &str| {
-            long.strip_prefix(short).is_some_and(|rest| rest.is_empty() || short.is_empty() || rest.starts_with('.'))
+            long.strip_prefix(short)
+                .is_some_and(|rest| rest.is_empty() || short.is_empty() || rest.starts_with('.'))
         };
-        !self.wrong.iter().any(|wrong| is_below(wrong, path) || is_below(path, wrong))
+        !self
+            .wrong
+            .iter()
+            .any(|wrong| is_below(wrong, path) || is_below(path, wrong))
     }
 
     /// Reports a missing value at `path`, unless a value of another type is there.
@@ -68,8 +72,8 @@ const LONGEST_CHAIN: usize = 16;
 /// Keys that count only in a strategy file itself, not in its bases.
 const OWN: &[&str] = &["unsafe_i_know", "unsafe_because"];
 
-/// Reads the file of a kind at `path` with its bases, and draws its numbers for `owner`. If it cannot
-/// be read, the problem is at `asked_at`, the reference.
+/// Reads the file of a kind at `path` with its bases, and draws its numbers for `owner`. If it
+/// cannot be read, the problem is at `asked_at`, the reference.
 pub(super) fn document<T: DeserializeOwned>(
     diagnostics: &mut Diagnostics,
     kind: Kind,
@@ -78,13 +82,21 @@ pub(super) fn document<T: DeserializeOwned>(
     owner: &str,
 ) -> Option<Document<T>> {
     let faults = diagnostics.faults();
-    if let Some(kept) = diagnostics.kept.documents.get(&kept::key(kind, path, owner)).cloned() {
+    if let Some(kept) = diagnostics
+        .kept
+        .documents
+        .get(&kept::key(kind, path, owner))
+        .cloned()
+    {
         return document_of_tree(diagnostics, kind, path, kept, (owner, faults));
     }
     let own = if kind == Kind::STRATEGY { OWN } else { &[] };
     let mut tree = tree(diagnostics, path, asked_at, own)?;
     put_settings(diagnostics, (kind, owner), &mut tree);
-    let document = KeptDocument { tree: Arc::new(tree), value: None };
+    let document = KeptDocument {
+        tree: Arc::new(tree),
+        value: None,
+    };
     document_of_tree(diagnostics, kind, path, document, (owner, faults))
 }
 
@@ -99,7 +111,10 @@ pub(super) fn document_of_text<T: DeserializeOwned>(
     let start = diagnostics.sources.add(path.to_owned(), text.into());
     let mut tree = parsed(diagnostics, start, text);
     put_settings(diagnostics, (kind, kind.name()), &mut tree);
-    let document = KeptDocument { tree: Arc::new(tree), value: None };
+    let document = KeptDocument {
+        tree: Arc::new(tree),
+        value: None,
+    };
     document_of_tree(diagnostics, kind, path, document, (kind.name(), faults))
 }
 
@@ -113,13 +128,21 @@ fn document_of_tree<T: DeserializeOwned>(
     (owner, faults): (&str, usize),
 ) -> Option<Document<T>> {
     let start = tree.at;
-    let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let name = path
+        .file_stem()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned();
     let (value, wrong) = if let Some(value) = value {
         (value, vec![])
     } else {
         if !is_name(&name) {
             let lower = name.to_lowercase();
-            let next = if is_name(&lower) { format!("; rename it to {lower}.toml") } else { String::new() };
+            let next = if is_name(&lower) {
+                format!("; rename it to {lower}.toml")
+            } else {
+                String::new()
+            };
             let why = format!("the file's name is {name:?}, expected {NAME_EXPECTED}{next}");
             diagnostics.note_file(path.to_owned(), why);
         }
@@ -129,15 +152,29 @@ fn document_of_tree<T: DeserializeOwned>(
         let key = kept::key(kind, path, owner);
         if !diagnostics.kept.documents.contains_key(&key) && diagnostics.faults() == faults {
             let value = (diagnostics.drawn.len() == drawn).then(|| value.clone());
-            let document = KeptDocument { tree: Arc::clone(&tree), value };
-            Arc::make_mut(&mut diagnostics.kept).documents.insert(key, document);
+            let document = KeptDocument {
+                tree: Arc::clone(&tree),
+                value,
+            };
+            Arc::make_mut(&mut diagnostics.kept)
+                .documents
+                .insert(key, document);
         }
         (value, wrong)
     };
     match serde_json::from_value(value) {
-        Ok(raw) => Some(Document { name, raw, faults, tree, wrong }),
+        Ok(raw) => Some(Document {
+            name,
+            raw,
+            faults,
+            tree,
+            wrong,
+        }),
         Err(error) => {
-            diagnostics.note(start, format!("the file does not fit its own schema: {error}"));
+            diagnostics.note(
+                start,
+                format!("the file does not fit its own schema: {error}"),
+            );
             None
         }
     }
@@ -146,7 +183,9 @@ fn document_of_tree<T: DeserializeOwned>(
 /// Inserts the settings for a file of this kind into its tree; for a strategy, those of its team.
 fn put_settings(diagnostics: &mut Diagnostics, (kind, owner): (Kind, &str), tree: &mut Node) {
     for setting in diagnostics.overrides.settings.clone() {
-        let Some((_, key)) = setting.target().filter(|(target, _)| *target == kind) else { continue };
+        let Some((_, key)) = setting.target().filter(|(target, _)| *target == kind) else {
+            continue;
+        };
         if setting.team().is_some_and(|team| team != owner) {
             continue;
         }
@@ -172,16 +211,36 @@ pub(super) fn tree(
         if let Some(at) = asked_at
             && (paths.contains(&path) || paths.len() == LONGEST_CHAIN)
         {
-            let through = paths.iter().map(|p| p.display().to_string()).collect::<Vec<_>>().join(", ");
-            let why = if paths.contains(&path) { "refers back to itself" } else { "has too many levels" };
-            diagnostics
-                .note(at, format!("base {why} ({through}, {}), expected a file without this base", path.display()));
+            let through = paths
+                .iter()
+                .map(|p| p.display().to_string())
+                .collect::<Vec<_>>()
+                .join(", ");
+            let why = if paths.contains(&path) {
+                "refers back to itself"
+            } else {
+                "has too many levels"
+            };
+            diagnostics.note(
+                at,
+                format!(
+                    "base {why} ({through}, {}), expected a file without this base",
+                    path.display()
+                ),
+            );
             return None;
         }
         let (start, text) = text_of(diagnostics, &path, asked_at)?;
         let mut layer = parsed(diagnostics, start, &text);
         let base = match layer.find("base") {
-            (Node { value: Value::Text(base), at, .. }, true) => Some((named(base), *at)),
+            (
+                Node {
+                    value: Value::Text(base),
+                    at,
+                    ..
+                },
+                true,
+            ) => Some((named(base), *at)),
             _ => None,
         };
         paths.push(path);
@@ -201,11 +260,19 @@ pub(super) fn tree(
 /// The path of a base: a name without extension is that of a file in the same folder.
 fn named(base: &str) -> String {
     let is_name = !base.is_empty() && base.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
-    if is_name { format!("{base}.toml") } else { base.to_owned() }
+    if is_name {
+        format!("{base}.toml")
+    } else {
+        base.to_owned()
+    }
 }
 
 /// Reads one file into the virtual text.
-fn text_of(diagnostics: &mut Diagnostics, path: &Path, asked_at: Option<usize>) -> Option<(usize, Arc<str>)> {
+fn text_of(
+    diagnostics: &mut Diagnostics,
+    path: &Path,
+    asked_at: Option<usize>,
+) -> Option<(usize, Arc<str>)> {
     let bytes = match diagnostics.files.read(path, LARGEST_BYTES) {
         Ok(bytes) => input_file::utf_8(bytes.to_vec()).unwrap_or_else(|_| bytes.to_vec()),
         Err(error) => {
@@ -228,9 +295,14 @@ fn text_of(diagnostics: &mut Diagnostics, path: &Path, asked_at: Option<usize>) 
 }
 
 /// Reads the file of a model.
-pub(super) fn model(diagnostics: &Diagnostics, path: &Path, said: PartialSpec) -> Result<PolicyModel, String> {
+pub(super) fn model(
+    diagnostics: &Diagnostics,
+    path: &Path,
+    said: PartialSpec,
+) -> Result<PolicyModel, String> {
     let bytes = diagnostics.files.read(path, policy::BYTES_MAX);
-    let bytes = bytes.map_err(|error| format!("it cannot be read ({error}), expected an ONNX file"))?;
+    let bytes =
+        bytes.map_err(|error| format!("it cannot be read ({error}), expected an ONNX file"))?;
     PolicyModel::read(&path.display().to_string(), &bytes, said)
 }
 
@@ -238,9 +310,15 @@ pub(super) fn model(diagnostics: &Diagnostics, path: &Path, said: PartialSpec) -
 fn parsed(diagnostics: &mut Diagnostics, start: usize, text: &str) -> Node {
     let (table, errors) = DeTable::parse_recoverable(text);
     for error in &errors {
-        diagnostics.sources.mark_broken(start + error.span().map_or(0, |span| span.start));
+        diagnostics
+            .sources
+            .mark_broken(start + error.span().map_or(0, |span| span.start));
     }
-    let mistakes = if errors.is_empty() { vec![] } else { syntax::mistakes(text) };
+    let mistakes = if errors.is_empty() {
+        vec![]
+    } else {
+        syntax::mistakes(text)
+    };
     for (at, message) in mistakes {
         diagnostics.note_syntax(start + at, &message);
     }

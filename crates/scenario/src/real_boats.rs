@@ -19,7 +19,11 @@ impl Scenario {
     /// The vehicles that are real boats, in order.
     pub fn externals(&self) -> impl Iterator<Item = VehicleId> {
         let is_external = |(_, vehicle): &(usize, &Vehicle)| vehicle.source == Source::External;
-        self.vehicles.iter().enumerate().filter(is_external).map(|(i, _)| VehicleId::at(i))
+        self.vehicles
+            .iter()
+            .enumerate()
+            .filter(is_external)
+            .map(|(i, _)| VehicleId::at(i))
     }
 
     /// Checks that the game can run without a clock: all boats are simulated.
@@ -27,7 +31,14 @@ impl Scenario {
     /// # Errors
     /// [`RealBoats`] with the names of the others.
     pub fn has_no_real_boats(&self) -> Result<(), RealBoats> {
-        let names: Vec<String> = self.externals().map(|v| self.vehicles[v.index()].name.clone()).collect();
-        if names.is_empty() { Ok(()) } else { Err(RealBoats { names }) }
+        let names: Vec<String> = self
+            .externals()
+            .map(|v| self.vehicles[v.index()].name.clone())
+            .collect();
+        if names.is_empty() {
+            Ok(())
+        } else {
+            Err(RealBoats { names })
+        }
     }
 }

@@ -22,7 +22,12 @@ pub fn file_reference(kinds: &[Kind]) -> String {
     let mut page = FILES.to_owned();
     for kind in kinds.iter().filter(|kind| **kind != Kind::STRATEGY) {
         let mut sections = vec![];
-        collect(&mut sections, &format!("## `{}/`", kind.folder()), "", (declared(*kind), ""));
+        collect(
+            &mut sections,
+            &format!("## `{}/`", kind.folder()),
+            "",
+            (declared(*kind), ""),
+        );
         for section in sections {
             let _ = write!(page, "\n{}\n{}", section.heading, section.text);
         }
@@ -40,27 +45,49 @@ struct Section {
 /// in it. Equal tables share a section.
 fn collect(sections: &mut Vec<Section>, heading: &str, path: &str, (about, said): (&Value, &str)) {
     let mut text = in_a_line(about.get(TABLE).unwrap_or(&about["description"]));
-    text = if text.is_empty() || text == said { String::new() } else { format!("\n{text}\n") };
-    table(&mut text, about, |key, about| key != "base" && about.get("const").is_none());
+    text = if text.is_empty() || text == said {
+        String::new()
+    } else {
+        format!("\n{text}\n")
+    };
+    table(&mut text, about, |key, about| {
+        key != "base" && about.get("const").is_none()
+    });
     match sections.iter_mut().find(|section| section.text == text) {
         Some(section) => section.heading.push_str(&heading.replacen("###", ",", 1)),
-        None => sections.push(Section { heading: heading.to_owned(), text }),
+        None => sections.push(Section {
+            heading: heading.to_owned(),
+            text,
+        }),
     }
     for (key, about) in about["properties"].as_object().into_iter().flatten() {
-        let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
+        let path = if path.is_empty() {
+            key.clone()
+        } else {
+            format!("{path}.{key}")
+        };
         let said = description(about);
         for (about, heading) in [
             (about, format!("### `{path}`")),
             (&about["items"], format!("### `[[{path}]]`")),
-            (&about["additionalProperties"], format!("### `[{path}.NAME]`")),
+            (
+                &about["additionalProperties"],
+                format!("### `[{path}.NAME]`"),
+            ),
         ] {
             if about.get("properties").is_some() {
                 collect(sections, &heading, &path, (about, &said));
             }
         }
         for choice in about["oneOf"].as_array().into_iter().flatten() {
-            if choice["properties"].as_object().is_some_and(|keys| keys.len() > 1) {
-                let heading = format!("### `{path}` of kind {}", choice["properties"]["kind"]["const"]);
+            if choice["properties"]
+                .as_object()
+                .is_some_and(|keys| keys.len() > 1)
+            {
+                let heading = format!(
+                    "### `{path}` of kind {}",
+                    choice["properties"]["kind"]["const"]
+                );
                 collect(sections, &heading, &path, (choice, &said));
             }
         }
@@ -73,16 +100,28 @@ pub fn reference() -> String {
     let mut page = OPENING.to_owned();
     page.push_str("\n## The file\n");
     table(&mut page, root, |_, _| true);
-    for (name, heading) in
-        [("Helm", "`helm`"), ("Variable", "A variable as a table"), ("Mode", "`[[mode]]`"), ("Rule", "`[[rule]]`")]
-    {
+    for (name, heading) in [
+        ("Helm", "`helm`"),
+        ("Variable", "A variable as a table"),
+        ("Mode", "`[[mode]]`"),
+        ("Rule", "`[[rule]]`"),
+    ] {
         let _ = write!(page, "\n## {heading}\n");
         table(&mut page, &root["definitions"][name], |_, _| true);
     }
-    let quoted = |names: &[&str]| names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+    let quoted = |names: &[&str]| {
+        names
+            .iter()
+            .map(|name| format!("`{name}`"))
+            .collect::<Vec<_>>()
+            .join(", ")
+    };
     let who = quoted(&Who::names());
     let what = quoted(&What::names());
-    let _ = write!(page, "\n`on` is one of {who}, then one of {what}: `\"enemy grabs\"`.\n\n{EXPRESSIONS}");
+    let _ = write!(
+        page,
+        "\n`on` is one of {who}, then one of {what}: `\"enemy grabs\"`.\n\n{EXPRESSIONS}"
+    );
     names(&mut page);
     behaviours(&mut page, root);
     choices(&mut page, root);
@@ -100,8 +139,13 @@ fn choices(page: &mut String, root: &Value) {
         ("beyond_halt", "BeyondHalt"),
         ("by", "Proposer"),
     ] {
-        let choices = root["definitions"][name]["oneOf"].as_array().into_iter().flatten();
-        let choices: Vec<_> = choices.map(|choice| format!("`{}`: {}", choice["const"], description(choice))).collect();
+        let choices = root["definitions"][name]["oneOf"]
+            .as_array()
+            .into_iter()
+            .flatten();
+        let choices: Vec<_> = choices
+            .map(|choice| format!("`{}`: {}", choice["const"], description(choice)))
+            .collect();
         let _ = writeln!(page, "| `{key}` | {} |", choices.join("<br>"));
     }
 }
@@ -110,17 +154,27 @@ fn names(page: &mut String) {
     page.push_str("\n### Facts\n");
     for (is_truth, kind) in [(true, "truth"), (false, "number")] {
         let _ = write!(page, "\n| {kind} | meaning |\n|---|---|\n");
-        for fact in Fact::all().iter().filter(|fact| fact.is_truth() == is_truth) {
+        for fact in Fact::all()
+            .iter()
+            .filter(|fact| fact.is_truth() == is_truth)
+        {
             let _ = writeln!(page, "| `{}` | {} |", fact.name(), line(fact.meaning()));
         }
     }
     page.push_str("\n### Measures\n\nOf a place or boat.\n");
     for (is_truth, kind) in [(true, "truth"), (false, "number")] {
         let _ = write!(page, "\n| {kind} | meaning |\n|---|---|\n");
-        for measure in Measure::all().iter().filter(|measure| measure.is_truth() == is_truth) {
+        for measure in Measure::all()
+            .iter()
+            .filter(|measure| measure.is_truth() == is_truth)
+        {
             let name = measure.name();
             let meaning = line(measure.meaning());
-            let two = if measure.is_of_two() { format!(" `{name}(from, to)`") } else { String::new() };
+            let two = if measure.is_of_two() {
+                format!(" `{name}(from, to)`")
+            } else {
+                String::new()
+            };
             let _ = writeln!(page, "| `{name}(place)`{two} | {meaning} |");
         }
     }
@@ -140,10 +194,18 @@ fn behaviours(page: &mut String, root: &Value) {
     let common = &root["definitions"]["FullStop"];
     page.push_str("\n## `[behaviour.NAME]`\n\nKeys of every kind. Speeds are limited to the boat's top speed.\n");
     table(page, common, |_, _| true);
-    for about in root["properties"]["behaviour"]["additionalProperties"]["oneOf"].as_array().into_iter().flatten() {
-        let name = about["properties"]["kind"]["const"].as_str().unwrap_or_default();
+    for about in root["properties"]["behaviour"]["additionalProperties"]["oneOf"]
+        .as_array()
+        .into_iter()
+        .flatten()
+    {
+        let name = about["properties"]["kind"]["const"]
+            .as_str()
+            .unwrap_or_default();
         let _ = write!(page, "\n### `{name}`\n\n{}\n", description(about));
-        table(page, about, |key, _| common["properties"].get(key).is_none());
+        table(page, about, |key, _| {
+            common["properties"].get(key).is_none()
+        });
         if name == "loiter" {
             page.push_str("\n#### `ellipse`\n");
             table(page, &root["definitions"]["Ellipse"], |_, _| true);
@@ -154,8 +216,17 @@ fn behaviours(page: &mut String, root: &Value) {
 /// A table of the keys that are `wanted`, required ones first. The default, in brackets, is that of
 /// the schema, or else the last sentence of the description.
 fn table(page: &mut String, about: &Value, wanted: impl Fn(&str, &Value) -> bool) {
-    let required: Vec<&str> = about["required"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
-    let keys = about["properties"].as_object().into_iter().flatten().filter(|(key, about)| wanted(key, about));
+    let required: Vec<&str> = about["required"]
+        .as_array()
+        .into_iter()
+        .flatten()
+        .filter_map(Value::as_str)
+        .collect();
+    let keys = about["properties"]
+        .as_object()
+        .into_iter()
+        .flatten()
+        .filter(|(key, about)| wanted(key, about));
     let is_required = |key: &str, about| required.contains(&key) && !may_be_empty(about);
     let (first, rest): (Vec<_>, Vec<_>) = keys.partition(|(key, about)| is_required(key, about));
     if first.is_empty() && rest.is_empty() {
@@ -167,12 +238,26 @@ fn table(page: &mut String, about: &Value, wanted: impl Fn(&str, &Value) -> bool
         let (meaning, described) = text.split_once("Default: ").unwrap_or((&text, ""));
         let default = match about.get("default") {
             None if is_required(key, about) => "*required*".to_owned(),
-            None | Some(Value::Object(_) | Value::Null) => described.trim_end_matches('.').to_owned(),
+            None | Some(Value::Object(_) | Value::Null) => {
+                described.trim_end_matches('.').to_owned()
+            }
             Some(default) => default.to_string(),
         };
-        let value = if key == "when" { "condition".to_owned() } else { value_of(about) };
-        let default = if default.is_empty() { default } else { format!(" ({default})") };
-        let _ = writeln!(page, "| `{key}` | {value}{default} | {} |", meaning.trim_end());
+        let value = if key == "when" {
+            "condition".to_owned()
+        } else {
+            value_of(about)
+        };
+        let default = if default.is_empty() {
+            default
+        } else {
+            format!(" ({default})")
+        };
+        let _ = writeln!(
+            page,
+            "| `{key}` | {value}{default} | {} |",
+            meaning.trim_end()
+        );
     }
 }
 
@@ -182,15 +267,25 @@ pub fn meaning(key: &str) -> Option<String> {
     let (kind, key) = target_of(key)?;
     let about = key.split('.').try_fold(declared(kind), key_in)?;
     let text = description(about);
-    let meaning = text.split_once(" Default: ").map_or(text.as_str(), |(meaning, _)| meaning);
+    let meaning = text
+        .split_once(" Default: ")
+        .map_or(text.as_str(), |(meaning, _)| meaning);
     (!meaning.is_empty()).then(|| meaning.to_owned())
 }
 
 /// The schema of a key of a table: one of its own, any name, or one of a kind of table.
 fn key_in<'a>(about: &'a Value, key: &str) -> Option<&'a Value> {
     let named = || Some(&about["additionalProperties"]).filter(|named| named.is_object());
-    let kinds = || ["oneOf", "anyOf"].iter().filter_map(|kinds| about[kinds].as_array()).flatten();
-    about["properties"].get(key).or_else(named).or_else(|| kinds().find_map(|kind| key_in(kind, key)))
+    let kinds = || {
+        ["oneOf", "anyOf"]
+            .iter()
+            .filter_map(|kinds| about[kinds].as_array())
+            .flatten()
+    };
+    about["properties"]
+        .get(key)
+        .or_else(named)
+        .or_else(|| kinds().find_map(|kind| key_in(kind, key)))
 }
 
 fn description(about: &Value) -> String {
@@ -210,9 +305,15 @@ fn line(text: &str) -> String {
 fn range(about: &Value) -> String {
     let bound = |keys: [&str; 2]| {
         let bound = keys.into_iter().find_map(|key| about.get(key))?;
-        bound.as_i64().map(|whole| whole.to_string()).or(bound.as_f64().map(|number| number.to_string()))
+        bound
+            .as_i64()
+            .map(|whole| whole.to_string())
+            .or(bound.as_f64().map(|number| number.to_string()))
     };
-    match (bound(["minimum", "minItems"]), bound(["maximum", "maxItems"])) {
+    match (
+        bound(["minimum", "minItems"]),
+        bound(["maximum", "maxItems"]),
+    ) {
         (Some(least), Some(most)) if least == most => least,
         (Some(least), Some(most)) => format!("{least}..{most}"),
         (Some(least), None) => format!("{least} or more"),
@@ -234,7 +335,10 @@ fn value_of(about: &Value) -> String {
     let is_expression = about["title"] == "a number or an expression";
     let (kind, range) = match about["type"].as_str() {
         Some("array") if !is_pair(about) => {
-            return [range(about), items_of(&about["items"])].join(" ").trim().to_owned();
+            return [range(about), items_of(&about["items"])]
+                .join(" ")
+                .trim()
+                .to_owned();
         }
         Some("array") => ("pair".to_owned(), range(&about["items"])),
         _ => (kind_of(about), range(about)),
@@ -251,7 +355,11 @@ fn value_of(about: &Value) -> String {
 fn choice(about: &Value) -> String {
     match about["properties"].as_object() {
         Some(keys) => {
-            let others: String = keys.keys().filter(|key| *key != "kind").map(|key| format!(", {key}")).collect();
+            let others: String = keys
+                .keys()
+                .filter(|key| *key != "kind")
+                .map(|key| format!(", {key}"))
+                .collect();
             format!("`{{ kind = {}{others} }}`", keys["kind"]["const"])
         }
         None => format!("`{}`", about["const"]),
@@ -261,7 +369,10 @@ fn choice(about: &Value) -> String {
 /// The type of a list's entries.
 fn items_of(about: &Value) -> String {
     match about["oneOf"].as_array() {
-        Some(choices) => format!("of {}", choices.iter().map(choice).collect::<Vec<_>>().join(", ")),
+        Some(choices) => format!(
+            "of {}",
+            choices.iter().map(choice).collect::<Vec<_>>().join(", ")
+        ),
         None if about.get("anyOf").is_some() && about.get("title").is_none() => "values".to_owned(),
         None if is_pair(about) => "pairs".to_owned(),
         None if about["type"] == "array" => format!("lists of {}", items_of(&about["items"])),

@@ -36,7 +36,9 @@ pub(super) fn declared(kind: Kind) -> &'static Value {
     static SCHEMAS: Mutex<BTreeMap<&str, &Value>> = Mutex::new(BTreeMap::new());
     let mut schemas = SCHEMAS.lock().unwrap_or_else(PoisonError::into_inner);
     // Leaked: there is one per kind, needed until the process ends.
-    schemas.entry(kind.name()).or_insert_with(|| Box::leak(Box::new((kind.keys)(kind))))
+    schemas
+        .entry(kind.name())
+        .or_insert_with(|| Box::leak(Box::new((kind.keys)(kind))))
 }
 
 /// The JSON Schema of a kind of file, for editors.
@@ -49,13 +51,17 @@ pub(super) fn declared(kind: Kind) -> &'static Value {
 pub fn schema(kind: Kind) -> Value {
     let mut schema = declared(kind).clone();
     let has_drawn = schema.to_string().contains(DRAWN);
-    schema.as_object_mut().map(|schema| schema.remove("definitions"));
+    schema
+        .as_object_mut()
+        .map(|schema| schema.remove("definitions"));
     publish(&mut schema, false, true);
     if has_drawn {
         let distribution: Value = serde_json::from_str(DISTRIBUTION).expect("it is JSON");
         schema["definitions"] = json!({ "Distribution": distribution });
     }
-    let required = schema.as_object_mut().and_then(|schema| schema.remove("required"));
+    let required = schema
+        .as_object_mut()
+        .and_then(|schema| schema.remove("required"));
     if let Some(required) = required.filter(|required| *required != json!([])) {
         schema["if"] = json!({ "not": { "required": ["base"] } });
         schema["then"] = json!({ "required": required });
@@ -65,11 +71,17 @@ pub fn schema(kind: Kind) -> Value {
 
 /// Whether a list may be empty, or a table may have no keys.
 pub(super) fn may_be_empty(schema: &Value) -> bool {
-    let is_optional = |key: &Value| may_be_empty(&schema["properties"][key.as_str().unwrap_or_default()]);
+    let is_optional =
+        |key: &Value| may_be_empty(&schema["properties"][key.as_str().unwrap_or_default()]);
     match schema["type"].as_str() {
         Some("array") => schema["minItems"].as_u64().unwrap_or(0) == 0,
         Some("object") => {
-            schema.get("oneOf").is_none() && schema["required"].as_array().into_iter().flatten().all(is_optional)
+            schema.get("oneOf").is_none()
+                && schema["required"]
+                    .as_array()
+                    .into_iter()
+                    .flatten()
+                    .all(is_optional)
         }
         _ => false,
     }
@@ -86,7 +98,11 @@ pub(super) const TABLE: &str = "x-table";
 /// empty list or a table of defaults.
 fn publish(value: &mut Value, is_drawn: bool, is_item: bool) {
     let object = match value {
-        Value::Array(items) => return items.iter_mut().for_each(|item| publish(item, is_drawn, is_item)),
+        Value::Array(items) => {
+            return items
+                .iter_mut()
+                .for_each(|item| publish(item, is_drawn, is_item));
+        }
         Value::Object(object) => object,
         _ => return,
     };
@@ -99,16 +115,24 @@ fn publish(value: &mut Value, is_drawn: bool, is_item: bool) {
         }
     }
     // A file with a base need not repeat which of several tables this is.
-    if object.get("oneOf").is_some_and(|kinds| kinds[0].get("properties").is_some()) {
+    if object
+        .get("oneOf")
+        .is_some_and(|kinds| kinds[0].get("properties").is_some())
+    {
         let kinds = object.remove("oneOf").unwrap_or_default();
         object.insert("anyOf".into(), kinds);
     }
-    object.iter_mut().for_each(|(key, value)| publish(value, is_drawn, key == "items"));
+    object
+        .iter_mut()
+        .for_each(|(key, value)| publish(value, is_drawn, key == "items"));
     let is_number = |kind: &Value| kind == "number" || kind == "integer";
     if is_drawn && object.get("type").is_some_and(is_number) {
         let keys = ["type", "minimum", "maximum"].into_iter();
         let number: Map<_, _> = keys.filter_map(|key| object.remove_entry(key)).collect();
-        object.insert("anyOf".into(), json!([number, { "$ref": "#/definitions/Distribution" }]));
+        object.insert(
+            "anyOf".into(),
+            json!([number, { "$ref": "#/definitions/Distribution" }]),
+        );
     }
 }
 
@@ -120,7 +144,9 @@ pub(super) fn generated<T: JsonSchema>(kind: Kind) -> Value {
     let definitions = schema["definitions"].clone();
     tidy(&mut schema, &definitions);
     schema["title"] = format!("Squall {kind}").into();
-    let base = format!("Another {kind} file that this one is laid over: its path relative to this file, or its name.");
+    let base = format!(
+        "Another {kind} file that this one is laid over: its path relative to this file, or its name."
+    );
     schema["properties"]["base"] = json!({ "type": "string", "description": base });
     schema
 }
@@ -128,18 +154,28 @@ pub(super) fn generated<T: JsonSchema>(kind: Kind) -> Value {
 /// Replaces references with their definitions. Keys with a default are not required, and may not be
 /// null, since TOML has no null.
 fn tidy(value: &mut Value, definitions: &Value) {
-    let is_null = |choice: &Value| *choice == "null" || choice.get("type").is_some_and(|kind| kind == "null");
+    let is_null =
+        |choice: &Value| *choice == "null" || choice.get("type").is_some_and(|kind| kind == "null");
     if let Value::Array(items) = value {
         items.iter_mut().for_each(|item| tidy(item, definitions));
     }
     let Value::Object(object) = value else { return };
     // Draft 7 ignores siblings of a reference, which is therefore in a list of one.
-    let reference = object.remove("$ref").or_else(|| object.remove("allOf").map(|mut list| list[0]["$ref"].take()));
-    if let Some(name) = reference.as_ref().and_then(|name| name.as_str()?.rsplit('/').next()) {
+    let reference = object.remove("$ref").or_else(|| {
+        object
+            .remove("allOf")
+            .map(|mut list| list[0]["$ref"].take())
+    });
+    if let Some(name) = reference
+        .as_ref()
+        .and_then(|name| name.as_str()?.rsplit('/').next())
+    {
         object.insert(TABLE.into(), definitions[name]["description"].clone());
         add(object, definitions[name].clone());
     }
-    object.values_mut().for_each(|value| tidy(value, definitions));
+    object
+        .values_mut()
+        .for_each(|value| tidy(value, definitions));
     object.remove("format");
     if let Some(Value::Array(types)) = object.get_mut("type") {
         types.retain(|choice| !is_null(choice));
@@ -156,9 +192,17 @@ fn tidy(value: &mut Value, definitions: &Value) {
             add(object, only);
         }
     }
-    let has_default: Vec<String> = object.get("properties").and_then(Value::as_object).map_or(vec![], |properties| {
-        properties.iter().filter(|(_, about)| about.get("default").is_some()).map(|(key, _)| key.clone()).collect()
-    });
+    let has_default: Vec<String> =
+        object
+            .get("properties")
+            .and_then(Value::as_object)
+            .map_or(vec![], |properties| {
+                properties
+                    .iter()
+                    .filter(|(_, about)| about.get("default").is_some())
+                    .map(|(key, _)| key.clone())
+                    .collect()
+            });
     if let Some(Value::Array(required)) = object.get_mut("required") {
         required.retain(|key| has_default.iter().all(|known| key != known));
     }

@@ -33,10 +33,21 @@ pub struct Sea {
 impl Sea {
     /// Whether nothing here moves boats. Otherwise one end of a field is better than the other.
     pub fn is_at_rest(&self) -> bool {
-        let Current { mean_m_s, wander, tide, shear, eddies, random_eddies } = &self.current;
-        let stream = *mean_m_s != Ned::default() || wander.is_some() || tide.is_some() || shear.is_some();
+        let Current {
+            mean_m_s,
+            wander,
+            tide,
+            shear,
+            eddies,
+            random_eddies,
+        } = &self.current;
+        let stream =
+            *mean_m_s != Ned::default() || wander.is_some() || tide.is_some() || shear.is_some();
         let calm = self.waves.as_ref().is_none_or(|waves| waves.hs_m <= 0.0);
-        let windless = self.wind.as_ref().is_none_or(|wind| wind.speed_10m_m_s <= 0.0);
+        let windless = self
+            .wind
+            .as_ref()
+            .is_none_or(|wind| wind.speed_10m_m_s <= 0.0);
         calm && windless && !stream && eddies.is_empty() && random_eddies.is_none()
     }
 

@@ -61,12 +61,22 @@ impl Setting {
     /// # Errors
     /// If it is not of the form `KEY=VALUE`, or of an unknown kind of file.
     pub fn parse(text: &str) -> Result<Setting, String> {
-        let parts = text.split_once('=').map(|(key, value)| (key.trim(), value.trim()));
+        let parts = text
+            .split_once('=')
+            .map(|(key, value)| (key.trim(), value.trim()));
         let Some((key, value)) = parts.filter(|(_, value)| !value.is_empty()) else {
-            return Err(format!("{text:?} is not a setting, expected KEY=VALUE, for example sea.wind.speed_m_s=12"));
+            return Err(format!(
+                "{text:?} is not a setting, expected KEY=VALUE, for example sea.wind.speed_m_s=12"
+            ));
         };
-        let is_toml = format!("key = {value}").parse::<toml::Table>().is_ok_and(|table| table.len() == 1);
-        let value = if is_toml { value.to_owned() } else { serde_json::Value::from(value).to_string() };
+        let is_toml = format!("key = {value}")
+            .parse::<toml::Table>()
+            .is_ok_and(|table| table.len() == 1);
+        let value = if is_toml {
+            value.to_owned()
+        } else {
+            serde_json::Value::from(value).to_string()
+        };
         Setting::new(key, value, PathBuf::from(format!("--set {key}")), (1, 1))
     }
 
@@ -74,8 +84,19 @@ impl Setting {
     ///
     /// # Errors
     /// If the kind of file is unknown.
-    pub fn new(key: &str, value: String, path: PathBuf, (line, column): (usize, usize)) -> Result<Setting, String> {
-        let setting = Setting { key: key.to_owned(), value, path, line, column };
+    pub fn new(
+        key: &str,
+        value: String,
+        path: PathBuf,
+        (line, column): (usize, usize),
+    ) -> Result<Setting, String> {
+        let setting = Setting {
+            key: key.to_owned(),
+            value,
+            path,
+            line,
+            column,
+        };
         setting.target().is_some().then_some(setting).ok_or_else(|| {
             let kinds = PREFIXES.map(|(prefix, _)| prefix);
             let complete = complete(key);
@@ -106,7 +127,12 @@ impl Setting {
     pub(super) fn as_file(&self, key: &str) -> String {
         let lines = self.line.saturating_sub(1);
         let columns = self.column.saturating_sub(1);
-        format!("{}{}{key} = {}", "\n".repeat(lines), " ".repeat(columns), self.value)
+        format!(
+            "{}{}{key} = {}",
+            "\n".repeat(lines),
+            " ".repeat(columns),
+            self.value
+        )
     }
 
     /// The setting as an argument of a command line, quoted for a shell.
@@ -118,7 +144,10 @@ impl Setting {
 /// The kind of file that a setting's key names, and the key in it.
 pub(super) fn target_of(whole: &str) -> Option<(Kind, &str)> {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '_';
-    if !whole.split('.').all(|part| !part.is_empty() && part.chars().all(is_plain)) {
+    if !whole
+        .split('.')
+        .all(|part| !part.is_empty() && part.chars().all(is_plain))
+    {
         return None;
     }
     let (first, rest) = whole.split_once('.')?;
@@ -140,13 +169,35 @@ mod tests {
         for (text, kind, key, value) in [
             ("sea.waves.hs_m=0.3", Kind::SEA, "waves.hs_m", "0.3"),
             ("link.delay_s = 2", Kind::GAME, "link.delay_s", "2"),
-            ("game.field=../fields/a.toml", Kind::GAME, "field", "\"../fields/a.toml\""),
-            ("boat.gps.noise_m={ uniform = [0, 2] }", Kind::BOAT, "gps.noise_m", "{ uniform = [0, 2] }"),
+            (
+                "game.field=../fields/a.toml",
+                Kind::GAME,
+                "field",
+                "\"../fields/a.toml\"",
+            ),
+            (
+                "boat.gps.noise_m={ uniform = [0, 2] }",
+                Kind::BOAT,
+                "gps.noise_m",
+                "{ uniform = [0, 2] }",
+            ),
         ] {
             let setting = Setting::parse(text).unwrap_or_else(|error| panic!("{text}: {error}"));
-            assert_eq!((setting.target(), setting.value.as_str()), (Some((kind, key)), value), "{text}");
+            assert_eq!(
+                (setting.target(), setting.value.as_str()),
+                (Some((kind, key)), value),
+                "{text}"
+            );
         }
-        for text in ["sea.waves.hs_m", "=3", "sea=3", "sea..hs_m=3", "weather.wind=3", "sea.waves=", "strategy.x=1"] {
+        for text in [
+            "sea.waves.hs_m",
+            "=3",
+            "sea=3",
+            "sea..hs_m=3",
+            "weather.wind=3",
+            "sea.waves=",
+            "strategy.x=1",
+        ] {
             assert!(Setting::parse(text).is_err(), "{text}");
         }
         for (text, guess) in [
@@ -156,10 +207,18 @@ mod tests {
             ("seas.wind=1", "sea"),
         ] {
             let error = Setting::parse(text).expect_err(text);
-            assert!(error.ends_with(&format!("(did you mean {guess}?)")), "{error}");
+            assert!(
+                error.ends_with(&format!("(did you mean {guess}?)")),
+                "{error}"
+            );
         }
         // A value must not smuggle in another key.
         let smuggled = Setting::parse("sea.a=1\nb = 2").expect("a text");
-        assert_eq!(smuggled.value.matches('\n').count(), 0, "{}", smuggled.value);
+        assert_eq!(
+            smuggled.value.matches('\n').count(),
+            0,
+            "{}",
+            smuggled.value
+        );
     }
 }

@@ -27,11 +27,27 @@ impl Scenario {
     /// # Errors
     /// The first number beyond its limits, as text.
     pub(crate) fn check_sizes(&self) -> Result<(), String> {
-        within("the number of vehicles", self.vehicles.len(), 0..=VEHICLES_MAX)?;
-        within("the physics tick in ns", self.tick.0, 1_000_000..=500_000_000)?;
-        within("the number of physics ticks per decision", self.ticks_per_decision, 1..=10_000)?;
+        within(
+            "the number of vehicles",
+            self.vehicles.len(),
+            0..=VEHICLES_MAX,
+        )?;
+        within(
+            "the physics tick in ns",
+            self.tick.0,
+            1_000_000..=500_000_000,
+        )?;
+        within(
+            "the number of physics ticks per decision",
+            self.ticks_per_decision,
+            1..=10_000,
+        )?;
         if let Some(waves) = &self.sea.waves {
-            within("the number of wave components", waves.components, 1..=COMPONENTS_MAX)?;
+            within(
+                "the number of wave components",
+                waves.components,
+                1..=COMPONENTS_MAX,
+            )?;
         }
         if let Some(eddies) = &self.sea.current.random_eddies {
             within("the number of random eddies", eddies.count, 0..=100)?;
@@ -39,36 +55,74 @@ impl Scenario {
         for boat in &self.boats {
             if let Some(gps) = &boat.sensors.gps {
                 let latency_max_s = MOST_PERIODS_LATE * gps.period_s;
-                within(&format!("gps.latency_s of {}", boat.name), gps.latency_s, 0.0..=latency_max_s)?;
+                within(
+                    &format!("gps.latency_s of {}", boat.name),
+                    gps.latency_s,
+                    0.0..=latency_max_s,
+                )?;
             }
             if let Drive::Thrusters { thruster, .. } = &boat.drive {
-                within(&format!("thruster.slew_per_s of {}", boat.name), thruster.slew_per_s, 0.0..=1e9)?;
+                within(
+                    &format!("thruster.slew_per_s of {}", boat.name),
+                    thruster.slew_per_s,
+                    0.0..=1e9,
+                )?;
             }
         }
         for program in self.strategies.iter().flat_map(|strategy| &strategy.roles) {
-            within(&format!("helm.courses of {}", program.name), program.helm.courses, COURSES_MIN..=COURSES_MAX)?;
-            within(&format!("helm.speeds of {}", program.name), program.helm.speeds, SPEEDS_MIN..=SPEEDS_MAX)?;
+            within(
+                &format!("helm.courses of {}", program.name),
+                program.helm.courses,
+                COURSES_MIN..=COURSES_MAX,
+            )?;
+            within(
+                &format!("helm.speeds of {}", program.name),
+                program.helm.speeds,
+                SPEEDS_MIN..=SPEEDS_MAX,
+            )?;
         }
         let mut candidates = 0;
         let mut observed = 0;
         for vehicle in &self.vehicles {
             let roles = &self.strategies[vehicle.strategy].roles;
-            candidates += roles.iter().map(|role| role.helm.courses * role.helm.speeds).max().unwrap_or(0);
+            candidates += roles
+                .iter()
+                .map(|role| role.helm.courses * role.helm.speeds)
+                .max()
+                .unwrap_or(0);
             // All boats are an upper bound of the mates or enemies of one.
             let size = |role: &crate::strategy::Program| -> usize {
-                role.models().map(|model| model.spec.observation.size(0, self.vehicles.len())).sum()
+                role.models()
+                    .map(|model| model.spec.observation.size(0, self.vehicles.len()))
+                    .sum()
             };
             observed += roles.iter().map(size).max().unwrap_or(0);
         }
-        within("helm.courses times helm.speeds, summed over all boats,", candidates, 0..=CANDIDATES_MAX)?;
-        within("the number of values that all policies observe", observed, 0..=OBSERVED_MAX)
+        within(
+            "helm.courses times helm.speeds, summed over all boats,",
+            candidates,
+            0..=CANDIDATES_MAX,
+        )?;
+        within(
+            "the number of values that all policies observe",
+            observed,
+            0..=OBSERVED_MAX,
+        )
     }
 }
 
-fn within<T: PartialOrd + std::fmt::Display>(what: &str, found: T, allowed: RangeInclusive<T>) -> Result<(), String> {
+fn within<T: PartialOrd + std::fmt::Display>(
+    what: &str,
+    found: T,
+    allowed: RangeInclusive<T>,
+) -> Result<(), String> {
     let min = allowed.start();
     let max = allowed.end();
-    if allowed.contains(&found) { Ok(()) } else { Err(format!("{what} is {found}, expected {min} to {max}")) }
+    if allowed.contains(&found) {
+        Ok(())
+    } else {
+        Err(format!("{what} is {found}, expected {min} to {max}"))
+    }
 }
 
 #[cfg(test)]
@@ -81,23 +135,37 @@ mod tests {
 
     #[test]
     fn a_game_that_would_exhaust_memory_is_refused_with_the_number() {
-        let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/surveyor_2v2.toml");
+        let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("../../scenarios/games/surveyor_2v2.toml");
         let sound = crate::load(&file).unwrap_or_else(|e| panic!("{e}"));
         assert_eq!(sound.check_received(), Ok(()));
         let cases: [Case; 8] = [
             ("gps.latency_s of", |game| {
-                game.boats[0].sensors.gps.as_mut().expect("it has a receiver").latency_s = 65_535.0;
+                game.boats[0]
+                    .sensors
+                    .gps
+                    .as_mut()
+                    .expect("it has a receiver")
+                    .latency_s = 65_535.0;
             }),
-            ("helm.courses of", |game| game.strategies[0].roles[0].helm.courses = 65_536),
-            ("helm.speeds of", |game| game.strategies[0].roles[0].helm.speeds = 0),
+            ("helm.courses of", |game| {
+                game.strategies[0].roles[0].helm.courses = 65_536
+            }),
+            ("helm.speeds of", |game| {
+                game.strategies[0].roles[0].helm.speeds = 0
+            }),
             ("times helm.speeds, summed over all boats, is 14", |game| {
                 let helm = &mut game.strategies[game.vehicles[0].strategy].roles[0].helm;
                 (helm.courses, helm.speeds) = (3600, 1000);
                 game.vehicles = vec![game.vehicles[0].clone(); 40];
             }),
-            ("the number of vehicles is 40000", |game| game.vehicles = vec![game.vehicles[0].clone(); 40_000]),
+            ("the number of vehicles is 40000", |game| {
+                game.vehicles = vec![game.vehicles[0].clone(); 40_000]
+            }),
             ("the physics tick in ns is 0", |game| game.tick = SimTime(0)),
-            ("ticks per decision is 0, expected 1 to", |game| game.ticks_per_decision = 0),
+            ("ticks per decision is 0, expected 1 to", |game| {
+                game.ticks_per_decision = 0
+            }),
             ("wave components is 4294967295", |game| {
                 game.sea.waves.as_mut().expect("there are waves").components = u32::MAX;
             }),

@@ -25,8 +25,16 @@ impl Sources {
     /// Appends a file; returns its offset.
     pub(super) fn add(&mut self, path: PathBuf, text: Arc<str>) -> usize {
         // With a gap of one byte, so that the end of a file is not the start of the next.
-        let start = self.files.last().map_or(0, |last| last.start + last.text.len() + 1);
-        self.files.push(Source { path, text, start, broken_lines: vec![] });
+        let start = self
+            .files
+            .last()
+            .map_or(0, |last| last.start + last.text.len() + 1);
+        self.files.push(Source {
+            path,
+            text,
+            start,
+            broken_lines: vec![],
+        });
         start
     }
 
@@ -56,8 +64,18 @@ impl Sources {
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
         let line = before.matches('\n').count() + 1;
         let column = before[line_start..].chars().count() + 1;
-        let source = file.text[line_start..].lines().next().unwrap_or_default().to_owned();
-        Problem { path: file.path.clone(), line, column, message, source }
+        let source = file.text[line_start..]
+            .lines()
+            .next()
+            .unwrap_or_default()
+            .to_owned();
+        Problem {
+            path: file.path.clone(),
+            line,
+            column,
+            message,
+            source,
+        }
     }
 
     fn line(&self, offset: usize) -> usize {
@@ -85,7 +103,9 @@ impl Sources {
 
     /// Whether the line of `offset` has a syntax error.
     pub(super) fn is_broken_line(&self, offset: usize) -> bool {
-        self.files[self.index_at(offset)].broken_lines.contains(&self.line(offset))
+        self.files[self.index_at(offset)]
+            .broken_lines
+            .contains(&self.line(offset))
     }
 
     /// Whether the file of `offset` has a syntax error.
@@ -100,7 +120,9 @@ pub fn tidied(path: &Path) -> PathBuf {
     for part in path.components() {
         match part {
             Component::CurDir => {}
-            Component::ParentDir if matches!(tidy.components().next_back(), Some(Component::Normal(_))) => {
+            Component::ParentDir
+                if matches!(tidy.components().next_back(), Some(Component::Normal(_))) =>
+            {
                 tidy.pop();
             }
             _ => tidy.push(part),
@@ -128,10 +150,19 @@ mod tests {
             (b + 70, "b.toml", 1, 2, "y"),
         ] {
             let source = source.to_owned();
-            let problem = Problem { path: path.into(), line, column, message: "wrong".into(), source };
+            let problem = Problem {
+                path: path.into(),
+                line,
+                column,
+                message: "wrong".into(),
+                source,
+            };
             assert_eq!(sources.problem(offset, "wrong".into()), problem, "{offset}");
         }
-        assert_eq!(sources.resolve(a, "../fields/f.toml"), Path::new("fields/f.toml"));
+        assert_eq!(
+            sources.resolve(a, "../fields/f.toml"),
+            Path::new("fields/f.toml")
+        );
         assert_eq!(sources.resolve(b, "../c.toml"), Path::new("../c.toml"));
     }
 }

@@ -11,13 +11,24 @@ pub(super) fn mistakes(text: &str) -> Vec<(usize, String)> {
     let mut mistakes = vec![];
     while mistakes.len() < MOST {
         let errors = DeTable::parse_recoverable(&text).1;
-        let Some(first) = errors.iter().min_by_key(|error| error.span().map_or(0, |span| span.start)) else { break };
+        let Some(first) = errors
+            .iter()
+            .min_by_key(|error| error.span().map_or(0, |span| span.start))
+        else {
+            break;
+        };
         let Some(span) = first.span() else {
-            mistakes.push((0, "found a key with too many parts, expected at most 3".to_owned()));
+            mistakes.push((
+                0,
+                "found a key with too many parts, expected at most 3".to_owned(),
+            ));
             break;
         };
         let (start, end) = line_of(&text, span.start);
-        mistakes.push(in_words(&text[start..end], start).unwrap_or_else(|| (span.start, first.message().to_owned())));
+        mistakes.push(
+            in_words(&text[start..end], start)
+                .unwrap_or_else(|| (span.start, first.message().to_owned())),
+        );
         // Without this line: any remaining error is a separate mistake.
         text.replace_range(start..end, &" ".repeat(end - start));
     }
@@ -34,7 +45,12 @@ fn line_of(text: &str, at: usize) -> (usize, usize) {
     }
     let bounds = |at: usize| {
         let start = text[..at].rfind('\n').map_or(0, |newline| newline + 1);
-        (start, text[at..].find('\n').map_or(text.len(), |newline| at + newline))
+        (
+            start,
+            text[at..]
+                .find('\n')
+                .map_or(text.len(), |newline| at + newline),
+        )
     };
     let (start, end) = bounds(at);
     match text[..start].trim_end() {
@@ -67,17 +83,25 @@ mod tests {
     #[test]
     fn a_mistake_is_told_once_and_the_next_one_too() {
         let told = |text: &str| {
-            let told = mistakes(text).into_iter().map(|(at, message)| format!("{at}: {message}"));
+            let told = mistakes(text)
+                .into_iter()
+                .map(|(at, message)| format!("{at}: {message}"));
             told.collect::<Vec<_>>().join("; ")
         };
         for (text, want) in [
             ("a = 1\nb = \"x\"", ""),
-            ("sea = ../seas/gale.toml", "6: ../seas/gale.toml is not in quotes, expected \"../seas/gale.toml\""),
+            (
+                "sea = ../seas/gale.toml",
+                "6: ../seas/gale.toml is not in quotes, expected \"../seas/gale.toml\"",
+            ),
             (
                 "sea = gale # strong\nx =  \ny = [1,",
                 "6: gale is not in quotes, expected \"gale\"; 25: x has no value, expected one after =; 33: unclosed array, expected `]`",
             ),
-            ("roles = [\"idle]\nassignment = \"fixed\"", "15: invalid basic string, expected `\"`"),
+            (
+                "roles = [\"idle]\nassignment = \"fixed\"",
+                "15: invalid basic string, expected `\"`",
+            ),
             ("ß = ./ß\n", "5: ./ß is not in quotes, expected \"./ß\""),
         ] {
             assert_eq!(told(text), want, "{text}");

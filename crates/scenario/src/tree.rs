@@ -34,12 +34,20 @@ pub(super) type Table = BTreeMap<String, Node>;
 impl Node {
     /// The root of a file that begins at `start` in the virtual text.
     pub(super) fn root(table: DeTable<'_>, start: usize) -> Node {
-        Node { at: start, key_at: start, value: Value::Table(table_from(table, start)) }
+        Node {
+            at: start,
+            key_at: start,
+            value: Value::Table(table_from(table, start)),
+        }
     }
 
     /// The entries of a table; empty for other values.
     pub(super) fn entries(&self) -> impl Iterator<Item = (&String, &Node)> {
-        let table = if let Value::Table(table) = &self.value { Some(table) } else { None };
+        let table = if let Value::Table(table) = &self.value {
+            Some(table)
+        } else {
+            None
+        };
         table.into_iter().flatten()
     }
 
@@ -79,7 +87,8 @@ impl Node {
 
     /// Overrides the entries of this with those of `over`.
     pub(super) fn put(&mut self, over: Node) {
-        let is_distribution = matches!(&over.value, Value::Table(table) if distribution_kind(table).is_some());
+        let is_distribution =
+            matches!(&over.value, Value::Table(table) if distribution_kind(table).is_some());
         match (&mut self.value, over.value) {
             (Value::Table(table), Value::Table(over)) if !is_distribution => {
                 for (key, value) in over {
@@ -89,13 +98,21 @@ impl Node {
                     }
                 }
             }
-            (_, value) => *self = Node { value, at: over.at, key_at: over.key_at },
+            (_, value) => {
+                *self = Node {
+                    value,
+                    at: over.at,
+                    key_at: over.key_at,
+                }
+            }
         }
     }
 
     /// Merges this over `base`: tables merge, other values replace those of the base.
     pub(super) fn lay_over(&mut self, base: Node) {
-        let (Value::Table(over), Value::Table(base)) = (&mut self.value, base.value) else { return };
+        let (Value::Table(over), Value::Table(base)) = (&mut self.value, base.value) else {
+            return;
+        };
         for (key, value) in base {
             match over.get_mut(&key) {
                 Some(mine) => mine.lay_over(value),
@@ -109,7 +126,10 @@ fn table_from(table: DeTable<'_>, start: usize) -> Table {
     let entry = |(key, value): (Spanned<_>, Spanned<DeValue<'_>>)| {
         let Range { start: key_at, .. } = key.span();
         let key: std::borrow::Cow<'_, str> = key.into_inner();
-        (key.into_owned(), node_from(value, start, Some(start + key_at)))
+        (
+            key.into_owned(),
+            node_from(value, start, Some(start + key_at)),
+        )
     };
     table.into_iter().map(entry).collect()
 }
@@ -118,14 +138,25 @@ fn node_from(value: Spanned<DeValue<'_>>, start: usize, key_at: Option<usize>) -
     let at = start + value.span().start;
     let value = match value.into_inner() {
         DeValue::Table(table) => Value::Table(table_from(table, start)),
-        DeValue::Array(array) => Value::List(array.into_iter().map(|value| node_from(value, start, None)).collect()),
+        DeValue::Array(array) => Value::List(
+            array
+                .into_iter()
+                .map(|value| node_from(value, start, None))
+                .collect(),
+        ),
         DeValue::String(text) => Value::Text(text.into_owned()),
         // Integers too large for 64 bits are rejected later, as numbers.
-        DeValue::Integer(whole) => i64::from_str_radix(whole.as_str(), whole.radix())
-            .map_or_else(|_| Value::Number(whole.as_str().parse().unwrap_or(f64::NAN)), Value::Whole),
+        DeValue::Integer(whole) => i64::from_str_radix(whole.as_str(), whole.radix()).map_or_else(
+            |_| Value::Number(whole.as_str().parse().unwrap_or(f64::NAN)),
+            Value::Whole,
+        ),
         DeValue::Float(number) => Value::Number(number.as_str().parse().unwrap_or(f64::NAN)),
         DeValue::Boolean(truth) => Value::Truth(truth),
         DeValue::Datetime(date) => Value::Date(date.to_string()),
     };
-    Node { at, key_at: key_at.unwrap_or(at), value }
+    Node {
+        at,
+        key_at: key_at.unwrap_or(at),
+        value,
+    }
 }

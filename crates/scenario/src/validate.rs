@@ -21,10 +21,21 @@ pub(super) fn validated<'a>(
     root: &'a Json,
     owner: &'a str,
 ) -> (Json, Vec<String>) {
-    let owner = root.get(DRAWN).map(|_| Owner { name: owner, path_from: 0 });
-    let mut validator = Validator { diagnostics, path: String::new(), owner, wrong: vec![] };
+    let owner = root.get(DRAWN).map(|_| Owner {
+        name: owner,
+        path_from: 0,
+    });
+    let mut validator = Validator {
+        diagnostics,
+        path: String::new(),
+        owner,
+        wrong: vec![],
+    };
     let value = validator.value(tree, root);
-    (value.unwrap_or_else(|| validator.stand_in(root)), validator.wrong)
+    (
+        value.unwrap_or_else(|| validator.stand_in(root)),
+        validator.wrong,
+    )
 }
 
 struct Validator<'a> {
@@ -55,7 +66,9 @@ impl<'a> Validator<'a> {
                 self.distribution(node, table, schema)
             }
             _ if !self.fits(node, schema) => self.wrong_type(node, schema),
-            Value::Table(table) if schema.get("oneOf").is_some() => self.tagged(node, table, schema),
+            Value::Table(table) if schema.get("oneOf").is_some() => {
+                self.tagged(node, table, schema)
+            }
             Value::Table(table) => Some(self.table(node, table, schema)),
             Value::List(items) => self.list(node, items, schema),
             Value::Text(text) => self.text(node, text, schema),
@@ -80,7 +93,9 @@ impl<'a> Validator<'a> {
     fn number(&mut self, node: &Node, schema: &Json) -> Option<Json> {
         let number = node.as_number()?;
         let bound = |key: &str, none: f64| schema.get(key).and_then(Json::as_f64).unwrap_or(none);
-        if !number.is_finite() || !(bound("minimum", f64::MIN)..=bound("maximum", f64::MAX)).contains(&number) {
+        if !number.is_finite()
+            || !(bound("minimum", f64::MIN)..=bound("maximum", f64::MAX)).contains(&number)
+        {
             let found = match number {
                 // In full, it would have up to 300 digits.
                 large if large.is_finite() && large.abs() >= 1e15 => format!("{large:e}"),
@@ -89,16 +104,26 @@ impl<'a> Validator<'a> {
             };
             return self.wrong(node, &found, &allowed(schema));
         }
-        Some(if let Value::Whole(whole) = node.value { whole.into() } else { number.into() })
+        Some(if let Value::Whole(whole) = node.value {
+            whole.into()
+        } else {
+            number.into()
+        })
     }
 
     /// A distribution in place of a number.
     fn distribution(&mut self, node: &Node, table: &Table, schema: &Json) -> Option<Json> {
-        let Some(owner) = &self.owner else { return self.wrong_type(node, schema) };
+        let Some(owner) = &self.owner else {
+            return self.wrong_type(node, schema);
+        };
         match draw(self.diagnostics, node, table, owner, &self.path) {
             Some(value) => {
                 let drawn = Node { value, ..*node };
-                if self.fits(&drawn, schema) { self.number(&drawn, schema) } else { self.wrong_type(&drawn, schema) }
+                if self.fits(&drawn, schema) {
+                    self.number(&drawn, schema)
+                } else {
+                    self.wrong_type(&drawn, schema)
+                }
             }
             None => {
                 self.wrong.push(self.path.clone());
@@ -126,8 +151,15 @@ impl<'a> Validator<'a> {
         let about = &schema["items"];
         if !counts(schema).contains(&items.len()) {
             // With too many tables, report the first surplus one.
-            let surplus = items.get(*counts(schema).end()).filter(|item| matches!(item.value, Value::Table(_)));
-            let message = format!("{} has {} entries, expected {}", self.key(), items.len(), allowed(schema));
+            let surplus = items
+                .get(*counts(schema).end())
+                .filter(|item| matches!(item.value, Value::Table(_)));
+            let message = format!(
+                "{} has {} entries, expected {}",
+                self.key(),
+                items.len(),
+                allowed(schema)
+            );
             self.diagnostics.note(surplus.unwrap_or(node).at, message);
             // Its entries may still be valid.
             self.wrong.push(format!("{}.length", self.path));
@@ -156,18 +188,35 @@ impl<'a> Validator<'a> {
                 .find_map(|(key, about)| Some((key.as_str(), about.get("const")?.as_str()?)))
         };
         let (key, _) = kinds.iter().find_map(tag_of)?;
-        let names: Vec<&str> = kinds.iter().filter_map(tag_of).map(|(_, name)| name).collect();
+        let names: Vec<&str> = kinds
+            .iter()
+            .filter_map(tag_of)
+            .map(|(_, name)| name)
+            .collect();
         let expected = one_of(&names);
         let given = table.get(key);
-        let text =
-            given.and_then(|given| if let Value::Text(text) = &given.value { Some(text.as_str()) } else { None });
-        if let Some(kind) = kinds.iter().find(|kind| text.is_some() && tag_of(kind).map(|(_, name)| name) == text) {
+        let text = given.and_then(|given| {
+            if let Value::Text(text) = &given.value {
+                Some(text.as_str())
+            } else {
+                None
+            }
+        });
+        if let Some(kind) = kinds
+            .iter()
+            .find(|kind| text.is_some() && tag_of(kind).map(|(_, name)| name) == text)
+        {
             return Some(self.table(node, table, kind));
         }
         // Without its kind, at least check the common keys.
         for (key, value) in table.iter().filter(|(other, _)| *other != key) {
             let mut abouts = kinds.iter().map(|kind| kind["properties"].get(key));
-            if let Some(about) = abouts.clone().next().flatten().filter(|_| abouts.all(|about| about.is_some())) {
+            if let Some(about) = abouts
+                .clone()
+                .next()
+                .flatten()
+                .filter(|_| abouts.all(|about| about.is_some()))
+            {
                 self.below(key, |below| below.property(key, value, about));
             }
         }
@@ -183,7 +232,9 @@ impl<'a> Validator<'a> {
 
     fn table(&mut self, node: &'a Node, table: &'a Table, schema: &'a Json) -> Json {
         let mut values = Map::new();
-        let others = schema.get("additionalProperties").filter(|others| others.is_object());
+        let others = schema
+            .get("additionalProperties")
+            .filter(|others| others.is_object());
         let properties = &schema["properties"];
         for (key, value) in table {
             match properties.get(key).or(others) {
@@ -215,9 +266,14 @@ impl<'a> Validator<'a> {
         let outer = self.owner;
         if about.get(DRAWN).is_some() {
             // A shared table, such as the link of a game, draws its own numbers.
-            self.owner = Some(Owner { name: key, path_from: self.path.len() + 1 });
+            self.owner = Some(Owner {
+                name: key,
+                path_from: self.path.len() + 1,
+            });
         }
-        let value = self.value(node, about).or_else(|| about.get("default").cloned());
+        let value = self
+            .value(node, about)
+            .or_else(|| about.get("default").cloned());
         self.owner = outer;
         value
     }
@@ -243,14 +299,23 @@ impl<'a> Validator<'a> {
 
     fn unknown(&mut self, key: &str, node: &Node, schema: &Json) {
         let properties = schema["properties"].as_object();
-        let known: Vec<&str> = properties.into_iter().flatten().map(|(key, _)| key.as_str()).collect();
-        let message = format!("{key} is unknown, expected {}{}", one_of(&known), did_you_mean(key, &known));
+        let known: Vec<&str> = properties
+            .into_iter()
+            .flatten()
+            .map(|(key, _)| key.as_str())
+            .collect();
+        let message = format!(
+            "{key} is unknown, expected {}{}",
+            one_of(&known),
+            did_you_mean(key, &known)
+        );
         // Keys below a broken table header belong to the previous table.
         self.diagnostics.note_if_intact(node.key_at, message);
     }
 
     fn missing(&mut self, owner: &Node, expected: &str) -> Option<Json> {
-        self.diagnostics.note_missing(owner.at, &self.path, expected);
+        self.diagnostics
+            .note_missing(owner.at, &self.path, expected);
         self.wrong.push(self.path.clone());
         None
     }
@@ -280,7 +345,10 @@ impl<'a> Validator<'a> {
 
     /// The key of the current value, or of the list that contains it.
     fn key(&self) -> &str {
-        self.path.rsplit('.').find(|part| part.parse::<usize>().is_err()).unwrap_or("the file")
+        self.path
+            .rsplit('.')
+            .find(|part| part.parse::<usize>().is_err())
+            .unwrap_or("the file")
     }
 
     /// Whether a value is of the type in the schema.
@@ -298,7 +366,9 @@ impl<'a> Validator<'a> {
                 Value::Truth(_) => takes(schema, "boolean"),
                 Value::Whole(_) => is_number(schema),
                 // An integer too large for 64 bits is still an integer, out of range.
-                Value::Number(number) => takes(schema, "number") || takes(schema, "integer") && number.abs() > 9e18,
+                Value::Number(number) => {
+                    takes(schema, "number") || takes(schema, "integer") && number.abs() > 9e18
+                }
                 Value::Date(_) => false,
             }
     }
@@ -315,13 +385,17 @@ impl<'a> Validator<'a> {
             Some(branch) => self.stand_in(branch),
             None if takes(schema, "object") => {
                 let properties = schema["properties"].as_object().into_iter().flatten();
-                let needed =
-                    properties.filter(|(key, about)| is_required(schema, key) || about.get("default").is_some());
-                let values = needed.map(|(key, about)| (key.clone(), self.stand_in(about))).collect();
+                let needed = properties.filter(|(key, about)| {
+                    is_required(schema, key) || about.get("default").is_some()
+                });
+                let values = needed
+                    .map(|(key, about)| (key.clone(), self.stand_in(about)))
+                    .collect();
                 by_fields(values, &schema["properties"])
             }
             None if takes(schema, "array") => {
-                let items = (0..*counts(schema).start()).map(|i| schema["items"].get(i).unwrap_or(&schema["items"]));
+                let items = (0..*counts(schema).start())
+                    .map(|i| schema["items"].get(i).unwrap_or(&schema["items"]));
                 items.map(|item| self.stand_in(item)).collect()
             }
             None if takes(schema, "string") => "".into(),
@@ -332,7 +406,9 @@ impl<'a> Validator<'a> {
 }
 
 fn is_required(schema: &Json, key: &str) -> bool {
-    schema["required"].as_array().is_some_and(|required| required.iter().any(|known| known == key))
+    schema["required"]
+        .as_array()
+        .is_some_and(|required| required.iter().any(|known| known == key))
 }
 
 /// Whether the schema allows values of this type.
@@ -349,19 +425,37 @@ fn is_number(schema: &Json) -> bool {
 
 /// The allowed lengths of a list.
 fn counts(schema: &Json) -> std::ops::RangeInclusive<usize> {
-    let bound = |key: &str| schema.get(key).and_then(Json::as_u64).map(|bound| bound as usize);
+    let bound = |key: &str| {
+        schema
+            .get(key)
+            .and_then(Json::as_u64)
+            .map(|bound| bound as usize)
+    };
     bound("minItems").unwrap_or(0)..=bound("maxItems").unwrap_or(usize::MAX)
 }
 
 /// The texts that the schema lists as allowed.
 fn choices(schema: &Json) -> Vec<&str> {
-    let one_of = schema["oneOf"].as_array().into_iter().flatten().filter_map(|choice| choice.get("const"));
-    let all = schema["enum"].as_array().into_iter().flatten().chain(schema.get("const")).chain(one_of);
+    let one_of = schema["oneOf"]
+        .as_array()
+        .into_iter()
+        .flatten()
+        .filter_map(|choice| choice.get("const"));
+    let all = schema["enum"]
+        .as_array()
+        .into_iter()
+        .flatten()
+        .chain(schema.get("const"))
+        .chain(one_of);
     all.filter_map(Json::as_str).collect()
 }
 
 fn one_of(names: &[&str]) -> String {
-    format!("{}{}", if names.len() > 1 { "one of " } else { "" }, names.join(", "))
+    format!(
+        "{}{}",
+        if names.len() > 1 { "one of " } else { "" },
+        names.join(", ")
+    )
 }
 
 fn found(node: &Node) -> String {
@@ -378,7 +472,8 @@ fn found(node: &Node) -> String {
 
 /// Whether a text is a number with a unit, such as `20kn`.
 fn has_unit(text: &str) -> bool {
-    text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)) && text.parse::<f64>().is_err()
+    text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c))
+        && text.parse::<f64>().is_err()
 }
 
 /// The unit in a key's name.
@@ -395,7 +490,10 @@ fn unit_of(key: &str) -> Option<&'static str> {
         ("_m", "m"),
         ("_s", "s"),
     ];
-    UNITS.into_iter().find(|(end, _)| key.ends_with(end)).map(|(_, unit)| unit)
+    UNITS
+        .into_iter()
+        .find(|(end, _)| key.ends_with(end))
+        .map(|(_, unit)| unit)
 }
 
 /// The allowed values, in words.
@@ -406,7 +504,9 @@ fn allowed(schema: &Json) -> String {
     };
     match (schema.get(from), schema.get(to)) {
         _ if schema.get("x-expected").is_some() => kind_of(schema),
-        (Some(_), Some(to)) if from == "minItems" && to == 2 => "a pair of numbers [a, b]".to_owned(),
+        (Some(_), Some(to)) if from == "minItems" && to == 2 => {
+            "a pair of numbers [a, b]".to_owned()
+        }
         (Some(from), Some(to)) if from == to => format!("exactly {from}"),
         (Some(from), Some(to)) => format!("{} to {}", bound(from), bound(to)),
         (Some(from), None) => format!("at least {}", bound(from)),
@@ -417,7 +517,10 @@ fn allowed(schema: &Json) -> String {
 
 /// A bound as users write it: 1000000 rather than 1000000.0.
 fn bound(value: &Json) -> String {
-    value.as_i64().map_or_else(|| value.as_f64().unwrap_or(f64::NAN).to_string(), |whole| whole.to_string())
+    value.as_i64().map_or_else(
+        || value.as_f64().unwrap_or(f64::NAN).to_string(),
+        |whole| whole.to_string(),
+    )
 }
 
 /// The type in the schema, in words.
@@ -426,7 +529,11 @@ fn kind_of(schema: &Json) -> String {
         return expected.to_owned();
     }
     if let Some(branches) = schema.get("anyOf").and_then(Json::as_array) {
-        return branches.iter().map(kind_of).collect::<Vec<_>>().join(" or ");
+        return branches
+            .iter()
+            .map(kind_of)
+            .collect::<Vec<_>>()
+            .join(" or ");
     }
     let choices = choices(schema);
     if !choices.is_empty() {
@@ -444,7 +551,10 @@ fn kind_of(schema: &Json) -> String {
         "object" => "a table",
         _ => "a string",
     };
-    if let Some(title) = schema["title"].as_str().filter(|_| schema["type"].is_array()) {
+    if let Some(title) = schema["title"]
+        .as_str()
+        .filter(|_| schema["type"].is_array())
+    {
         return title.to_owned();
     }
     let kinds = match &schema["type"] {

@@ -5,7 +5,11 @@ use scenario::Scenario;
 use std::path::{Path, PathBuf};
 
 fn shipped(file: &str) -> String {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(file).display().to_string()
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../scenarios")
+        .join(file)
+        .display()
+        .to_string()
 }
 
 /// A game of two boats of the file `boat` on the sea `sea`, with `more` appended.
@@ -30,15 +34,25 @@ const BOAT: &str = "[hull]\nmass_kg = { uniform = [0.9, 1.1], times = 52.3 }\nmu
 const SEA: &str = "current = { speed_m_s = { normal = [0.3, 0.05] }, toward_deg = 90 }\n";
 
 fn value(scenario: &Scenario, parameter: &str) -> f64 {
-    let drawn = scenario.drawn.iter().find(|drawn| drawn.parameter == parameter);
-    drawn.unwrap_or_else(|| panic!("no {parameter} in {:?}", scenario.drawn)).value
+    let drawn = scenario
+        .drawn
+        .iter()
+        .find(|drawn| drawn.parameter == parameter);
+    drawn
+        .unwrap_or_else(|| panic!("no {parameter} in {:?}", scenario.drawn))
+        .value
 }
 
 #[test]
 fn each_vehicle_and_each_seed_draws_its_own_numbers_and_the_model_takes_them() {
     let dir = tempfile::tempdir().unwrap();
-    let first =
-        scenario::load(&written(dir.path(), BOAT, SEA, "link = { delay_s = { uniform = [0.1, 0.2] } }")).unwrap();
+    let first = scenario::load(&written(
+        dir.path(),
+        BOAT,
+        SEA,
+        "link = { delay_s = { uniform = [0.1, 0.2] } }",
+    ))
+    .unwrap();
     // The files are no longer needed.
     std::fs::remove_dir_all(dir.path()).unwrap();
     let recorded: Scenario = serde_json::from_str(&serde_json::to_string(&first).unwrap()).unwrap();
@@ -46,21 +60,42 @@ fn each_vehicle_and_each_seed_draws_its_own_numbers_and_the_model_takes_them() {
     for seed in 1..=50 {
         let game = first.of_seed(seed).unwrap();
         assert_eq!(game, first.of_seed(seed).unwrap(), "seed {seed}");
-        assert_eq!(game, recorded.of_seed(seed).unwrap(), "seed {seed}: the same where the texts are read again");
+        assert_eq!(
+            game,
+            recorded.of_seed(seed).unwrap(),
+            "seed {seed}: the same where the texts are read again"
+        );
         assert_eq!(game.drawn.len(), 2 * 3 + 1 + 1, "{:?}", game.drawn);
         let mass_kg = value(&game, "blue_one/hull.mass_kg");
-        assert!((0.9 * 52.3..1.1 * 52.3).contains(&mass_kg), "seed {seed}: {mass_kg}");
-        assert_eq!(game.boat_of(game.vehicle_by_name("blue_one").unwrap()).hull.mass_kg, mass_kg);
+        assert!(
+            (0.9 * 52.3..1.1 * 52.3).contains(&mass_kg),
+            "seed {seed}: {mass_kg}"
+        );
+        assert_eq!(
+            game.boat_of(game.vehicle_by_name("blue_one").unwrap())
+                .hull
+                .mass_kg,
+            mass_kg
+        );
         // Omitted values follow from the drawn ones.
         let red = game.boat_of(game.vehicle_by_name("red_one").unwrap());
         assert_eq!(red.hull.mass_kg, value(&game, "red_one/hull.mass_kg"));
         assert_ne!(red.hull.mass_kg, mass_kg);
         assert!([0.2, 0.4].contains(&red.hull.munk_factor));
         let speed_m_s = value(&game, "sea/current.speed_m_s");
-        assert!((0.15..=0.45).contains(&speed_m_s) && (game.sea.current.mean_m_s.east - speed_m_s).abs() < 1e-12);
-        assert_eq!(game.link.as_ref().unwrap().delay_s, value(&game, "link/delay_s"));
+        assert!(
+            (0.15..=0.45).contains(&speed_m_s)
+                && (game.sea.current.mean_m_s.east - speed_m_s).abs() < 1e-12
+        );
+        assert_eq!(
+            game.link.as_ref().unwrap().delay_s,
+            value(&game, "link/delay_s")
+        );
     }
-    assert_ne!(first.of_seed(1).unwrap().drawn, first.of_seed(2).unwrap().drawn);
+    assert_ne!(
+        first.of_seed(1).unwrap().drawn,
+        first.of_seed(2).unwrap().drawn
+    );
 }
 
 #[test]
@@ -69,8 +104,14 @@ fn a_new_distribution_does_not_shift_the_numbers_of_the_others() {
     let before = scenario::load(&written(dir.path(), BOAT, SEA, "")).unwrap();
     let more = format!("length_m = {{ uniform = [1.7, 1.9] }}\n{BOAT}");
     let after = scenario::load(&written(dir.path(), &more, SEA, "")).unwrap();
-    assert_eq!(value(&before, "blue_one/hull.mass_kg"), value(&after, "blue_one/hull.mass_kg"));
-    assert_eq!(value(&before, "sea/current.speed_m_s"), value(&after, "sea/current.speed_m_s"));
+    assert_eq!(
+        value(&before, "blue_one/hull.mass_kg"),
+        value(&after, "blue_one/hull.mass_kg")
+    );
+    assert_eq!(
+        value(&before, "sea/current.speed_m_s"),
+        value(&after, "sea/current.speed_m_s")
+    );
 }
 
 #[test]
@@ -84,15 +125,33 @@ fn whole_numbers_are_drawn_by_choice_and_a_lone_file_by_its_seed() {
         let (sea, drawn) = scenario::draw_file::<scenario::sea::Sea>(&path, seed).unwrap();
         let waves = sea.waves.unwrap();
         assert!([16, 32].contains(&waves.components));
-        let named = |key: &str| drawn.iter().find(|drawn| drawn.parameter == key).unwrap().value;
-        assert_eq!((named("sea/waves.hs_m"), named("sea/waves.components")), (waves.hs_m, f64::from(waves.components)));
+        let named = |key: &str| {
+            drawn
+                .iter()
+                .find(|drawn| drawn.parameter == key)
+                .unwrap()
+                .value
+        };
+        assert_eq!(
+            (named("sea/waves.hs_m"), named("sea/waves.components")),
+            (waves.hs_m, f64::from(waves.components))
+        );
         heights.push(waves.hs_m);
     }
     heights.dedup();
     assert_eq!(heights.len(), 20);
-    std::fs::write(&path, sea.replace("choice = [16, 32]", "uniform = [16, 33]")).unwrap();
-    let said = scenario::draw_file::<scenario::sea::Sea>(&path, 1).unwrap_err().to_string();
-    assert!(said.contains("components") && said.contains("expected a whole number"), "{said}");
+    std::fs::write(
+        &path,
+        sea.replace("choice = [16, 32]", "uniform = [16, 33]"),
+    )
+    .unwrap();
+    let said = scenario::draw_file::<scenario::sea::Sea>(&path, 1)
+        .unwrap_err()
+        .to_string();
+    assert!(
+        said.contains("components") && said.contains("expected a whole number"),
+        "{said}"
+    );
 }
 
 #[test]
@@ -105,17 +164,32 @@ fn the_numbers_have_the_distribution_that_was_asked_for() {
     // Within five standard errors; a normal number truncated at three sigma has 0.973 of the
     // variance.
     let mass = mean(&|game| value(game, "blue_one/hull.mass_kg"));
-    assert!((mass - 52.3).abs() < 5.0 * 0.2 * 52.3 / 12_f64.sqrt() / (n as f64).sqrt(), "{mass}");
+    assert!(
+        (mass - 52.3).abs() < 5.0 * 0.2 * 52.3 / 12_f64.sqrt() / (n as f64).sqrt(),
+        "{mass}"
+    );
     let speed = mean(&|game| value(game, "sea/current.speed_m_s"));
-    assert!((speed - 0.3).abs() < 5.0 * 0.05 / (n as f64).sqrt(), "{speed}");
+    assert!(
+        (speed - 0.3).abs() < 5.0 * 0.05 / (n as f64).sqrt(),
+        "{speed}"
+    );
     let variance = mean(&|game| {
         let off = value(game, "sea/current.speed_m_s") - 0.3;
         off * off
     });
-    assert!((variance / (0.973 * 0.05 * 0.05) - 1.0).abs() < 5.0 * (2.0 / n as f64).sqrt(), "{variance}");
-    let median = games.iter().filter(|game| value(game, "blue_one/thruster.lag_s") < 0.25).count();
+    assert!(
+        (variance / (0.973 * 0.05 * 0.05) - 1.0).abs() < 5.0 * (2.0 / n as f64).sqrt(),
+        "{variance}"
+    );
+    let median = games
+        .iter()
+        .filter(|game| value(game, "blue_one/thruster.lag_s") < 0.25)
+        .count();
     assert!((median as f64 - 500.0).abs() < 5.0 * 16.0, "{median}");
-    let fours = games.iter().filter(|game| value(game, "red_one/hull.munk_factor") == 0.4).count();
+    let fours = games
+        .iter()
+        .filter(|game| value(game, "red_one/hull.munk_factor") == 0.4)
+        .count();
     assert!((fours as f64 - 500.0).abs() < 5.0 * 16.0, "{fours}");
 }
 
@@ -123,22 +197,46 @@ fn the_numbers_have_the_distribution_that_was_asked_for() {
 fn a_distribution_that_reaches_where_a_number_may_not_is_refused_with_its_place() {
     let dir = tempfile::tempdir().unwrap();
     for (boat, sea, want) in [
-        ("length_m = { uniform = [0.05, 2] }\n", "", "boats/drawn.toml:2:12: length_m is 0.05, expected 0.1 to 100"),
+        (
+            "length_m = { uniform = [0.05, 2] }\n",
+            "",
+            "boats/drawn.toml:2:12: length_m is 0.05, expected 0.1 to 100",
+        ),
         (
             "[hull]\nmunk_factor = { uniform = [0.5, 1.5] }\n",
             "",
             "boats/drawn.toml:3:15: munk_factor is 1.5, expected 0 to 1",
         ),
-        ("", "depth_m = { normal = [10, 4] }\n", "seas/drawn.toml:1:11: depth_m is -2, expected 0.5 to 12000"),
+        (
+            "",
+            "depth_m = { normal = [10, 4] }\n",
+            "seas/drawn.toml:1:11: depth_m is -2, expected 0.5 to 12000",
+        ),
         (
             "length_m = { uniform = [2, 1] }\n",
             "",
             "boats/drawn.toml:2:12: length_m is not a distribution, expected one of { uniform",
         ),
-        ("length_m = { normal = [2] }\n", "", "boats/drawn.toml:2:12: length_m is not a distribution"),
-        ("length_m = { choice = [] }\n", "", "boats/drawn.toml:2:12: length_m is not a distribution"),
-        ("length_m = { uniform = [1, 2], tims = 3 }\n", "", "boats/drawn.toml:2:12: length_m is not a distribution"),
-        ("length_m = { log_normal = [-1, 0.1] }\n", "", "boats/drawn.toml:2:12: length_m is not a distribution"),
+        (
+            "length_m = { normal = [2] }\n",
+            "",
+            "boats/drawn.toml:2:12: length_m is not a distribution",
+        ),
+        (
+            "length_m = { choice = [] }\n",
+            "",
+            "boats/drawn.toml:2:12: length_m is not a distribution",
+        ),
+        (
+            "length_m = { uniform = [1, 2], tims = 3 }\n",
+            "",
+            "boats/drawn.toml:2:12: length_m is not a distribution",
+        ),
+        (
+            "length_m = { log_normal = [-1, 0.1] }\n",
+            "",
+            "boats/drawn.toml:2:12: length_m is not a distribution",
+        ),
     ] {
         let problems = scenario::load(&written(dir.path(), boat, sea, "")).unwrap_err();
         let told = problems.to_string();
@@ -146,5 +244,10 @@ fn a_distribution_that_reaches_where_a_number_may_not_is_refused_with_its_place(
     }
     // A value that all boats share cannot be randomised.
     let path = written(dir.path(), "", "", "duration_s = { uniform = [100, 200] }");
-    assert!(scenario::load(&path).unwrap_err().to_string().contains("duration_s is a table, expected a number"));
+    assert!(
+        scenario::load(&path)
+            .unwrap_err()
+            .to_string()
+            .contains("duration_s is a table, expected a number")
+    );
 }

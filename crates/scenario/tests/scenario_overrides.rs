@@ -5,42 +5,66 @@ use scenario::{Overrides, Scenario, Setting, load, load_with};
 use std::path::{Path, PathBuf};
 
 /// A strategy file without references.
-const LIES_STILL: &str =
-    "unsafe_i_know = true\nunsafe_because = \"it lies still\"\n[behaviour.stop]\nkind = \"full_stop\"\n";
+const LIES_STILL: &str = "unsafe_i_know = true\nunsafe_because = \"it lies still\"\n[behaviour.stop]\nkind = \"full_stop\"\n";
 
 fn shipped(file: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(file)
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../scenarios")
+        .join(file)
 }
 
 fn instead(strategies: &[(&str, PathBuf)]) -> Overrides {
-    let strategies = strategies.iter().map(|(team, path)| ((*team).to_owned(), path.clone())).collect();
-    Overrides { strategies, ..Overrides::default() }
+    let strategies = strategies
+        .iter()
+        .map(|(team, path)| ((*team).to_owned(), path.clone()))
+        .collect();
+    Overrides {
+        strategies,
+        ..Overrides::default()
+    }
 }
 
 /// The strategies that the boats follow, in order.
 fn followed(scenario: &Scenario) -> Vec<&str> {
-    (0..scenario.vehicles.len()).map(|i| scenario.strategy_of(VehicleId::at(i)).name.as_str()).collect()
+    (0..scenario.vehicles.len())
+        .map(|i| scenario.strategy_of(VehicleId::at(i)).name.as_str())
+        .collect()
 }
 
 #[test]
 fn all_boats_of_a_team_follow_the_strategy_it_is_given_and_nobody_else_does() {
     let dir = tempfile::tempdir().unwrap();
     let game = dir.path().join("game.toml");
-    let own = shipped("strategies/pav01_seeded.toml").canonicalize().unwrap();
+    let own = shipped("strategies/pav01_seeded.toml")
+        .canonicalize()
+        .unwrap();
     let base = shipped("games/pav01_vs_pav01.toml").canonicalize().unwrap();
     let boats = ["blue_one", "blue_two", "red_one", "red_two"].map(|name| {
         let (team, _) = name.split_once('_').unwrap();
-        let own = if name.ends_with("two") { format!("strategy = {own:?}\n") } else { String::new() };
+        let own = if name.ends_with("two") {
+            format!("strategy = {own:?}\n")
+        } else {
+            String::new()
+        };
         format!("[[vehicle]]\nname = {name:?}\nteam = {team:?}\n{own}")
     });
     std::fs::write(&game, format!("base = {base:?}\n{}", boats.concat())).unwrap();
-    assert_eq!(followed(&load(&game).unwrap()), ["pav01", "pav01_seeded", "pav01", "pav01_seeded"]);
+    assert_eq!(
+        followed(&load(&game).unwrap()),
+        ["pav01", "pav01_seeded", "pav01", "pav01_seeded"]
+    );
 
     let attack = shipped("strategies/easy_attackers.toml");
     for (overrides, want) in [
-        (instead(&[("blue", attack.clone())]), ["easy_attackers", "easy_attackers", "pav01", "pav01_seeded"]),
         (
-            instead(&[("red", attack.clone()), ("blue", shipped("strategies/idle.toml"))]),
+            instead(&[("blue", attack.clone())]),
+            ["easy_attackers", "easy_attackers", "pav01", "pav01_seeded"],
+        ),
+        (
+            instead(&[
+                ("red", attack.clone()),
+                ("blue", shipped("strategies/idle.toml")),
+            ]),
             ["idle", "idle", "easy_attackers", "easy_attackers"],
         ),
     ] {
@@ -63,8 +87,12 @@ fn two_files_of_one_name_may_meet_and_what_is_replaced_is_not_read() {
     let text = std::fs::read_to_string(&game).unwrap();
     let folder = shipped("").canonicalize().unwrap().display().to_string();
     let broken = dir.path().join("broken.toml");
-    std::fs::write(&broken, text.replace("pav01.toml", "nonesuch.toml").replace("\"..", &format!("\"{folder}")))
-        .unwrap();
+    std::fs::write(
+        &broken,
+        text.replace("pav01.toml", "nonesuch.toml")
+            .replace("\"..", &format!("\"{folder}")),
+    )
+    .unwrap();
     assert!(load(&broken).is_err());
     let both = instead(&[("blue", path.clone()), ("red", path)]);
     assert_eq!(followed(&load_with(&broken, &both).unwrap()), ["pav01"; 4]);
@@ -76,16 +104,26 @@ fn a_game_drawn_again_keeps_what_took_the_place_of_its_own() {
     let game = dir.path().join("game.toml");
     let strategy = dir.path().join("own.toml");
     let base = shipped("games/pav01_vs_pav01.toml").canonicalize().unwrap();
-    std::fs::write(&game, format!("base = {base:?}\nlink = {{ delay_s = {{ uniform = [0.1, 0.2] }} }}\n")).unwrap();
+    std::fs::write(
+        &game,
+        format!("base = {base:?}\nlink = {{ delay_s = {{ uniform = [0.1, 0.2] }} }}\n"),
+    )
+    .unwrap();
     std::fs::write(&strategy, LIES_STILL).unwrap();
-    let overrides = Overrides { sea: Some(shipped("seas/gale.toml")), ..instead(&[("red", strategy)]) };
+    let overrides = Overrides {
+        sea: Some(shipped("seas/gale.toml")),
+        ..instead(&[("red", strategy)])
+    };
     let scenario = load_with(&game, &overrides).unwrap();
     // The files are no longer needed.
     drop(dir);
     let other = scenario.of_seed(7).unwrap();
     assert_ne!(other.drawn, scenario.drawn);
     assert_eq!(followed(&other), ["pav01", "pav01", "own", "own"]);
-    assert_eq!((&other.sea, other.sea.name.as_str()), (&scenario.sea, "gale"));
+    assert_eq!(
+        (&other.sea, other.sea.name.as_str()),
+        (&scenario.sea, "gale")
+    );
 }
 
 #[test]
@@ -100,8 +138,15 @@ fn in_a_rehearsal_every_boat_is_simulated_also_when_the_game_is_drawn_again() {
     }
     let dir = tempfile::tempdir().unwrap();
     let drawn = dir.path().join("drawn.toml");
-    std::fs::write(&drawn, format!("base = {mixed:?}\nlink = {{ delay_s = {{ uniform = [0.1, 0.2] }} }}\n")).unwrap();
-    let rehearsal = Overrides { simulate_all: true, ..Overrides::default() };
+    std::fs::write(
+        &drawn,
+        format!("base = {mixed:?}\nlink = {{ delay_s = {{ uniform = [0.1, 0.2] }} }}\n"),
+    )
+    .unwrap();
+    let rehearsal = Overrides {
+        simulate_all: true,
+        ..Overrides::default()
+    };
     for game in [mixed, drawn] {
         let scenario = load_with(&game, &rehearsal).unwrap();
         assert_eq!(scenario.has_no_real_boats(), Ok(()));
@@ -114,10 +159,25 @@ fn an_unknown_team_and_a_file_that_is_not_there_are_explained() {
     let game = shipped("games/pav01_vs_pav01.toml");
     let idle = shipped("strategies/idle.toml");
     for (overrides, want) in [
-        (instead(&[("green", idle)]), "unknown team \"green\", expected one of blue, red"),
-        (instead(&[("red", "none.toml".into())]), "none.toml:1:1: cannot be read"),
-        (Overrides { sea: Some("none.toml".into()), ..Overrides::default() }, "none.toml:1:1: cannot be read"),
-        (instead(&[("red", shipped("seas/gale.toml"))]), "wind is unknown, expected one of"),
+        (
+            instead(&[("green", idle)]),
+            "unknown team \"green\", expected one of blue, red",
+        ),
+        (
+            instead(&[("red", "none.toml".into())]),
+            "none.toml:1:1: cannot be read",
+        ),
+        (
+            Overrides {
+                sea: Some("none.toml".into()),
+                ..Overrides::default()
+            },
+            "none.toml:1:1: cannot be read",
+        ),
+        (
+            instead(&[("red", shipped("seas/gale.toml"))]),
+            "wind is unknown, expected one of",
+        ),
     ] {
         let problems = load_with(&game, &overrides).unwrap_err().to_string();
         assert!(problems.contains(want), "{want}\n{problems}");
@@ -127,64 +187,147 @@ fn an_unknown_team_and_a_file_that_is_not_there_are_explained() {
 #[test]
 fn teams_that_exchange_their_strategies_follow_each_others() {
     let game = shipped("games/strategy_4_vs_3.toml");
-    let exchanged = |overrides: Overrides| load_with(&game, &Overrides { exchange_strategies: true, ..overrides });
-    assert_eq!(followed(&load(&game).unwrap()), ["strategy_4", "strategy_4", "strategy_3", "strategy_3"]);
+    let exchanged = |overrides: Overrides| {
+        load_with(
+            &game,
+            &Overrides {
+                exchange_strategies: true,
+                ..overrides
+            },
+        )
+    };
+    assert_eq!(
+        followed(&load(&game).unwrap()),
+        ["strategy_4", "strategy_4", "strategy_3", "strategy_3"]
+    );
     let there = exchanged(Overrides::default()).unwrap();
-    assert_eq!(followed(&there), ["strategy_3", "strategy_3", "strategy_4", "strategy_4"]);
+    assert_eq!(
+        followed(&there),
+        ["strategy_3", "strategy_3", "strategy_4", "strategy_4"]
+    );
     // They are exchanged in games of other seeds too, including those that override a team's own.
     assert_eq!(followed(&there.of_seed(9).unwrap()), followed(&there));
     let idle = instead(&[("blue", shipped("strategies/idle.toml"))]);
-    assert_eq!(followed(&exchanged(idle).unwrap()), ["strategy_3", "strategy_3", "idle", "idle"]);
-    let person = Overrides { exchange_strategies: true, ..Overrides::default() };
-    let refused = load_with(&shipped("games/person_2v2.toml"), &person).unwrap_err().to_string();
+    assert_eq!(
+        followed(&exchanged(idle).unwrap()),
+        ["strategy_3", "strategy_3", "idle", "idle"]
+    );
+    let person = Overrides {
+        exchange_strategies: true,
+        ..Overrides::default()
+    };
+    let refused = load_with(&shipped("games/person_2v2.toml"), &person)
+        .unwrap_err()
+        .to_string();
     assert!(
-        refused.contains("strategy is teleop, expected none here because the teams exchange strategies"),
+        refused.contains(
+            "strategy is teleop, expected none here because the teams exchange strategies"
+        ),
         "{refused}"
     );
 }
 
 /// Overrides of single values.
 fn settings(texts: &[&str]) -> Overrides {
-    let settings = texts.iter().map(|text| Setting::parse(text).expect("a setting")).collect();
-    Overrides { settings, ..Overrides::default() }
+    let settings = texts
+        .iter()
+        .map(|text| Setting::parse(text).expect("a setting"))
+        .collect();
+    Overrides {
+        settings,
+        ..Overrides::default()
+    }
 }
 
 #[test]
 fn a_single_value_takes_the_place_of_what_a_file_of_its_kind_says() {
     let game = shipped("games/surveyor_2v2.toml");
     let own = load(&game).unwrap();
-    let set = settings(&["sea.depth_m=4.5", "rules.tag_radius_m=12.5", "link.delay_s=0.5", "boat.gps.noise_m=0.25"]);
+    let set = settings(&[
+        "sea.depth_m=4.5",
+        "rules.tag_radius_m=12.5",
+        "link.delay_s=0.5",
+        "boat.gps.noise_m=0.25",
+    ]);
     let other = load_with(&game, &set).unwrap();
-    assert_eq!((other.sea.depth_m, own.sea.depth_m), (Some(4.5), Some(10.0)));
-    assert_eq!((other.rules.tag_radius_m, own.rules.tag_radius_m), (12.5, 10.0));
+    assert_eq!(
+        (other.sea.depth_m, own.sea.depth_m),
+        (Some(4.5), Some(10.0))
+    );
+    assert_eq!(
+        (other.rules.tag_radius_m, own.rules.tag_radius_m),
+        (12.5, 10.0)
+    );
     assert_eq!(other.link.as_ref().unwrap().delay_s, 0.5);
-    assert!(other.boats.iter().all(|boat| boat.sensors.gps.as_ref().is_some_and(|gps| gps.noise_m == 0.25)));
+    assert!(other.boats.iter().all(|boat| {
+        boat.sensors
+            .gps
+            .as_ref()
+            .is_some_and(|gps| gps.noise_m == 0.25)
+    }));
     // Other values stay, and a game drawn again keeps the setting.
     assert_eq!(other.sea.wind, own.sea.wind);
     assert_eq!(other.of_seed(9).unwrap().rules.tag_radius_m, 12.5);
     // The last of several settings counts, and a game without a sea file has a default one at rest.
     let calm = shipped("games/pav01_vs_pav01.toml");
-    let windy =
-        load_with(&calm, &settings(&["sea.wind.from_deg=90", "sea.wind.speed_m_s=3", "sea.wind.speed_m_s=4"])).unwrap();
+    let windy = load_with(
+        &calm,
+        &settings(&[
+            "sea.wind.from_deg=90",
+            "sea.wind.speed_m_s=3",
+            "sea.wind.speed_m_s=4",
+        ]),
+    )
+    .unwrap();
     assert_eq!(windy.sea.wind.as_ref().unwrap().speed_10m_m_s, 4.0);
-    assert_eq!((windy.sea.water_density_kg_m3, windy.sea.waves.is_none()), (1000.0, true));
+    assert_eq!(
+        (windy.sea.water_density_kg_m3, windy.sea.waves.is_none()),
+        (1000.0, true)
+    );
     // A distribution is drawn as if it were in the file.
-    let drawn = load_with(&game, &settings(&["boat.gps.noise_m={ uniform = [0.5, 0.75] }"])).unwrap();
-    let noises = drawn.drawn.iter().filter(|drawn| drawn.parameter.ends_with("gps.noise_m")).map(|drawn| drawn.value);
-    assert_eq!(noises.clone().filter(|noise| (0.5..=0.75).contains(noise)).count(), 4, "{:?}", drawn.drawn);
+    let drawn = load_with(
+        &game,
+        &settings(&["boat.gps.noise_m={ uniform = [0.5, 0.75] }"]),
+    )
+    .unwrap();
+    let noises = drawn
+        .drawn
+        .iter()
+        .filter(|drawn| drawn.parameter.ends_with("gps.noise_m"))
+        .map(|drawn| drawn.value);
+    assert_eq!(
+        noises
+            .clone()
+            .filter(|noise| (0.5..=0.75).contains(noise))
+            .count(),
+        4,
+        "{:?}",
+        drawn.drawn
+    );
 }
 
 #[test]
 fn a_single_value_is_checked_as_if_it_stood_in_the_file() {
     let game = shipped("games/surveyor_2v2.toml");
     for (text, want) in [
-        ("sea.waves.hs_m=99", "--set sea.waves.hs_m:1:14: hs_m is 99, expected"),
+        (
+            "sea.waves.hs_m=99",
+            "--set sea.waves.hs_m:1:14: hs_m is 99, expected",
+        ),
         ("rules.tag_radius=3", "tag_radius is unknown"),
-        ("boat.gps.noise_m=often", "--set boat.gps.noise_m:1:15: noise_m is the string \"often\""),
+        (
+            "boat.gps.noise_m=often",
+            "--set boat.gps.noise_m:1:15: noise_m is the string \"often\"",
+        ),
         ("game.field=nonesuch.toml", "nonesuch.toml cannot be read"),
-        ("rules.time_limit_s=9", "duration_s of the game overrides rules.time_limit_s"),
+        (
+            "rules.time_limit_s=9",
+            "duration_s of the game overrides rules.time_limit_s",
+        ),
     ] {
-        let said = load_with(&game, &settings(&[text])).unwrap_err().to_string();
+        let said = load_with(&game, &settings(&[text]))
+            .unwrap_err()
+            .to_string();
         assert!(said.contains(want), "{text}: {said}");
     }
 }
@@ -194,25 +337,46 @@ fn a_value_of_a_strategy_changes_that_of_its_team_alone() {
     let game = shipped("games/surveyor_2v2.toml");
     let both = ["blue", "red"].map(|team| (team.to_owned(), shipped("strategies/strategy_4.toml")));
     let with = |texts: &[&str]| {
-        load_with(&game, &Overrides { strategies: both.clone().into(), ..settings(texts) }).map_err(|e| e.to_string())
+        load_with(
+            &game,
+            &Overrides {
+                strategies: both.clone().into(),
+                ..settings(texts)
+            },
+        )
+        .map_err(|e| e.to_string())
     };
     let weight = |scenario: &Scenario, vehicle: usize| {
         let strategy = &scenario.strategies[scenario.vehicles[vehicle].strategy];
-        let pursue = strategy.roles[0].behaviours.iter().find(|behaviour| behaviour.name == "pursue");
+        let pursue = strategy.roles[0]
+            .behaviours
+            .iter()
+            .find(|behaviour| behaviour.name == "pursue");
         format!("{:?}", pursue.expect("strategy 4 pursues").weight)
     };
     let own = with(&[]).unwrap();
     let changed = with(&["strategy.red.behaviour.pursue.weight=37"]).unwrap();
-    assert_eq!((own.strategies.len(), changed.strategies.len()), (1, 2), "boats of a team share its strategy");
-    let weights = |scenario: &Scenario| [0, 1, 2, 3].map(|vehicle| weight(scenario, vehicle).contains("37"));
-    assert_eq!((weights(&own), weights(&changed)), ([false; 4], [false, false, true, true]));
+    assert_eq!(
+        (own.strategies.len(), changed.strategies.len()),
+        (1, 2),
+        "boats of a team share its strategy"
+    );
+    let weights =
+        |scenario: &Scenario| [0, 1, 2, 3].map(|vehicle| weight(scenario, vehicle).contains("37"));
+    assert_eq!(
+        (weights(&own), weights(&changed)),
+        ([false; 4], [false, false, true, true])
+    );
     for (text, want) in [
         (
             "strategy.red.behaviour.pursue.weight=-1",
             "--set strategy.red.behaviour.pursue.weight:1:27: weight is -1, expected",
         ),
         ("strategy.red.behaviour.pursue.wait=1", "wait is unknown"),
-        ("strategy.green.behaviour.pursue.weight=1", "unknown team, expected one of blue, red after strategy"),
+        (
+            "strategy.green.behaviour.pursue.weight=1",
+            "unknown team, expected one of blue, red after strategy",
+        ),
     ] {
         let said = with(&[text]).unwrap_err();
         assert!(said.contains(want), "{text}: {said}");

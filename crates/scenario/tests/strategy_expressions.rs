@@ -60,12 +60,18 @@ fn program(text: &str) -> Result<Program, Problems> {
 }
 
 fn quoted(expression: &str) -> String {
-    format!("\"{}\"", expression.replace('\\', "\\\\").replace('"', "\\\""))
+    format!(
+        "\"{}\"",
+        expression.replace('\\', "\\\\").replace('"', "\\\"")
+    )
 }
 
 /// A program with a rule under this condition.
 fn with_condition(condition: &str) -> Result<Program, Problems> {
-    program(&format!("{HEAD}[[rule]]\nwhen = {}\nset = {{ laps = 1 }}\n", quoted(condition)))
+    program(&format!(
+        "{HEAD}[[rule]]\nwhen = {}\nset = {{ laps = 1 }}\n",
+        quoted(condition)
+    ))
 }
 
 fn condition(program: &Program) -> &Expression {
@@ -74,23 +80,38 @@ fn condition(program: &Program) -> &Expression {
 
 /// A program with a timer of this many seconds.
 fn with_number(number: &str) -> Result<Program, Problems> {
-    program(&format!("{HEAD}[behaviour.wait]\nkind = \"timer\"\nduration_s = {}\n", quoted(number)))
+    program(&format!(
+        "{HEAD}[behaviour.wait]\nkind = \"timer\"\nduration_s = {}\n",
+        quoted(number)
+    ))
 }
 
 fn number(program: &Program) -> &Expression {
-    let wait = program.behaviours.iter().find(|behaviour| behaviour.name == "wait").unwrap();
+    let wait = program
+        .behaviours
+        .iter()
+        .find(|behaviour| behaviour.name == "wait")
+        .unwrap();
     &wait.duration_s.as_ref().unwrap().expression
 }
 
 /// The expressions of the accompanying file: whether it is a condition, its text, and its value (1
 /// for true).
 fn cases() -> Vec<(bool, &'static str, f64)> {
-    let lines = include_str!("strategy_expressions.txt").lines().filter(|line| !line.starts_with('#'));
+    let lines = include_str!("strategy_expressions.txt")
+        .lines()
+        .filter(|line| !line.starts_with('#'));
     let case = |line: &'static str| {
-        let (text, want) = line.rsplit_once(" => ").unwrap_or_else(|| panic!("not EXPRESSION => VALUE: {line}"));
+        let (text, want) = line
+            .rsplit_once(" => ")
+            .unwrap_or_else(|| panic!("not EXPRESSION => VALUE: {line}"));
         match want {
             "true" | "false" => (true, text, f64::from(u8::from(want == "true"))),
-            number => (false, text, number.parse().unwrap_or_else(|e| panic!("{line}: {e}"))),
+            number => (
+                false,
+                text,
+                number.parse().unwrap_or_else(|e| panic!("{line}: {e}")),
+            ),
         }
     };
     let cases: Vec<_> = lines.map(case).collect();
@@ -100,14 +121,27 @@ fn cases() -> Vec<(bool, &'static str, f64)> {
 
 /// The program with this expression, which must be valid, and the expression in it.
 fn read(is_condition: bool, text: &str) -> (Program, Expression) {
-    let program = if is_condition { with_condition(text) } else { with_number(text) };
+    let program = if is_condition {
+        with_condition(text)
+    } else {
+        with_number(text)
+    };
     let program = program.unwrap_or_else(|problems| panic!("{text}: {problems}"));
-    let expression = if is_condition { condition(&program) } else { number(&program) }.clone();
+    let expression = if is_condition {
+        condition(&program)
+    } else {
+        number(&program)
+    }
+    .clone();
     (program, expression)
 }
 
 fn value(is_condition: bool, expression: &Expression) -> f64 {
-    if is_condition { f64::from(u8::from(expression.is_true(&Known))) } else { expression.value(&Known) }
+    if is_condition {
+        f64::from(u8::from(expression.is_true(&Known)))
+    } else {
+        expression.value(&Known)
+    }
 }
 
 #[test]
@@ -116,7 +150,11 @@ fn expressions_are_evaluated_as_cel_does_and_survive_json_exactly() {
         let (program, expression) = read(is_condition, text);
         assert_eq!(value(is_condition, &expression), want, "{text}");
         let json = serde_json::to_string(&program).unwrap();
-        assert_eq!(serde_json::from_str::<Program>(&json).unwrap(), program, "{json}");
+        assert_eq!(
+            serde_json::from_str::<Program>(&json).unwrap(),
+            program,
+            "{json}"
+        );
     }
 }
 
@@ -148,7 +186,8 @@ fn expressions_in_words_mean_the_same() {
 /// Fragments of valid and invalid expressions.
 fn pieces() -> Vec<&'static str> {
     let words = "tagged laps phase 'go' \"go\" 1 2.5 true null CF in 0x 1u b'x' é \u{1f6a4} \n";
-    let signs = "&& || ! == != < >= + - * / % ? : ( ) [ ] { } , . distance( mates( min( has( \\ ' \" // `";
+    let signs =
+        "&& || ! == != < >= + - * / % ? : ( ) [ ] { } , . distance( mates( min( has( \\ ' \" // `";
     words.split(' ').chain(signs.split(' ')).collect()
 }
 
@@ -175,7 +214,12 @@ fn answers(given: &str) {
     let lines = text.split('\n').count();
     if let Err(problems) = program(&text) {
         assert!(!problems.0.is_empty());
-        assert!(problems.0.iter().all(|problem| (1..=lines).contains(&problem.line) && problem.column > 0));
+        assert!(
+            problems
+                .0
+                .iter()
+                .all(|problem| (1..=lines).contains(&problem.line) && problem.column > 0)
+        );
     }
 }
 

@@ -4,7 +4,8 @@
 
 use primitives::Ned;
 use scenario::strategy::{
-    Assignment, Boat, Contacts, Ellipse, Moment, Place, Program, Shape, Strategy, Task, Trigger, Turn, What, Who,
+    Assignment, Boat, Contacts, Ellipse, Moment, Place, Program, Shape, Strategy, Task, Trigger,
+    Turn, What, Who,
 };
 use scenario::{Kind, Problems, strategy};
 use serde_json::Value;
@@ -15,7 +16,10 @@ const SAFE: &str = "[behaviour.stay_in]\nkind = \"op_region\"\n[behaviour.keep_c
 /// The strategy of `x.toml`, with the other files in the same folder.
 fn strategy_of(text: &str, others: &[(&str, &str)]) -> Result<Strategy, Problems> {
     let folder = tempfile::tempdir().unwrap();
-    for (name, text) in others.iter().chain([&("x.toml", text), &("safe.toml", SAFE)]) {
+    for (name, text) in others
+        .iter()
+        .chain([&("x.toml", text), &("safe.toml", SAFE)])
+    {
         std::fs::write(folder.path().join(name), text).unwrap();
     }
     scenario::load_file(&folder.path().join("x.toml"))
@@ -28,7 +32,11 @@ fn program(text: &str) -> Program {
 }
 
 fn behaviour<'a>(program: &'a Program, name: &str) -> &'a strategy::Behaviour {
-    program.behaviours.iter().find(|behaviour| behaviour.name == name).unwrap()
+    program
+        .behaviours
+        .iter()
+        .find(|behaviour| behaviour.name == name)
+        .unwrap()
 }
 
 const FULL: &str = r#"
@@ -85,46 +93,117 @@ turn = "clockwise"
 #[test]
 fn a_program_says_what_its_file_says() {
     let program = program(FULL);
-    assert_eq!((program.name.as_str(), program.about.as_str()), ("x", "all there is"));
-    assert_eq!((program.helm.courses, program.helm.speeds, program.helm.speed_max_m_s), (72, 36, None));
-    let initial: Vec<(&str, f64, bool)> =
-        program.variables.iter().map(|v| (v.name.as_str(), v.initial, v.shared)).collect();
+    assert_eq!(
+        (program.name.as_str(), program.about.as_str()),
+        ("x", "all there is")
+    );
+    assert_eq!(
+        (
+            program.helm.courses,
+            program.helm.speeds,
+            program.helm.speed_max_m_s
+        ),
+        (72, 36, None)
+    );
+    let initial: Vec<(&str, f64, bool)> = program
+        .variables
+        .iter()
+        .map(|v| (v.name.as_str(), v.initial, v.shared))
+        .collect();
     assert_eq!(initial, [("laps", 2.0, false), ("phase", 1.0, true)]);
-    let paths: Vec<String> = (0..program.modes.len()).map(|mode| program.path(mode)).collect();
-    assert_eq!(paths, ["tagged", "defending", "defending:intercepting", "defending:loitering", "attacking"]);
+    let paths: Vec<String> = (0..program.modes.len())
+        .map(|mode| program.path(mode))
+        .collect();
+    assert_eq!(
+        paths,
+        [
+            "tagged",
+            "defending",
+            "defending:intercepting",
+            "defending:loitering",
+            "attacking"
+        ]
+    );
     assert_eq!(program.leaves().collect::<Vec<_>>(), [0, 2, 3, 4]);
-    let set: Vec<(u16, String)> =
-        program.modes[1].enter.iter().map(|(v, value)| (*v, program.value_text(*v, value))).collect();
+    let set: Vec<(u16, String)> = program.modes[1]
+        .enter
+        .iter()
+        .map(|(v, value)| (*v, program.value_text(*v, value)))
+        .collect();
     assert_eq!(set, [(0, "laps + 1".to_owned()), (1, "'go'".to_owned())]);
-    assert_eq!(program.rules[0].on, Some(Trigger { who: Who::Enemy, what: What::Grabs }));
+    assert_eq!(
+        program.rules[0].on,
+        Some(Trigger {
+            who: Who::Enemy,
+            what: What::Grabs
+        })
+    );
     assert_eq!(program.rules[0].when, None);
 
     let go = behaviour(&program, "go");
     assert_eq!(go.modes, [false, true, true, true, false]);
-    assert_eq!(program.condition_text(go.when.as_ref().unwrap()), "laps > 1");
+    assert_eq!(
+        program.condition_text(go.when.as_ref().unwrap()),
+        "laps > 1"
+    );
     assert_eq!(program.number_text(&go.weight.expression), "50 + laps");
-    assert_eq!((go.weight.range, go.weight.constant(), go.perpetual), ((0.0, 300.0), None, true));
-    assert_eq!(go.posts.iter().map(|post| post.at).collect::<Vec<_>>(), [Moment::Reach, Moment::Complete]);
-    let Task::Waypoint(waypoint) = &go.task else { panic!("{go:?}") };
+    assert_eq!(
+        (go.weight.range, go.weight.constant(), go.perpetual),
+        ((0.0, 300.0), None, true)
+    );
+    assert_eq!(
+        go.posts.iter().map(|post| post.at).collect::<Vec<_>>(),
+        [Moment::Reach, Moment::Complete]
+    );
+    let Task::Waypoint(waypoint) = &go.task else {
+        panic!("{go:?}")
+    };
     let corner = Place::At(Ned::from_xy(3.0, 4.0));
     let own_flag = Place::by_name("own_flag").unwrap();
-    assert_eq!(waypoint.points, [Place::Point("CF".into()), own_flag, corner, Place::Boat(Boat::Opponent)]);
+    assert_eq!(
+        waypoint.points,
+        [
+            Place::Point("CF".into()),
+            own_flag,
+            corner,
+            Place::Boat(Boat::Opponent)
+        ]
+    );
 
     let round = behaviour(&program, "round");
     assert_eq!(round.modes, [false, false, false, true, false]);
-    let Task::Loiter(loiter) = &round.task else { panic!("{round:?}") };
+    let Task::Loiter(loiter) = &round.task else {
+        panic!("{round:?}")
+    };
     assert_eq!(loiter.turn, Turn::Clockwise);
-    assert!(matches!(loiter.shape, Shape::Ellipse(Ellipse { along_m: 15.0, across_m: 50.0, corners: 24, .. })));
+    assert!(matches!(
+        loiter.shape,
+        Shape::Ellipse(Ellipse {
+            along_m: 15.0,
+            across_m: 50.0,
+            corners: 24,
+            ..
+        })
+    ));
 
     // Values of the base stay unless the file overrides them.
     let keep_clear = behaviour(&program, "keep_clear");
-    let Task::AvoidCollision(avoid) = &keep_clear.task else { panic!("{keep_clear:?}") };
+    let Task::AvoidCollision(avoid) = &keep_clear.task else {
+        panic!("{keep_clear:?}")
+    };
     assert_eq!(
-        (avoid.contacts, avoid.outer_m.constant(), avoid.inner_m.constant()),
+        (
+            avoid.contacts,
+            avoid.outer_m.constant(),
+            avoid.inner_m.constant()
+        ),
         (Contacts::All, Some(20.0), Some(9.0))
     );
     assert_eq!(
-        (keep_clear.weight.constant(), behaviour(&program, "round").weight.constant()),
+        (
+            keep_clear.weight.constant(),
+            behaviour(&program, "round").weight.constant()
+        ),
         (Some(300.0), Some(100.0))
     );
     assert!(keep_clear.is_guard() && behaviour(&program, "stay_in").is_guard() && !go.is_guard());
@@ -133,14 +212,31 @@ fn a_program_says_what_its_file_says() {
 #[test]
 fn a_strategy_deals_the_programs_of_its_roles() {
     let roles = "about = \"two\"\nroles = [\"safe.toml\", \"y.toml\", \"safe.toml\"]\nassignment = \"seeded\"\n";
-    let strategy = strategy_of(roles, &[("y.toml", "base = \"safe.toml\"\nabout = \"the other\"\n")]).unwrap();
-    let names: Vec<&str> = strategy.roles.iter().map(|role| role.name.as_str()).collect();
+    let strategy = strategy_of(
+        roles,
+        &[("y.toml", "base = \"safe.toml\"\nabout = \"the other\"\n")],
+    )
+    .unwrap();
+    let names: Vec<&str> = strategy
+        .roles
+        .iter()
+        .map(|role| role.name.as_str())
+        .collect();
     assert_eq!(names, ["safe", "y", "safe"]);
-    assert_eq!((strategy.name.as_str(), strategy.about.as_str()), ("x", "two"));
-    assert_eq!((strategy.assignment, strategy.roles[1].about.as_str()), (Assignment::Seeded, "the other"));
+    assert_eq!(
+        (strategy.name.as_str(), strategy.about.as_str()),
+        ("x", "two")
+    );
+    assert_eq!(
+        (strategy.assignment, strategy.roles[1].about.as_str()),
+        (Assignment::Seeded, "the other")
+    );
     // All boats follow a program used as a strategy.
     let alone = strategy_of("base = \"safe.toml\"\nabout = \"alone\"\n", &[]).unwrap();
-    assert_eq!((alone.roles.len(), alone.about.as_str(), alone.assignment), (1, "alone", Assignment::Fixed));
+    assert_eq!(
+        (alone.roles.len(), alone.about.as_str(), alone.assignment),
+        (1, "alone", Assignment::Fixed)
+    );
     assert_eq!(alone.roles[0].modes[0].name, "active");
 }
 
@@ -153,9 +249,9 @@ fn a_file_that_is_unsafe_keeps_its_reason() {
 
 /// A program whose first modes have these conditions, and a rule with these assignments.
 fn with_modes(conditions: &[&str], set: &str) -> String {
-    let variables =
-        "[variables]\nalarmed = false\nlaps = 0\nphase = { values = [\"go\", \"return\"], shared = true }\n";
-    let mode = |(i, when): (usize, &&str)| format!("[[mode]]\nname = \"m{i}\"\nwhen = \"{when}\"\n");
+    let variables = "[variables]\nalarmed = false\nlaps = 0\nphase = { values = [\"go\", \"return\"], shared = true }\n";
+    let mode =
+        |(i, when): (usize, &&str)| format!("[[mode]]\nname = \"m{i}\"\nwhen = \"{when}\"\n");
     let modes: String = conditions.iter().enumerate().map(mode).collect();
     let rule = format!("[[rule]]\nwhen = \"tagged\"\nset = {set}\n");
     format!("base = \"safe.toml\"\n{variables}{modes}[[mode]]\nname = \"last\"\n{rule}")
@@ -165,27 +261,73 @@ fn with_modes(conditions: &[&str], set: &str) -> String {
 fn what_can_be_is_allowed() {
     for (conditions, set) in [
         (&["tagged == own_side", "tagged"][..], "{ laps = 1 }"),
-        (&["enemies < 2", "enemies < 3", "enemies < 4"], "{ laps = 1 }"),
-        (&["distance(CF) > 1 && distance(CF) < 2", "distance(CF) < 1.5"], "{ laps = 1 }"),
+        (
+            &["enemies < 2", "enemies < 3", "enemies < 4"],
+            "{ laps = 1 }",
+        ),
+        (
+            &["distance(CF) > 1 && distance(CF) < 2", "distance(CF) < 1.5"],
+            "{ laps = 1 }",
+        ),
         // The distance to one place does not determine that to another.
         (&["distance(CF) < 1", "distance(CH) < 1"], "{ laps = 1 }"),
-        (&["closing(opponent) < 0", "closing(opponent) < 1"], "{ laps = 1 }"),
+        (
+            &["closing(opponent) < 0", "closing(opponent) < 1"],
+            "{ laps = 1 }",
+        ),
         // The same two numbers in another comparison may have any result.
-        (&["score < enemy_score", "score > enemy_score", "score == enemy_score"], "{ laps = 1 }"),
+        (
+            &[
+                "score < enemy_score",
+                "score > enemy_score",
+                "score == enemy_score",
+            ],
+            "{ laps = 1 }",
+        ),
         (&["laps == 1"], "{ laps = 1 }"),
         (&["laps > 1000"], "{ laps = \"laps + 1\" }"),
         (&["alarmed"], "{ alarmed = true }"),
-        (&["alarmed", "!alarmed && tagged"], "{ alarmed = \"tagged\" }"),
+        (
+            &["alarmed", "!alarmed && tagged"],
+            "{ alarmed = \"tagged\" }",
+        ),
         (&["phase == 'return'"], "{ phase = \"return\" }"),
-        (&["enemy_in_zone && enemies_in_zone > 1", "enemies_in_zone == 1", "tagged"], "{ laps = 1 }"),
+        (
+            &[
+                "enemy_in_zone && enemies_in_zone > 1",
+                "enemies_in_zone == 1",
+                "tagged",
+            ],
+            "{ laps = 1 }",
+        ),
         (&["has_flag", "enemy_flag_taken", "tagged"], "{ laps = 1 }"),
-        (&["mates(phase == 'go') > 0", "mates(phase == 'go') < 1 && mates > 1"], "{ laps = 1 }"),
-        (&["time_s < 10", "time_s <= 10", "time_s == 20", "mode_s > 3"], "{ laps = 1 }"),
+        (
+            &[
+                "mates(phase == 'go') > 0",
+                "mates(phase == 'go') < 1 && mates > 1",
+            ],
+            "{ laps = 1 }",
+        ),
+        (
+            &["time_s < 10", "time_s <= 10", "time_s == 20", "mode_s > 3"],
+            "{ laps = 1 }",
+        ),
         (&["rank == 0", "rank == 1", "rank < 3"], "{ laps = 1 }"),
-        (&["score * 2 > 3", "score * 2 <= 3 && tagged", "min(score, laps) > 1"], "{ laps = \"laps + 1\" }"),
+        (
+            &[
+                "score * 2 > 3",
+                "score * 2 <= 3 && tagged",
+                "min(score, laps) > 1",
+            ],
+            "{ laps = \"laps + 1\" }",
+        ),
     ] {
         let found = strategy_of(&with_modes(conditions, set), &[]);
-        assert!(found.is_ok(), "{conditions:?} {set}: {}", found.unwrap_err());
+        assert!(
+            found.is_ok(),
+            "{conditions:?} {set}: {}",
+            found.unwrap_err()
+        );
     }
 }
 
@@ -206,22 +348,33 @@ fn what_is_too_hard_to_decide_is_allowed_before_long() {
         }
     }
     let conditions: Vec<&str> = conditions.iter().map(String::as_str).collect();
-    assert_eq!(before_long(with_modes(&conditions, "{ laps = 1 }")), Ok("x".to_owned()));
+    assert_eq!(
+        before_long(with_modes(&conditions, "{ laps = 1 }")),
+        Ok("x".to_owned())
+    );
 }
 
 #[test]
 fn many_numbers_in_many_conditions_are_looked_at_before_long() {
     let above = |mode: usize| (0..70).map(move |i| format!("score>{}", mode * 70 + i));
-    let conditions: Vec<String> = (0..300).rev().map(|mode| above(mode).collect::<Vec<_>>().join("||")).collect();
+    let conditions: Vec<String> = (0..300)
+        .rev()
+        .map(|mode| above(mode).collect::<Vec<_>>().join("||"))
+        .collect();
     let conditions: Vec<&str> = conditions.iter().map(String::as_str).collect();
-    assert_eq!(before_long(with_modes(&conditions, "{ laps = 1 }")), Ok("x".to_owned()));
+    assert_eq!(
+        before_long(with_modes(&conditions, "{ laps = 1 }")),
+        Ok("x".to_owned())
+    );
 }
 
 /// The name of a strategy with this text, or its problems; fails without a result in time.
 fn before_long(text: String) -> Result<String, Problems> {
     let (send, receive) = std::sync::mpsc::channel();
     std::thread::spawn(move || send.send(strategy_of(&text, &[]).map(|strategy| strategy.name)));
-    receive.recv_timeout(Duration::from_secs(120)).expect("an answer before long")
+    receive
+        .recv_timeout(Duration::from_secs(120))
+        .expect("an answer before long")
 }
 
 /// The required keys of each kind.
@@ -245,10 +398,14 @@ fn numbers_of_behaviours_have_the_ranges_and_defaults_that_are_declared() {
     let mut kinds = 0;
     let mut ranges = 0;
     let mut defaults = 0;
-    for about in schema["properties"]["behaviour"]["additionalProperties"]["anyOf"].as_array().unwrap() {
+    for about in schema["properties"]["behaviour"]["additionalProperties"]["anyOf"]
+        .as_array()
+        .unwrap()
+    {
         let kind = about["properties"]["kind"]["const"].as_str().unwrap();
         kinds += 1;
-        let file = |keys: &str| format!("base = \"safe.toml\"\n[behaviour.it]\nkind = \"{kind}\"\n{keys}");
+        let file =
+            |keys: &str| format!("base = \"safe.toml\"\n[behaviour.it]\nkind = \"{kind}\"\n{keys}");
         let sound = program(&file(required(kind)));
         let sound = serde_json::to_value(behaviour(&sound, "it")).unwrap();
         let task = sound["task"].as_object().unwrap().values().next().unwrap();
@@ -261,19 +418,34 @@ fn numbers_of_behaviours_have_the_ranges_and_defaults_that_are_declared() {
             for value in [low - 1.0, high + 1.0] {
                 // An expression is limited to the same range.
                 for value in [format!("{value:?}"), format!("\"{value:?} * 1\"")] {
-                    let problems = strategy_of(&file(&format!("{key} = {value}\n")), &[]).unwrap_err().to_string();
-                    assert!(problems.contains(&format!("{key} is")), "{kind} {key}: {problems}");
-                    assert!(problems.contains(&format!("expected {low} to {high}")), "{kind} {key}: {problems}");
+                    let problems = strategy_of(&file(&format!("{key} = {value}\n")), &[])
+                        .unwrap_err()
+                        .to_string();
+                    assert!(
+                        problems.contains(&format!("{key} is")),
+                        "{kind} {key}: {problems}"
+                    );
+                    assert!(
+                        problems.contains(&format!("expected {low} to {high}")),
+                        "{kind} {key}: {problems}"
+                    );
                     ranges += 1;
                 }
             }
             if let (Some(want), Value::Object(given)) = (about["default"].as_f64(), &task[key]) {
                 assert_eq!(given["expression"]["Constant"], want, "{kind} {key}");
-                assert_eq!(given["range"], serde_json::json!([low, high]), "{kind} {key}");
+                assert_eq!(
+                    given["range"],
+                    serde_json::json!([low, high]),
+                    "{kind} {key}"
+                );
                 defaults += 1;
             }
         }
     }
     assert_eq!(kinds, 18);
-    assert!(ranges > 200 && defaults > 50, "{ranges} ranges, {defaults} defaults");
+    assert!(
+        ranges > 200 && defaults > 50,
+        "{ranges} ranges, {defaults} defaults"
+    );
 }

@@ -38,7 +38,11 @@ impl Declared {
             What::Token => Kind::Token,
             What::Watch(..) => Kind::Watch,
         };
-        Packet::Declare { id, kind, key: self.key.clone() }
+        Packet::Declare {
+            id,
+            kind,
+            key: self.key.clone(),
+        }
     }
 }
 

@@ -17,18 +17,36 @@ impl State {
     /// Opens a link, and gives the hub the leaf's declarations.
     pub(crate) fn connect(&mut self, leaf: usize, hub: usize) {
         let link = self.links.len();
-        self.links.push(Link { leaf, hub, leaf_open: true, hub_open: true, ..Link::default() });
+        self.links.push(Link {
+            leaf,
+            hub,
+            leaf_open: true,
+            hub_open: true,
+            ..Link::default()
+        });
         self.sessions[leaf].link = Some(link);
         self.note("connects", self.sessions[leaf].node, "", &[]);
         let declared = &self.sessions[leaf].declared;
-        let declares: Vec<Packet> = declared.iter().map(|(id, declared)| declared.packet(*id)).collect();
-        declares.into_iter().for_each(|packet| self.send(link, true, packet));
+        let declares: Vec<Packet> = declared
+            .iter()
+            .map(|(id, declared)| declared.packet(*id))
+            .collect();
+        declares
+            .into_iter()
+            .for_each(|packet| self.send(link, true, packet));
     }
 
     /// The first hub that listens at one of these endpoints.
     pub(crate) fn hub_at(&self, endpoints: &[String]) -> Option<usize> {
-        let listens = |session: &SessionState| session.endpoints.iter().any(|endpoint| endpoints.contains(endpoint));
-        self.sessions.iter().position(|session| session.is_hub && session.is_open && listens(session))
+        let listens = |session: &SessionState| {
+            session
+                .endpoints
+                .iter()
+                .any(|endpoint| endpoints.contains(endpoint))
+        };
+        self.sessions
+            .iter()
+            .position(|session| session.is_hub && session.is_open && listens(session))
     }
 
     /// The hub that a leaf can currently reach.
@@ -40,15 +58,21 @@ impl State {
     }
 
     pub(crate) fn send(&mut self, link: usize, up: bool, packet: Packet) {
-        let is_open = if up { self.links[link].leaf_open } else { self.links[link].hub_open };
+        let is_open = if up {
+            self.links[link].leaf_open
+        } else {
+            self.links[link].hub_open
+        };
         let packet = match packet {
             _ if !is_open => return,
             Packet::Publish { key, bytes } => {
                 // Like zenoh's links: published messages never wait; a cut link queues as many as
                 // fit and loses the rest. Declarations and queries are kept.
-                let is_full =
-                    self.is_stopped(link, up) && self.links[link].direction(up).queue.len() >= self.conditions.queue;
-                if is_full || (self.conditions.loss > 0.0 && self.stream.unit() < self.conditions.loss) {
+                let is_full = self.is_stopped(link, up)
+                    && self.links[link].direction(up).queue.len() >= self.conditions.queue;
+                if is_full
+                    || (self.conditions.loss > 0.0 && self.stream.unit() < self.conditions.loss)
+                {
                     let node = self.sessions[self.links[link].leaf].node;
                     return self.note(if up { "loses ->" } else { "loses <-" }, node, &key, &bytes);
                 }
@@ -85,7 +109,9 @@ impl State {
         match damage {
             Damage::Truncated => bytes.truncate(place),
             Damage::BitFlip => bytes[place] ^= 1 << self.stream.below(8),
-            Damage::Noise => bytes.iter_mut().for_each(|byte| *byte = self.stream.below(256) as u8),
+            Damage::Noise => bytes
+                .iter_mut()
+                .for_each(|byte| *byte = self.stream.below(256) as u8),
         }
         bytes.into()
     }
@@ -100,7 +126,8 @@ impl State {
 
     /// Whether this direction is currently blocked.
     fn is_stopped(&self, link: usize, up: bool) -> bool {
-        let [leaf, hub] = [self.links[link].leaf, self.links[link].hub].map(|end| &self.nodes[self.sessions[end].node]);
+        let [leaf, hub] = [self.links[link].leaf, self.links[link].hub]
+            .map(|end| &self.nodes[self.sessions[end].node]);
         let receiver = if up { hub } else { leaf };
         leaf.is_cut() || hub.is_cut() || receiver.is_suspended()
     }
@@ -116,7 +143,9 @@ impl State {
         if is_stopped {
             return;
         }
-        let Some((_, packet)) = direction.queue.pop_front() else { return };
+        let Some((_, packet)) = direction.queue.pop_front() else {
+            return;
+        };
         if self.links[link].silent_since_ns[usize::from(up)].is_some() {
             // Packets in flight count as a sign of life too.
             self.begin_lease(link, up, self.conditions.lease);
@@ -126,15 +155,23 @@ impl State {
             let next_ns = *next_ns;
             self.expect(link, up, next_ns);
         }
-        if up { self.take_at_hub(link, packet) } else { self.take_at_leaf(link, packet) }
+        if up {
+            self.take_at_hub(link, packet)
+        } else {
+            self.take_at_leaf(link, packet)
+        }
     }
 
     fn links_of(&self, node: usize) -> Vec<usize> {
         let touches = |link: &Link| {
             (link.leaf_open || link.hub_open)
-                && [link.leaf, link.hub].iter().any(|end| self.sessions[*end].node == node)
+                && [link.leaf, link.hub]
+                    .iter()
+                    .any(|end| self.sessions[*end].node == node)
         };
-        (0..self.links.len()).filter(|i| touches(&self.links[*i])).collect()
+        (0..self.links.len())
+            .filter(|i| touches(&self.links[*i]))
+            .collect()
     }
 
     /// One side of these links hears nothing from now on.
@@ -143,7 +180,10 @@ impl State {
             for at_hub in [false, true] {
                 if self.links[link].silent_since_ns[usize::from(at_hub)].is_none() {
                     // The last sign was up to a quarter of the lease ago.
-                    let wait = self.conditions.lease.mul_f64(1.0 - 0.25 * self.stream.unit());
+                    let wait = self
+                        .conditions
+                        .lease
+                        .mul_f64(1.0 - 0.25 * self.stream.unit());
                     self.begin_lease(link, at_hub, wait);
                 }
             }
@@ -154,13 +194,26 @@ impl State {
     fn begin_lease(&mut self, link: usize, at_hub: bool, wait: Duration) {
         let since_ns = self.now_ns;
         self.links[link].silent_since_ns[usize::from(at_hub)] = Some(since_ns);
-        self.after(wait, Event::LeaseOver { link, at_hub, since_ns });
+        self.after(
+            wait,
+            Event::LeaseOver {
+                link,
+                at_hub,
+                since_ns,
+            },
+        );
     }
 
     pub(crate) fn lease_over(&mut self, link: usize, at_hub: bool, since_ns: u64) {
-        let Link { leaf, hub, silent_since_ns, .. } = self.links[link];
+        let Link {
+            leaf,
+            hub,
+            silent_since_ns,
+            ..
+        } = self.links[link];
         let own = self.sessions[if at_hub { hub } else { leaf }].node;
-        if silent_since_ns[usize::from(at_hub)] == Some(since_ns) && !self.nodes[own].is_suspended() {
+        if silent_since_ns[usize::from(at_hub)] == Some(since_ns) && !self.nodes[own].is_suspended()
+        {
             self.close_end(link, at_hub);
         }
     }
@@ -169,7 +222,13 @@ impl State {
     /// other.
     pub(crate) fn end_silence(&mut self, node: usize) {
         for link in self.links_of(node) {
-            let Link { leaf, hub, leaf_open, hub_open, .. } = self.links[link];
+            let Link {
+                leaf,
+                hub,
+                leaf_open,
+                hub_open,
+                ..
+            } = self.links[link];
             let is_silent = [leaf, hub].iter().any(|end| {
                 let node = &self.nodes[self.sessions[*end].node];
                 node.is_cut() || node.is_suspended()
@@ -178,7 +237,11 @@ impl State {
                 self.links[link].silent_since_ns = [None; 2];
             }
             for up in [false, true] {
-                let (from, to) = if up { (leaf_open, hub_open) } else { (hub_open, leaf_open) };
+                let (from, to) = if up {
+                    (leaf_open, hub_open)
+                } else {
+                    (hub_open, leaf_open)
+                };
                 if !from && to && !is_silent {
                     self.put(link, up, Packet::Close);
                 }
@@ -216,9 +279,17 @@ impl State {
     }
 
     pub(crate) fn reconnect(&mut self, session: usize) {
-        let SessionState { is_open, link, node, .. } = self.sessions[session];
+        let SessionState {
+            is_open,
+            link,
+            node,
+            ..
+        } = self.sessions[session];
         if is_open && link.is_none() {
-            match self.reachable_hub(session).filter(|_| !self.nodes[node].is_suspended()) {
+            match self
+                .reachable_hub(session)
+                .filter(|_| !self.nodes[node].is_suspended())
+            {
                 Some(hub) => self.connect(session, hub),
                 None => self.try_again(session),
             }

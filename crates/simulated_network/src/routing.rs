@@ -12,13 +12,22 @@ use std::time::Duration;
 
 impl State {
     /// The other ends of the hub's links with a declaration of this kind that matches the key.
-    fn declared_beyond(&self, hub: usize, kind: Kind, key: &str, but: Option<usize>) -> Vec<(usize, u64)> {
+    fn declared_beyond(
+        &self,
+        hub: usize,
+        kind: Kind,
+        key: &str,
+        but: Option<usize>,
+    ) -> Vec<(usize, u64)> {
         let mut found = Vec::new();
         for (i, link) in self.links.iter().enumerate() {
             if link.hub != hub || !link.hub_open || Some(i) == but {
                 continue;
             }
-            let known = link.known.iter().filter(|(_, (of, at))| *of == kind && keys_meet(at, key));
+            let known = link
+                .known
+                .iter()
+                .filter(|(_, (of, at))| *of == kind && keys_meet(at, key));
             found.extend(known.map(|(id, _)| (i, *id)));
         }
         found
@@ -40,17 +49,38 @@ impl State {
 
     /// Publishes a message from a session.
     pub(crate) fn publish(&mut self, session: usize, key: &Arc<str>, bytes: &Arc<[u8]>) {
-        let hears_own = |what: &What| matches!(what, What::Subscriber { hears_own: true, .. });
+        let hears_own = |what: &What| {
+            matches!(
+                what,
+                What::Subscriber {
+                    hears_own: true,
+                    ..
+                }
+            )
+        };
         let own = &self.sessions[session].declared;
-        if own.values().any(|declared| hears_own(&declared.what) && keys_meet(&declared.key, key)) {
-            let local = Local::Publish { key: Arc::clone(key), bytes: Arc::clone(bytes) };
+        if own
+            .values()
+            .any(|declared| hears_own(&declared.what) && keys_meet(&declared.key, key))
+        {
+            let local = Local::Publish {
+                key: Arc::clone(key),
+                bytes: Arc::clone(bytes),
+            };
             self.at(self.now_ns, Event::Local { session, local });
         }
         if self.sessions[session].is_hub {
             self.report_published(session, key, bytes);
             self.forward(session, key, bytes, None);
         } else if let Some(link) = self.sessions[session].link {
-            self.send(link, true, Packet::Publish { key: Arc::clone(key), bytes: Arc::clone(bytes) });
+            self.send(
+                link,
+                true,
+                Packet::Publish {
+                    key: Arc::clone(key),
+                    bytes: Arc::clone(bytes),
+                },
+            );
         }
     }
 
@@ -61,7 +91,14 @@ impl State {
         let mut to = self.declared_beyond(hub, Kind::Subscriber, key, from);
         to.dedup_by_key(|(link, _)| *link);
         for (link, _) in to {
-            self.send(link, false, Packet::Publish { key: Arc::clone(key), bytes: Arc::clone(bytes) });
+            self.send(
+                link,
+                false,
+                Packet::Publish {
+                    key: Arc::clone(key),
+                    bytes: Arc::clone(bytes),
+                },
+            );
         }
     }
 
@@ -70,7 +107,12 @@ impl State {
         self.note("publishes", node, key, bytes);
         if let Some(on_publish) = &mut self.on_publish {
             let at = Duration::from_nanos(self.now_ns);
-            on_publish(Published { at, node: &self.nodes[node].name, key, bytes });
+            on_publish(Published {
+                at,
+                node: &self.nodes[node].name,
+                key,
+                bytes,
+            });
         }
     }
 
@@ -79,7 +121,9 @@ impl State {
         // A leaf cannot know, so it assumes that there is one.
         !self.sessions[session].is_hub
             || self.on_publish.is_some()
-            || !self.declared_beyond(session, Kind::Subscriber, key, None).is_empty()
+            || !self
+                .declared_beyond(session, Kind::Subscriber, key, None)
+                .is_empty()
     }
 
     /// Handles a packet at the hub.
@@ -101,7 +145,16 @@ impl State {
                     Kind::Token => self.announce(hub, &key, true, Some(link)),
                     Kind::Watch => {
                         let there = self.tokens(hub, &key, Some(link));
-                        there.into_iter().for_each(|key| self.send(link, false, Packet::Token { key, is_there: true }));
+                        there.into_iter().for_each(|key| {
+                            self.send(
+                                link,
+                                false,
+                                Packet::Token {
+                                    key,
+                                    is_there: true,
+                                },
+                            )
+                        });
                     }
                     Kind::Subscriber | Kind::Queryable => {}
                 }
@@ -130,15 +183,35 @@ impl State {
                 self.note("takes", node, &key, &bytes);
                 if let Some(on_take) = &mut self.on_take {
                     let at = Duration::from_nanos(self.now_ns);
-                    on_take(Published { at, node: &self.nodes[node].name, key: &key, bytes: &bytes });
+                    on_take(Published {
+                        at,
+                        node: &self.nodes[node].name,
+                        key: &key,
+                        bytes: &bytes,
+                    });
                 }
                 self.call_subscribers(leaf, &key, &bytes, false);
             }
-            Packet::Query { query, id, key, payload } => match self.sessions[leaf].declared.get(&id) {
-                Some(Declared { what: What::Queryable(take), .. }) => {
+            Packet::Query {
+                query,
+                id,
+                key,
+                payload,
+            } => match self.sessions[leaf].declared.get(&id) {
+                Some(Declared {
+                    what: What::Queryable(take),
+                    ..
+                }) => {
                     self.calls.push(asking(take, leaf, query, key, payload));
                 }
-                _ => self.send(link, true, Packet::Answer { query, answer: None }),
+                _ => self.send(
+                    link,
+                    true,
+                    Packet::Answer {
+                        query,
+                        answer: None,
+                    },
+                ),
             },
             Packet::Answer { query, answer } => self.answered(query, answer),
             Packet::Token { key, is_there } => self.take_token(leaf, &key, is_there),
@@ -149,10 +222,20 @@ impl State {
 
     /// The tokens matching a key that a hub knows.
     fn tokens(&self, hub: usize, key: &str, but: Option<usize>) -> Vec<String> {
-        let own = self.sessions[hub].declared.values().filter(|declared| matches!(declared.what, What::Token));
-        let mut keys: Vec<String> = own.map(|declared| declared.key.clone()).filter(|at| keys_meet(at, key)).collect();
+        let own = self.sessions[hub]
+            .declared
+            .values()
+            .filter(|declared| matches!(declared.what, What::Token));
+        let mut keys: Vec<String> = own
+            .map(|declared| declared.key.clone())
+            .filter(|at| keys_meet(at, key))
+            .collect();
         let beyond = self.declared_beyond(hub, Kind::Token, key, but);
-        keys.extend(beyond.iter().map(|(link, id)| self.links[*link].known[id].1.clone()));
+        keys.extend(
+            beyond
+                .iter()
+                .map(|(link, id)| self.links[*link].known[id].1.clone()),
+        );
         keys
     }
 
@@ -165,7 +248,14 @@ impl State {
         let mut to = self.declared_beyond(hub, Kind::Watch, key, from);
         to.dedup_by_key(|(link, _)| *link);
         for (link, _) in to {
-            self.send(link, false, Packet::Token { key: key.to_owned(), is_there });
+            self.send(
+                link,
+                false,
+                Packet::Token {
+                    key: key.to_owned(),
+                    is_there,
+                },
+            );
         }
         if from.is_some() {
             self.take_token(hub, key, is_there);
@@ -179,7 +269,11 @@ impl State {
         for declared in self.sessions[session].declared.values_mut() {
             if let What::Watch(take, known) = &mut declared.what
                 && keys_meet(&declared.key, key)
-                && (if is_there { known.insert(key.to_owned()) } else { known.remove(key) })
+                && (if is_there {
+                    known.insert(key.to_owned())
+                } else {
+                    known.remove(key)
+                })
             {
                 let take = Arc::clone(take);
                 let key = key.to_owned();
@@ -190,12 +284,17 @@ impl State {
 
     /// Discards all tokens that a leaf knows, after it has lost its link.
     pub(crate) fn forget_tokens(&mut self, leaf: usize) {
-        let watches = self.sessions[leaf].declared.values().filter_map(|declared| match &declared.what {
-            What::Watch(_, known) => Some(known),
-            _ => None,
-        });
+        let watches = self.sessions[leaf]
+            .declared
+            .values()
+            .filter_map(|declared| match &declared.what {
+                What::Watch(_, known) => Some(known),
+                _ => None,
+            });
         let known: BTreeSet<String> = watches.flatten().cloned().collect();
-        known.iter().for_each(|key| self.take_token(leaf, key, false));
+        known
+            .iter()
+            .for_each(|key| self.take_token(leaf, key, false));
     }
 
     /// Discards all that the hub learnt over a link.
@@ -211,7 +310,10 @@ impl State {
             Local::Publish { key, bytes } => self.call_subscribers(session, key, bytes, true),
             Local::Token { watch, key } => {
                 let declared = self.sessions[session].declared.get_mut(watch);
-                if let Some(Declared { what: What::Watch(take, known), .. }) = declared
+                if let Some(Declared {
+                    what: What::Watch(take, known),
+                    ..
+                }) = declared
                     && known.insert(key.clone())
                 {
                     let take = Arc::clone(take);
@@ -225,16 +327,30 @@ impl State {
     /// Starts a watch at a hub with the tokens present.
     pub(crate) fn begin_watch(&mut self, session: usize, watch: u64, key: &str) {
         for key in self.tokens(session, key, None) {
-            self.at(self.now_ns, Event::Local { session, local: Local::Token { watch, key } });
+            self.at(
+                self.now_ns,
+                Event::Local {
+                    session,
+                    local: Local::Token { watch, key },
+                },
+            );
         }
     }
 
     /// Forwards a query from a hub to all matching queryables.
-    pub(crate) fn route(&mut self, hub: usize, query: u64, key: &str, asked: Asked, from: Option<usize>) {
+    pub(crate) fn route(
+        &mut self,
+        hub: usize,
+        query: u64,
+        key: &str,
+        asked: Asked,
+        from: Option<usize>,
+    ) {
         let payload = match asked {
             Asked::Payload(payload) => payload,
             Asked::Tokens => {
-                let tokens = serde_json::to_vec(&self.tokens(hub, key, None)).expect("a list of strings is JSON");
+                let tokens = serde_json::to_vec(&self.tokens(hub, key, None))
+                    .expect("a list of strings is JSON");
                 return self.answer_back(hub, query, Some(Parcel::new(tokens)));
             }
         };
@@ -244,7 +360,8 @@ impl State {
             if let What::Queryable(take) = &declared.what
                 && keys_meet(&declared.key, key)
             {
-                self.calls.push(asking(take, hub, query, key.to_owned(), payload.clone()));
+                self.calls
+                    .push(asking(take, hub, query, key.to_owned(), payload.clone()));
                 open += 1;
             }
         }
@@ -255,13 +372,24 @@ impl State {
             return self.answer_back(hub, query, None);
         }
         for (link, id) in beyond {
-            self.send(link, false, Packet::Query { query, id, key: key.to_owned(), payload: payload.clone() });
+            self.send(
+                link,
+                false,
+                Packet::Query {
+                    query,
+                    id,
+                    key: key.to_owned(),
+                    payload: payload.clone(),
+                },
+            );
         }
     }
 
     /// Handles an answer at the hub, or the end of a session's answers.
     pub(crate) fn answer_at_hub(&mut self, hub: usize, query: u64, answer: Option<Parcel>) {
-        let Some(pending) = self.queries.get_mut(&query) else { return };
+        let Some(pending) = self.queries.get_mut(&query) else {
+            return;
+        };
         if answer.is_none() {
             pending.open = pending.open.saturating_sub(1);
             if pending.open > 0 {
@@ -272,11 +400,17 @@ impl State {
     }
 
     fn answer_back(&mut self, hub: usize, query: u64, answer: Option<Parcel>) {
-        let Some(asker) = self.queries.get(&query).map(|pending| pending.asker) else { return };
+        let Some(asker) = self.queries.get(&query).map(|pending| pending.asker) else {
+            return;
+        };
         if asker == hub {
             return self.answered(query, answer);
         }
-        if let Some(link) = self.links.iter().rposition(|link| link.leaf == asker && link.hub == hub && link.hub_open) {
+        if let Some(link) = self
+            .links
+            .iter()
+            .rposition(|link| link.leaf == asker && link.hub == hub && link.hub_open)
+        {
             self.send(link, false, Packet::Answer { query, answer });
         }
     }
@@ -293,5 +427,12 @@ impl State {
 /// The call of a queryable.
 fn asking(take: &TakeQuery, session: usize, query: u64, key: String, payload: Parcel) -> Call {
     let take = Arc::clone(take);
-    Box::new(move || take(RoutedQuery { session, query, key, payload }))
+    Box::new(move || {
+        take(RoutedQuery {
+            session,
+            query,
+            key,
+            payload,
+        })
+    })
 }

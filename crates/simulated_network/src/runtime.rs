@@ -19,7 +19,11 @@ impl Runtime for SimulatedRuntime {
     }
 
     fn suspended(&self) -> Duration {
-        if scheduler::is_inside() { Duration::ZERO } else { System.suspended() }
+        if scheduler::is_inside() {
+            Duration::ZERO
+        } else {
+            System.suspended()
+        }
     }
 
     fn sleep(&self, time: Duration) {
@@ -41,8 +45,14 @@ impl Runtime for SimulatedRuntime {
         }
     }
 
-    fn spawn(&self, name: &str, body: Box<dyn FnOnce() + Send>) -> io::Result<Option<JoinHandle<()>>> {
-        let Some(current) = current() else { return System.spawn(name, body) };
+    fn spawn(
+        &self,
+        name: &str,
+        body: Box<dyn FnOnce() + Send>,
+    ) -> io::Result<Option<JoinHandle<()>>> {
+        let Some(current) = current() else {
+            return System.spawn(name, body);
+        };
         current.world.spawn(current.node, body);
         Ok(None)
     }
@@ -60,11 +70,19 @@ impl Runtime for SimulatedRuntime {
         !scheduler::is_inside()
     }
 
-    fn open_hub(&self, net: &Net, game: &GameName, scenario: &Scenario) -> Result<Arc<dyn Session>, BusError> {
+    fn open_hub(
+        &self,
+        net: &Net,
+        game: &GameName,
+        scenario: &Scenario,
+    ) -> Result<Arc<dyn Session>, BusError> {
         if !scheduler::is_inside() {
             return System.open_hub(net, game, scenario);
         }
-        let refused = |reason| BusError::Open { what: format!("to listen on {}", net.listen.join(", ")), reason };
+        let refused = |reason| BusError::Open {
+            what: format!("to listen on {}", net.listen.join(", ")),
+            reason,
+        };
         Ok(Arc::new(SimulatedSession::hub(net).map_err(refused)?))
     }
 
@@ -72,7 +90,10 @@ impl Runtime for SimulatedRuntime {
         if !scheduler::is_inside() {
             return System.open_leaf(net);
         }
-        let refused = |reason| BusError::Open { what: format!("to connect to {}", net.connect.join(", ")), reason };
+        let refused = |reason| BusError::Open {
+            what: format!("to connect to {}", net.connect.join(", ")),
+            reason,
+        };
         Ok(Arc::new(SimulatedSession::leaf(net).map_err(refused)?))
     }
 }

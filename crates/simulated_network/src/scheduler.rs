@@ -66,7 +66,11 @@ pub(crate) fn now() -> Option<Instant> {
 
 /// A random number that follows from the seed, inside a simulation.
 pub(crate) fn random_number() -> Option<u64> {
-    CURRENT.with_borrow(|current| current.as_ref().map(|current| current.world.state.lock().stream.bits()))
+    CURRENT.with_borrow(|current| {
+        current
+            .as_ref()
+            .map(|current| current.world.state.lock().stream.bits())
+    })
 }
 
 /// Wakes the threads that wait for a change at this address.
@@ -81,7 +85,9 @@ pub(crate) fn wake(address: usize) {
 /// Waits until something at this address changes, or until `deadline` (`None`: no limit). Returns
 /// whether time is left. Does not wait in a thread that unwinds.
 pub(crate) fn wait_until(address: usize, deadline: Option<Instant>) -> bool {
-    let Some(current) = current() else { return false };
+    let Some(current) = current() else {
+        return false;
+    };
     let world = &current.world;
     if thread::panicking() {
         return false;
@@ -90,7 +96,10 @@ pub(crate) fn wait_until(address: usize, deadline: Option<Instant>) -> bool {
     // mistake.
     assert!(!is_in_callback(), "callbacks must only hand over");
     let deadline_ns = deadline.map(|deadline| world.ns_at(deadline));
-    world.state.lock().block(current.thread, address, deadline_ns);
+    world
+        .state
+        .lock()
+        .block(current.thread, address, deadline_ns);
     world.pass_on(current.thread);
     if world.state.lock().threads[current.thread].is_killed {
         // A killed node unwinds, which releases its locks and sockets. `panic` would print a report
@@ -105,7 +114,13 @@ impl World {
         let now_ns = AtomicU64::new(0);
         let running = AtomicUsize::new(MAIN);
         let state = Mutex::new(state);
-        Arc::new(World { start, now_ns, running, state, main: thread::current() })
+        Arc::new(World {
+            start,
+            now_ns,
+            running,
+            state,
+            main: thread::current(),
+        })
     }
 
     pub(crate) fn now(&self) -> Instant {
@@ -130,9 +145,19 @@ impl World {
     pub(crate) fn spawn(self: &Arc<World>, node: usize, body: Box<dyn FnOnce() + Send>) -> usize {
         let mut state = self.state.lock();
         let thread = state.threads.len();
-        let current = Current { world: Arc::clone(self), node, thread };
+        let current = Current {
+            world: Arc::clone(self),
+            node,
+            thread,
+        };
         let handle = thread::spawn(move || current.run(body));
-        state.threads.push(Thread { node, handle: Some(handle), status: Status::Ready, is_killed: false, waits: 0 });
+        state.threads.push(Thread {
+            node,
+            handle: Some(handle),
+            status: Status::Ready,
+            is_killed: false,
+            waits: 0,
+        });
         thread
     }
 
@@ -152,7 +177,10 @@ impl World {
             next => {
                 let state = self.state.lock();
                 let handle = state.threads[next].handle.as_ref();
-                handle.expect("a thread that runs has not been joined").thread().clone()
+                handle
+                    .expect("a thread that runs has not been joined")
+                    .thread()
+                    .clone()
             }
         };
         self.running.store(next, Ordering::Release);
@@ -192,7 +220,13 @@ impl World {
     /// Runs until no thread is left.
     pub(crate) fn run(self: &Arc<World>) {
         self.pass_on(MAIN);
-        let handles: Vec<_> = self.state.lock().threads.iter_mut().filter_map(|thread| thread.handle.take()).collect();
+        let handles: Vec<_> = self
+            .state
+            .lock()
+            .threads
+            .iter_mut()
+            .filter_map(|thread| thread.handle.take())
+            .collect();
         for handle in handles {
             handle.join().unwrap_or_default();
         }
@@ -210,8 +244,15 @@ impl Current {
         CURRENT.set(Some(self));
         world.await_turn(thread);
         let is_killed = world.state.lock().threads[thread].is_killed;
-        let ended = if is_killed { Ok(()) } else { catch_unwind(AssertUnwindSafe(body)) };
-        let panic = ended.err().filter(|payload| !payload.is::<Killed>()).map(|payload| text_of(&*payload));
+        let ended = if is_killed {
+            Ok(())
+        } else {
+            catch_unwind(AssertUnwindSafe(body))
+        };
+        let panic = ended
+            .err()
+            .filter(|payload| !payload.is::<Killed>())
+            .map(|payload| text_of(&*payload));
         world.state.lock().thread_ended(thread, node, panic);
         let next = world.next();
         CURRENT.set(None);
@@ -220,8 +261,11 @@ impl Current {
 }
 
 fn text_of(payload: &(dyn Any + Send)) -> String {
-    let text = payload.downcast_ref::<&str>().map(|text| (*text).to_owned());
-    text.or_else(|| payload.downcast_ref::<String>().cloned()).unwrap_or_else(|| "it panicked".to_owned())
+    let text = payload
+        .downcast_ref::<&str>()
+        .map(|text| (*text).to_owned());
+    text.or_else(|| payload.downcast_ref::<String>().cloned())
+        .unwrap_or_else(|| "it panicked".to_owned())
 }
 
 impl State {
@@ -236,7 +280,8 @@ impl State {
         self.now_ns = at_ns;
         match event {
             Event::Wake { thread, wait } => {
-                if matches!(self.threads[thread].status, Status::Waits { wait: now, .. } if now == wait) {
+                if matches!(self.threads[thread].status, Status::Waits { wait: now, .. } if now == wait)
+                {
                     self.threads[thread].status = Status::Ready;
                 }
             }
@@ -251,7 +296,11 @@ impl State {
                 self.recover(node);
             }
             Event::Arrive { link, up, arrival } => self.arrive(link, up, arrival),
-            Event::LeaseOver { link, at_hub, since_ns } => self.lease_over(link, at_hub, since_ns),
+            Event::LeaseOver {
+                link,
+                at_hub,
+                since_ns,
+            } => self.lease_over(link, at_hub, since_ns),
             Event::Reconnect { session } => self.reconnect(session),
             Event::Local { session, local } => self.take_local(session, &local),
         }
@@ -260,7 +309,11 @@ impl State {
     /// The names of the nodes that still run.
     fn waiting(&self) -> Vec<String> {
         let is_there = |thread: &&Thread| thread.status != Status::Done;
-        self.threads.iter().filter(is_there).map(|thread| self.nodes[thread.node].name.clone()).collect()
+        self.threads
+            .iter()
+            .filter(is_there)
+            .map(|thread| self.nodes[thread.node].name.clone())
+            .collect()
     }
 
     /// Ends the simulation: kills every node and clears all events.
@@ -290,7 +343,8 @@ impl State {
     /// Draws the next thread from the ready ones.
     fn draw_ready(&mut self) -> Option<usize> {
         let is_ready = |thread: &Thread, nodes: &[Node]| {
-            thread.status == Status::Ready && (thread.is_killed || !nodes[thread.node].is_suspended())
+            thread.status == Status::Ready
+                && (thread.is_killed || !nodes[thread.node].is_suspended())
         };
         let nodes = &self.nodes;
         let mut ready = std::mem::take(&mut self.ready);

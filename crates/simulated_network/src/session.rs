@@ -5,8 +5,8 @@ use crate::packet::{Asked, Kind, Packet};
 use crate::scheduler::{World, current, is_in_callback, wait_until};
 use crate::state::SessionState;
 use bus::{
-    BusError, Declaration, Delivery, Encoding, Net, OnBytes, OnLinkLost, OnQuery, OnToken, Parcel, Priority, Sender,
-    Session, Watched, clock,
+    BusError, Declaration, Delivery, Encoding, Net, OnBytes, OnLinkLost, OnQuery, OnToken, Parcel,
+    Priority, Sender, Session, Watched, clock,
 };
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::Arc;
@@ -57,7 +57,9 @@ impl SimulatedSession {
     /// Opens a hub inside a simulation. Fails if another one listens at its endpoint.
     pub(crate) fn hub(net: &Net) -> Result<SimulatedSession, String> {
         let session = SimulatedSession::new(&net.listen, true)?;
-        let is_taken = session.world.visit(|state| state.hub_at(&net.listen) != Some(session.session));
+        let is_taken = session
+            .world
+            .visit(|state| state.hub_at(&net.listen) != Some(session.session));
         if is_taken {
             session.close();
             return Err("the address is in use".to_owned());
@@ -93,13 +95,23 @@ impl SimulatedSession {
         let node = current.node;
         let endpoints = endpoints.to_vec();
         let declared = BTreeMap::new();
-        state.sessions.push(SessionState { node, is_open: true, endpoints, link: None, is_hub, declared });
+        state.sessions.push(SessionState {
+            node,
+            is_open: true,
+            endpoints,
+            link: None,
+            is_hub,
+            declared,
+        });
         drop(state);
         Ok(SimulatedSession { world, session, id })
     }
 
     fn declare(&self, key: String, what: What) -> Declaration {
-        Declaration::new(Undeclare { session: self.clone(), id: self.insert(key, what) })
+        Declaration::new(Undeclare {
+            session: self.clone(),
+            id: self.insert(key, what),
+        })
     }
 
     /// Adds a declaration that lasts as long as the session. Returns its number.
@@ -108,16 +120,29 @@ impl SimulatedSession {
         let (id, _refused) = self.world.visit(|state| {
             state.number += 1;
             let id = state.number;
-            let declared = Declared { key: key.clone(), what };
+            let declared = Declared {
+                key: key.clone(),
+                what,
+            };
             let packet = declared.packet(id);
             let own = &mut state.sessions[self.session];
             let is_hub = own.is_hub;
             let link = own.link;
-            let refused = if own.is_open { own.declared.insert(id, declared) } else { Some(declared) };
+            let refused = if own.is_open {
+                own.declared.insert(id, declared)
+            } else {
+                Some(declared)
+            };
             match packet {
-                Packet::Declare { kind: Kind::Watch, .. } if is_hub => state.begin_watch(self.session, id, &key),
-                Packet::Declare { kind: Kind::Token, .. } if is_hub => state.announce(self.session, &key, true, None),
-                packet => link.into_iter().for_each(|link| state.send(link, true, packet.clone())),
+                Packet::Declare {
+                    kind: Kind::Watch, ..
+                } if is_hub => state.begin_watch(self.session, id, &key),
+                Packet::Declare {
+                    kind: Kind::Token, ..
+                } if is_hub => state.announce(self.session, &key, true, None),
+                packet => link
+                    .into_iter()
+                    .for_each(|link| state.send(link, true, packet.clone())),
             }
             (id, refused)
         });
@@ -144,18 +169,35 @@ impl SimulatedSession {
             state.number += 1;
             let query = state.number;
             if is_hub || link.is_some() {
-                state.queries.insert(query, PendingQuery { asker: self.session, open: 0, take });
+                state.queries.insert(
+                    query,
+                    PendingQuery {
+                        asker: self.session,
+                        open: 0,
+                        take,
+                    },
+                );
             }
             match link {
                 _ if is_hub => state.route(self.session, query, key, asked, None),
-                link => state.send(link?, true, Packet::Ask { query, key: key.to_owned(), asked }),
+                link => state.send(
+                    link?,
+                    true,
+                    Packet::Ask {
+                        query,
+                        key: key.to_owned(),
+                        asked,
+                    },
+                ),
             }
             Some(query)
         })?;
         let start = clock::now();
         let accepted = loop {
             let left = limit.saturating_sub(clock::since(start));
-            answers.wait(left, |answers| !answers.waiting.is_empty() || answers.is_complete);
+            answers.wait(left, |answers| {
+                !answers.waiting.is_empty() || answers.is_complete
+            });
             match answers.visit(|answers| answers.waiting.pop_front()) {
                 Some(answer) if accept(&answer) => break Some(answer),
                 Some(_) => {}
@@ -172,17 +214,38 @@ impl Session for SimulatedSession {
         self.id.clone()
     }
 
-    fn publisher(&self, key: String, _: Priority, _: Delivery) -> Result<Box<dyn Sender>, BusError> {
-        Ok(Box::new(SimulatedSender { session: self.clone(), key: key.into() }))
+    fn publisher(
+        &self,
+        key: String,
+        _: Priority,
+        _: Delivery,
+    ) -> Result<Box<dyn Sender>, BusError> {
+        Ok(Box::new(SimulatedSender {
+            session: self.clone(),
+            key: key.into(),
+        }))
     }
 
-    fn subscribe(&self, key: String, hears_own: bool, receive: OnBytes) -> Result<Declaration, BusError> {
-        Ok(self.declare(key, What::Subscriber { take: receive.into(), hears_own }))
+    fn subscribe(
+        &self,
+        key: String,
+        hears_own: bool,
+        receive: OnBytes,
+    ) -> Result<Declaration, BusError> {
+        Ok(self.declare(
+            key,
+            What::Subscriber {
+                take: receive.into(),
+                hears_own,
+            },
+        ))
     }
 
     fn answer(&self, key: String, receive: OnQuery) -> Result<Declaration, BusError> {
         let take = move |mut routed: RoutedQuery| {
-            let world = current().expect("events happen in threads of the simulation").world;
+            let world = current()
+                .expect("events happen in threads of the simulation")
+                .world;
             let question = std::mem::take(&mut routed.payload);
             receive(question, Box::new(SimulatedQuery { world, routed }));
         };
@@ -197,7 +260,9 @@ impl Session for SimulatedSession {
         limit: Duration,
         accept: &mut dyn FnMut(&Parcel) -> bool,
     ) -> Result<Option<Vec<u8>>, BusError> {
-        Ok(self.query(key, Asked::Payload(question), limit, accept).map(|answer| answer.bytes))
+        Ok(self
+            .query(key, Asked::Payload(question), limit, accept)
+            .map(|answer| answer.bytes))
     }
 
     fn show_alive(&self, key: String) -> Result<Declaration, BusError> {
@@ -220,7 +285,9 @@ impl Session for SimulatedSession {
 
     fn who_is_alive(&self, key: &str, limit: Duration) -> Result<Vec<String>, BusError> {
         let tokens = self.query(key, Asked::Tokens, limit, &mut |_| true);
-        Ok(tokens.and_then(|json| serde_json::from_slice(&json.bytes).ok()).unwrap_or_default())
+        Ok(tokens
+            .and_then(|json| serde_json::from_slice(&json.bytes).ok())
+            .unwrap_or_default())
     }
 
     fn close(&self) {
@@ -230,12 +297,20 @@ impl Session for SimulatedSession {
 
 impl Sender for SimulatedSender {
     fn is_heard(&self) -> bool {
-        self.session.world.state.lock().is_heard(self.session.session, &self.key)
+        self.session
+            .world
+            .state
+            .lock()
+            .is_heard(self.session.session, &self.key)
     }
 
     fn send(&self, bytes: Vec<u8>, _: Encoding) -> Result<(), BusError> {
         self.pause_now_and_then();
-        self.session.world.state.lock().publish(self.session.session, &self.key, &bytes.into());
+        self.session
+            .world
+            .state
+            .lock()
+            .publish(self.session.session, &self.key, &bytes.into());
         Ok(())
     }
 }
@@ -249,7 +324,11 @@ impl SimulatedSender {
         let mut state = self.session.world.state.lock();
         let pause = state.conditions.pause;
         let is_held_up = !pause.is_zero() && state.stream.below(PAUSES) == 0;
-        let time = if is_held_up { state.draw(pause) } else { Duration::ZERO };
+        let time = if is_held_up {
+            state.draw(pause)
+        } else {
+            Duration::ZERO
+        };
         drop(state);
         if is_held_up {
             wait_until(0, self.session.world.now().checked_add(time));
@@ -259,12 +338,21 @@ impl SimulatedSender {
 
 impl Drop for Undeclare {
     fn drop(&mut self) {
-        let Undeclare { session: SimulatedSession { world, session, .. }, id } = self;
+        let Undeclare {
+            session: SimulatedSession { world, session, .. },
+            id,
+        } = self;
         let removed = world.visit(|state| {
             let SessionState { is_hub, link, .. } = state.sessions[*session];
             let removed = state.sessions[*session].declared.remove(id);
             match (&removed, link) {
-                (Some(Declared { key, what: What::Token }), _) if is_hub => state.announce(*session, key, false, None),
+                (
+                    Some(Declared {
+                        key,
+                        what: What::Token,
+                    }),
+                    _,
+                ) if is_hub => state.announce(*session, key, false, None),
                 (Some(_), Some(link)) => state.send(link, true, Packet::Undeclare { id: *id }),
                 _ => {}
             }
@@ -279,7 +367,12 @@ impl SimulatedQuery {
     fn send(&self, answer: Option<Parcel>) {
         let RoutedQuery { session, query, .. } = self.routed;
         self.world.visit(|state| {
-            let SessionState { is_open, is_hub, link, .. } = state.sessions[session];
+            let SessionState {
+                is_open,
+                is_hub,
+                link,
+                ..
+            } = state.sessions[session];
             match link {
                 _ if !is_open => {}
                 _ if is_hub => state.answer_at_hub(session, query, answer),

@@ -109,7 +109,11 @@ pub(crate) struct State {
 
 impl State {
     pub(crate) fn is_over(&self) -> bool {
-        self.starts_due == 0 && self.threads.iter().all(|thread| thread.status == Status::Done)
+        self.starts_due == 0
+            && self
+                .threads
+                .iter()
+                .all(|thread| thread.status == Status::Done)
     }
 
     /// Adds an event to the trace.
@@ -119,7 +123,11 @@ impl State {
         (self.now_ns, what, node, key, bytes).hash(&mut self.hash);
         if let Some(lines) = &mut self.lines {
             let at_s = self.now_ns as f64 * 1e-9;
-            lines.push(format!("{at_s:12.6} {:8} {what} {key} {}", self.nodes[node].name, bytes.len()));
+            lines.push(format!(
+                "{at_s:12.6} {:8} {what} {key} {}",
+                self.nodes[node].name,
+                bytes.len()
+            ));
         }
     }
 
@@ -127,7 +135,8 @@ impl State {
     pub(crate) fn at(&mut self, at_ns: u64, event: Event) {
         self.order += 1;
         // A deadline that has already passed must not turn the clock back.
-        self.events.insert((at_ns.max(self.now_ns), self.order), event);
+        self.events
+            .insert((at_ns.max(self.now_ns), self.order), event);
     }
 
     pub(crate) fn after(&mut self, wait: Duration, event: Event) {
@@ -184,7 +193,9 @@ impl State {
             }
         }
         let own = |session: &SessionState| session.node == node && session.is_open;
-        let sessions: Vec<usize> = (0..self.sessions.len()).filter(|i| own(&self.sessions[*i])).collect();
+        let sessions: Vec<usize> = (0..self.sessions.len())
+            .filter(|i| own(&self.sessions[*i]))
+            .collect();
         sessions.into_iter().for_each(|session| self.close(session));
     }
 
@@ -200,7 +211,11 @@ impl State {
         let was_killed = self.threads[thread].is_killed;
         self.note("ends", node, "", &[]);
         let at = Duration::from_nanos(self.now_ns);
-        self.ends.push(NodeEnd { node: self.nodes[node].name.clone(), at, was_killed });
+        self.ends.push(NodeEnd {
+            node: self.nodes[node].name.clone(),
+            at,
+            was_killed,
+        });
         self.nodes[node].main_thread = None;
         self.kill(node);
         if let Some(wait) = self.nodes[node].starts_again.take() {

@@ -53,9 +53,13 @@ impl Command {
             Command::Hold => [0.0, 0.0],
             Command::Thrust { port, starboard } => [100.0 * port, 100.0 * starboard],
             Command::Impose { thrust, rudder } => [thrust, rudder],
-            Command::Steer { heading_rad, speed_m_s } => {
-                [speed_m_s, primitives::angle::compass_deg_from_rad(heading_rad)]
-            }
+            Command::Steer {
+                heading_rad,
+                speed_m_s,
+            } => [
+                speed_m_s,
+                primitives::angle::compass_deg_from_rad(heading_rad),
+            ],
         }
     }
 }
@@ -78,7 +82,13 @@ pub enum Pair {
 
 impl Pair {
     /// All pairs.
-    pub const ALL: [Pair; 5] = [Pair::RadS, Pair::Pct, Pair::ThrustRudder, Pair::SpeedHeading, Pair::Newton];
+    pub const ALL: [Pair; 5] = [
+        Pair::RadS,
+        Pair::Pct,
+        Pair::ThrustRudder,
+        Pair::SpeedHeading,
+        Pair::Newton,
+    ];
 
     /// The names of the two columns, in order.
     pub fn columns(self) -> [&'static str; 2] {
@@ -106,9 +116,10 @@ impl Engine {
     pub fn new(boat: &Boat) -> Engine {
         match &boat.drive {
             // The tick affects how an engine responds, not the commands it accepts.
-            Drive::Thrusters { thruster, .. } => {
-                Engine::Thrusters(Box::new(ThrusterModel::new(thruster, 0.05)), thruster.clone())
-            }
+            Drive::Thrusters { thruster, .. } => Engine::Thrusters(
+                Box::new(ThrusterModel::new(thruster, 0.05)),
+                thruster.clone(),
+            ),
             Drive::Kinematic(kinematic) => Engine::Kinematic(kinematic.clone()),
         }
     }
@@ -158,11 +169,20 @@ impl Engine {
     /// The command for two numbers within [`Engine::ranges`].
     pub fn command(&self, pair: Pair, [a, b]: [f64; 2]) -> Command {
         match (self, pair) {
-            (_, Pair::ThrustRudder) => Command::Impose { thrust: a, rudder: b },
-            (_, Pair::SpeedHeading) => Command::Steer { heading_rad: b.to_radians(), speed_m_s: a },
+            (_, Pair::ThrustRudder) => Command::Impose {
+                thrust: a,
+                rudder: b,
+            },
+            (_, Pair::SpeedHeading) => Command::Steer {
+                heading_rad: b.to_radians(),
+                speed_m_s: a,
+            },
             (Engine::Thrusters(model, thruster), _) => {
                 let share = |number: f64| share(model, thruster, pair, number).clamp(-1.0, 1.0);
-                Command::Thrust { port: share(a), starboard: share(b) }
+                Command::Thrust {
+                    port: share(a),
+                    starboard: share(b),
+                }
             }
             (Engine::Kinematic(_), _) => Command::Hold,
         }
@@ -177,6 +197,8 @@ fn share(model: &ThrusterModel, thruster: &Thruster, pair: Pair, number: f64) ->
         (Pair::Newton, _) => model.setting(number),
         _ => number,
     };
-    let full = model.setting_of_share(if setting < 0.0 { -1.0 } else { 1.0 }).abs();
+    let full = model
+        .setting_of_share(if setting < 0.0 { -1.0 } else { 1.0 })
+        .abs();
     if full > 0.0 { setting / full } else { 0.0 }
 }

@@ -60,14 +60,30 @@ mod tests {
         const TOLERANCE: f64 = 0.005;
         let boats = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/boats");
         let tick = SimTime::from_s(0.05);
-        for (name, wind_m_s) in [("surveyor_m1_8", 4.0), ("surveyor_m1_8", 12.0), ("otter", 8.0), ("heron", 8.0)] {
-            let boat =
-                scenario::load_file::<scenario::Boat>(&boats.join(format!("{name}.toml"))).expect("it is shipped");
+        for (name, wind_m_s) in [
+            ("surveyor_m1_8", 4.0),
+            ("surveyor_m1_8", 12.0),
+            ("otter", 8.0),
+            ("heron", 8.0),
+        ] {
+            let boat = scenario::load_file::<scenario::Boat>(&boats.join(format!("{name}.toml")))
+                .expect("it is shipped");
             let from_rad = 2.0;
             let gusts = Gusts::None;
-            let wind = Wind { speed_10m_m_s: wind_m_s, from_rad, profile_exponent: 0.12, gusts };
-            let sea = scenario::sea::Sea { wind: Some(wind), ..still_sea() };
-            let want_m_s = Summary::new(&sea, &boat, &crate::open_field(), 1).wind.expect("there is wind").drift_m_s;
+            let wind = Wind {
+                speed_10m_m_s: wind_m_s,
+                from_rad,
+                profile_exponent: 0.12,
+                gusts,
+            };
+            let sea = scenario::sea::Sea {
+                wind: Some(wind),
+                ..still_sea()
+            };
+            let want_m_s = Summary::new(&sea, &boat, &crate::open_field(), 1)
+                .wind
+                .expect("there is wind")
+                .drift_m_s;
 
             let mut trial_boat = TrialBoat::new(&boat, &sea, tick, 1, &Start::default());
             let per_row = ticks_per_row(tick).expect("it divides");
@@ -80,10 +96,17 @@ mod tests {
             let drift = Drift::of(&samples).expect("it was sailed");
             let speed_m_s = drift.speed_m_s();
             let toward_rad = drift.toward_rad().expect("it moves");
-            assert!((speed_m_s / want_m_s - 1.0).abs() < TOLERANCE, "{name}: {speed_m_s} m/s, balance {want_m_s} m/s");
+            assert!(
+                (speed_m_s / want_m_s - 1.0).abs() < TOLERANCE,
+                "{name}: {speed_m_s} m/s, balance {want_m_s} m/s"
+            );
             let off_rad = primitives::angle::wrap_pi(toward_rad - from_rad - std::f64::consts::PI);
-            let off_beam_rad = primitives::angle::wrap_pi(drift.heading_rad - from_rad).abs() - FRAC_PI_2;
-            assert!(off_rad.abs() < 0.05 && off_beam_rad.abs() < 0.1, "{name}: {off_rad} off, {off_beam_rad} rad");
+            let off_beam_rad =
+                primitives::angle::wrap_pi(drift.heading_rad - from_rad).abs() - FRAC_PI_2;
+            assert!(
+                off_rad.abs() < 0.05 && off_beam_rad.abs() < 0.1,
+                "{name}: {off_rad} off, {off_beam_rad} rad"
+            );
         }
     }
 }

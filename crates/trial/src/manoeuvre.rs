@@ -12,15 +12,17 @@ use primitives::angle::wrap_pi;
 use scenario::boat::{Boat, Drive};
 use strum::{EnumString, IntoStaticStr, VariantNames};
 
-/// A standard manoeuvre. *Port* and *starboard* are thrusters; a kinematic boat has thrust and rudder instead.
+/// A standard manoeuvre. *Port* and *starboard* are thrusters; a kinematic boat has thrust and
+/// rudder instead.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, EnumString, IntoStaticStr, VariantNames)]
 #[strum(serialize_all = "snake_case")]
 pub enum Manoeuvre {
-    /// From a straight approach the inner thruster stops and the outer one stays (full rudder, thrust stays), for two
-    /// turns.
+    /// From a straight approach the inner thruster stops and the outer one stays (full rudder,
+    /// thrust stays), for two turns.
     TurningCircle,
-    /// From a straight approach the thrusters are set apart by a share of full (the rudder is set), to starboard; each
-    /// time the heading passes the angle on the side it turns to, to the other side.
+    /// From a straight approach the thrusters are set apart by a share of full (the rudder is set),
+    /// to starboard; each time the heading passes the angle on the side it turns to, to the other
+    /// side.
     Zigzag,
     /// From a straight approach full astern, until the boat is dead in the water (which may drift).
     CrashStop,
@@ -101,15 +103,24 @@ impl Helm {
     /// Thrusters at these shares, or half their sum as thrust and half their difference as rudder.
     fn apart(self, port: f64, starboard: f64) -> Command {
         if self.is_kinematic {
-            return Command::Impose { thrust: 50.0 * (port + starboard), rudder: 50.0 * (port - starboard) };
+            return Command::Impose {
+                thrust: 50.0 * (port + starboard),
+                rudder: 50.0 * (port - starboard),
+            };
         }
-        Command::Thrust { port: port.clamp(-1.0, 1.0), starboard: starboard.clamp(-1.0, 1.0) }
+        Command::Thrust {
+            port: port.clamp(-1.0, 1.0),
+            starboard: starboard.clamp(-1.0, 1.0),
+        }
     }
 
     /// Approach thrust with this much differential or rudder to starboard.
     fn turning(self, differential: f64) -> Command {
         if self.is_kinematic {
-            return Command::Impose { thrust: 100.0 * self.throttle, rudder: 100.0 * differential };
+            return Command::Impose {
+                thrust: 100.0 * self.throttle,
+                rudder: 100.0 * differential,
+            };
         }
         self.apart(self.throttle + differential, self.throttle - differential)
     }
@@ -125,14 +136,24 @@ impl Helm {
 pub fn sail(boat: &Boat, trial_boat: &mut TrialBoat, plan: &Plan) -> Result<Sailed, Unsound> {
     let per_row = ticks_per_row(trial_boat.tick()).expect("the tick was checked");
     let is_kinematic = matches!(boat.drive, Drive::Kinematic(_));
-    let mut helm = Helm { is_kinematic, throttle: 1.0 };
+    let mut helm = Helm {
+        is_kinematic,
+        throttle: 1.0,
+    };
     let mut approach_m_s = 0.0;
-    if matches!(plan.manoeuvre, Manoeuvre::TurningCircle | Manoeuvre::Zigzag | Manoeuvre::CrashStop) {
+    if matches!(
+        plan.manoeuvre,
+        Manoeuvre::TurningCircle | Manoeuvre::Zigzag | Manoeuvre::CrashStop
+    ) {
         (approach_m_s, helm.throttle) = approach(boat, trial_boat, plan, per_row)?;
     }
     trial_boat.set_origin();
     let start = trial_boat.now();
-    let mut sailed = Sailed { samples: vec![], approach_m_s, switches: vec![] };
+    let mut sailed = Sailed {
+        samples: vec![],
+        approach_m_s,
+        switches: vec![],
+    };
     let mut side = plan.side;
     let mut off_course_rad = 0.0;
     let mut turned_rad = 0.0;
@@ -150,7 +171,8 @@ pub fn sail(boat: &Boat, trial_boat: &mut TrialBoat, plan: &Plan) -> Result<Sail
         for _ in 0..per_row {
             if plan.manoeuvre == Manoeuvre::Zigzag {
                 // Unwrapped: a boat that spins has not returned to its course.
-                off_course_rad += wrap_pi(trial_boat.pose().psi_rad - plan.course_rad - off_course_rad);
+                off_course_rad +=
+                    wrap_pi(trial_boat.pose().psi_rad - plan.course_rad - off_course_rad);
                 if side * off_course_rad > plan.switch_rad {
                     side = -side;
                     told = command(plan, helm, side);
@@ -166,9 +188,17 @@ pub fn sail(boat: &Boat, trial_boat: &mut TrialBoat, plan: &Plan) -> Result<Sail
 }
 
 /// The straight approach. Returns the speed at its end, m/s, and the throttle as a share of full.
-fn approach(boat: &Boat, trial_boat: &mut TrialBoat, plan: &Plan, per_row: u32) -> Result<(f64, f64), Unsound> {
+fn approach(
+    boat: &Boat,
+    trial_boat: &mut TrialBoat,
+    plan: &Plan,
+    per_row: u32,
+) -> Result<(f64, f64), Unsound> {
     let speed_m_s = plan.approach_m_s.unwrap_or_else(|| boat.speed_max_m_s());
-    let course = Command::Steer { heading_rad: plan.course_rad, speed_m_s };
+    let course = Command::Steer {
+        heading_rad: plan.course_rad,
+        speed_m_s,
+    };
     let engine = Engine::new(boat);
     let rows = SimTime::from_s(plan.approach_s).0 / ROW.0;
     let last_rows = (MEAN_S / ROW.as_s()).round() as i64;
@@ -178,7 +208,9 @@ fn approach(boat: &Boat, trial_boat: &mut TrialBoat, plan: &Plan, per_row: u32) 
     for row in 1..=rows {
         (0..per_row).for_each(|_| trial_boat.step(course));
         if !trial_boat.is_sound() {
-            return Err(Unsound { t_s: (ROW * row).as_s() - plan.approach_s });
+            return Err(Unsound {
+                t_s: (ROW * row).as_s() - plan.approach_s,
+            });
         }
         if row > rows - last_rows {
             speed_sum += trial_boat.sample(0.0, course).speed_m_s();
@@ -194,12 +226,18 @@ fn command(plan: &Plan, helm: Helm, side: f64) -> Command {
     let full = side > 0.0;
     match plan.manoeuvre {
         Manoeuvre::TurningCircle if helm.is_kinematic => helm.turning(side),
-        Manoeuvre::TurningCircle => helm.apart(if full { throttle } else { 0.0 }, if full { 0.0 } else { throttle }),
+        Manoeuvre::TurningCircle => helm.apart(
+            if full { throttle } else { 0.0 },
+            if full { 0.0 } else { throttle },
+        ),
         Manoeuvre::Zigzag => helm.turning(side * plan.differential),
         Manoeuvre::CrashStop => helm.apart(-1.0, -1.0),
         Manoeuvre::Acceleration => helm.apart(1.0, 1.0),
         Manoeuvre::Drift => helm.apart(0.0, 0.0),
-        Manoeuvre::Spin if helm.is_kinematic => Command::Impose { thrust: 50.0, rudder: 100.0 * side },
+        Manoeuvre::Spin if helm.is_kinematic => Command::Impose {
+            thrust: 50.0,
+            rudder: 100.0 * side,
+        },
         Manoeuvre::Spin => helm.apart(side, -side),
     }
 }
@@ -213,9 +251,10 @@ fn is_over(plan: &Plan, sailed: &Sailed, turned_rad: f64, t_s: f64) -> bool {
     let done = match plan.manoeuvre {
         Manoeuvre::TurningCircle => turned_rad.abs() >= 2.0 * std::f64::consts::TAU,
         Manoeuvre::Zigzag => sailed.switches.len() >= SWITCHES,
-        Manoeuvre::CrashStop => {
-            sailed.samples.last().is_some_and(|sample| sample.surge_through_water_m_s <= DEAD * sailed.approach_m_s)
-        }
+        Manoeuvre::CrashStop => sailed
+            .samples
+            .last()
+            .is_some_and(|sample| sample.surge_through_water_m_s <= DEAD * sailed.approach_m_s),
         Manoeuvre::Acceleration => is_steady(&sailed.samples),
         Manoeuvre::Drift => t_s >= DRIFT_S - 1e-6,
         Manoeuvre::Spin => t_s >= SPIN_S - 1e-6,
@@ -225,8 +264,12 @@ fn is_over(plan: &Plan, sailed: &Sailed, turned_rad: f64, t_s: f64) -> bool {
 
 fn is_steady(samples: &[Sample]) -> bool {
     let rows = (STEADY_S / ROW.as_s()).round() as usize;
-    let mean = |samples: &[Sample]| samples.iter().map(|sample| sample.nu.surge).sum::<f64>() / rows as f64;
-    let Some(first) = samples.len().checked_sub(2 * rows) else { return false };
+    let mean = |samples: &[Sample]| {
+        samples.iter().map(|sample| sample.nu.surge).sum::<f64>() / rows as f64
+    };
+    let Some(first) = samples.len().checked_sub(2 * rows) else {
+        return false;
+    };
     let before = mean(&samples[first..first + rows]);
     let after = mean(&samples[first + rows..]);
     after > 0.0 && (after - before).abs() < STEADY * after

@@ -25,11 +25,18 @@ impl Orders {
     }
 
     /// Like [`Orders::of_sheet`], with the times of the rows.
-    pub(crate) fn at_times(sheet: &Sheet, times_s: &[f64], engine: &Engine) -> Result<Orders, Mistake> {
+    pub(crate) fn at_times(
+        sheet: &Sheet,
+        times_s: &[f64],
+        engine: &Engine,
+    ) -> Result<Orders, Mistake> {
         let (pair, columns) = pair_of(sheet)?;
-        let ranges = engine
-            .ranges(pair)
-            .map_err(|lack| sheet.mistake(Some(1), format!("columns {}: {lack}", pair.columns().join(","))))?;
+        let ranges = engine.ranges(pair).map_err(|lack| {
+            sheet.mistake(
+                Some(1),
+                format!("columns {}: {lack}", pair.columns().join(",")),
+            )
+        })?;
         let mut steps = Vec::with_capacity(times_s.len());
         for (row, t_s) in times_s.iter().enumerate() {
             let a = sheet.number(row, columns[0], ranges[0])?;
@@ -47,7 +54,9 @@ impl Orders {
     /// The command at `now`: the last one not later; before the first, a hold.
     pub fn at(&self, now: SimTime) -> Command {
         let passed = self.steps.partition_point(|(at, _)| *at <= now);
-        passed.checked_sub(1).map_or(Command::Hold, |last| self.steps[last].1)
+        passed
+            .checked_sub(1)
+            .map_or(Command::Hold, |last| self.steps[last].1)
     }
 }
 
@@ -56,7 +65,11 @@ impl Orders {
 fn pair_of(sheet: &Sheet) -> Result<(Pair, [usize; 2]), Mistake> {
     let place = |head: &str| {
         // The heading in a trial's own file is the actual one; the ordered one has its own column.
-        let told = if head == "heading_deg" { sheet.column("heading_order_deg") } else { None };
+        let told = if head == "heading_deg" {
+            sheet.column("heading_order_deg")
+        } else {
+            None
+        };
         told.or_else(|| sheet.column(head))
     };
     let mut found = vec![];
@@ -68,7 +81,11 @@ fn pair_of(sheet: &Sheet) -> Result<(Pair, [usize; 2]), Mistake> {
             [None, Some(_)] if pair == Pair::SpeedHeading => {}
             places => {
                 let (here, gone) = if places[0].is_some() { (0, 1) } else { (1, 0) };
-                let message = format!("column {} without {}", pair.columns()[here], pair.columns()[gone]);
+                let message = format!(
+                    "column {} without {}",
+                    pair.columns()[here],
+                    pair.columns()[gone]
+                );
                 return Err(sheet.mistake(Some(1), message));
             }
         }
@@ -76,17 +93,29 @@ fn pair_of(sheet: &Sheet) -> Result<(Pair, [usize; 2]), Mistake> {
     if found.len() > 1 {
         found.retain(|(pair, _)| *pair != Pair::Newton);
     }
-    let names = |pairs: &[Pair]| pairs.iter().map(|pair| pair.columns().join(",")).collect::<Vec<_>>().join("; ");
+    let names = |pairs: &[Pair]| {
+        pairs
+            .iter()
+            .map(|pair| pair.columns().join(","))
+            .collect::<Vec<_>>()
+            .join("; ")
+    };
     match found[..] {
         [one] => Ok(one),
         [] => {
-            let message =
-                format!("no command columns among {}, expected one of {}", sheet.heads().join(", "), names(&Pair::ALL));
+            let message = format!(
+                "no command columns among {}, expected one of {}",
+                sheet.heads().join(", "),
+                names(&Pair::ALL)
+            );
             Err(sheet.mistake(Some(1), message))
         }
         _ => {
             let pairs: Vec<Pair> = found.iter().map(|(pair, _)| *pair).collect();
-            Err(sheet.mistake(Some(1), format!("several kinds of commands: {}; expected one", names(&pairs))))
+            Err(sheet.mistake(
+                Some(1),
+                format!("several kinds of commands: {}; expected one", names(&pairs)),
+            ))
         }
     }
 }

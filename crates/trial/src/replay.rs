@@ -11,7 +11,9 @@ pub const ROW: SimTime = SimTime(100_000_000);
 
 /// The boat's state became non-finite.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
-#[error("the boat's state became non-finite at {t_s:.2} s: the model is unstable at this tick; use a shorter tick")]
+#[error(
+    "the boat's state became non-finite at {t_s:.2} s: the model is unstable at this tick; use a shorter tick"
+)]
 pub struct Unsound {
     /// Time of the failure, s.
     pub t_s: f64,
@@ -23,7 +25,10 @@ pub struct Unsound {
 /// The allowed ticks, if this one does not divide [`ROW`].
 pub fn ticks_per_row(tick: SimTime) -> Result<u32, String> {
     if tick < SimTime(1_000_000) || tick > ROW || ROW.0 % tick.0 != 0 {
-        return Err(format!("the tick is {:.4} s, expected 0.001 to 0.1 s and a divisor of 0.1 s", tick.as_s()));
+        return Err(format!(
+            "the tick is {:.4} s, expected 0.001 to 0.1 s and a divisor of 0.1 s",
+            tick.as_s()
+        ));
     }
     Ok((ROW.0 / tick.0) as u32)
 }
@@ -38,7 +43,11 @@ pub fn ticks_per_row(tick: SimTime) -> Result<u32, String> {
 ///
 /// # Panics
 /// If the tick does not divide [`ROW`]; see [`ticks_per_row`].
-pub fn replay(trial_boat: &mut TrialBoat, orders: &Orders, duration: SimTime) -> Result<Vec<Sample>, Unsound> {
+pub fn replay(
+    trial_boat: &mut TrialBoat,
+    orders: &Orders,
+    duration: SimTime,
+) -> Result<Vec<Sample>, Unsound> {
     let per_row = ticks_per_row(trial_boat.tick()).expect("the tick was checked");
     let start = trial_boat.now();
     let rows = duration.0 / ROW.0;

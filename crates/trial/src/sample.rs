@@ -7,8 +7,17 @@ use primitives::math::decimal;
 use sim::hull::Planar;
 
 /// The columns of a trial's file, in order.
-pub const COLUMNS: [&str; 9] =
-    ["t_s", "x_m", "y_m", "heading_deg", "surge_m_s", "sway_m_s", "yaw_rate_deg_s", "port_newton", "starboard_newton"];
+pub const COLUMNS: [&str; 9] = [
+    "t_s",
+    "x_m",
+    "y_m",
+    "heading_deg",
+    "surge_m_s",
+    "sway_m_s",
+    "yaw_rate_deg_s",
+    "port_newton",
+    "starboard_newton",
+];
 
 /// A boat at one moment of a trial.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,15 +65,29 @@ impl Sample {
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn write_csv(samples: &[Sample], with_orders: bool, out: impl std::io::Write) -> std::io::Result<()> {
+pub fn write_csv(
+    samples: &[Sample],
+    with_orders: bool,
+    out: impl std::io::Write,
+) -> std::io::Result<()> {
     let mut writer = csv::Writer::from_writer(out);
-    let orders = samples.iter().map(|sample| sample.command.columns()).find(|heads| *heads != Command::NO_COLUMNS);
+    let orders = samples
+        .iter()
+        .map(|sample| sample.command.columns())
+        .find(|heads| *heads != Command::NO_COLUMNS);
     let with_orders = with_orders && orders.is_some();
-    let orders = orders.unwrap_or(Command::NO_COLUMNS).into_iter().filter(|_| with_orders);
+    let orders = orders
+        .unwrap_or(Command::NO_COLUMNS)
+        .into_iter()
+        .filter(|_| with_orders);
     writer.write_record(COLUMNS.into_iter().chain(orders))?;
     for sample in samples {
         let orders = sample.command.numbers().into_iter().filter(|_| with_orders);
-        let numbers = sample.row().into_iter().enumerate().map(|(column, number)| text(number, column == 0));
+        let numbers = sample
+            .row()
+            .into_iter()
+            .enumerate()
+            .map(|(column, number)| text(number, column == 0));
         writer.write_record(numbers.chain(orders.map(|number| text(number, false))))?;
     }
     writer.flush()

@@ -48,7 +48,11 @@ impl Sheet {
     /// If it is no table, has no rows, or has two columns with the same name.
     pub fn read(file: &str, input: impl Read) -> Result<Sheet, Mistake> {
         let mut bytes = vec![];
-        let whole = |message| Mistake { file: file.to_owned(), line: None, message };
+        let whole = |message| Mistake {
+            file: file.to_owned(),
+            line: None,
+            message,
+        };
         let length = input.take(BYTES_MAX + 1).read_to_end(&mut bytes);
         if length.map_err(|error| whole(format!("cannot be read: {error}")))? as u64 > BYTES_MAX {
             return Err(whole(format!("longer than {BYTES_MAX} bytes")));
@@ -65,11 +69,26 @@ impl Sheet {
         };
         let separator = separator(&bytes);
         let mut reader = csv::ReaderBuilder::new();
-        let reader = reader.comment(Some(b'#')).trim(csv::Trim::All).flexible(true).delimiter(separator);
+        let reader = reader
+            .comment(Some(b'#'))
+            .trim(csv::Trim::All)
+            .flexible(true)
+            .delimiter(separator);
         let mut reader = reader.from_reader(&bytes[..]);
-        let heads: Vec<String> = reader.headers().map_err(wrong)?.iter().map(plain_head).collect();
+        let heads: Vec<String> = reader
+            .headers()
+            .map_err(wrong)?
+            .iter()
+            .map(plain_head)
+            .collect();
         let decimal_commas = separator != b',';
-        let mut sheet = Sheet { file: file.to_owned(), heads, rows: vec![], decimal_commas, notes: vec![] };
+        let mut sheet = Sheet {
+            file: file.to_owned(),
+            heads,
+            rows: vec![],
+            decimal_commas,
+            notes: vec![],
+        };
         for (i, head) in sheet.heads.iter().enumerate() {
             if !head.is_empty() && sheet.heads[..i].contains(head) {
                 return Err(sheet.mistake(Some(1), format!("two columns {head}, expected one")));
@@ -79,7 +98,9 @@ impl Sheet {
         let mut records = reader.records().peekable();
         while let Some(record) = records.next() {
             let record = record.map_err(wrong)?;
-            let line = record.position().map_or(0, |position| line_of(&bytes, position));
+            let line = record
+                .position()
+                .map_or(0, |position| line_of(&bytes, position));
             if record.len() == 1 && record[0].is_empty() {
                 // A blank line.
                 continue;
@@ -92,7 +113,9 @@ impl Sheet {
                 let found = record.len();
                 let wanted = sheet.heads.len();
                 if is_cut && found < wanted && !sheet.rows.is_empty() && records.peek().is_none() {
-                    let note = format!("{found} of {wanted} columns in the last line, which is cut off and ignored");
+                    let note = format!(
+                        "{found} of {wanted} columns in the last line, which is cut off and ignored"
+                    );
                     sheet.notes.push(sheet.mistake(Some(line), note));
                     break;
                 }
@@ -138,8 +161,12 @@ impl Sheet {
     /// Whether a row, the first, has the units of the columns. Its cells repeat the ends of their
     /// names, or are empty.
     fn are_units(&self, record: &csv::StringRecord, line: u64) -> Result<bool, Mistake> {
-        let is_word = |cell: &str| self.parse(cell).is_none() && !MISSING.contains(&cell.to_lowercase().as_str());
-        if !record.iter().any(is_word) || !record.iter().all(|cell| cell.is_empty() || is_word(cell)) {
+        let is_word = |cell: &str| {
+            self.parse(cell).is_none() && !MISSING.contains(&cell.to_lowercase().as_str())
+        };
+        if !record.iter().any(is_word)
+            || !record.iter().all(|cell| cell.is_empty() || is_word(cell))
+        {
             return Ok(false);
         }
         for (head, unit) in self.heads.iter().zip(record) {
@@ -166,23 +193,41 @@ impl Sheet {
     ///
     /// # Errors
     /// If it is not a number, or out of range.
-    pub fn number(&self, row: usize, column: usize, (low, high): (f64, f64)) -> Result<f64, Mistake> {
+    pub fn number(
+        &self,
+        row: usize,
+        column: usize,
+        (low, high): (f64, f64),
+    ) -> Result<f64, Mistake> {
         let text = self.text(row, column);
-        let found = if text.is_empty() { "empty".to_owned() } else { text.to_owned() };
+        let found = if text.is_empty() {
+            "empty".to_owned()
+        } else {
+            text.to_owned()
+        };
         // A setting computed as full ahead may exceed it by a rounding error.
         let slack = 1e-9 * (high - low);
         match self.parse(text) {
-            Some(number) if (low - slack..=high + slack).contains(&number) => Ok(number.clamp(low, high)),
+            Some(number) if (low - slack..=high + slack).contains(&number) => {
+                Ok(number.clamp(low, high))
+            }
             _ => {
                 let expected = format!("expected {} to {}", short(low), short(high));
-                Err(self.mistake(Some(self.rows[row].0), format!("{} is {found}, {expected}", self.heads[column])))
+                Err(self.mistake(
+                    Some(self.rows[row].0),
+                    format!("{} is {found}, {expected}", self.heads[column]),
+                ))
             }
         }
     }
 
     /// A fault of the file, or of one of its lines.
     pub fn mistake(&self, line: Option<u64>, message: String) -> Mistake {
-        Mistake { file: self.file.clone(), line, message }
+        Mistake {
+            file: self.file.clone(),
+            line,
+            message,
+        }
     }
 
     /// The times in column `t_s`, strictly increasing, from 0 to `high_s`.
@@ -202,9 +247,18 @@ impl Sheet {
     }
 
     fn times_from(&self, high_s: f64, start: fn(f64) -> f64) -> Result<Vec<f64>, Mistake> {
-        let missing = || self.mistake(Some(1), format!("no column t_s among {}", self.heads.join(", ")));
+        let missing = || {
+            self.mistake(
+                Some(1),
+                format!("no column t_s among {}", self.heads.join(", ")),
+            )
+        };
         let column = self.column("t_s").ok_or_else(missing)?;
-        let first_s = self.rows.first().and_then(|_| self.parse(self.text(0, column))).filter(|t_s| t_s.is_finite());
+        let first_s = self
+            .rows
+            .first()
+            .and_then(|_| self.parse(self.text(0, column)))
+            .filter(|t_s| t_s.is_finite());
         let start_s = first_s.map_or(0.0, start);
         let mut times_s: Vec<f64> = Vec::with_capacity(self.rows.len());
         for row in 0..self.rows.len() {
@@ -212,7 +266,9 @@ impl Sheet {
             let since_s = t_s - start_s;
             if let Some(before_s) = times_s.last().filter(|before_s| since_s <= **before_s) {
                 let before_s = before_s + start_s;
-                let message = format!("t_s is {t_s}, expected more than {before_s}, its value in the row before");
+                let message = format!(
+                    "t_s is {t_s}, expected more than {before_s}, its value in the row before"
+                );
                 return Err(self.mistake(Some(self.rows[row].0), message));
             }
             times_s.push(since_s);
@@ -225,26 +281,45 @@ impl Sheet {
 /// and comments may follow.
 fn line_of(bytes: &[u8], position: &csv::Position) -> u64 {
     let rest = bytes.get(position.byte() as usize..).unwrap_or_default();
-    let lines = rest.split(|byte| *byte == b'\n').map(|line| line.strip_suffix(b"\r").unwrap_or(line));
-    position.line() + lines.take_while(|line| line.is_empty() || line.starts_with(b"#")).count() as u64
+    let lines = rest
+        .split(|byte| *byte == b'\n')
+        .map(|line| line.strip_suffix(b"\r").unwrap_or(line));
+    position.line()
+        + lines
+            .take_while(|line| line.is_empty() || line.starts_with(b"#"))
+            .count() as u64
 }
 
 /// What separates the columns: the commonest of comma, semicolon and tab in the first line.
 fn separator(bytes: &[u8]) -> u8 {
     let mut lines = bytes.split(|byte| *byte == b'\n');
-    let header = lines.find(|line| !line.trim_ascii().is_empty() && !line.starts_with(b"#")).unwrap_or_default();
+    let header = lines
+        .find(|line| !line.trim_ascii().is_empty() && !line.starts_with(b"#"))
+        .unwrap_or_default();
     // Every other part is within quotes.
     let plain = header.split(|byte| *byte == b'"').step_by(2);
-    let count = |separator: u8| plain.clone().flatten().filter(|byte| **byte == separator).count();
+    let count = |separator: u8| {
+        plain
+            .clone()
+            .flatten()
+            .filter(|byte| **byte == separator)
+            .count()
+    };
     // The last one of equally common ones counts.
-    [b'\t', b';', b','].into_iter().max_by_key(|separator| count(*separator)).unwrap_or(b',')
+    [b'\t', b';', b',']
+        .into_iter()
+        .max_by_key(|separator| count(*separator))
+        .unwrap_or(b',')
 }
 
 /// A normalised column name: `Port (rad/s)` is `port_rad_s`.
 fn plain_head(head: &str) -> String {
     let joined = words(head.trim_start_matches('\u{feff}'));
     for side in ["port", "starboard"] {
-        if let Some(unit) = joined.strip_prefix(side).and_then(|rest| rest.strip_prefix('_')) {
+        if let Some(unit) = joined
+            .strip_prefix(side)
+            .and_then(|rest| rest.strip_prefix('_'))
+        {
             return format!("{side}_{}", plain_unit(unit));
         }
     }
@@ -254,7 +329,10 @@ fn plain_head(head: &str) -> String {
 /// The words of a name or a unit, in lower case and joined: `deg/s` is `deg_s`.
 fn words(text: &str) -> String {
     let spelt = text.to_lowercase().replace('%', "pct");
-    let words: Vec<&str> = spelt.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).collect();
+    let words: Vec<&str> = spelt
+        .split(|c: char| !c.is_alphanumeric())
+        .filter(|word| !word.is_empty())
+        .collect();
     words.join("_")
 }
 
@@ -312,18 +390,44 @@ mod tests {
             ("t_s,t_s\n0,1\n", "in.csv:1: two columns t_s"),
             ("t_s,a\n0,1\n1\n", "in.csv:3: 1 columns, expected 2"),
             ("t_s,a\n0,1\n \n1,2,3\n", "in.csv:4: 3 columns, expected 2"),
-            ("t_s,a\n0,1\n # no remark\n", "in.csv:3: 1 columns, expected 2"),
+            (
+                "t_s,a\n0,1\n # no remark\n",
+                "in.csv:3: 1 columns, expected 2",
+            ),
             ("t_s,a\n0", "in.csv:2: 1 columns, expected 2"),
-            ("t_s;a\n0,0;1\n0,5,5;1\n", "in.csv:3: t_s is 0,5,5, expected 0 to 100"),
-            ("t_s,speed_m_s\ns,kn\n0,1\n", "in.csv:2: speed_m_s has the unit kn, expected that of its name"),
+            (
+                "t_s;a\n0,0;1\n0,5,5;1\n",
+                "in.csv:3: t_s is 0,5,5, expected 0 to 100",
+            ),
+            (
+                "t_s,speed_m_s\ns,kn\n0,1\n",
+                "in.csv:2: speed_m_s has the unit kn, expected that of its name",
+            ),
             ("x,a\n0,1\n", "in.csv:1: no column t_s among x, a"),
-            ("t_s,a\n0,1\nnan,1\n", "in.csv:3: t_s is nan, expected 0 to 100"),
-            ("t_s,a\n0,1\n-1,1\n", "in.csv:3: t_s is -1, expected 0 to 100"),
-            ("t_s,a\n0,1\n\n# a remark\n1e9,1\n", "in.csv:5: t_s is 1e9, expected 0 to 100"),
-            ("t_s,a\n0,1\n,1\n", "in.csv:3: t_s is empty, expected 0 to 100"),
-            ("t_s,a\n0,1\n2,1\n2,3\n", "in.csv:4: t_s is 2, expected more than 2, its value in the row before"),
+            (
+                "t_s,a\n0,1\nnan,1\n",
+                "in.csv:3: t_s is nan, expected 0 to 100",
+            ),
+            (
+                "t_s,a\n0,1\n-1,1\n",
+                "in.csv:3: t_s is -1, expected 0 to 100",
+            ),
+            (
+                "t_s,a\n0,1\n\n# a remark\n1e9,1\n",
+                "in.csv:5: t_s is 1e9, expected 0 to 100",
+            ),
+            (
+                "t_s,a\n0,1\n,1\n",
+                "in.csv:3: t_s is empty, expected 0 to 100",
+            ),
+            (
+                "t_s,a\n0,1\n2,1\n2,3\n",
+                "in.csv:4: t_s is 2, expected more than 2, its value in the row before",
+            ),
         ] {
-            let error = sheet(text).and_then(|sheet| sheet.times(100.0)).expect_err(text);
+            let error = sheet(text)
+                .and_then(|sheet| sheet.times(100.0))
+                .expect_err(text);
             assert!(error.to_string().starts_with(want), "{text:?}: {error}");
         }
     }
@@ -346,8 +450,10 @@ mod tests {
     /// Each as some logger or spreadsheet writes it.
     #[test]
     fn tables_of_other_programs_are_read() {
-        let utf_16: Vec<u8> =
-            "\u{feff}t_s\ta\r\n0\t1\r\n1,5\t3\r\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
+        let utf_16: Vec<u8> = "\u{feff}t_s\ta\r\n0\t1\r\n1,5\t3\r\n"
+            .encode_utf16()
+            .flat_map(u16::to_le_bytes)
+            .collect();
         for bytes in [
             &b"t_s;a\n0,0;1,0\n1,5;3,0\n"[..],
             b"t_s;a\n0.0;1.0\n1.5;3.0\n",
@@ -359,12 +465,20 @@ mod tests {
             &utf_16,
         ] {
             let sheet = Sheet::read("in.csv", bytes).unwrap_or_else(|error| panic!("{error}"));
-            assert_eq!(sheet.times(100.0), Ok(vec![0.0, 1.5]), "{}", String::from_utf8_lossy(bytes));
+            assert_eq!(
+                sheet.times(100.0),
+                Ok(vec![0.0, 1.5]),
+                "{}",
+                String::from_utf8_lossy(bytes)
+            );
             assert_eq!(sheet.number(1, 1, (0.0, 9.0)), Ok(3.0));
         }
         let cut = sheet("t_s,a\n0,1\n1.5").expect("the rest is good");
         let notes: Vec<String> = cut.notes().iter().map(ToString::to_string).collect();
-        assert_eq!(notes, ["in.csv:3: 1 of 2 columns in the last line, which is cut off and ignored"]);
+        assert_eq!(
+            notes,
+            ["in.csv:3: 1 of 2 columns in the last line, which is cut off and ignored"]
+        );
     }
 
     #[test]
@@ -372,8 +486,14 @@ mod tests {
         let sheet = sheet("t_s,a\n1718000000.0,1\n1718000000.5,n/a\n").expect("a table");
         assert_eq!(sheet.times_from_first(100.0), Ok(vec![0.0, 0.5]));
         assert!(sheet.is_missing(1, 1) && !sheet.is_missing(0, 1));
-        let error = sheet.times(100.0).expect_err("no time of a trial").to_string();
-        assert!(error.contains("t_s is 1718000000.0, expected 0 to 100"), "{error}");
+        let error = sheet
+            .times(100.0)
+            .expect_err("no time of a trial")
+            .to_string();
+        assert!(
+            error.contains("t_s is 1718000000.0, expected 0 to 100"),
+            "{error}"
+        );
     }
 
     #[test]

@@ -35,7 +35,13 @@ pub struct TrialBoat {
 impl TrialBoat {
     /// A boat at its start. `seed` selects the randomness of the sea and of its sensors.
     pub fn new(boat: &Boat, sea: &Sea, tick: SimTime, seed: u64, start: &Start) -> TrialBoat {
-        let vehicle = VehiclePlan { name: "boat", kind: 0, start: Pose::default(), is_external: false, faults: vec![] };
+        let vehicle = VehiclePlan {
+            name: "boat",
+            kind: 0,
+            start: Pose::default(),
+            is_external: false,
+            faults: vec![],
+        };
         let mut world = World::new(&WorldPlan {
             boats_are_solid: true,
             tick,
@@ -53,13 +59,21 @@ impl TrialBoat {
             // loops of a kinematic boat are set directly. A test compares that with the world's
             // result.
             let mut state = world.state().clone();
-            state.points[0] = point_at_start(kinematic, start, world.sea().current_at(Ned::default()));
+            state.points[0] =
+                point_at_start(kinematic, start, world.sea().current_at(Ned::default()));
             psi_rad = state.points[0].psi_rad();
             world.set_state(state);
         }
-        let pose = Pose { at: Ned::default(), psi_rad };
+        let pose = Pose {
+            at: Ned::default(),
+            psi_rad,
+        };
         world.set_under_way(VehicleId(0), pose, start.nu);
-        TrialBoat { world: Box::new(world), tick, origin: Ned::default() }
+        TrialBoat {
+            world: Box::new(world),
+            tick,
+            origin: Ned::default(),
+        }
     }
 
     /// The length of a tick.
@@ -105,18 +119,32 @@ impl TrialBoat {
         let (surge_through_water_m_s, thrusts_newton) = match state.points.first() {
             None => {
                 let current = in_body(psi_rad, self.world.sea().current_at(at));
-                (boat.nu.surge - current.ahead, [boat.port.newton, boat.starboard.newton])
+                (
+                    boat.nu.surge - current.ahead,
+                    [boat.port.newton, boat.starboard.newton],
+                )
             }
             Some(point) => (point.speed_m_s, [f64::NAN; 2]),
         };
-        Sample { t_s, at: at - self.origin, psi_rad, nu: boat.nu, surge_through_water_m_s, thrusts_newton, command }
+        Sample {
+            t_s,
+            at: at - self.origin,
+            psi_rad,
+            nu: boat.nu,
+            surge_through_water_m_s,
+            thrusts_newton,
+            command,
+        }
     }
 
     /// The settings of its two thrusters, or thrust and rudder in per cent.
     pub fn settings(&self) -> [f64; 2] {
         let state = self.world.state();
         match state.points.first() {
-            None => [state.boats[0].port.command, state.boats[0].starboard.command],
+            None => [
+                state.boats[0].port.command,
+                state.boats[0].starboard.command,
+            ],
             Some(point) => [point.thrust, point.rudder],
         }
     }
@@ -130,7 +158,9 @@ fn point_at_start(kinematic: &Kinematic, start: &Start, current_m_s: Ned) -> Kin
     // Speed is through the water; a boat without mass cannot drift sideways.
     let ahead_m_s = start.nu.surge - in_body(start.psi_rad, current_m_s).ahead;
     let speed_m_s = ahead_m_s.clamp(0.0, kinematic.speed_max_m_s);
-    let thrust = start.thrust_pct.unwrap_or_else(|| KinematicModel::new(kinematic).thrust_for_speed(speed_m_s));
+    let thrust = start
+        .thrust_pct
+        .unwrap_or_else(|| KinematicModel::new(kinematic).thrust_for_speed(speed_m_s));
     KinematicState::under_way(start.psi_rad, speed_m_s, thrust)
 }
 
@@ -143,10 +173,17 @@ fn in_body(psi_rad: f64, ned: Ned) -> Body {
 fn order(command: Command) -> Order {
     match command {
         Command::Thrust { port, starboard } => Order::Thrust { port, starboard },
-        Command::Steer { heading_rad, speed_m_s } => Order::Steer { heading_rad, speed_m_s },
-        Command::Impose { thrust, rudder } => {
-            Order::Thrust { port: (thrust + rudder) / 100.0, starboard: (thrust - rudder) / 100.0 }
-        }
+        Command::Steer {
+            heading_rad,
+            speed_m_s,
+        } => Order::Steer {
+            heading_rad,
+            speed_m_s,
+        },
+        Command::Impose { thrust, rudder } => Order::Thrust {
+            port: (thrust + rudder) / 100.0,
+            starboard: (thrust - rudder) / 100.0,
+        },
         Command::Hold => Order::Hold,
     }
 }

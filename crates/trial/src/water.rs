@@ -14,14 +14,25 @@ const SEA_WATER_KG_M3: f64 = 1025.0;
 
 /// The default sea of a trial: salt water at rest, no wind.
 pub fn still_sea() -> Sea {
-    Sea { name: "still".into(), water_density_kg_m3: SEA_WATER_KG_M3, ..Sea::at_rest() }
+    Sea {
+        name: "still".into(),
+        water_density_kg_m3: SEA_WATER_KG_M3,
+        ..Sea::at_rest()
+    }
 }
 
 /// Replaces the mean current of `sea`. Its other currents (tide, shear, eddies) stay.
 pub fn set_mean_current(sea: &mut Sea, speed_m_s: f64, toward_deg: f64) {
     let toward = Ned::toward_deg(toward_deg);
-    let wander = sea.current.wander.map(|wander| scenario::sea::Wander { toward, ..wander });
-    sea.current = Current { mean_m_s: toward.scaled(speed_m_s), wander, ..sea.current.clone() };
+    let wander = sea
+        .current
+        .wander
+        .map(|wander| scenario::sea::Wander { toward, ..wander });
+    sea.current = Current {
+        mean_m_s: toward.scaled(speed_m_s),
+        wander,
+        ..sea.current.clone()
+    };
 }
 
 /// A field without walls or obstacles round the datum.

@@ -14,7 +14,8 @@ const TICK: SimTime = SimTime(50_000_000);
 const NOISE: [f64; 6] = [0.3, 0.3, 1.0, 0.05, 0.05, 0.5];
 
 fn boat() -> Boat {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/boats/surveyor_m1_8.toml");
+    let path =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/boats/surveyor_m1_8.toml");
     scenario::load_file(&path).unwrap_or_else(|e| panic!("{e}"))
 }
 
@@ -27,7 +28,9 @@ fn wrong(truth: &Boat) -> Boat {
     boat.hull.yaw_linear_kg_m2_s *= 1.5;
     boat.hull.yaw_quadratic_kg_m2 *= 0.65;
     boat.hull.yaw_lift_kg_m *= 1.5;
-    let Drive::Thrusters { thruster, .. } = &mut boat.drive else { panic!("it has thrusters") };
+    let Drive::Thrusters { thruster, .. } = &mut boat.drive else {
+        panic!("it has thrusters")
+    };
     thruster.flaws.gain = (1.15, 0.9);
     thruster.lag_s = 0.4;
     boat
@@ -39,7 +42,11 @@ fn orders_csv(stream: &mut Stream) -> String {
     let mut t_s = 0.0;
     while t_s < 240.0 {
         let port = stream.between(-60.0, 100.0);
-        let starboard = if stream.between(0.0, 1.0) < 0.4 { port } else { stream.between(-60.0, 100.0) };
+        let starboard = if stream.between(0.0, 1.0) < 0.4 {
+            port
+        } else {
+            stream.between(-60.0, 100.0)
+        };
         text += &format!("{t_s},{port:.2},{starboard:.2}\n");
         t_s += stream.between(3.0, 8.0).round();
     }
@@ -68,14 +75,25 @@ fn log_csv(boat: &Boat, orders_csv: &str, noise: f64, stream: &mut Stream) -> St
 }
 
 fn setting() -> Setting {
-    Setting { sea: trial::still_sea(), seed: 1, tick: TICK, segment: SimTime::from_s(20.0) }
+    Setting {
+        sea: trial::still_sea(),
+        seed: 1,
+        tick: TICK,
+        segment: SimTime::from_s(20.0),
+    }
 }
 
 fn fitted(start: &Boat, csv: &str, names: &[&str]) -> Result<Fit, NoFit> {
     let sheet = Sheet::read("log.csv", csv.as_bytes()).expect("it is CSV");
     let log = Log::of_sheet(&sheet, start).unwrap_or_else(|e| panic!("{e}"));
     let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
-    identify::fit(start, &log, &setting(), &identify::parameters(&names, start)?, &|_| {})
+    identify::fit(
+        start,
+        &log,
+        &setting(),
+        &identify::parameters(&names, start)?,
+        &|_| {},
+    )
 }
 
 #[test]
@@ -86,21 +104,38 @@ fn known_parameters_come_back_within_their_stated_confidence() {
     for seed in 1..=4 {
         let mut stream = Stream::new(seed, "test");
         let orders = orders_csv(&mut stream);
-        let fit =
-            fitted(&wrong(&truth), &log_csv(&truth, &orders, 1.0, &mut stream), &[]).unwrap_or_else(|e| panic!("{e}"));
+        let fit = fitted(
+            &wrong(&truth),
+            &log_csv(&truth, &orders, 1.0, &mut stream),
+            &[],
+        )
+        .unwrap_or_else(|e| panic!("{e}"));
         assert_eq!(fit.estimates.len(), 9, "seed {seed}");
         for estimate in &fit.estimates {
             let want = estimate.parameter.value(&truth).expect("it has it");
             let off = (estimate.value - want).abs() / estimate.plus_minus;
             let name = estimate.parameter.name;
-            assert!(estimate.plus_minus < 0.2 * want, "seed {seed}: {name} ± {}", estimate.plus_minus);
-            assert!(off < 2.0, "seed {seed}: {name} {want} is {} ± {}", estimate.value, estimate.plus_minus);
+            assert!(
+                estimate.plus_minus < 0.2 * want,
+                "seed {seed}: {name} ± {}",
+                estimate.plus_minus
+            );
+            assert!(
+                off < 2.0,
+                "seed {seed}: {name} {want} is {} ± {}",
+                estimate.value,
+                estimate.plus_minus
+            );
             (all, within) = (all + 1, within + i32::from(off <= 1.0));
         }
         for quality in &fit.qualities {
             assert!(quality.r_squared > 0.6, "seed {seed}: {quality:?}");
         }
-        assert!((fit.qualities[3].rms - 0.05).abs() < 0.005, "what is left is the noise: {:?}", fit.qualities);
+        assert!(
+            (fit.qualities[3].rms - 0.05).abs() < 0.005,
+            "what is left is the noise: {:?}",
+            fit.qualities
+        );
     }
     // 95 % of 36 is 34; fewer than 31 would have a probability of one in a hundred.
     assert!(within >= 31, "{within} of {all} within their 95 %");
@@ -115,7 +150,11 @@ fn without_noise_they_come_back_to_four_places() {
     for estimate in &fit.estimates {
         let want = estimate.parameter.value(&truth).expect("it has it");
         let name = estimate.parameter.name;
-        assert!((estimate.value - want).abs() < 1e-4 * want, "{name} {want} is {}", estimate.value);
+        assert!(
+            (estimate.value - want).abs() < 1e-4 * want,
+            "{name} {want} is {}",
+            estimate.value
+        );
     }
 }
 
@@ -125,11 +164,23 @@ fn what_the_log_cannot_tell_is_said() {
     // Straight ahead at one speed, thrust and resistance cannot be separated.
     let straight = "t_s,port_pct,starboard_pct\n0,60,60\n120,60,60\n";
     let csv = log_csv(&truth, straight, 1.0, &mut Stream::new(1, "test"));
-    let fit =
-        fitted(&truth, &csv, &["surge_linear", "surge_quadratic", "yaw_linear"]).unwrap_or_else(|e| panic!("{e}"));
+    let fit = fitted(
+        &truth,
+        &csv,
+        &["surge_linear", "surge_quadratic", "yaw_linear"],
+    )
+    .unwrap_or_else(|e| panic!("{e}"));
     let pair = ["surge_linear", "surge_quadratic"];
-    assert!(fit.confused.iter().any(|confused| confused.names == pair), "{:?}", fit.confused);
-    let yaw = fit.estimates.iter().find(|estimate| estimate.parameter.name == "yaw_linear").expect("it was fitted");
+    assert!(
+        fit.confused.iter().any(|confused| confused.names == pair),
+        "{:?}",
+        fit.confused
+    );
+    let yaw = fit
+        .estimates
+        .iter()
+        .find(|estimate| estimate.parameter.name == "yaw_linear")
+        .expect("it was fitted");
     assert!(yaw.plus_minus > 0.5 * yaw.value, "nothing turned: {yaw:?}");
     assert!(matches!(fitted(&truth, &csv, &["keel"]), Err(NoFit::Unknown(name)) if name == "keel"));
 }
@@ -138,8 +189,16 @@ fn what_the_log_cannot_tell_is_said() {
 fn a_log_that_lacks_columns_is_refused() {
     let rows = |row: &str| (0..30).map(|i| format!("{i},{row}\n")).collect::<String>();
     for (head, row, want) in [
-        ("t_s,port_pct,starboard_pct", "0,0", "log.csv:1: no column heading_deg"),
-        ("t_s,heading_deg,surge_m_s,yaw_rate_deg_s", "0,0,0", "log.csv:1: no command columns"),
+        (
+            "t_s,port_pct,starboard_pct",
+            "0,0",
+            "log.csv:1: no column heading_deg",
+        ),
+        (
+            "t_s,heading_deg,surge_m_s,yaw_rate_deg_s",
+            "0,0,0",
+            "log.csv:1: no command columns",
+        ),
         (
             "t_s,port_pct,starboard_pct,heading_deg,surge_m_s,yaw_rate_deg_s,x_m",
             "0,0,0,0,0,0",
@@ -151,7 +210,8 @@ fn a_log_that_lacks_columns_is_refused() {
             "log.csv:2: surge_m_s is fast",
         ),
     ] {
-        let sheet = Sheet::read("log.csv", format!("{head}\n{}", rows(row)).as_bytes()).expect("it is CSV");
+        let sheet =
+            Sheet::read("log.csv", format!("{head}\n{}", rows(row)).as_bytes()).expect("it is CSV");
         let error = Log::of_sheet(&sheet, &boat()).expect_err(head).to_string();
         assert!(error.contains(want), "{error}");
     }

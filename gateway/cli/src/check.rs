@@ -43,7 +43,8 @@ pub struct Args {
     /// Runs the pre-flight check for this vehicle on the field of its game
     #[arg(long, value_name = "NAME")]
     vehicle: Option<String>,
-    /// Gateway file or name with which the boat will be driven [default: a Surveyor with careful limits]
+    /// Gateway file or name with which the boat will be driven [default: a Surveyor with careful
+    /// limits]
     #[arg(long, value_name = "GATEWAY", value_parser = command_line::scenario_files::file_of(scenario::Kind::of::<Gateway>()))]
     config: Option<PathBuf>,
     /// Guides you through a compass swing and a propeller test by remote control; asks before each
@@ -64,46 +65,102 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let (sender, events) = sync_channel(4096);
     // A full queue drops events: harmless, since this only listens.
     let take = move |event| drop(sender.try_send(event));
-    let link = Link::open(&address, LinkSettings { silence: None, ..LinkSettings::default() }, take)?;
-    let for_s = args.for_s.unwrap_or(LISTEN_S[usize::from(args.vehicle.is_some())]);
-    let sends =
-        if gateway.protocol == BoatProtocol::Mavlink { "nothing but requests for telemetry" } else { "nothing" };
+    let link = Link::open(
+        &address,
+        LinkSettings {
+            silence: None,
+            ..LinkSettings::default()
+        },
+        take,
+    )?;
+    let for_s = args
+        .for_s
+        .unwrap_or(LISTEN_S[usize::from(args.vehicle.is_some())]);
+    let sends = if gateway.protocol == BoatProtocol::Mavlink {
+        "nothing but requests for telemetry"
+    } else {
+        "nothing"
+    };
     let hello = format!("listening for {for_s} s, sending {sends}");
     let check = SensorCheck::new(&gateway);
     let start = bus::clock::now();
-    let mut listener = Listener { check, link, events, start, stop, reason: None, hello };
+    let mut listener = Listener {
+        check,
+        link,
+        events,
+        start,
+        stop,
+        reason: None,
+        hello,
+    };
     listener.listen(&mut |listener| listener.now().as_s() >= for_s);
     let check = &listener.check;
     if check.received.is_empty() {
         let reason = listener.reason.clone().unwrap_or_else(|| check.unread());
-        bail!("received nothing readable from {address} within {for_s} s: {reason} ({})", counted(check));
+        bail!(
+            "received nothing readable from {address} within {for_s} s: {reason} ({})",
+            counted(check)
+        );
     }
     // Before the search for the game, which takes time.
-    let host = HostTime { now: listener.now(), utc_ns: utc::now_ns() };
+    let host = HostTime {
+        now: listener.now(),
+        utc_ns: utc::now_ns(),
+    };
     terminal::print(&report(check, host));
     let Some(vehicle) = &args.vehicle else {
         let is_well = check.missing().is_empty() && check.clock_fault(host).is_none();
-        return Ok(if is_well { ExitCode::SUCCESS } else { ExitCode::FAILURE });
+        return Ok(if is_well {
+            ExitCode::SUCCESS
+        } else {
+            ExitCode::FAILURE
+        });
     };
     let water = water(args, vehicle, &gateway, &listener.stop)?;
     let mut checks = boat_checks(check, host, &gateway, water.as_ref());
-    let path = args.report.clone().unwrap_or_else(|| Path::new("runs").join(format!("preflight-{vehicle}.json")));
-    let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
-    std::fs::create_dir_all(folder).with_context(|| format!("cannot create the folder {}", folder.display()))?;
+    let path = args
+        .report
+        .clone()
+        .unwrap_or_else(|| Path::new("runs").join(format!("preflight-{vehicle}.json")));
+    let folder = path
+        .parent()
+        .filter(|folder| *folder != Path::new(""))
+        .unwrap_or(Path::new("."));
+    std::fs::create_dir_all(folder)
+        .with_context(|| format!("cannot create the folder {}", folder.display()))?;
     checks.extend(machine_checks(folder));
-    checks.extend(guided_checks(&mut Guide::new(args.guided), &mut listener, &gateway));
+    checks.extend(guided_checks(
+        &mut Guide::new(args.guided),
+        &mut listener,
+        &gateway,
+    ));
     let now_ns = utc::now_ns();
     let at_unix_s = now_ns / 1_000_000_000;
     let at = utc::text(now_ns);
-    let made = Report { vehicle: vehicle.clone(), link: address.to_string(), at_unix_s, at, checks };
+    let made = Report {
+        vehicle: vehicle.clone(),
+        link: address.to_string(),
+        at_unix_s,
+        at,
+        checks,
+    };
     terminal::print(&format!("\n{}", made.text()));
     preflight_report::write(&path, &made)?;
     terminal::remark(&format!("report: {}", path.display()));
-    Ok(if made.faults().is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    Ok(if made.faults().is_empty() {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    })
 }
 
 /// The boat's site in the running game, if there is one.
-fn water(args: &Args, vehicle: &str, gateway: &Gateway, stop: &AtomicBool) -> Result<Option<Water>> {
+fn water(
+    args: &Args,
+    vehicle: &str,
+    gateway: &Gateway,
+    stop: &AtomicBool,
+) -> Result<Option<Water>> {
     let mut tell = |reason: &str| terminal::remark(&format!("looking for the game: {reason}"));
     let place = args.leaf.place()?;
     let found = GameSearch::new(GAME_WAIT, stop).game(&mut tell, &place, args.leaf.game.as_ref());
@@ -117,8 +174,12 @@ fn water(args: &Args, vehicle: &str, gateway: &Gateway, stop: &AtomicBool) -> Re
     bus.close();
     let number = info.scenario.vehicle_named(vehicle)?;
     let area = GeofenceArea::new(&info.scenario.field, &gateway.geofence);
-    area.check(&info.scenario, number).with_context(|| format!("the gateway file {}: geofence", gateway.name))?;
-    Ok(Some(Water { field: info.scenario.field, area }))
+    area.check(&info.scenario, number)
+        .with_context(|| format!("the gateway file {}: geofence", gateway.name))?;
+    Ok(Some(Water {
+        field: info.scenario.field,
+        area,
+    }))
 }
 
 /// Listens to a boat and counts its messages.
@@ -182,24 +243,56 @@ impl Listener {
 
 /// The message counts of the link, as text.
 fn counted(check: &SensorCheck) -> String {
-    check.counts().iter().map(|(name, count)| format!("{count} {name}")).collect::<Vec<_>>().join(", ")
+    check
+        .counts()
+        .iter()
+        .map(|(name, count)| format!("{count} {name}"))
+        .collect::<Vec<_>>()
+        .join(", ")
 }
 
 fn report(check: &SensorCheck, host: HostTime) -> String {
-    let width = check.received.keys().map(String::len).max().unwrap_or(0).max(10);
-    let mut lines = vec![format!("{:<width$} {:>7} {:>8}  last", "name", "count", "1/s")];
+    let width = check
+        .received
+        .keys()
+        .map(String::len)
+        .max()
+        .unwrap_or(0)
+        .max(10);
+    let mut lines = vec![format!(
+        "{:<width$} {:>7} {:>8}  last",
+        "name", "count", "1/s"
+    )];
     for (name, received) in &check.received {
-        let rate = received.rate_hz().map_or("-".to_owned(), |rate| format!("{rate:.2}"));
-        let note = if received.unreadable > 0 { "  (not read)" } else { "" };
+        let rate = received
+            .rate_hz()
+            .map_or("-".to_owned(), |rate| format!("{rate:.2}"));
+        let note = if received.unreadable > 0 {
+            "  (not read)"
+        } else {
+            ""
+        };
         let last: String = received.last.chars().take(LAST_MAX).collect();
-        lines.push(format!("{name:<width$} {:>7} {rate:>8}  {last}{note}", received.count));
+        lines.push(format!(
+            "{name:<width$} {:>7} {rate:>8}  {last}{note}",
+            received.count
+        ));
         let why = received.why_unreadable.as_ref();
-        lines.extend(why.map(|why| format!("{:<width$} {:>7} unreadable: {why}", "", received.unreadable)));
+        lines.extend(why.map(|why| {
+            format!(
+                "{:<width$} {:>7} unreadable: {why}",
+                "", received.unreadable
+            )
+        }));
     }
     lines.push(format!("\n{}", counted(check)));
     lines.extend(check.findings(host));
     let mut missing = check.missing();
-    missing.extend(check.clock_fault(host).map(|fault| format!("a correct clock: {fault}")));
+    missing.extend(
+        check
+            .clock_fault(host)
+            .map(|fault| format!("a correct clock: {fault}")),
+    );
     if missing.is_empty() {
         lines.push("\nnothing is missing".to_owned());
     } else {

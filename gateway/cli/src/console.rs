@@ -24,8 +24,11 @@ const LOOK_AGAIN: Duration = Duration::from_millis(250);
 /// After this many attempts the session itself may be broken.
 const ATTEMPTS: u64 = 20;
 /// The same timeouts as the page.
-const PATIENCE: Patience =
-    Patience { silence: Duration::from_secs(5), missing: Duration::from_secs(1), unheard: Duration::from_secs(1) };
+const PATIENCE: Patience = Patience {
+    silence: Duration::from_secs(5),
+    missing: Duration::from_secs(1),
+    unheard: Duration::from_secs(1),
+};
 /// When input ends, wait this long for unfinished stops.
 const LAST: Duration = Duration::from_secs(5);
 /// Polling interval for the end of the program.
@@ -53,8 +56,8 @@ const HELP: &str = "\
     "  echo all estop | {gateway} console --game day",
 )))]
 pub struct Args {
-    /// Address of a gateway's control port, as the gateway prints it; at most one per boat [default: those of the
-    /// gateways on this machine and in the game]
+    /// Address of a gateway's control port, as the gateway prints it; at most one per boat
+    /// [default: those of the gateways on this machine and in the game]
     #[arg(long, value_name = "HOST:PORT", value_parser = address)]
     gateway: Vec<SocketAddr>,
     #[command(flatten)]
@@ -63,7 +66,11 @@ pub struct Args {
 
 /// A line of input.
 #[derive(Parser)]
-#[command(no_binary_name = true, disable_help_flag = true, override_usage = "NAME COMMAND [ARGS], or help")]
+#[command(
+    no_binary_name = true,
+    disable_help_flag = true,
+    override_usage = "NAME COMMAND [ARGS], or help"
+)]
 struct Line {
     #[command(flatten)]
     words: Words,
@@ -93,7 +100,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         console.client.add_gateway(*at, None, net.token.clone())?;
     }
     if net.keys.is_none() {
-        console.client.add_hub(&net.connect, args.leaf.game.as_ref(), net.token.as_ref())?;
+        console
+            .client
+            .add_hub(&net.connect, args.leaf.game.as_ref(), net.token.as_ref())?;
     }
     let finder = console.clone();
     let printer = console.clone();
@@ -105,9 +114,17 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     console.is_over.store(true, Ordering::Relaxed);
     // Ignore the error: a thread that panicked prints no more.
     drop(printing.join());
-    console.client.visit(StopOrders::take_news).iter().for_each(show);
+    console
+        .client
+        .visit(StopOrders::take_news)
+        .iter()
+        .for_each(show);
     left.iter().for_each(|left| terminal::remark(left));
-    Ok(if left.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    Ok(if left.is_empty() {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    })
 }
 
 impl Console {
@@ -118,7 +135,10 @@ impl Console {
         // A thread waiting for a key cannot be ended; the process exits.
         std::thread::spawn(move || {
             for line in std::io::stdin().lock().split(b'\n').map_while(Result::ok) {
-                if sender.send(String::from_utf8_lossy(&line).trim().to_owned()).is_err() {
+                if sender
+                    .send(String::from_utf8_lossy(&line).trim().to_owned())
+                    .is_err()
+                {
                     return;
                 }
             }
@@ -129,7 +149,9 @@ impl Console {
         while !self.is_over.load(Ordering::Relaxed) {
             match lines.recv_timeout(LOOK) {
                 Ok(line) if line == "quit" => return,
-                Ok(line) => self.obey(&line).unwrap_or_else(|e| terminal::complain(&command_line::explain::line(&e))),
+                Ok(line) => self
+                    .obey(&line)
+                    .unwrap_or_else(|e| terminal::complain(&command_line::explain::line(&e))),
                 Err(std::sync::mpsc::RecvTimeoutError::Timeout) => continue,
                 Err(std::sync::mpsc::RecvTimeoutError::Disconnected) => return,
             }
@@ -143,7 +165,9 @@ impl Console {
         match line {
             "" | "estop" => self.client.stop(None, StopCommand::EStop),
             "help" => terminal::print(&program::text(HELP)),
-            "status" => terminal::print(&self.client.visit(|orders| boats_text(orders, clock::now()))),
+            "status" => {
+                terminal::print(&self.client.visit(|orders| boats_text(orders, clock::now())))
+            }
             line => match Line::try_parse_from(line.split_whitespace()) {
                 Ok(Line { words }) => self.command(words)?,
                 Err(e) => bail!("{}", e.to_string().trim_end().trim_start_matches("error: ")),
@@ -181,14 +205,23 @@ impl Console {
             let ports = console.ports();
             let session = console.session.visit(|session| session.clone());
             match to_boat(&ports, session.as_ref(), &name, &command) {
-                Ok(OperatorReply { refused: None, status }) if words.command == CommandArg::Status => {
+                Ok(OperatorReply {
+                    refused: None,
+                    status,
+                }) if words.command == CommandArg::Status => {
                     terminal::show(&full(&status));
                 }
-                Ok(OperatorReply { refused: None, status }) => tell(&name, brief(&status.state), asked),
-                Ok(OperatorReply { refused: Some(reason), .. }) => {
-                    terminal::complain(&format!("{name} refuses: {reason}"))
+                Ok(OperatorReply {
+                    refused: None,
+                    status,
+                }) => tell(&name, brief(&status.state), asked),
+                Ok(OperatorReply {
+                    refused: Some(reason),
+                    ..
+                }) => terminal::complain(&format!("{name} refuses: {reason}")),
+                Err(e) => {
+                    terminal::complain(&format!("{name}: {}", command_line::explain::line(&e)))
                 }
-                Err(e) => terminal::complain(&format!("{name}: {}", command_line::explain::line(&e))),
             }
         });
         Ok(())
@@ -209,7 +242,10 @@ impl Console {
 
     fn ports(&self) -> Vec<Port> {
         let known = self.client.gateways();
-        known.into_iter().map(|(at, vehicle, token)| Port { vehicle, at, token }).collect()
+        known
+            .into_iter()
+            .map(|(at, vehicle, token)| Port { vehicle, at, token })
+            .collect()
     }
 
     /// Keeps a session in the game and tracks this machine's gateways.
@@ -254,8 +290,13 @@ impl Console {
     fn stay(&self, bus: &Bus, game: &GameName, boats: &[String]) -> Result<(), bus::BusError> {
         let sim = SimWatch::open(bus, game, PATIENCE)?;
         self.client.join(bus, game, boats)?;
-        self.session.visit(|session| *session = Some((bus.clone(), game.clone())));
-        let boats = if boats.is_empty() { "no real boats".to_owned() } else { boats.join(", ") };
+        self.session
+            .visit(|session| *session = Some((bus.clone(), game.clone())));
+        let boats = if boats.is_empty() {
+            "no real boats".to_owned()
+        } else {
+            boats.join(", ")
+        };
         terminal::remark(&format!("joined the game {}: {boats}", game.as_str()));
         while !self.is_over.load(Ordering::Relaxed) && sim.state() == SimState::Alive {
             self.read_registry();
@@ -271,7 +312,10 @@ impl Console {
         for entry in self.leaf.local_gateways(true) {
             let token = given.clone().or_else(|| entry.token?.parse().ok());
             // On failure the next round retries.
-            drop(self.client.add_gateway(entry.control, Some(&entry.vehicle), token));
+            drop(
+                self.client
+                    .add_gateway(entry.control, Some(&entry.vehicle), token),
+            );
         }
     }
 
@@ -284,16 +328,31 @@ impl Console {
 
 /// Prints a line with the time since the request.
 fn tell(name: &str, what: &str, asked: Instant) {
-    terminal::print(&format!("{name}  {what}  after {} ms\n", clock::since(asked).as_millis()));
+    terminal::print(&format!(
+        "{name}  {what}  after {} ms\n",
+        clock::since(asked).as_millis()
+    ));
 }
 
 fn show(news: &StopNews) {
     terminal::print(&match news {
-        StopNews::Done { vehicle, state, after, .. } => {
-            format!("{vehicle}  {}  after {} ms\n", brief(state), after.as_millis())
+        StopNews::Done {
+            vehicle,
+            state,
+            after,
+            ..
+        } => {
+            format!(
+                "{vehicle}  {}  after {} ms\n",
+                brief(state),
+                after.as_millis()
+            )
         }
         StopNews::Late { vehicle, command } => {
-            format!("{vehicle}  has not confirmed {}; sending it again\n", command.operator_command())
+            format!(
+                "{vehicle}  has not confirmed {}; sending it again\n",
+                command.operator_command()
+            )
         }
         StopNews::Sim(Ok(after)) => format!("sim  obeys  after {} ms\n", after.as_millis()),
         StopNews::Sim(Err(reason)) => format!("sim  {reason}\n"),
@@ -308,13 +367,22 @@ fn brief(state: &str) -> &str {
 }
 
 fn boats_text(orders: &StopOrders, now: Instant) -> String {
-    let boats = orders.boats().map(|(name, boat)| match (&boat.state, boat.heard) {
-        (Some(state), Some(heard)) => {
-            let age_s = now.saturating_duration_since(heard).as_secs_f64();
-            format!("{name}  {}, {age_s:.1} s ago\n", if boat.is_silent { "silent" } else { state })
-        }
-        _ => format!("{name}  not heard yet\n"),
-    });
+    let boats = orders
+        .boats()
+        .map(|(name, boat)| match (&boat.state, boat.heard) {
+            (Some(state), Some(heard)) => {
+                let age_s = now.saturating_duration_since(heard).as_secs_f64();
+                format!(
+                    "{name}  {}, {age_s:.1} s ago\n",
+                    if boat.is_silent { "silent" } else { state }
+                )
+            }
+            _ => format!("{name}  not heard yet\n"),
+        });
     let text: String = boats.collect();
-    if text.is_empty() { "no boat is known yet\n".to_owned() } else { text }
+    if text.is_empty() {
+        "no boat is known yet\n".to_owned()
+    } else {
+        text
+    }
 }

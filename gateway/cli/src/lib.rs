@@ -26,8 +26,15 @@ use std::path::Path;
 use std::process::ExitCode;
 
 /// The kinds of scenario files that the boat's program supports.
-pub const KINDS: &[Kind] =
-    &[Kind::of::<Gateway>(), Kind::GAME, Kind::FIELD, Kind::RULES, Kind::BOAT, Kind::SEA, Kind::STRATEGY];
+pub const KINDS: &[Kind] = &[
+    Kind::of::<Gateway>(),
+    Kind::GAME,
+    Kind::FIELD,
+    Kind::RULES,
+    Kind::BOAT,
+    Kind::SEA,
+    Kind::STRATEGY,
+];
 
 /// The gateway's subcommands.
 #[derive(Subcommand)]
@@ -52,7 +59,8 @@ pub enum Command {
 /// The gateway settings from this file, or the defaults.
 fn gateway_file(path: Option<&Path>) -> Result<Gateway> {
     let load = |path: &Path| {
-        scenario::load_file::<Gateway>(path).with_context(|| format!("cannot use the gateway file {}", path.display()))
+        scenario::load_file::<Gateway>(path)
+            .with_context(|| format!("cannot use the gateway file {}", path.display()))
     };
     path.map_or_else(|| Ok(gateway::config::default_gateway()), load)
 }

@@ -37,7 +37,11 @@ impl Log {
             }
             Line::Remark(text) => terminal::remark(text),
         });
-        Log { is_live, is_quiet, printer }
+        Log {
+            is_live,
+            is_quiet,
+            printer,
+        }
     }
 
     /// Prints a permanent line.
@@ -74,7 +78,10 @@ impl Log {
 
 /// A state, in red if the boat was stopped.
 pub fn state(text: &str) -> String {
-    if ["failsafe", "e-stopped"].iter().any(|stopped| text.starts_with(stopped)) {
+    if ["failsafe", "e-stopped"]
+        .iter()
+        .any(|stopped| text.starts_with(stopped))
+    {
         style::bad(text)
     } else {
         text.to_owned()
@@ -103,14 +110,25 @@ fn brief(status: &GatewayStatus) -> String {
         ),
         _ => "no navigation".to_owned(),
     };
-    let mode = status.mode.map_or("-".to_owned(), |mode| with_age(mode.to_string(), status.mode_age_s));
+    let mode = status.mode.map_or("-".to_owned(), |mode| {
+        with_age(mode.to_string(), status.mode_age_s)
+    });
     let battery = volts(status).map_or(String::new(), |volts| format!("{volts} | "));
-    let alarms: String = status.alarms.iter().map(|alarm| format!("ALARM: {alarm} | ")).collect();
+    let alarms: String = status
+        .alarms
+        .iter()
+        .map(|alarm| format!("ALARM: {alarm} | "))
+        .collect();
     let text = format!(
         "{} | {alarms}link {} | mode {mode} | {nav} | {battery}{}",
         status.state,
         status.link,
-        status.would_send.as_ref().map_or(status.last_sent.clone(), |command| format!("dry run, would send {command}"))
+        status
+            .would_send
+            .as_ref()
+            .map_or(status.last_sent.clone(), |command| format!(
+                "dry run, would send {command}"
+            ))
     );
     text.chars().take(150).collect()
 }
@@ -124,15 +142,26 @@ fn with_age(text: String, age_s: Option<f64>) -> String {
 }
 
 fn volts(status: &GatewayStatus) -> Option<String> {
-    let left = status.battery_pct.map_or(String::new(), |left_pct| format!(" ({left_pct:.0} %)"));
-    status.battery_v.map(|volts| with_age(format!("{volts:.1} V{left}"), status.battery_age_s))
+    let left = status
+        .battery_pct
+        .map_or(String::new(), |left_pct| format!(" ({left_pct:.0} %)"));
+    status
+        .battery_v
+        .map(|volts| with_age(format!("{volts:.1} V{left}"), status.battery_age_s))
 }
 
 fn geofence(report: &GeofenceReport) -> Option<String> {
     let clearance_m = report.clearance_m?;
     let stopping_m = report.stopping_m?;
-    let is_inside = if clearance_m > 0.0 { "inside".to_owned() } else { style::bad("OUTSIDE") };
-    Some(format!("{is_inside}, {:.1} m to the nearest edge, {stopping_m:.1} m to stop", clearance_m.abs()))
+    let is_inside = if clearance_m > 0.0 {
+        "inside".to_owned()
+    } else {
+        style::bad("OUTSIDE")
+    };
+    Some(format!(
+        "{is_inside}, {:.1} m to the nearest edge, {stopping_m:.1} m to stop",
+        clearance_m.abs()
+    ))
 }
 
 /// The full status of a gateway as text.
@@ -151,35 +180,69 @@ pub fn full(status: &GatewayStatus) -> String {
     let mut lines = vec![
         format!("{}: {}", status.vehicle, state(&status.state)),
         format!("  link        {}", status.link),
-        format!("  mode        {}", or_none(status.mode.map(|mode| with_age(mode.to_string(), status.mode_age_s)))),
+        format!(
+            "  mode        {}",
+            or_none(
+                status
+                    .mode
+                    .map(|mode| with_age(mode.to_string(), status.mode_age_s))
+            )
+        ),
         format!(
             "  operator    {}",
-            or_none(status.operator.clone().map(|operator| with_age(operator, status.mode_age_s)))
+            or_none(
+                status
+                    .operator
+                    .clone()
+                    .map(|operator| with_age(operator, status.mode_age_s))
+            )
         ),
         format!("  navigation  {}", or_none(nav)),
-        format!("  geofence    {}", or_none(status.geofence.as_ref().and_then(geofence))),
+        format!(
+            "  geofence    {}",
+            or_none(status.geofence.as_ref().and_then(geofence))
+        ),
         format!("  battery     {}", or_none(volts(status))),
         format!("  last sent   {}", status.last_sent),
     ];
-    lines.extend(status.would_send.iter().map(|command| format!("  dry run     would send {command}")));
-    lines.extend(status.alarms.iter().map(|alarm| style::bad(&format!("  alarm       {alarm}"))));
-    if !status.missing.is_empty() {
-        lines.push(style::warning(&format!("  missing     {}", status.missing.join("; "))));
-    }
     lines.extend(
         status
-            .failsafes
+            .would_send
             .iter()
-            .map(|failsafe| style::bad(&format!("  failsafe    {:>8.1} s  {}", failsafe.at_s, failsafe.cause))),
+            .map(|command| format!("  dry run     would send {command}")),
     );
+    lines.extend(
+        status
+            .alarms
+            .iter()
+            .map(|alarm| style::bad(&format!("  alarm       {alarm}"))),
+    );
+    if !status.missing.is_empty() {
+        lines.push(style::warning(&format!(
+            "  missing     {}",
+            status.missing.join("; ")
+        )));
+    }
+    lines.extend(status.failsafes.iter().map(|failsafe| {
+        style::bad(&format!(
+            "  failsafe    {:>8.1} s  {}",
+            failsafe.at_s, failsafe.cause
+        ))
+    }));
     let named = ["sentence in, topic out", "order in, sentence out"];
     for (name, latency) in named.iter().zip(status.latency_us) {
         if let Some([median, p99]) = latency {
-            lines.push(format!("  latency     {name}: median {median:.0} us, p99 {p99:.0} us"));
+            lines.push(format!(
+                "  latency     {name}: median {median:.0} us, p99 {p99:.0} us"
+            ));
         }
     }
-    let counts: Vec<String> =
-        status.counts.iter().filter(|(_, count)| *count > 0).map(|(name, count)| format!("{count} {name}")).collect();
+    let counts: Vec<String> = status
+        .counts
+        .iter()
+        .filter(|(_, count)| *count > 0)
+        .map(|(name, count)| format!("{count} {name}"))
+        .collect();
     lines.push(format!("  counts      {}", counts.join(", ")));
     lines.join("\n") + "\n"
 }
@@ -190,9 +253,17 @@ mod tests {
 
     #[test]
     fn a_boat_that_was_stopped_is_red_and_any_other_state_is_not() {
-        let told = |to: &str| text_of(&Event::State { from: "armed".to_owned(), to: to.to_owned() });
+        let told = |to: &str| {
+            text_of(&Event::State {
+                from: "armed".to_owned(),
+                to: to.to_owned(),
+            })
+        };
         assert_eq!(told("disarmed"), "disarmed (was armed)");
-        for to in ["failsafe: the link is down", "e-stopped (by an E-stop of us)"] {
+        for to in [
+            "failsafe: the link is down",
+            "e-stopped (by an E-stop of us)",
+        ] {
             assert_eq!(told(to), format!("{} (was armed)", style::bad(to)));
         }
     }

@@ -23,8 +23,11 @@ fn main() -> ExitCode {
     program::set("squall-gateway", "squall-gateway");
     scenario_files::install(gateway_cli::KINDS);
     let matches = number::with_negative_numbers(Cli::command()).get_matches();
-    let Cli { color, command } = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
+    let Cli { color, command } =
+        Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     terminal::set_colour(color);
-    let done = leaf_args::restart_with_threads_for_keys().and_then(|()| gateway_cli::run(&command, COMMIT));
-    done.and_then(|code| terminal::check_output().map(|()| code)).unwrap_or_else(|error| explain::report(&error))
+    let done = leaf_args::restart_with_threads_for_keys()
+        .and_then(|()| gateway_cli::run(&command, COMMIT));
+    done.and_then(|code| terminal::check_output().map(|()| code))
+        .unwrap_or_else(|error| explain::report(&error))
 }

@@ -10,8 +10,8 @@ const BYTES_MAX: u64 = 1 << 20;
 
 /// Reads the mission in a `.sea` file.
 pub(super) fn read(path: &Path) -> Result<Mission> {
-    let bytes =
-        primitives::input_file::read(path, BYTES_MAX).with_context(|| format!("cannot read {}", path.display()))?;
+    let bytes = primitives::input_file::read(path, BYTES_MAX)
+        .with_context(|| format!("cannot read {}", path.display()))?;
     mission_of(&String::from_utf8_lossy(&bytes)).map_err(|(line, why)| {
         let place = line.map_or(String::new(), |line| format!(":{line}"));
         anyhow!("{}{place}: {why}", path.display())
@@ -20,7 +20,8 @@ pub(super) fn read(path: &Path) -> Result<Mission> {
 
 /// Parses the text of a mission file; the error names the line and the mistake.
 pub fn read_mission(text: &str) -> Result<Mission, String> {
-    mission_of(text).map_err(|(line, why)| line.map_or(why.clone(), |line| format!("line {line}: {why}")))
+    mission_of(text)
+        .map_err(|(line, why)| line.map_or(why.clone(), |line| format!("line {line}: {why}")))
 }
 
 /// A mistake: its line, if it has one, and a description.
@@ -45,10 +46,14 @@ fn mission_of(text: &str) -> Result<Mission, Mistake> {
         let before = sentences.next().unwrap_or_default();
         let wrong = |why: String| (Some(i + 1), why);
         if !before.is_empty() {
-            return Err(wrong(format!("{before:?} is not a sentence, expected $ at its start")));
+            return Err(wrong(format!(
+                "{before:?} is not a sentence, expected $ at its start"
+            )));
         }
         for sentence in sentences {
-            lines.take(i + 1, &sentence_of(sentence.trim()).map_err(wrong)?).map_err(wrong)?;
+            lines
+                .take(i + 1, &sentence_of(sentence.trim()).map_err(wrong)?)
+                .map_err(wrong)?;
         }
     }
     lines.mission()
@@ -57,13 +62,18 @@ fn mission_of(text: &str) -> Result<Mission, Mistake> {
 /// Parses the sentence after a `$`.
 fn sentence_of(text: &str) -> Result<Sentence, String> {
     let mut found = None;
-    Framer::new().push(format!("${text}\r\n").as_bytes(), &mut |body| found = Some(Sentence::parse(body)));
+    Framer::new().push(format!("${text}\r\n").as_bytes(), &mut |body| {
+        found = Some(Sentence::parse(body))
+    });
     if let Some(parsed) = found {
         return parsed.map_err(|e| e.to_string());
     }
     Err(match text.rsplit_once('*') {
         Some((body, stated)) if stated.len() == 2 && body.is_ascii() && !body.contains('*') => {
-            format!("the checksum is {stated}, expected {:02X}", checksum(body.as_bytes()))
+            format!(
+                "the checksum is {stated}, expected {:02X}",
+                checksum(body.as_bytes())
+            )
         }
         _ => format!("{text:?} does not end with * and a checksum of two digits"),
     })
@@ -86,14 +96,21 @@ impl Lines {
                 }
                 self.places.push([waypoint.at.lat_deg, waypoint.at.lon_deg]);
             }
-            Sentence::Command(Command { mode: Mode::FileDownload, heading_deg, .. }) => {
+            Sentence::Command(Command {
+                mode: Mode::FileDownload,
+                heading_deg,
+                ..
+            }) => {
                 let announced = heading_deg.unwrap_or(0.0);
                 if announced > 0.0 {
                     self.announced = Some((line, announced));
                 }
                 return Ok(());
             }
-            Sentence::Command(Command { mode: Mode::Waypoint | Mode::Standby, .. }) => return Ok(()),
+            Sentence::Command(Command {
+                mode: Mode::Waypoint | Mode::Standby,
+                ..
+            }) => return Ok(()),
             _ => return Err("unexpected sentence, expected PSEAR or OIWPL".to_owned()),
         }
         self.count += 1;
@@ -104,14 +121,27 @@ impl Lines {
         if let Some((line, announced)) = self.announced
             && announced != self.count as f64
         {
-            let why = format!("{announced} lines of PSEAR and OIWPL are announced, but the file has {}", self.count);
+            let why = format!(
+                "{announced} lines of PSEAR and OIWPL are announced, but the file has {}",
+                self.count
+            );
             return Err((Some(line), why));
         }
-        let throttle_pct = self.throttle_pct.ok_or_else(|| (None, "no PSEAR with the throttle".to_owned()))?;
+        let throttle_pct = self
+            .throttle_pct
+            .ok_or_else(|| (None, "no PSEAR with the throttle".to_owned()))?;
         let mut places = self.places.into_iter();
         match (places.next(), places.as_slice()) {
-            (Some(erp), [_, ..]) => Ok(Mission { throttle_pct, erp, waypoints: places.collect() }),
-            _ => Err((None, "expected OIWPL with index 0, the recovery point, and at least one waypoint".to_owned())),
+            (Some(erp), [_, ..]) => Ok(Mission {
+                throttle_pct,
+                erp,
+                waypoints: places.collect(),
+            }),
+            _ => Err((
+                None,
+                "expected OIWPL with index 0, the recovery point, and at least one waypoint"
+                    .to_owned(),
+            )),
         }
     }
 }
@@ -127,19 +157,34 @@ mod tests {
 
     fn mission() -> Vec<String> {
         let places = (0..3).map(|i| line(&format!("OIWPL,2545.491{i},N,08022.4373,W,{i}")));
-        std::iter::once(line("PSEAR,0,000,20,0,000")).chain(places).collect()
+        std::iter::once(line("PSEAR,0,000,20,0,000"))
+            .chain(places)
+            .collect()
     }
 
     #[test]
     fn missions_load_with_and_without_the_commands_about_them() {
-        let commands = [line("PSEAC,F,4,000,000,"), line("PSEAC,F,000,000,000"), line("PSEAC,W,0,0,0,")];
+        let commands = [
+            line("PSEAC,F,4,000,000,"),
+            line("PSEAC,F,000,000,000"),
+            line("PSEAC,W,0,0,0,"),
+        ];
         let [start, end, go] = &commands;
         let whole = format!("{start}{}{end}{go}", mission().concat());
         let unbroken = whole.replace("\r\n", "");
-        for text in [mission().concat(), whole.clone(), whole.replace("\r\n", "\n\n"), unbroken] {
-            let mission = mission_of(&text).unwrap_or_else(|(line, why)| panic!("{line:?}: {why}\n{text}"));
+        for text in [
+            mission().concat(),
+            whole.clone(),
+            whole.replace("\r\n", "\n\n"),
+            unbroken,
+        ] {
+            let mission =
+                mission_of(&text).unwrap_or_else(|(line, why)| panic!("{line:?}: {why}\n{text}"));
             assert_eq!((mission.throttle_pct, mission.waypoints.len()), (20.0, 2));
-            assert!((mission.erp[0] - 25.758_183).abs() < 1e-6 && (mission.erp[1] + 80.373_955).abs() < 1e-6);
+            assert!(
+                (mission.erp[0] - 25.758_183).abs() < 1e-6
+                    && (mission.erp[1] + 80.373_955).abs() < 1e-6
+            );
         }
     }
 
@@ -152,13 +197,37 @@ mod tests {
             lines.concat()
         };
         for (text, place, why) in [
-            (with(0, "$PSEAR,0,000,10,0,000*7F\r\n"), Some(1), "the checksum is 7F, expected 78"),
+            (
+                with(0, "$PSEAR,0,000,10,0,000*7F\r\n"),
+                Some(1),
+                "the checksum is 7F, expected 78",
+            ),
             (with(1, "hello\r\n"), Some(2), "\"hello\" is not a sentence"),
-            (with(1, "$OIWPL,2545.4910,N,08022.4373,W,0\r\n"), Some(2), "does not end with *"),
-            (with(3, &line("OIWPL,2545.4912,N,08022.4373,W,3")), Some(4), "waypoint 3, expected 2"),
-            (with(2, &line("OIWPL,2545.4912,X,08022.4373,W,1")), Some(3), ""),
-            (with(2, &line("PSEAC,T,0,20,0,")), Some(3), "unexpected sentence"),
-            (with(2, &line("PSEAR,0,000,20,0,000")), Some(3), "a second PSEAR"),
+            (
+                with(1, "$OIWPL,2545.4910,N,08022.4373,W,0\r\n"),
+                Some(2),
+                "does not end with *",
+            ),
+            (
+                with(3, &line("OIWPL,2545.4912,N,08022.4373,W,3")),
+                Some(4),
+                "waypoint 3, expected 2",
+            ),
+            (
+                with(2, &line("OIWPL,2545.4912,X,08022.4373,W,1")),
+                Some(3),
+                "",
+            ),
+            (
+                with(2, &line("PSEAC,T,0,20,0,")),
+                Some(3),
+                "unexpected sentence",
+            ),
+            (
+                with(2, &line("PSEAR,0,000,20,0,000")),
+                Some(3),
+                "a second PSEAR",
+            ),
             (
                 line("PSEAC,F,3,000,000,") + &lines.concat(),
                 Some(1),
@@ -169,7 +238,10 @@ mod tests {
             (String::new(), None, "no PSEAR"),
         ] {
             let (got, said) = mission_of(&text).expect_err(&text);
-            assert!(got == place && said.contains(why), "{got:?}: {said}, expected {place:?}: {why}");
+            assert!(
+                got == place && said.contains(why),
+                "{got:?}: {said}, expected {place:?}: {why}"
+            );
         }
     }
 }

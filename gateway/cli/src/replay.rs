@@ -20,7 +20,11 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         terminal::show(&format!("{:>8.1} s  {}\n", at.as_s(), text_of(event)));
     }
     terminal::show(&full(&replay.status));
-    let cut = if replay.is_cut { " (the file ends abruptly)" } else { "" };
+    let cut = if replay.is_cut {
+        " (the file ends abruptly)"
+    } else {
+        ""
+    };
     terminal::print(&format!(
         "{} inputs over {:.1} s, {} bytes from the boat, {} to it{cut}\n",
         replay.inputs,

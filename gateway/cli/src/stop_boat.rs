@@ -49,9 +49,16 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let (sender, events) = sync_channel(EVENTS_MAX);
     // A full queue drops events: the boat reports again.
     let take = move |event| drop(sender.try_send(event));
-    let settings = LinkSettings { silence: None, retry_max: AGAIN, ..LinkSettings::default() };
+    let settings = LinkSettings {
+        silence: None,
+        retry_max: AGAIN,
+        ..LinkSettings::default()
+    };
     let link = Link::open(&address, settings, take)?;
-    let gateway = Gateway { protocol: args.protocol.protocol(), ..default_gateway() };
+    let gateway = Gateway {
+        protocol: args.protocol.protocol(),
+        ..default_gateway()
+    };
     let mut protocol = Protocol::new(&gateway);
     let mut boat = None;
     let start = clock::now();
@@ -62,14 +69,18 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     while clock::since(start) < limit {
         match events.recv_timeout(due.saturating_duration_since(clock::now()).min(AGAIN)) {
             Ok(LinkEvent::Up { name, .. }) => {
-                terminal::remark(&format!("connected to {name}: sending zero thrust and standby"));
+                terminal::remark(&format!(
+                    "connected to {name}: sending zero thrust and standby"
+                ));
                 (connected, due) = (Some(clock::now()), clock::now());
             }
-            Ok(LinkEvent::Bytes { bytes, .. }) => protocol.read(SimTime::ZERO, &bytes, &mut |report| {
-                if let Report::Control(control) = report {
-                    boat = Some(control);
-                }
-            }),
+            Ok(LinkEvent::Bytes { bytes, .. }) => {
+                protocol.read(SimTime::ZERO, &bytes, &mut |report| {
+                    if let Report::Control(control) = report {
+                        boat = Some(control);
+                    }
+                })
+            }
             Ok(LinkEvent::Failed { reason: why, .. } | LinkEvent::Down { reason: why, .. }) => {
                 (connected, reason) = (None, why);
             }
@@ -86,16 +97,23 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         }
     }
     match (connected, boat) {
-        (None, _) => bail!("the boat at {address} was not reached within {} s: {reason}", args.wait_s),
+        (None, _) => bail!(
+            "the boat at {address} was not reached within {} s: {reason}",
+            args.wait_s
+        ),
         (_, None) => {
-            bail!("{address} received zero thrust and standby for {} s, but does not report its mode", args.wait_s)
+            bail!(
+                "{address} received zero thrust and standby for {} s, but does not report its mode",
+                args.wait_s
+            )
         }
         (_, Some(ControlReport { shown, operator })) => bail!(
             "the boat receives zero thrust and standby, but reports mode {}{}",
             shown.mode.letter(),
             match operator {
                 Some(Operator::Secondary) | None => String::new(),
-                Some(other) => format!("; operator {} has control and must stop it", other.number()),
+                Some(other) =>
+                    format!("; operator {} has control and must stop it", other.number()),
             }
         ),
     }
@@ -103,20 +121,39 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 
 /// Whether a gateway on this machine holds the link and has stopped its boat.
 fn stopped_by_its_gateway(address: &LinkAddress) -> bool {
-    let Some(pid) = LinkLock::holder(&address.to_string()) else { return false };
-    let Some(entry) = bus::local_gateways().into_iter().find(|entry| entry.pid == pid) else { return false };
-    let command = GatewayCommand::Boat { name: entry.vehicle.clone(), command: OperatorCommand::EStop };
+    let Some(pid) = LinkLock::holder(&address.to_string()) else {
+        return false;
+    };
+    let Some(entry) = bus::local_gateways()
+        .into_iter()
+        .find(|entry| entry.pid == pid)
+    else {
+        return false;
+    };
+    let command = GatewayCommand::Boat {
+        name: entry.vehicle.clone(),
+        command: OperatorCommand::EStop,
+    };
     match ask_gateway(entry.control, None, &command, ANSWER) {
         Ok(reply) if reply.refused.is_none() && reply.status.link == "up" => {
-            terminal::print(&format!("the gateway of {} has the link: {}\n", entry.vehicle, reply.status.state));
+            terminal::print(&format!(
+                "the gateway of {} has the link: {}\n",
+                entry.vehicle, reply.status.state
+            ));
             true
         }
         Ok(reply) => {
-            terminal::remark(&format!("the gateway of {} has the link and is {}", entry.vehicle, reply.status.link));
+            terminal::remark(&format!(
+                "the gateway of {} has the link and is {}",
+                entry.vehicle, reply.status.link
+            ));
             false
         }
         Err(e) => {
-            terminal::remark(&format!("the gateway of {} has the link, but does not answer: {e}", entry.vehicle));
+            terminal::remark(&format!(
+                "the gateway of {} has the link, but does not answer: {e}",
+                entry.vehicle
+            ));
             false
         }
     }

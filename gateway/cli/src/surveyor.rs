@@ -34,15 +34,17 @@ pub struct Args {
     /// serial:///dev/ttyUSB0?baud=38400 (4800 to 921600 baud)
     #[arg(long, value_name = "URL", value_parser = to_connect)]
     link: LinkAddress,
-    /// Payload to forward and record, for example camera=tcp://192.168.1.23:5001; append ,listen=HOST:PORT for the
-    /// address that serves it, and ,exo2 or ,exo2=http to record the values of an EXO2 sonde; repeatable
+    /// Payload to forward and record, for example camera=tcp://192.168.1.23:5001; append
+    /// ,listen=HOST:PORT for the address that serves it, and ,exo2 or ,exo2=http to record the
+    /// values of an EXO2 sonde; repeatable
     #[arg(long, value_name = "NAME=URL", conflicts_with = "at_game_pace")]
     payload: Vec<PayloadPort>,
-    /// Address and port on this machine for operator commands, with or without a game; port 0 selects a free port
+    /// Address and port on this machine for operator commands, with or without a game; port 0
+    /// selects a free port
     #[arg(long, value_name = "HOST:PORT", default_value = "127.0.0.1:0", value_parser = control_address)]
     control_listen: SocketAddr,
-    /// Gateway file or name, which defines how the boat is driven and stopped [default: a Surveyor with careful
-    /// limits]
+    /// Gateway file or name, which defines how the boat is driven and stopped [default: a Surveyor
+    /// with careful limits]
     #[arg(long, value_name = "GATEWAY", value_parser = command_line::scenario_files::file_of(scenario::Kind::of::<Gateway>()))]
     config: Option<PathBuf>,
     /// Arms once, as soon as the boat is ready; after a failsafe, an operator must arm it
@@ -91,11 +93,18 @@ pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
         log.remark("dry run: the boat receives only standby".to_owned());
     }
     if let Some(operator) = &args.without_preflight {
-        log.remark(format!("WARNING: {operator} is responsible for arming without a pre-flight check"));
+        log.remark(format!(
+            "WARNING: {operator} is responsible for arming without a pre-flight check"
+        ));
     }
     let game = args.leaf.game.as_ref().map(|game| game.as_str().to_owned());
     let settings = Settings {
-        plan: Plan { arms_itself: args.arm, dry_run: args.dry_run, preflight, ..Plan::new(&args.vehicle, gateway) },
+        plan: Plan {
+            arms_itself: args.arm,
+            dry_run: args.dry_run,
+            preflight,
+            ..Plan::new(&args.vehicle, gateway)
+        },
         game: args.leaf.game.clone(),
         place: args.leaf.place()?,
         at_game_pace: args.at_game_pace,
@@ -105,20 +114,41 @@ pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
     };
     let silence = Duration::from_secs_f64(args.silence_s);
     // No guard for an emulated boat at game pace: a busy machine would look like a hung gateway.
-    let guard = if args.at_game_pace { None } else { Some(guard::own_command()?) };
+    let guard = if args.at_game_pace {
+        None
+    } else {
+        Some(guard::own_command()?)
+    };
     let payloads = args.payload.clone();
-    let outside = Outside { link, silence, control: args.control_listen, guard, payloads };
+    let outside = Outside {
+        link,
+        silence,
+        control: args.control_listen,
+        guard,
+        payloads,
+    };
     let mut last = String::new();
     let mut registration = None::<Registration>;
     let mut notify = |event: NodeEvent<'_>| match event {
-        NodeEvent::Looking { reason } => log.remark(format!("{}: looking for the game: {reason}", args.vehicle)),
+        NodeEvent::Looking { reason } => {
+            log.remark(format!("{}: looking for the game: {reason}", args.vehicle))
+        }
         NodeEvent::Recording(file) => log.remark(format!("recording to {}", file.display())),
         NodeEvent::Listening { what, reach } => log.remark(format!("{what} at {reach}")),
-        NodeEvent::ControlPort { address: control, token } => {
+        NodeEvent::ControlPort {
+            address: control,
+            token,
+        } => {
             let vehicle = args.vehicle.clone();
             let pid = std::process::id();
             let token = token.as_ref().map(Token::hex);
-            let entry = bus::GatewayEntry { vehicle, game: game.clone(), control, pid, token };
+            let entry = bus::GatewayEntry {
+                vehicle,
+                game: game.clone(),
+                control,
+                pid,
+                token,
+            };
             // If registration fails, operators must be given the address; nothing else is lost.
             if let Some(registration) = &registration {
                 drop(registration.update(&entry));
@@ -126,13 +156,20 @@ pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
             }
             match bus::register_gateway(&entry) {
                 Ok(registered) => registration = Some(registered),
-                Err(error) => log.remark(format!("operators on this machine need the address: {error}")),
+                Err(error) => log.remark(format!(
+                    "operators on this machine need the address: {error}"
+                )),
             }
-            log.remark(format!("operators reach this gateway at {control}, with or without a game"));
+            log.remark(format!(
+                "operators reach this gateway at {control}, with or without a game"
+            ));
             if !args.for_parent && std::io::stdin().is_terminal() {
                 log.remark("press Enter in this terminal for an E-stop of this boat".to_owned());
                 let stop = OperatorCommand::EStop;
-                let stop = GatewayCommand::Boat { name: args.vehicle.clone(), command: stop };
+                let stop = GatewayCommand::Boat {
+                    name: args.vehicle.clone(),
+                    command: stop,
+                };
                 // The log shows whether the command was carried out.
                 on_enter(move || drop(bus::ask_gateway(control, None, &stop, KEY_ANSWER)));
             }
@@ -152,7 +189,10 @@ pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
 fn control_address(text: &str) -> Result<SocketAddr, String> {
     let address = address(text)?;
     if address.ip().is_unspecified() {
-        return Err("expected an address at which operators reach this machine, not all of its addresses".to_owned());
+        return Err(
+            "expected an address at which operators reach this machine, not all of its addresses"
+                .to_owned(),
+        );
     }
     Ok(address)
 }
@@ -162,17 +202,29 @@ fn preflight(args: &Args, link: &LinkAddress, gateway: &Gateway) -> Result<Prefl
     if let Some(person) = &args.without_preflight {
         return Ok(Preflight::WaivedBy(person.clone()));
     }
-    let how = program::text("{gateway} check --vehicle, then --preflight FILE; or --without-preflight PERSON");
+    let how = program::text(
+        "{gateway} check --vehicle, then --preflight FILE; or --without-preflight PERSON",
+    );
     Ok(match &args.preflight {
         Some(path) => {
             let report = preflight_report::read(path)?;
             let now_s = utc::now_ns() / 1_000_000_000;
-            match report.admits(&args.vehicle, &link.to_string(), now_s, gateway.preflight.age_max_h) {
+            match report.admits(
+                &args.vehicle,
+                &link.to_string(),
+                now_s,
+                gateway.preflight.age_max_h,
+            ) {
                 Ok(()) => Preflight::Passed,
-                Err(why) => Preflight::Missing(format!("a passed pre-flight check ({}: {why})", path.display())),
+                Err(why) => Preflight::Missing(format!(
+                    "a passed pre-flight check ({}: {why})",
+                    path.display()
+                )),
             }
         }
-        None if gateway.preflight.required => Preflight::Missing(format!("a passed pre-flight check ({how})")),
+        None if gateway.preflight.required => {
+            Preflight::Missing(format!("a passed pre-flight check ({how})"))
+        }
         None => Preflight::NotRequired,
     })
 }
@@ -189,10 +241,16 @@ fn recording(args: &Args) -> Result<Option<NewFile>> {
         None => {
             std::fs::create_dir_all(folder)
                 .with_context(|| format!("cannot create the folder {}", folder.display()))?;
-            let stem = format!("gateway-{}-{}", args.vehicle, utc::file_stamp(utc::now_ns()));
+            let stem = format!(
+                "gateway-{}-{}",
+                args.vehicle,
+                utc::file_stamp(utc::now_ns())
+            );
             NewFile::create_numbered(folder, &stem)
         }
     };
     let place = args.record.as_deref().unwrap_or(folder);
-    Ok(Some(file.with_context(|| format!("cannot record to {}", place.display()))?))
+    Ok(Some(file.with_context(|| {
+        format!("cannot record to {}", place.display())
+    })?))
 }

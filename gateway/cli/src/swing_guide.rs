@@ -35,7 +35,9 @@ impl Guide {
             });
             lines
         };
-        Guide { lines: is_wanted.then(begin) }
+        Guide {
+            lines: is_wanted.then(begin),
+        }
     }
 
     /// The next typed line, if any; an empty line after the end of input.
@@ -70,9 +72,15 @@ impl Guide {
     }
 }
 
-pub(super) fn guided_checks(guide: &mut Guide, listener: &mut Listener, gateway: &Gateway) -> Vec<Check> {
+pub(super) fn guided_checks(
+    guide: &mut Guide,
+    listener: &mut Listener,
+    gateway: &Gateway,
+) -> Vec<Check> {
     if guide.lines.is_none() {
-        return ["compass swing", "propellers"].map(|name| Check::not_done(name, "use --guided")).to_vec();
+        return ["compass swing", "propellers"]
+            .map(|name| Check::not_done(name, "use --guided"))
+            .to_vec();
     }
     vec![swing(guide, listener, gateway), propellers(guide, listener)]
 }
@@ -80,9 +88,15 @@ pub(super) fn guided_checks(guide: &mut Guide, listener: &mut Listener, gateway:
 fn swing(guide: &Guide, listener: &mut Listener, gateway: &Gateway) -> Check {
     let name = "compass swing";
     if gateway.protocol == BoatProtocol::Mavlink {
-        return Check::not_done(name, "a MAVLink boat reports true headings; use its own calibration");
+        return Check::not_done(
+            name,
+            "a MAVLink boat reports true headings; use its own calibration",
+        );
     }
-    if !guide.is_agreed("Compass swing: can you turn the boat by remote control in open water?", listener) {
+    if !guide.is_agreed(
+        "Compass swing: can you turn the boat by remote control in open water?",
+        listener,
+    ) {
         return Check::not_done(name, "skipped");
     }
     let declination_rad = match declination_rad(listener, gateway) {
@@ -90,11 +104,15 @@ fn swing(guide: &Guide, listener: &mut Listener, gateway: &Gateway) -> Check {
         Err(why) => return Check::not_done(name, why),
     };
     let mut swing = CompassSwing::default();
-    let what =
-        "Turn the boat slowly through two full circles; if it reports no true heading, drive them at 1 m/s or more.";
+    let what = "Turn the boat slowly through two full circles; if it reports no true heading, drive them at 1 m/s or more.";
     guide.until_enter(what, listener, &mut |listener| {
-        if let (Some(compass_deg), Some(true_deg)) = (listener.check.compass_deg, listener.check.true_deg()) {
-            swing.add_reading(compass_deg.to_radians() + declination_rad, true_deg.to_radians());
+        if let (Some(compass_deg), Some(true_deg)) =
+            (listener.check.compass_deg, listener.check.true_deg())
+        {
+            swing.add_reading(
+                compass_deg.to_radians() + declination_rad,
+                true_deg.to_radians(),
+            );
         }
     });
     match swing.fit() {
@@ -112,13 +130,19 @@ fn swing(guide: &Guide, listener: &mut Listener, gateway: &Gateway) -> Check {
 
 /// The declination to add to the compass, rad.
 fn declination_rad(listener: &Listener, gateway: &Gateway) -> Result<f64, String> {
-    match (gateway.compass, gateway.declination_rad, listener.check.fixes.last()) {
+    match (
+        gateway.compass,
+        gateway.declination_rad,
+        listener.check.fixes.last(),
+    ) {
         (CompassFrame::True, ..) => Ok(0.0),
         (_, Some(declination_rad), _) => Ok(declination_rad),
-        (_, None, None) => Err("the declination is unknown without a position; set declination_deg".to_owned()),
-        (_, None, Some((_, at))) => {
-            declination_deg(*at, date_and_time(utc::now_ns()).0).map(f64::to_radians).map_err(|e| e.to_string())
+        (_, None, None) => {
+            Err("the declination is unknown without a position; set declination_deg".to_owned())
         }
+        (_, None, Some((_, at))) => declination_deg(*at, date_and_time(utc::now_ns()).0)
+            .map(f64::to_radians)
+            .map_err(|e| e.to_string()),
     }
 }
 
@@ -135,15 +159,24 @@ fn propellers(guide: &Guide, listener: &mut Listener) -> Check {
     let mut tells = false;
     let mut by_remote = false;
     let mut seen = [false; 2];
-    let what = "Run both propellers ahead and astern by remote control, 20 per cent for two seconds each.";
+    let what =
+        "Run both propellers ahead and astern by remote control, 20 per cent for two seconds each.";
     guide.until_enter(what, listener, &mut |listener| {
-        let Some(control) = listener.check.control else { return };
+        let Some(control) = listener.check.control else {
+            return;
+        };
         tells |= control.operator.is_some();
         by_remote |= control.operator == Some(Operator::Rc);
         let thrust_pct = control.shown.thrust.unwrap_or(0.0);
-        seen = [seen[0] || thrust_pct >= THRUST_MIN_PCT, seen[1] || thrust_pct <= -THRUST_MIN_PCT];
+        seen = [
+            seen[0] || thrust_pct >= THRUST_MIN_PCT,
+            seen[1] || thrust_pct <= -THRUST_MIN_PCT,
+        ];
     });
-    let turned = guide.is_agreed("Did both propellers turn both ways, without noise?", listener);
+    let turned = guide.is_agreed(
+        "Did both propellers turn both ways, without noise?",
+        listener,
+    );
     let word = |is: bool| if is { "seen" } else { "not seen" };
     let found = format!(
         "both turned: {}; in the boat's reports, remote control {}, thrust ahead {}, astern {}",

@@ -38,8 +38,8 @@ const STOP_MAX: Duration = Duration::from_secs(10);
 pub struct Args {
     #[command(flatten)]
     words: Words,
-    /// Address of the gateway's control port, as the gateway prints it [default: those of the gateways on this
-    /// machine, or else through the game]
+    /// Address of the gateway's control port, as the gateway prints it [default: those of the
+    /// gateways on this machine, or else through the game]
     #[arg(long, value_name = "HOST:PORT", value_parser = address)]
     gateway: Option<SocketAddr>,
     #[command(flatten)]
@@ -52,7 +52,8 @@ pub(super) struct Words {
     pub(super) vehicle: String,
     /// Command to send
     pub(super) command: CommandArg,
-    /// For mission: .sea file with the sentences to send, PSEAR and then OIWPL; waypoint 0 is the recovery point
+    /// For mission: .sea file with the sentences to send, PSEAR and then OIWPL; waypoint 0 is the
+    /// recovery point
     file: Option<PathBuf>,
     /// For hold-heading: true heading, degrees
     #[arg(long, value_name = "DEG", value_parser = within(0.0, 360.0, "degrees"))]
@@ -115,12 +116,15 @@ impl Words {
     pub(super) fn command(&self) -> Result<OperatorCommand> {
         Ok(match (self.command, &self.file) {
             (CommandArg::Mission, None) => bail!("mission requires a .sea file"),
-            (CommandArg::Mission, Some(path)) => OperatorCommand::Mission(mission_file::read(path)?),
+            (CommandArg::Mission, Some(path)) => {
+                OperatorCommand::Mission(mission_file::read(path)?)
+            }
             (_, Some(path)) => bail!("unexpected file {}; only mission takes one", path.display()),
             (CommandArg::HoldHeading, None) => match (self.heading_deg, self.thrust_pct) {
-                (Some(heading_deg), Some(thrust_pct)) => {
-                    OperatorCommand::Mode(BoatMode::Heading { heading_deg, thrust_pct })
-                }
+                (Some(heading_deg), Some(thrust_pct)) => OperatorCommand::Mode(BoatMode::Heading {
+                    heading_deg,
+                    thrust_pct,
+                }),
                 _ => bail!("hold-heading requires --heading-deg and --thrust-pct"),
             },
             _ if self.heading_deg.is_some() || self.thrust_pct.is_some() => {
@@ -128,7 +132,9 @@ impl Words {
             }
             (CommandArg::RiverNav, None) => OperatorCommand::Mode(BoatMode::RiverNav),
             (CommandArg::Autopilot, None) => OperatorCommand::Mode(BoatMode::Autopilot),
-            (CommandArg::CalibrateCompass, None) => OperatorCommand::Mode(BoatMode::CompassCalibration),
+            (CommandArg::CalibrateCompass, None) => {
+                OperatorCommand::Mode(BoatMode::CompassCalibration)
+            }
             (CommandArg::Depth, None) => OperatorCommand::Mode(BoatMode::Depth),
             (CommandArg::GravityVector, None) => OperatorCommand::Mode(BoatMode::GravityVector),
             (CommandArg::Status, None) => OperatorCommand::Status,
@@ -160,17 +166,26 @@ impl Port {
 fn ports(args: &Args) -> Result<Vec<Port>> {
     let given = args.leaf.access.token()?;
     let mut ports: Vec<Port> = Vec::new();
-    let stops = args.words.vehicle == ALL && matches!(args.words.command, CommandArg::Estop | CommandArg::Disarm);
+    let stops = args.words.vehicle == ALL
+        && matches!(args.words.command, CommandArg::Estop | CommandArg::Disarm);
     for entry in args.leaf.local_gateways(stops) {
         let token = given.clone().or_else(|| entry.token?.parse().ok());
-        ports.push(Port { vehicle: Some(entry.vehicle), at: entry.control, token });
+        ports.push(Port {
+            vehicle: Some(entry.vehicle),
+            at: entry.control,
+            token,
+        });
     }
     if let Some(at) = args.gateway
         && !ports.iter().any(|port| port.at == at)
     {
         // The token of the game on this machine, if there is one.
         let token = given.or_else(|| args.leaf.net().ok()?.token);
-        ports.push(Port { vehicle: None, at, token });
+        ports.push(Port {
+            vehicle: None,
+            at,
+            token,
+        });
     }
     Ok(ports)
 }
@@ -187,7 +202,10 @@ fn ports_meant(args: &Args) -> Result<Vec<Port>> {
     ports.retain(is_meant);
     if let ([_, _, ..], true) = (ports.as_slice(), vehicle != ALL) {
         let at: Vec<String> = ports.iter().map(|port| port.at.to_string()).collect();
-        bail!("several gateways on this machine drive {vehicle}; select one with --gateway: {}", at.join(", "));
+        bail!(
+            "several gateways on this machine drive {vehicle}; select one with --gateway: {}",
+            at.join(", ")
+        );
     }
     Ok(ports)
 }
@@ -195,9 +213,14 @@ fn ports_meant(args: &Args) -> Result<Vec<Port>> {
 fn tell(args: &Args, command: &OperatorCommand) -> Result<OperatorReply> {
     let vehicle = &args.words.vehicle;
     if let Some(port) = ports_meant(args)?.first() {
-        match port.ask(&GatewayCommand::Boat { name: vehicle.clone(), command: command.clone() }) {
+        match port.ask(&GatewayCommand::Boat {
+            name: vehicle.clone(),
+            command: command.clone(),
+        }) {
             // That gateway may be ending; its successor is found through the game.
-            Err(error @ BusError::Use { .. }) if args.gateway.is_none() => terminal::remark(&error.to_string()),
+            Err(error @ BusError::Use { .. }) if args.gateway.is_none() => {
+                terminal::remark(&error.to_string())
+            }
             reply => return Ok(reply?),
         }
     }
@@ -208,7 +231,12 @@ fn tell(args: &Args, command: &OperatorCommand) -> Result<OperatorReply> {
     reply
 }
 
-fn ask(bus: &Bus, game: &GameName, vehicle: &str, command: &OperatorCommand) -> Result<OperatorReply> {
+fn ask(
+    bus: &Bus,
+    game: &GameName,
+    vehicle: &str,
+    command: &OperatorCommand,
+) -> Result<OperatorReply> {
     let answer = bus.request_node(&topic::operate(game, vehicle), command, bus::ANSWER)?;
     answer.with_context(|| format!("no gateway of {vehicle} answers"))
 }
@@ -221,11 +249,20 @@ pub(super) fn to_boat(
     vehicle: &str,
     command: &OperatorCommand,
 ) -> Result<OperatorReply> {
-    let port = ports.iter().find(|port| port.vehicle.as_deref() == Some(vehicle));
-    let asked = port.map(|port| port.ask(&GatewayCommand::Boat { name: vehicle.to_owned(), command: command.clone() }));
+    let port = ports
+        .iter()
+        .find(|port| port.vehicle.as_deref() == Some(vehicle));
+    let asked = port.map(|port| {
+        port.ask(&GatewayCommand::Boat {
+            name: vehicle.to_owned(),
+            command: command.clone(),
+        })
+    });
     match (asked, game) {
         (Some(Ok(reply)), _) => Ok(reply),
-        (None | Some(Err(BusError::Use { .. })), Some((bus, game))) => ask(bus, game, vehicle, command),
+        (None | Some(Err(BusError::Use { .. })), Some((bus, game))) => {
+            ask(bus, game, vehicle, command)
+        }
         (Some(Err(error)), _) => Err(error.into()),
         (None, None) => bail!("no gateway of {vehicle} is known"),
     }
@@ -235,16 +272,28 @@ pub(super) fn to_boat(
 pub(super) fn release_all(ports: &[Port], game: Option<&(Bus, GameName)>) -> Vec<String> {
     std::thread::scope(|scope| {
         let release = |port: &Port| match port.ask(&GatewayCommand::Fleet(FleetCommand::Release)) {
-            Ok(OperatorReply { refused: Some(reason), status }) => {
-                Some(format!("{} refuses: {reason}", status.vehicle))
-            }
+            Ok(OperatorReply {
+                refused: Some(reason),
+                status,
+            }) => Some(format!("{} refuses: {reason}", status.vehicle)),
             Ok(_) => None,
             Err(e) => Some(e.to_string()),
         };
-        let asked: Vec<_> = ports.iter().map(|port| scope.spawn(move || release(port))).collect();
-        let of_game = game.map(|(bus, game)| bus::control(bus, game, Control::Release).map_err(|e| e.to_string()));
-        let of_ports = asked.into_iter().filter_map(|asked| asked.join().ok().flatten());
-        of_game.into_iter().filter_map(Result::err).chain(of_ports).collect()
+        let asked: Vec<_> = ports
+            .iter()
+            .map(|port| scope.spawn(move || release(port)))
+            .collect();
+        let of_game = game.map(|(bus, game)| {
+            bus::control(bus, game, Control::Release).map_err(|e| e.to_string())
+        });
+        let of_ports = asked
+            .into_iter()
+            .filter_map(|asked| asked.join().ok().flatten());
+        of_game
+            .into_iter()
+            .filter_map(Result::err)
+            .chain(of_ports)
+            .collect()
     })
 }
 
@@ -277,20 +326,34 @@ fn tell_stop(args: &Args, command: StopCommand) -> Result<ExitCode> {
         });
     }
     // If the game is the only path and does not exist, do not wait.
-    client.wait(STOP_MAX, |orders| orders.is_done(clock::now()) || no_game.get().is_some());
+    client.wait(STOP_MAX, |orders| {
+        orders.is_done(clock::now()) || no_game.get().is_some()
+    });
     let is_alone = ports.is_empty() && no_game.get().is_some();
     let left = client.finish(if is_alone { Duration::ZERO } else { STOP_MAX });
     for news in client.visit(StopOrders::take_news) {
-        if let StopNews::Done { vehicle, state, after, .. } = news {
-            terminal::show(&format!("{vehicle}: {} after {} ms\n", super::log_line::state(&state), after.as_millis()));
+        if let StopNews::Done {
+            vehicle,
+            state,
+            after,
+            ..
+        } = news
+        {
+            terminal::show(&format!(
+                "{vehicle}: {} after {} ms\n",
+                super::log_line::state(&state),
+                after.as_millis()
+            ));
         }
     }
     match (left.is_empty(), no_game.get()) {
         (true, None) if client.visit(|orders| orders.is_done(clock::now())) => {}
-        (true, None) => terminal::remark("the game does not answer; only the known gateways received the command"),
-        (true, Some(reason)) => {
-            terminal::remark(&format!("only gateways received the command, not the game: {reason}"))
-        }
+        (true, None) => terminal::remark(
+            "the game does not answer; only the known gateways received the command",
+        ),
+        (true, Some(reason)) => terminal::remark(&format!(
+            "only gateways received the command, not the game: {reason}"
+        )),
         (false, None) => return Err(anyhow!(left.join("; "))),
         (false, Some(reason)) => return Err(anyhow!("{}; {reason}", left.join("; "))),
     }
@@ -299,7 +362,10 @@ fn tell_stop(args: &Args, command: StopCommand) -> Result<ExitCode> {
 
 /// The names of the real boats in a game.
 pub(super) fn real_boats(scenario: &Scenario) -> Vec<String> {
-    scenario.externals().map(|boat| scenario.vehicles[boat.index()].name.clone()).collect()
+    scenario
+        .externals()
+        .map(|boat| scenario.vehicles[boat.index()].name.clone())
+        .collect()
 }
 
 /// Adds the game's topics to the paths if the game has this boat.
@@ -327,7 +393,10 @@ enum Outcome {
 
 impl Outcome {
     fn of(reply: Result<OperatorReply, impl Into<Error>>) -> Outcome {
-        reply.map_or_else(|e| Outcome::Failed(e.into()), |reply| Outcome::Reply(Box::new(reply)))
+        reply.map_or_else(
+            |e| Outcome::Failed(e.into()),
+            |reply| Outcome::Reply(Box::new(reply)),
+        )
     }
 }
 
@@ -337,19 +406,27 @@ fn tell_all(args: &Args) -> Result<ExitCode> {
     let (control, fleet) = match args.words.command {
         CommandArg::Status => (None, None),
         CommandArg::Release => (Some(Control::Release), Some(FleetCommand::Release)),
-        _ => bail!("`all` accepts only estop, disarm, release and status; address each boat by name"),
+        _ => {
+            bail!("`all` accepts only estop, disarm, release and status; address each boat by name")
+        }
     };
     if control.is_some() {
         args.leaf.check_one_game(&args.leaf.local_gateways(false))?;
     }
     let ports = ports(args)?;
-    let known: Vec<String> = ports.iter().filter_map(|port| port.vehicle.clone()).collect();
+    let known: Vec<String> = ports
+        .iter()
+        .filter_map(|port| port.vehicle.clone())
+        .collect();
     let (sender, outcomes) = channel();
     for port in ports {
         let sender = sender.clone();
         std::thread::spawn(move || {
             let name = port.vehicle.clone().unwrap_or_default();
-            let status = GatewayCommand::Boat { name, command: OperatorCommand::Status };
+            let status = GatewayCommand::Boat {
+                name,
+                command: OperatorCommand::Status,
+            };
             let reply = port.ask(&fleet.map_or(status, GatewayCommand::Fleet));
             drop(sender.send(Outcome::of(reply)));
         });
@@ -367,7 +444,11 @@ fn tell_all(args: &Args) -> Result<ExitCode> {
             Ok(Outcome::Reply(reply)) => {
                 is_done = true;
                 terminal::show(&full(&reply.status));
-                failed.extend(reply.refused.map(|reason| format!("{} refuses: {reason}", reply.status.vehicle)));
+                failed.extend(
+                    reply
+                        .refused
+                        .map(|reason| format!("{} refuses: {reason}", reply.status.vehicle)),
+                );
             }
             Err(RecvTimeoutError::Disconnected) => break,
             Err(RecvTimeoutError::Timeout) => {
@@ -384,11 +465,20 @@ fn tell_all(args: &Args) -> Result<ExitCode> {
         Some(error) => failed.push(command_line::explain::line(&error)),
         None => {}
     }
-    if failed.is_empty() { Ok(ExitCode::SUCCESS) } else { Err(anyhow!(failed.join("; "))) }
+    if failed.is_empty() {
+        Ok(ExitCode::SUCCESS)
+    } else {
+        Err(anyhow!(failed.join("; ")))
+    }
 }
 
 /// Sends the command to the game, then queries the real boats in it except the `known` ones.
-fn tell_game(leaf: &LeafArgs, control: Option<Control>, known: &[String], outcomes: &Sender<Outcome>) {
+fn tell_game(
+    leaf: &LeafArgs,
+    control: Option<Control>,
+    known: &[String],
+    outcomes: &Sender<Outcome>,
+) {
     // Ignore the error: after the timeout nobody listens.
     let say = |outcome| drop(outcomes.send(outcome));
     let observer = match Observer::connect(leaf) {
@@ -401,8 +491,16 @@ fn tell_game(leaf: &LeafArgs, control: Option<Control>, known: &[String], outcom
             Err(error) => say(Outcome::Failed(error.into())),
         }
     }
-    for vehicle in real_boats(&observer.info.scenario).iter().filter(|vehicle| !known.contains(vehicle)) {
-        say(Outcome::of(ask(&observer.bus, &observer.game, vehicle, &OperatorCommand::Status)));
+    for vehicle in real_boats(&observer.info.scenario)
+        .iter()
+        .filter(|vehicle| !known.contains(vehicle))
+    {
+        say(Outcome::of(ask(
+            &observer.bus,
+            &observer.game,
+            vehicle,
+            &OperatorCommand::Status,
+        )));
     }
     observer.bus.close();
 }

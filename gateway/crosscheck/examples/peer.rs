@@ -1,5 +1,5 @@
-//! Our codec as a peer of `pynmea2_check.py`: `peer write` writes sentences of every kind with their values,
-//! `peer read` prints the values that it reads in the lines of its input.
+//! Our codec as a peer of `pynmea2_check.py`: `peer write` writes sentences of every kind with
+//! their values, `peer read` prints the values that it reads in the lines of its input.
 //!
 //! The values of a sentence are a line of `name=value`, tab-separated, as `Debug` prints them.
 
@@ -34,13 +34,26 @@ fn write() {
         years: 2000..2061,
         day_ms: 0..86_400_000,
     };
-    let is_download = |s: &Sentence| matches!(s, Sentence::Command(Command { mode: Mode::FileDownload, .. }));
-    let sentences = sentences(&domain).prop_filter("a download writes nothing as 0", |s| !is_download(s));
+    let is_download = |s: &Sentence| {
+        matches!(
+            s,
+            Sentence::Command(Command {
+                mode: Mode::FileDownload,
+                ..
+            })
+        )
+    };
+    let sentences =
+        sentences(&domain).prop_filter("a download writes nothing as 0", |s| !is_download(s));
     let mut runner = TestRunner::deterministic();
     let mut out = std::io::stdout().lock();
     for _ in 0..COUNT {
-        let sentence = sentences.new_tree(&mut runner).expect("most are no download").current();
-        writeln!(out, "{}\t{}", sentence.line().trim_end(), values(&sentence)).expect("standard output is open");
+        let sentence = sentences
+            .new_tree(&mut runner)
+            .expect("most are no download")
+            .current();
+        writeln!(out, "{}\t{}", sentence.line().trim_end(), values(&sentence))
+            .expect("standard output is open");
     }
 }
 
@@ -50,13 +63,16 @@ fn read() {
         let line = line.expect("lines of text come in") + "\r\n";
         let mut answer = "not a sentence".to_owned();
         framer.push(line.as_bytes(), &mut |body| {
-            answer = Sentence::parse(body).map_or_else(|error| error.to_string(), |sentence| values(&sentence));
+            answer = Sentence::parse(body)
+                .map_or_else(|error| error.to_string(), |sentence| values(&sentence));
         });
         println!("{answer}");
     }
 }
 
 fn values(sentence: &Sentence) -> String {
-    let pairs = sentences::values(sentence).into_iter().map(|(name, value)| format!("{name}={value}"));
+    let pairs = sentences::values(sentence)
+        .into_iter()
+        .map(|(name, value)| format!("{name}={value}"));
     pairs.collect::<Vec<_>>().join("\t")
 }

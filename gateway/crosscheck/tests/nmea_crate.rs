@@ -1,14 +1,16 @@
 //! The nmea crate reads what we write, and we read what it reads, with the same values.
 //!
-//! It has no writer. The sentences of the second test are therefore put together here, in the ways in which
-//! devices differ: zeros before numbers, more or fewer decimals, fields that are empty.
+//! It has no writer. The sentences of the second test are therefore put together here, in the ways
+//! in which devices differ: zeros before numbers, more or fewer decimals, fields that are empty.
 
 #[allow(dead_code, reason = "the tests of the codec use more of it")]
 #[path = "../../tests/nmea/sentences.rs"]
 mod sentences;
 
 use chrono::{Datelike, Timelike};
-use gateway::nmea::{Date, Framer, Mwv, Sentence, SpeedUnit, TimeOfDay, Vtg, WindReference, checksum};
+use gateway::nmea::{
+    Date, Framer, Mwv, Sentence, SpeedUnit, TimeOfDay, Vtg, WindReference, checksum,
+};
 use nmea::ParseResult;
 use nmea::sentences::mwv::{MwvReference, MwvWindSpeedUnits};
 use nmea::sentences::rmc::RmcStatusOfFix;
@@ -17,7 +19,8 @@ use proptest::prelude::*;
 use proptest::sample::select;
 use sentences::{Domain, on_the_globe, standard_sentences};
 
-/// Half of the last digit that we write, and a little: the crate computes most numbers in single precision.
+/// Half of the last digit that we write, and a little: the crate computes most numbers in single
+/// precision.
 const TENTH: f64 = 0.0501;
 const HUNDREDTH: f64 = 0.00502;
 const POSITION_DEG: f64 = 0.000_005_01 / 60.0;
@@ -32,7 +35,12 @@ fn near(what: &str, ours: Option<f64>, theirs: Option<f64>, tolerance: f64) {
 
 fn near_place(ours: Option<LatLon>, lat_deg: Option<f64>, lon_deg: Option<f64>) {
     near("latitude", ours.map(|at| at.lat_deg), lat_deg, POSITION_DEG);
-    near("longitude", ours.map(|at| at.lon_deg), lon_deg, POSITION_DEG);
+    near(
+        "longitude",
+        ours.map(|at| at.lon_deg),
+        lon_deg,
+        POSITION_DEG,
+    );
 }
 
 /// The same within the rounding of a floating second.
@@ -40,12 +48,23 @@ fn same_time(ours: Option<TimeOfDay>, theirs: Option<chrono::NaiveTime>) {
     let ms = |time: chrono::NaiveTime| {
         f64::from(time.num_seconds_from_midnight()) * 1e3 + f64::from(time.nanosecond()) / 1e6
     };
-    near("time", ours.map(|time| f64::from(time.0)), theirs.map(ms), 1.001);
+    near(
+        "time",
+        ours.map(|time| f64::from(time.0)),
+        theirs.map(ms),
+        1.001,
+    );
 }
 
 fn same_date(ours: Option<Date>, theirs: Option<chrono::NaiveDate>) {
     let theirs = theirs.map(|date| (date.year(), date.month(), date.day()));
-    let ours = ours.map(|date| (i32::from(date.year), u32::from(date.month), u32::from(date.day)));
+    let ours = ours.map(|date| {
+        (
+            i32::from(date.year),
+            u32::from(date.month),
+            u32::from(date.day),
+        )
+    });
     assert_eq!(ours, theirs);
 }
 
@@ -67,25 +86,52 @@ fn agree(ours: &Sentence, theirs: &ParseResult) {
             same_date(a.date, b.fix_date);
             near_place(a.at, b.lat, b.lon);
             assert_eq!(a.valid, b.status_of_fix != RmcStatusOfFix::Invalid);
-            near("speed", a.speed_kn, b.speed_over_ground.map(f64::from), HUNDREDTH);
+            near(
+                "speed",
+                a.speed_kn,
+                b.speed_over_ground.map(f64::from),
+                HUNDREDTH,
+            );
             near("course", a.course_deg, b.true_course.map(f64::from), TENTH);
         }
         (Sentence::Vtg(a), ParseResult::VTG(b)) => {
-            near("course", a.course_true_deg, b.true_course.map(f64::from), TENTH);
-            near("speed", a.speed_kn, b.speed_over_ground.map(f64::from), HUNDREDTH);
+            near(
+                "course",
+                a.course_true_deg,
+                b.true_course.map(f64::from),
+                TENTH,
+            );
+            near(
+                "speed",
+                a.speed_kn,
+                b.speed_over_ground.map(f64::from),
+                HUNDREDTH,
+            );
         }
         (Sentence::Gll(a), ParseResult::GLL(b)) => {
             same_time(a.time, b.fix_time);
             near_place(a.at, b.latitude, b.longitude);
             assert_eq!(a.valid, b.valid);
         }
-        (Sentence::Hdt(a), ParseResult::HDT(b)) => near("heading", a.heading_deg, b.heading.map(f64::from), TENTH),
+        (Sentence::Hdt(a), ParseResult::HDT(b)) => {
+            near("heading", a.heading_deg, b.heading.map(f64::from), TENTH)
+        }
         (Sentence::Mwv(a), ParseResult::MWV(b)) => same_wind(a, b),
         (Sentence::Vhw(a), ParseResult::VHW(b)) => {
             near("true heading", a.heading_true_deg, b.heading_true, TENTH);
-            near("magnetic heading", a.heading_magnetic_deg, b.heading_magnetic, TENTH);
+            near(
+                "magnetic heading",
+                a.heading_magnetic_deg,
+                b.heading_magnetic,
+                TENTH,
+            );
             near("knots", a.speed_kn, b.relative_speed_knots, HUNDREDTH);
-            near("km/h", a.speed_kn.map(|kn| kn * 1.852), b.relative_speed_kmph, 2.0 * HUNDREDTH);
+            near(
+                "km/h",
+                a.speed_kn.map(|kn| kn * 1.852),
+                b.relative_speed_kmph,
+                2.0 * HUNDREDTH,
+            );
         }
         (Sentence::Zda(a), ParseResult::ZDA(b)) => {
             same_time(a.time, b.utc_time);
@@ -104,9 +150,17 @@ fn same_wind(a: &Mwv, b: &nmea::sentences::mwv::MwvData) {
         None => panic!("{b:?} has no unit"),
     };
     let relative = b.reference == Some(MwvReference::Relative);
-    assert_eq!((a.unit, a.reference == WindReference::Relative, a.valid), (unit, relative, b.data_valid));
+    assert_eq!(
+        (a.unit, a.reference == WindReference::Relative, a.valid),
+        (unit, relative, b.data_valid)
+    );
     near("angle", a.angle_deg, b.wind_direction.map(f64::from), TENTH);
-    near("speed", a.speed_m_s.map(|speed| speed / unit.m_s()), b.wind_speed.map(f64::from), TENTH);
+    near(
+        "speed",
+        a.speed_m_s.map(|speed| speed / unit.m_s()),
+        b.wind_speed.map(f64::from),
+        TENTH,
+    );
 }
 
 /// The crate's interpretation of a line.
@@ -117,9 +171,13 @@ fn theirs(line: &str) -> ParseResult {
 /// Our interpretation of a line.
 fn ours(line: &str) -> Sentence {
     let mut found = Vec::new();
-    Framer::new().push(line.as_bytes(), &mut |body| found.push(Sentence::parse(body)));
+    Framer::new().push(line.as_bytes(), &mut |body| {
+        found.push(Sentence::parse(body))
+    });
     assert_eq!(found.len(), 1, "{line} is one sentence");
-    found.remove(0).unwrap_or_else(|e| panic!("we refuse {line}: {e}"))
+    found
+        .remove(0)
+        .unwrap_or_else(|e| panic!("we refuse {line}: {e}"))
 }
 
 /// Sentences that the crate reads: it has no magnetic heading, and needs some of the numbers.
@@ -136,8 +194,15 @@ fn sentence() -> impl Strategy<Value = Sentence> {
     };
     standard_sentences(&domain).prop_filter_map("the crate needs it", |sentence| match sentence {
         // It computes one speed from the other.
-        Sentence::Vtg(v) => Some(Sentence::Vtg(Vtg { speed_km_h: Some(v.speed_kn? * 1.852), ..v })),
-        Sentence::Vhw(v) => v.heading_true_deg.and(v.heading_magnetic_deg).and(v.speed_kn).map(|_| Sentence::Vhw(v)),
+        Sentence::Vtg(v) => Some(Sentence::Vtg(Vtg {
+            speed_km_h: Some(v.speed_kn? * 1.852),
+            ..v
+        })),
+        Sentence::Vhw(v) => v
+            .heading_true_deg
+            .and(v.heading_magnetic_deg)
+            .and(v.speed_kn)
+            .map(|_| Sentence::Vhw(v)),
         Sentence::Hdt(h) => h.heading_deg.map(|_| Sentence::Hdt(h)),
         Sentence::Hdg(_) => None,
         other => Some(other),
@@ -146,7 +211,11 @@ fn sentence() -> impl Strategy<Value = Sentence> {
 
 /// Lines as other devices write them.
 fn foreign() -> BoxedStrategy<String> {
-    let number = || select(vec!["0", "0.0", "000.1", "7", "08.25", "45.1", "123.456", "359.9"]);
+    let number = || {
+        select(vec![
+            "0", "0.0", "000.1", "7", "08.25", "45.1", "123.456", "359.9",
+        ])
+    };
     let maybe = || prop_oneof![number(), Just("")];
     let time = || select(vec!["000000", "235959.999", "150502.00", "120000.5", ""]);
     let place = || {
@@ -161,19 +230,44 @@ fn foreign() -> BoxedStrategy<String> {
     };
     let status = || select(vec!["A", "V"]);
     let body = prop_oneof![
-        (time(), place(), 0..9_u8, 0..24_u8, maybe(), maybe(), maybe())
-            .prop_map(|(t, p, q, n, h, a, g)| format!("GNGGA,{t},{p},{q},{n:02},{h},{a},M,{g},M,1.2,0031")),
-        (time(), status(), place(), maybe(), maybe(), select(vec!["010100", "201126", "311299", "290224", ""]))
+        (
+            time(),
+            place(),
+            0..9_u8,
+            0..24_u8,
+            maybe(),
+            maybe(),
+            maybe()
+        )
+            .prop_map(|(t, p, q, n, h, a, g)| format!(
+                "GNGGA,{t},{p},{q},{n:02},{h},{a},M,{g},M,1.2,0031"
+            )),
+        (
+            time(),
+            status(),
+            place(),
+            maybe(),
+            maybe(),
+            select(vec!["010100", "201126", "311299", "290224", ""])
+        )
             .prop_map(|(t, s, p, v, c, d)| format!("GPRMC,{t},{s},{p},{v},{c},{d},14.5,W,A")),
-        (maybe(), maybe(), number()).prop_map(|(c, m, v)| format!("GPVTG,{c},T,{m},M,{v},N,0000.14,K")),
+        (maybe(), maybe(), number())
+            .prop_map(|(c, m, v)| format!("GPVTG,{c},T,{m},M,{v},N,0000.14,K")),
         (place(), time(), status()).prop_map(|(p, t, s)| format!("LCGLL,{p},{t},{s},A")),
         number().prop_map(|h| format!("HEHDT,{h},T")),
-        (maybe(), select(vec!["R", "T"]), maybe(), select(vec!["K", "M", "N", "S"]), status())
+        (
+            maybe(),
+            select(vec!["R", "T"]),
+            maybe(),
+            select(vec!["K", "M", "N", "S"]),
+            status()
+        )
             .prop_map(|(a, r, v, u, s)| format!("WIMWV,{a},{r},{v},{u},{s}")),
         (time(), 1..=28_u8, 1..=12_u8, 1983..2100_u16)
             .prop_map(|(t, d, m, y)| format!("GPZDA,{t},{d:02},{m:02},{y},-05,00")),
     ];
-    body.prop_map(|body| format!("${body}*{:02X}\r\n", checksum(body.as_bytes()))).boxed()
+    body.prop_map(|body| format!("${body}*{:02X}\r\n", checksum(body.as_bytes())))
+        .boxed()
 }
 
 proptest! {
@@ -210,8 +304,15 @@ fn goldens_mean_the_same_to_both() {
 
 #[test]
 fn what_it_cannot_read_is_why_there_is_a_codec_of_ours() {
-    for line in ["$PSEAD,T,58.7,20,-10,,T,2,2*79", "$HCHDG,058.7,,,14.5,W*01", "$OIWPL,2545.4912,N,08022.4373,W,1*7A"] {
+    for line in [
+        "$PSEAD,T,58.7,20,-10,,T,2,2*79",
+        "$HCHDG,058.7,,,14.5,W*01",
+        "$OIWPL,2545.4912,N,08022.4373,W,1*7A",
+    ] {
         ours(&format!("{line}\r\n"));
-        assert!(!matches!(nmea::parse_str(line), Ok(found) if !matches!(found, ParseResult::Unsupported(_))), "{line}");
+        assert!(
+            !matches!(nmea::parse_str(line), Ok(found) if !matches!(found, ParseResult::Unsupported(_))),
+            "{line}"
+        );
     }
 }

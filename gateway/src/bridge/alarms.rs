@@ -29,8 +29,8 @@ struct Alarm {
 }
 
 impl Alarm {
-    /// Notes the size of the fault, if there is one now. Returns a warning with this text when it has
-    /// lasted for `debounce_s`, and a remark with its name at its end.
+    /// Notes the size of the fault, if there is one now. Returns a warning with this text when it
+    /// has lasted for `debounce_s`, and a remark with its name at its end.
     fn note(
         &mut self,
         now: SimTime,
@@ -41,7 +41,9 @@ impl Alarm {
         // Keep the time of the first report and the size of the newest, so that the text
         // follows the pump during the debounce.
         self.since = size.map(|size| (self.since.map_or(now, |(since, _)| since), size));
-        let lasts = self.since.is_some_and(|(since, _)| (now - since).as_s() >= debounce_s);
+        let lasts = self
+            .since
+            .is_some_and(|(since, _)| (now - since).as_s() >= debounce_s);
         match (std::mem::replace(&mut self.is_told, lasts), self.since) {
             (false, Some((_, size))) if lasts => Some(Event::Warning(text(size))),
             // The end is a remark: nobody has to act on it.
@@ -94,7 +96,13 @@ pub(super) struct Alarms {
 impl Alarms {
     /// No alarms: nothing has been received yet.
     pub(super) fn new(watch: CurrentWatch) -> Alarms {
-        Alarms { watch, error: None, notice: None, tilt: Alarm::default(), currents: Default::default() }
+        Alarms {
+            watch,
+            error: None,
+            notice: None,
+            tilt: Alarm::default(),
+            currents: Default::default(),
+        }
     }
 
     /// Records the boat's error code; `None` means no error.
@@ -118,7 +126,12 @@ impl Alarms {
         let tilt_deg = tilt_deg.map(|deg| wrap_pi(deg.to_radians()).to_degrees().abs());
         let tilt_deg = tilt_deg[0].max(tilt_deg[1]);
         let tilt_deg = Some(tilt_deg).filter(|tilt_deg| *tilt_deg >= TILT_MAX_DEG);
-        events.extend(self.tilt.note(now, tilt_deg, TILT_S, (tilt_text, "the boat lay on its side")));
+        events.extend(self.tilt.note(
+            now,
+            tilt_deg,
+            TILT_S,
+            (tilt_text, "the boat lay on its side"),
+        ));
     }
 
     /// Checks the measured currents against the command that the boat follows.
@@ -145,19 +158,30 @@ impl Alarms {
     }
 
     /// The current, A, if it shows this fault.
-    fn found(&self, wrong: Wrong, side: usize, power: &Power, ordered: Option<[f64; 2]>) -> Option<f64> {
+    fn found(
+        &self,
+        wrong: Wrong,
+        side: usize,
+        power: &Power,
+        ordered: Option<[f64; 2]>,
+    ) -> Option<f64> {
         let watch = &self.watch;
         let [here, there] = [power.thruster_a[side], power.thruster_a[1 - side]];
         match wrong {
-            Wrong::Bilge => power.bilge_a[side].filter(|amps| watch.bilge_a > 0.0 && *amps >= watch.bilge_a),
-            Wrong::TooMuch => here.filter(|amps| watch.thruster_max_a > 0.0 && amps.abs() > watch.thruster_max_a),
+            Wrong::Bilge => {
+                power.bilge_a[side].filter(|amps| watch.bilge_a > 0.0 && *amps >= watch.bilge_a)
+            }
+            Wrong::TooMuch => {
+                here.filter(|amps| watch.thruster_max_a > 0.0 && amps.abs() > watch.thruster_max_a)
+            }
             Wrong::TooLittle => {
                 // Boats without current sensors report zeros; a current on the other side proves
                 // that this boat measures.
                 let is_measured = there.is_some_and(|amps| amps.abs() > watch.thruster_min_a);
                 // In a turn one side may have zero thrust and draw nothing, so a silent side means
                 // something only if both are ordered.
-                let is_ordered = ordered.is_some_and(|sides| sides.iter().all(|pct| pct.abs() >= ORDERED_MIN_PCT));
+                let is_ordered = ordered
+                    .is_some_and(|sides| sides.iter().all(|pct| pct.abs() >= ORDERED_MIN_PCT));
                 here.filter(|amps| amps.abs() < watch.thruster_min_a && is_measured && is_ordered)
             }
         }
@@ -166,19 +190,28 @@ impl Alarms {
     /// The active alarms as texts.
     pub(super) fn texts(&self) -> Vec<String> {
         let error = self.error.as_deref().map(error_text).into_iter();
-        let currents = WRONGS.into_iter().flat_map(|wrong| [0, 1].map(|side| (wrong, side)));
-        let currents = currents
-            .filter_map(|(wrong, side)| self.currents[wrong as usize][side].told().map(|amps| text(wrong, side, amps)));
-        error.chain(self.tilt.told().map(tilt_text)).chain(currents).collect()
+        let currents = WRONGS
+            .into_iter()
+            .flat_map(|wrong| [0, 1].map(|side| (wrong, side)));
+        let currents = currents.filter_map(|(wrong, side)| {
+            self.currents[wrong as usize][side]
+                .told()
+                .map(|amps| text(wrong, side, amps))
+        });
+        error
+            .chain(self.tilt.told().map(tilt_text))
+            .chain(currents)
+            .collect()
     }
 }
 
 /// Ordered thrust of both sides, port first, per cent; `None` if the boat steers itself.
 fn ordered_pct(command: Command) -> Option<[f64; 2]> {
     match command {
-        Command::SetPoint(SetPoint::Thrust { thrust_pct, difference_pct }) => {
-            Some([thrust_pct + difference_pct, thrust_pct - difference_pct])
-        }
+        Command::SetPoint(SetPoint::Thrust {
+            thrust_pct,
+            difference_pct,
+        }) => Some([thrust_pct + difference_pct, thrust_pct - difference_pct]),
         _ => None,
     }
 }
@@ -205,22 +238,39 @@ fn text(wrong: Wrong, side: usize, amps: f64) -> String {
 mod tests {
     use super::*;
 
-    const WATCH: CurrentWatch =
-        CurrentWatch { thruster_max_a: 45.0, thruster_min_a: 0.5, bilge_a: 0.1, debounce_s: 3.0 };
+    const WATCH: CurrentWatch = CurrentWatch {
+        thruster_max_a: 45.0,
+        thruster_min_a: 0.5,
+        bilge_a: 0.1,
+        debounce_s: 3.0,
+    };
 
     #[test]
     fn an_error_is_told_when_it_changes_and_stays_until_the_boat_takes_it_back() {
         let mut alarms = Alarms::new(WATCH);
         let mut events = vec![];
-        for (error, told) in [(Some("L"), 1), (Some("L"), 1), (None, 1), (Some("L"), 2), (Some("B"), 3)] {
+        for (error, told) in [
+            (Some("L"), 1),
+            (Some("L"), 1),
+            (None, 1),
+            (Some("L"), 2),
+            (Some("B"), 3),
+        ] {
             alarms.take_error(error.map(str::to_owned), &mut events);
             assert_eq!(events.len(), told);
-            let shown: Vec<String> = error.iter().map(|code| format!("the boat reports error {code:?}")).collect();
+            let shown: Vec<String> = error
+                .iter()
+                .map(|code| format!("the boat reports error {code:?}"))
+                .collect();
             assert_eq!(alarms.texts(), shown);
         }
         alarms = Alarms::new(WATCH);
         alarms.take_notice("PreArm: no fix".to_owned(), &mut events);
         alarms.take_notice("PreArm: no fix".to_owned(), &mut events);
-        assert_eq!((events.len(), alarms.texts()), (4, vec![]), "a notice is no state");
+        assert_eq!(
+            (events.len(), alarms.texts()),
+            (4, vec![]),
+            "a notice is no state"
+        );
     }
 }

@@ -25,7 +25,13 @@ pub(super) struct BatteryLog {
 impl BatteryLog {
     /// No data yet, on a new link.
     pub(super) fn new(watch: BatteryWatch, now: SimTime) -> BatteryLog {
-        BatteryLog { watch, volts: None, left_pct: None, low_since: None, silence: (now, false) }
+        BatteryLog {
+            watch,
+            volts: None,
+            left_pct: None,
+            low_since: None,
+            silence: (now, false),
+        }
     }
 
     pub(super) fn observe(&mut self, now: SimTime, power: &Power) {
@@ -55,7 +61,8 @@ impl BatteryLog {
     }
 
     pub(super) fn is_low(&self, now: SimTime) -> bool {
-        self.low_since.is_some_and(|since| (now - since).as_s() >= self.watch.debounce_s)
+        self.low_since
+            .is_some_and(|since| (now - since).as_s() >= self.watch.debounce_s)
     }
 
     /// Returns true once when a monitored battery falls silent.

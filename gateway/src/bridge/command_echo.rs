@@ -29,10 +29,13 @@ impl Shown {
         // A missing field cannot disagree: emulators and ArduPilot report fewer fields than a
         // Surveyor.
         let within = |sent: Option<f64>, shown: Option<f64>, apart: f64| {
-            sent.zip(shown).is_none_or(|(sent, shown)| (sent - shown).abs() <= apart)
+            sent.zip(shown)
+                .is_none_or(|(sent, shown)| (sent - shown).abs() <= apart)
         };
         let turned = self.heading_deg.zip(shown.heading_deg);
-        let turned_deg = turned.map_or(0.0, |(sent, shown)| wrap_pi((sent - shown).to_radians()).to_degrees());
+        let turned_deg = turned.map_or(0.0, |(sent, shown)| {
+            wrap_pi((sent - shown).to_radians()).to_degrees()
+        });
         self.mode == shown.mode
             && match self.mode {
                 Mode::Thruster => {
@@ -41,7 +44,10 @@ impl Shown {
                     within(self.thrust, shown.thrust, thrust_pct)
                         && within(self.difference, shown.difference, thrust_pct)
                 }
-                Mode::Speed => within(self.thrust, shown.thrust, SAME_SPEED_KN) && turned_deg.abs() <= SAME_HEADING_DEG,
+                Mode::Speed => {
+                    within(self.thrust, shown.thrust, SAME_SPEED_KN)
+                        && turned_deg.abs() <= SAME_HEADING_DEG
+                }
                 // In other modes the boat's own controller chooses the thrust.
                 _ => true,
             }
@@ -103,11 +109,20 @@ impl CommandEcho {
     /// Checks a report of the boat; called only while we command it.
     pub(super) fn observe(&mut self, now: SimTime, mut shown: Shown) {
         // A boat that has never echoed a nonzero heading of ours may report 0 for all of them.
-        shown.heading_deg = shown.heading_deg.filter(|deg| *deg != 0.0 || self.has_shown_set_point);
+        shown.heading_deg = shown
+            .heading_deg
+            .filter(|deg| *deg != 0.0 || self.has_shown_set_point);
         let is_on_its_way = self.is_on_its_way(&shown);
-        let is_new = self.last.replace(shown).is_none_or(|last| !last.agrees(&shown, self.watch.echo_thrust_pct));
+        let is_new = self
+            .last
+            .replace(shown)
+            .is_none_or(|last| !last.agrees(&shown, self.watch.echo_thrust_pct));
         let was_ours = std::mem::take(&mut self.is_ours);
-        if self.sent.iter().any(|(_, sent)| sent.agrees(&shown, self.watch.echo_thrust_pct)) {
+        if self
+            .sent
+            .iter()
+            .any(|(_, sent)| sent.agrees(&shown, self.watch.echo_thrust_pct))
+        {
             (self.is_ours, self.has_shown, self.unlike_since) = (true, true, None);
             let tells = shown.heading_deg.is_some() || shown.thrust.is_some();
             self.has_shown_set_point |= shown.mode.is_set_point() && tells;
@@ -118,7 +133,11 @@ impl CommandEcho {
             self.unlike_since.get_or_insert(now);
         }
         // Only a boat that has echoed our set-points can be found to echo a foreign one.
-        let knows = if is_same_mode { self.has_shown_set_point } else { self.has_shown };
+        let knows = if is_same_mode {
+            self.has_shown_set_point
+        } else {
+            self.has_shown
+        };
         // A foreign set-point moves the boat, so one is enough. Standby that we did not send may be
         // the boat's own doing (a button, a failsafe), so it must repeat: a single fallback to
         // standby is caught by the mode mismatch.
@@ -128,25 +147,31 @@ impl CommandEcho {
             }
         } else if was_ours {
             self.departures.push_back(now);
-            self.departures.retain(|at| (now - *at).as_s() <= DEPARTURES_S);
+            self.departures
+                .retain(|at| (now - *at).as_s() <= DEPARTURES_S);
             if self.departures.len() >= DEPARTURES {
                 self.foreign_at = Some(now);
             }
         }
     }
 
-    /// Whether thrust and difference lie between the last reported and the last sent values. This is so
-    /// for a boat that reports the applied thrust, which lags, instead of its command. Another
-    /// gateway's set-points jump.
+    /// Whether thrust and difference lie between the last reported and the last sent values. This
+    /// is so for a boat that reports the applied thrust, which lags, instead of its command.
+    /// Another gateway's set-points jump.
     fn is_on_its_way(&self, shown: &Shown) -> bool {
-        let Some(last) = self.last.filter(|last| last.mode == Mode::Thruster && shown.mode == Mode::Thruster) else {
+        let Some(last) = self
+            .last
+            .filter(|last| last.mode == Mode::Thruster && shown.mode == Mode::Thruster)
+        else {
             return false;
         };
         let is_between = |of: fn(&Shown) -> Option<f64>| {
             let sent = self.sent.iter().filter_map(|(_, sent)| of(sent));
             let (low, high) = sent
                 .chain(of(&last))
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), pct| (low.min(pct), high.max(pct)));
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), pct| {
+                    (low.min(pct), high.max(pct))
+                });
             let apart = self.watch.echo_thrust_pct;
             of(shown).is_none_or(|pct| (low - apart..=high + apart).contains(&pct))
         };
@@ -155,14 +180,20 @@ impl CommandEcho {
 
     /// Whether the boat has recently echoed a command that we have not sent.
     pub(super) fn is_foreign(&self, now: SimTime) -> bool {
-        self.foreign_at.is_some_and(|at| (now - at).as_s() <= FOREIGN_MEMORY_S)
+        self.foreign_at
+            .is_some_and(|at| (now - at).as_s() <= FOREIGN_MEMORY_S)
     }
 
     /// Whether the boat echoes thrust that it should no longer apply.
     pub(super) fn is_deaf(&self, now: SimTime) -> bool {
         // A boat that has echoed our set-points has used up its grace period.
-        let patience_s = if self.has_shown_set_point { 0.0 } else { self.watch.echo_s };
-        self.unlike_since.is_some_and(|since| (now - since).as_s() >= patience_s)
+        let patience_s = if self.has_shown_set_point {
+            0.0
+        } else {
+            self.watch.echo_s
+        };
+        self.unlike_since
+            .is_some_and(|since| (now - since).as_s() >= patience_s)
     }
 }
 
@@ -172,7 +203,12 @@ mod tests {
     use primitives::math;
 
     fn thrust(thrust: f64) -> Shown {
-        Shown { mode: Mode::Thruster, heading_deg: None, thrust: Some(thrust), difference: Some(0.0) }
+        Shown {
+            mode: Mode::Thruster,
+            heading_deg: None,
+            thrust: Some(thrust),
+            difference: Some(0.0),
+        }
     }
 
     /// The verdict when the boat shows these thrusts, ten a second, after 20 % and then 60 % were
@@ -193,8 +229,14 @@ mod tests {
 
     #[test]
     fn a_boat_that_shows_its_applied_thrust_has_no_second_gateway() {
-        let lagging: Vec<f64> = (0..40).map(|i| (60.0 - 40.0 * math::exp(-0.1 * f64::from(i))).round()).collect();
-        assert_eq!(found(&lagging[..20]), (false, true), "it does not show what it was sent");
+        let lagging: Vec<f64> = (0..40)
+            .map(|i| (60.0 - 40.0 * math::exp(-0.1 * f64::from(i))).round())
+            .collect();
+        assert_eq!(
+            found(&lagging[..20]),
+            (false, true),
+            "it does not show what it was sent"
+        );
         assert_eq!(found(&lagging), (false, false), "it does in the end");
         let mut later = vec![60.0; 20];
         later.push(30.0);

@@ -12,27 +12,45 @@ const OTHERS_AGE_MAX_S: f64 = 2.0;
 impl Bridge {
     pub(super) fn conditions_at(&mut self, now: SimTime) -> Conditions {
         let (others_at, others) = &self.others;
-        let known: &[Ned] = if (now - *others_at).as_s() <= OTHERS_AGE_MAX_S { others } else { &[] };
+        let known: &[Ned] = if (now - *others_at).as_s() <= OTHERS_AGE_MAX_S {
+            others
+        } else {
+            &[]
+        };
         let mut nav_fault = Some(NavFault::NoField);
         let mut thrust_fault = None;
         let mut inside = false;
         let mut blocked = false;
         let mut recovery_point = false;
         if let Some(site) = &mut self.on_site {
-            recovery_point = self.recovery_point.taken().is_some_and(|erp| site.is_way_to(now, erp));
-            let OnSite { estimator, geofence, bow, .. } = site;
+            recovery_point = self
+                .recovery_point
+                .taken()
+                .is_some_and(|erp| site.is_way_to(now, erp));
+            let OnSite {
+                estimator,
+                geofence,
+                bow,
+                ..
+            } = site;
             (nav_fault, thrust_fault) = (estimator.fault(now), estimator.thrust_fault(now));
             if let Some((nav, _)) = estimator.nav(now) {
                 // Use the faster of reported and measured speed at once: a log stuck at zero would
                 // otherwise let the boat run into the fence before the instrument check finds it.
-                inside = geofence.is_inside(now, nav.at(), (estimator.fastest_velocity_m_s(), nav.yaw_rate_rad_s));
+                inside = geofence.is_inside(
+                    now,
+                    nav.at(),
+                    (estimator.fastest_velocity_m_s(), nav.yaw_rate_rad_s),
+                );
                 blocked = bow.is_blocked(now, &nav, known);
             }
         }
         // The age counts from arrival by our own clock: the clocks of sim and gateway are not
         // synchronised.
         let ttl_s = self.plan.gateway.order_ttl_s;
-        let order_fresh = self.order.is_some_and(|current| (now - current.came).as_s() <= ttl_s);
+        let order_fresh = self
+            .order
+            .is_some_and(|current| (now - current.came).as_s() <= ttl_s);
         Conditions {
             link: self.link_up,
             hung_s: self.hung_s,

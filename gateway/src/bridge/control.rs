@@ -22,7 +22,13 @@ pub(super) struct ControlLog {
 
 impl ControlLog {
     pub(super) fn new(watch: ControlWatch) -> ControlLog {
-        ControlLog { watch, reported: None, sent: None, mismatch_since: None, echo: CommandEcho::new(watch) }
+        ControlLog {
+            watch,
+            reported: None,
+            sent: None,
+            mismatch_since: None,
+            echo: CommandEcho::new(watch),
+        }
     }
 
     pub(super) fn observe(&mut self, now: SimTime, report: &ControlReport) {
@@ -80,12 +86,16 @@ impl ControlLog {
         // Some boats report no operator. Their owner can declare in the file that the gateway
         // commands them; otherwise silence means that somebody else may.
         let silent = (!self.watch.assumed).then_some(ControlFault::Unknown);
-        let Some((at, report)) = self.reported else { return silent };
+        let Some((at, report)) = self.reported else {
+            return silent;
+        };
         // The assumption covers a boat that never reports, not one that has stopped reporting.
         if (now - at).as_s() > self.watch.age_max_s {
             return Some(ControlFault::Unknown);
         }
-        let is_ours = report.operator.map_or(self.watch.assumed, |operator| operator == Operator::Secondary);
+        let is_ours = report.operator.map_or(self.watch.assumed, |operator| {
+            operator == Operator::Secondary
+        });
         match (report.operator, self.mode_mismatch(now)) {
             // Check foreign orders first: a boat with two masters also disobeys and looks deaf, and
             // the operator must learn that there is another gateway.

@@ -35,7 +35,14 @@ impl Plan {
     pub fn new(vehicle: &str, gateway: Gateway) -> Plan {
         let vehicle = vehicle.to_owned();
         let preflight = Preflight::NotRequired;
-        Plan { vehicle, gateway, site: None, arms_itself: false, dry_run: false, preflight }
+        Plan {
+            vehicle,
+            gateway,
+            site: None,
+            arms_itself: false,
+            dry_run: false,
+            preflight,
+        }
     }
 }
 
@@ -57,7 +64,11 @@ pub enum Preflight {
 impl Preflight {
     /// What prevents arming, if anything.
     pub(crate) fn missing(&self) -> Option<&String> {
-        if let Preflight::Missing(why) = self { Some(why) } else { None }
+        if let Preflight::Missing(why) = self {
+            Some(why)
+        } else {
+            None
+        }
     }
 }
 

@@ -22,7 +22,8 @@ use crate::nmea::Mode;
 use crate::protocol::{Command, Protocol, Report, UploadStep};
 use crate::set_point::SetPoint;
 use crate::supervisor::{
-    Action, Conditions, ControlFault, OperatorRequest, Refusal, Scope, State, Step, Supervisor, Task,
+    Action, Conditions, ControlFault, OperatorRequest, Refusal, Scope, State, Step, Supervisor,
+    Task,
 };
 pub use interface::{Event, Input, NavOut, Output, Plan, Preflight, Site};
 
@@ -102,12 +103,24 @@ pub struct Bridge {
 impl Bridge {
     /// A disarmed bridge without a link.
     pub fn new(plan: Plan) -> Bridge {
-        let Gateway { control, battery, currents, failsafe, .. } = &plan.gateway;
+        let Gateway {
+            control,
+            battery,
+            currents,
+            failsafe,
+            ..
+        } = &plan.gateway;
         Bridge {
             protocol: Protocol::new(&plan.gateway),
             control: ControlLog::new(*control),
-            on_site: plan.site.as_ref().map(|site| OnSite::new(&plan.gateway, site)),
-            supervisor: Supervisor::new(plan.arms_itself && plan.preflight.missing().is_none(), *failsafe),
+            on_site: plan
+                .site
+                .as_ref()
+                .map(|site| OnSite::new(&plan.gateway, site)),
+            supervisor: Supervisor::new(
+                plan.arms_itself && plan.preflight.missing().is_none(),
+                *failsafe,
+            ),
             battery: BatteryLog::new(*battery, SimTime::ZERO),
             alarms: Alarms::new(*currents),
             rearm: Rearm::new(failsafe.rearm_within_s),
@@ -156,17 +169,27 @@ impl Bridge {
             Input::OrderAhead => self.counters.orders_ahead += 1,
             Input::OldOrder => self.counters.old_orders += 1,
             Input::Others(places) => self.others = (now, places.clone()),
-            Input::Operator(OperatorCommand::Mission(mission)) => request = self.take_mission(now, mission, out),
+            Input::Operator(OperatorCommand::Mission(mission)) => {
+                request = self.take_mission(now, mission, out)
+            }
             Input::Operator(OperatorCommand::Arm) if self.plan.preflight.missing().is_some() => {
-                out.refused = self.plan.preflight.missing().map(|missing| format!("missing: {missing}"));
+                out.refused = self
+                    .plan
+                    .preflight
+                    .missing()
+                    .map(|missing| format!("missing: {missing}"));
             }
             Input::Operator(OperatorCommand::Mode(mode)) => match self.request_mode(*mode) {
                 Ok(asked) => request = Some(asked),
                 Err(reason) => out.refused = Some(reason),
             },
             Input::Operator(command) => request = request_from(command),
-            Input::Fleet(FleetCommand::EStop) => request = Some(OperatorRequest::EStop(Scope::Fleet)),
-            Input::Fleet(FleetCommand::Release) => request = Some(OperatorRequest::Release(Scope::Fleet)),
+            Input::Fleet(FleetCommand::EStop) => {
+                request = Some(OperatorRequest::EStop(Scope::Fleet))
+            }
+            Input::Fleet(FleetCommand::Release) => {
+                request = Some(OperatorRequest::Release(Scope::Fleet))
+            }
             Input::Tick => {}
         }
         if request.is_some() && !matches!(input, Input::Operator(OperatorCommand::Mission(_))) {
@@ -185,10 +208,18 @@ impl Bridge {
     pub fn due(&self, now: SimTime) -> SimTime {
         let period = self.period();
         let coming = |at: SimTime| if at > now { at } else { now + period };
-        let regular = self.last_sent.as_ref().map_or(now + period, |(at, _)| coming(*at + period));
-        let new_order =
-            if self.order_is_new { coming(self.order_sent + SimTime::from_s(GAP_MIN_S)) } else { SimTime::NEVER };
-        regular.min(new_order).min(self.protocol.due().map_or(SimTime::NEVER, coming))
+        let regular = self
+            .last_sent
+            .as_ref()
+            .map_or(now + period, |(at, _)| coming(*at + period));
+        let new_order = if self.order_is_new {
+            coming(self.order_sent + SimTime::from_s(GAP_MIN_S))
+        } else {
+            SimTime::NEVER
+        };
+        regular
+            .min(new_order)
+            .min(self.protocol.due().map_or(SimTime::NEVER, coming))
     }
 
     fn period(&self) -> SimTime {
@@ -199,7 +230,10 @@ impl Bridge {
     fn is_due(&self, now: SimTime) -> bool {
         let fresh = self.order_is_new && self.supervisor.state() == State::Armed;
         // A new order does not wait for the repetition period.
-        let regular = self.last_sent.as_ref().is_none_or(|(at, _)| now >= *at + self.period());
+        let regular = self
+            .last_sent
+            .as_ref()
+            .is_none_or(|(at, _)| now >= *at + self.period());
         regular || (fresh && now >= self.order_sent + SimTime::from_s(GAP_MIN_S))
     }
 
@@ -207,8 +241,16 @@ impl Bridge {
     fn take_link_up(&mut self, now: SimTime) {
         self.link_up = true;
         self.protocol.begin_link();
-        self.on_site.iter_mut().for_each(|site| site.estimator.forget());
-        let Gateway { control, battery, currents, startup_words, .. } = &self.plan.gateway;
+        self.on_site
+            .iter_mut()
+            .for_each(|site| site.estimator.forget());
+        let Gateway {
+            control,
+            battery,
+            currents,
+            startup_words,
+            ..
+        } = &self.plan.gateway;
         self.control = ControlLog::new(*control);
         self.clock = ClockWatch::default();
         self.words = startup_words.clone().into();
@@ -223,23 +265,31 @@ impl Bridge {
 
     fn read(&mut self, now: SimTime, bytes: &[u8], out: &mut Output) {
         let mut reports = Vec::new();
-        self.protocol.read(now, bytes, &mut |report| reports.push(report));
-        reports.into_iter().for_each(|report| self.apply(now, report, out));
+        self.protocol
+            .read(now, bytes, &mut |report| reports.push(report));
+        reports
+            .into_iter()
+            .for_each(|report| self.apply(now, report, out));
     }
 
     fn apply(&mut self, now: SimTime, report: Report, out: &mut Output) {
-        self.nav_is_new |= self.on_site.as_mut().is_some_and(|site| site.estimator.update(now, &report));
+        self.nav_is_new |= self
+            .on_site
+            .as_mut()
+            .is_some_and(|site| site.estimator.update(now, &report));
         match report {
             Report::Control(control) => {
                 self.control.observe(now, &control);
-                self.recovery_point.observe(&control, self.protocol.is_uploading());
+                self.recovery_point
+                    .observe(&control, self.protocol.is_uploading());
             }
             Report::Station(text) => out.events.push(Event::Warning(text)),
             Report::ForeignOrder => self.control.echo.note_foreign(now),
             Report::Power(power) => {
                 self.battery.observe(now, &power);
                 let command = self.last_sent.map(|(_, command)| command);
-                self.alarms.take_power(now, &power, command, &mut out.events);
+                self.alarms
+                    .take_power(now, &power, command, &mut out.events);
             }
             Report::Tilt(tilt_deg) => self.alarms.take_tilt(now, tilt_deg, &mut out.events),
             Report::Error(error) => self.alarms.take_error(error, &mut out.events),
@@ -265,7 +315,11 @@ impl Bridge {
         if newer {
             self.counters.orders += 1;
             self.order_is_new = true;
-            self.order = Some(CurrentOrder { order, given, came: now });
+            self.order = Some(CurrentOrder {
+                order,
+                given,
+                came: now,
+            });
         } else if order == Order::Hold {
             // The sim replaces the order when it loses the agent. That does not make the order
             // fresh.
@@ -277,12 +331,22 @@ impl Bridge {
     }
 
     /// Starts the upload of a mission, or refuses it.
-    fn take_mission(&mut self, now: SimTime, mission: &Mission, out: &mut Output) -> Option<OperatorRequest> {
+    fn take_mission(
+        &mut self,
+        now: SimTime,
+        mission: &Mission,
+        out: &mut Output,
+    ) -> Option<OperatorRequest> {
         let unfit = self.conditions_at(now).unfit(Task::Mission);
-        let outside = self.on_site.as_ref().and_then(|site| site.outside(now, mission));
+        let outside = self
+            .on_site
+            .as_ref()
+            .and_then(|site| site.outside(now, mission));
         let begun = match (self.supervisor.state(), outside) {
             (State::EStopped, _) => Err(self.e_stop_in_force()),
-            _ if self.plan.dry_run => Err("a dry run sends only standby, so it cannot upload a mission".to_owned()),
+            _ if self.plan.dry_run => {
+                Err("a dry run sends only standby, so it cannot upload a mission".to_owned())
+            }
             _ if !unfit.is_empty() => Err(Refusal::NotReady(unfit).to_string()),
             (_, Some(outside)) => Err(outside),
             // A disarm request leaves the change of state to the supervisor: the boat must rest
@@ -309,9 +373,13 @@ impl Bridge {
     /// Advances the supervisor by one step and sends the resulting command.
     fn advance(&mut self, now: SimTime, request: Option<OperatorRequest>, out: &mut Output) {
         let conditions = self.conditions_at(now);
-        let Step { action, refusal, before } = self.supervisor.step(&conditions, request);
-        let still_stopped =
-            matches!(request, Some(OperatorRequest::Release(_))) && self.supervisor.state() == State::EStopped;
+        let Step {
+            action,
+            refusal,
+            before,
+        } = self.supervisor.step(&conditions, request);
+        let still_stopped = matches!(request, Some(OperatorRequest::Release(_)))
+            && self.supervisor.state() == State::EStopped;
         match refusal {
             Some(refusal) => out.refused = Some(refusal.to_string()),
             None if still_stopped => out.refused = Some(self.e_stop_in_force()),
@@ -320,11 +388,15 @@ impl Bridge {
         if let Some(before) = before {
             self.note_change(now, before, out);
         }
-        let changed = std::mem::replace(&mut self.conditions, conditions).blocked != conditions.blocked;
+        let changed =
+            std::mem::replace(&mut self.conditions, conditions).blocked != conditions.blocked;
         if self.supervisor.state() == State::Armed && changed {
             out.events.push(Event::Blocked(conditions.blocked));
         }
-        if matches!(conditions.control, Some(ControlFault::ForeignOrders | ControlFault::TakenOver(_))) {
+        if matches!(
+            conditions.control,
+            Some(ControlFault::ForeignOrders | ControlFault::TakenOver(_))
+        ) {
             self.recovery_point = RecoveryPoint::default();
         }
         // Send a change at once, between two repetitions: at 10 Hz a stop would otherwise wait 100
@@ -332,29 +404,43 @@ impl Bridge {
         let urgent = before.is_some() || request.is_some() || self.last_sent.is_none() || changed;
         if !self.link_up {
             self.protocol.abort_upload();
-        } else if self.protocol.is_uploading() && action == Action::Standby && !(urgent && self.under_way) {
+        } else if self.protocol.is_uploading()
+            && action == Action::Standby
+            && !(urgent && self.under_way)
+        {
             self.continue_upload(now, out);
         } else if urgent || self.is_due(now) {
             self.send_action(now, action, out);
         }
         self.watch_standby(now, action, out);
         if self.link_up && self.battery.falls_silent(now) {
-            let text = format!("the boat has not reported its battery for {} s", battery::SILENCE_S);
+            let text = format!(
+                "the boat has not reported its battery for {} s",
+                battery::SILENCE_S
+            );
             out.events.push(Event::Warning(text));
         }
     }
 
     fn note_change(&mut self, now: SimTime, before: State, out: &mut Output) {
         let state = self.supervisor.state();
-        out.events.push(Event::State { from: before.to_string(), to: state.to_string() });
+        out.events.push(Event::State {
+            from: before.to_string(),
+            to: state.to_string(),
+        });
         if let State::Failsafe { cause, .. } = state {
             self.rearm.failsafe_at = now;
-            self.failsafes.push(FailsafeReport { at_s: now.as_s(), cause: cause.to_string() });
+            self.failsafes.push(FailsafeReport {
+                at_s: now.as_s(),
+                cause: cause.to_string(),
+            });
             let surplus = self.failsafes.len().saturating_sub(FAILSAFES_MAX);
             self.failsafes.drain(..surplus);
         }
         if state != State::Armed {
-            self.on_site.iter_mut().for_each(|site| site.set_points.reset());
+            self.on_site
+                .iter_mut()
+                .for_each(|site| site.set_points.reset());
         }
     }
 
@@ -362,32 +448,36 @@ impl Bridge {
     fn cancel_upload(&mut self, now: SimTime, out: &mut Output) {
         if self.protocol.abort_upload() && self.link_up {
             self.recovery_point = RecoveryPoint::default();
-            self.protocol.write(now, Command::EndOfUpload, &mut out.bytes);
+            self.protocol
+                .write(now, Command::EndOfUpload, &mut out.bytes);
         }
     }
 
     /// Sends the command for an action.
     fn send_action(&mut self, now: SimTime, action: Action, out: &mut Output) {
-        let command =
-            match action {
-                Action::Standby => self.standby(),
-                Action::Zero => Command::SetPoint(SetPoint::ZERO),
-                Action::Task(task) => {
-                    let command = Command::Task(self.on_site.as_ref().map_or(task, |site| site.by_compass(task)));
-                    let is_reported = self.control.mode() == Some(self.protocol.shown(command).mode);
-                    // If sent again, this task would restart.
-                    if self.last_sent.as_ref().is_some_and(|(at, last)| {
-                        *last == command && (is_reported || (now - *at).as_s() < TASK_AGAIN_S)
-                    }) {
-                        return;
-                    }
-                    command
+        let command = match action {
+            Action::Standby => self.standby(),
+            Action::Zero => Command::SetPoint(SetPoint::ZERO),
+            Action::Task(task) => {
+                let command = Command::Task(
+                    self.on_site
+                        .as_ref()
+                        .map_or(task, |site| site.by_compass(task)),
+                );
+                let is_reported = self.control.mode() == Some(self.protocol.shown(command).mode);
+                // If sent again, this task would restart.
+                if self.last_sent.as_ref().is_some_and(|(at, last)| {
+                    *last == command && (is_reported || (now - *at).as_s() < TASK_AGAIN_S)
+                }) {
+                    return;
                 }
-                Action::Follow => match self.follow(now) {
-                    Some(set_point) => Command::SetPoint(set_point),
-                    None => return,
-                },
-            };
+                command
+            }
+            Action::Follow => match self.follow(now) {
+                Some(set_point) => Command::SetPoint(set_point),
+                None => return,
+            },
+        };
         let command = if self.plan.dry_run {
             self.would_send = Some(command);
             Command::Standby
@@ -426,7 +516,8 @@ impl Bridge {
         if !self.plan.dry_run {
             let ordered = site.set_points.ordered(order, set_point);
             site.estimator.note_order(now, ordered);
-            site.geofence.note_order(now, ordered.ahead_m_s, (nav.psi_rad, nav.velocity_m_s()));
+            site.geofence
+                .note_order(now, ordered.ahead_m_s, (nav.psi_rad, nav.velocity_m_s()));
         }
         Some(set_point)
     }
@@ -434,10 +525,14 @@ impl Bridge {
     fn continue_upload(&mut self, now: SimTime, out: &mut Output) {
         match self.protocol.continue_upload(now, &mut out.bytes) {
             UploadStep::Sent => self.note_sent(now, Command::EndOfUpload),
-            UploadStep::Done => self.advance(now, Some(OperatorRequest::Delegate(Task::Mission)), out),
+            UploadStep::Done => {
+                self.advance(now, Some(OperatorRequest::Delegate(Task::Mission)), out)
+            }
             UploadStep::Failed(reason) => {
                 self.recovery_point = RecoveryPoint::default();
-                out.events.push(Event::Warning(format!("the mission is not uploaded: {reason}")));
+                out.events.push(Event::Warning(format!(
+                    "the mission is not uploaded: {reason}"
+                )));
             }
             UploadStep::Waiting => {}
         }
@@ -446,20 +541,29 @@ impl Bridge {
     /// Warns once if a boat that is sent standby reports that it is driven.
     fn watch_standby(&mut self, now: SimTime, action: Action, out: &mut Output) {
         // Under another operator's control this is correct.
-        let ours =
-            matches!(self.control.fault(now), None | Some(ControlFault::Disobeyed(_) | ControlFault::ForeignOrders));
-        let ignored =
-            action == Action::Standby && ours && self.control.mode_mismatch(now).is_some_and(Mode::is_set_point);
+        let ours = matches!(
+            self.control.fault(now),
+            None | Some(ControlFault::Disobeyed(_) | ControlFault::ForeignOrders)
+        );
+        let ignored = action == Action::Standby
+            && ours
+            && self
+                .control
+                .mode_mismatch(now)
+                .is_some_and(Mode::is_set_point);
         if ignored && !self.standby_ignored {
-            out.events
-                .push(Event::Warning("the boat is being sent standby but reports that it is being driven".to_owned()));
+            out.events.push(Event::Warning(
+                "the boat is being sent standby but reports that it is being driven".to_owned(),
+            ));
         }
         self.standby_ignored = ignored;
     }
 
     fn report_nav(&mut self, now: SimTime, out: &mut Output) {
         let Some(site) = &self.on_site else { return };
-        let Some((nav, age_s)) = site.estimator.nav(now) else { return };
+        let Some((nav, age_s)) = site.estimator.nav(now) else {
+            return;
+        };
         let is_new = std::mem::take(&mut self.nav_is_new);
         // Report invalid navigation too: the sim must learn at once that the position must not be
         // extrapolated, and operators see the boat's last position.

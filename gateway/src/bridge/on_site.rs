@@ -23,7 +23,15 @@ pub(super) struct OnSite {
 
 impl OnSite {
     pub(super) fn new(gateway: &Gateway, site: &Site) -> OnSite {
-        let Gateway { nav, limits, geofence, halt, compass, protocol, .. } = gateway;
+        let Gateway {
+            nav,
+            limits,
+            geofence,
+            halt,
+            compass,
+            protocol,
+            ..
+        } = gateway;
         let frame = LocalFrame::new(site.field.plan.datum);
         // Correction to add to a heading of the boat to make it true, rad.
         let compass_to_true_rad = match (protocol, compass) {
@@ -43,21 +51,37 @@ impl OnSite {
     /// the first waypoint.
     pub(super) fn outside(&self, now: SimTime, mission: &Mission) -> Option<String> {
         // The upload rejects invalid positions with a better reason.
-        let on_globe = |[lat_deg, lon_deg]: &&[f64; 2]| lat_deg.abs() <= 90.0 && lon_deg.abs() <= 180.0;
+        let on_globe =
+            |[lat_deg, lon_deg]: &&[f64; 2]| lat_deg.abs() <= 90.0 && lon_deg.abs() <= 180.0;
         let place = |[lat_deg, lon_deg]: &[f64; 2]| self.estimator.place(*lat_deg, *lon_deg);
         let area = &self.geofence.area;
-        let places = std::iter::once(&mission.erp).chain(&mission.waypoints).filter(on_globe);
+        let places = std::iter::once(&mission.erp)
+            .chain(&mission.waypoints)
+            .filter(on_globe);
         if !places.map(place).all(|place| area.contains(place)) {
             return Some("one of its waypoints is outside the geofence".to_owned());
         }
         let boat = self.estimator.nav(now).map(|(nav, _)| nav.at());
         // The way from the boat to the first waypoint is a leg as well: the boat goes there by
         // itself, whatever lies between.
-        let way: Vec<Ned> = boat.into_iter().chain(mission.waypoints.iter().filter(on_globe).map(place)).collect();
+        let way: Vec<Ned> = boat
+            .into_iter()
+            .chain(mission.waypoints.iter().filter(on_globe).map(place))
+            .collect();
         let first = usize::from(boat.is_none());
-        let leg = way.windows(2).position(|leg| !area.contains_way(leg[0], leg[1]))? + first;
-        let from = if leg == 0 { "the boat".to_owned() } else { format!("waypoint {leg}") };
-        Some(format!("the leg from {from} to waypoint {} leaves the geofence or crosses a keep-out", leg + 1))
+        let leg = way
+            .windows(2)
+            .position(|leg| !area.contains_way(leg[0], leg[1]))?
+            + first;
+        let from = if leg == 0 {
+            "the boat".to_owned()
+        } else {
+            format!("waypoint {leg}")
+        };
+        Some(format!(
+            "the leg from {from} to waypoint {} leaves the geofence or crosses a keep-out",
+            leg + 1
+        ))
     }
 
     /// Whether the geofence allows the straight way from the boat to its recovery point.
@@ -72,9 +96,15 @@ impl OnSite {
     /// A task with its heading converted to the boat's compass frame.
     pub(super) fn by_compass(&self, task: Task) -> Task {
         match task {
-            Task::Mode(BoatMode::Heading { heading_deg, thrust_pct }) => {
+            Task::Mode(BoatMode::Heading {
+                heading_deg,
+                thrust_pct,
+            }) => {
                 let heading_deg = self.set_points.compass_deg(heading_deg.to_radians());
-                Task::Mode(BoatMode::Heading { heading_deg, thrust_pct })
+                Task::Mode(BoatMode::Heading {
+                    heading_deg,
+                    thrust_pct,
+                })
             }
             task => task,
         }
@@ -86,7 +116,9 @@ impl OnSite {
         let nav = self.estimator.nav(now).map(|(nav, _)| nav);
         let at = nav.map(|nav| nav.at());
         let yaw_rate_rad_s = nav.map_or(0.0, |nav| nav.yaw_rate_rad_s);
-        let way = self.geofence.stopping_way(now, (self.estimator.fastest_velocity_m_s(), yaw_rate_rad_s));
+        let way = self
+            .geofence
+            .stopping_way(now, (self.estimator.fastest_velocity_m_s(), yaw_rate_rad_s));
         GeofenceReport {
             outline: area.outline.clone(),
             keep_out: area.keep_out.clone(),

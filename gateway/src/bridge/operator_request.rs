@@ -25,12 +25,16 @@ impl Bridge {
     pub(super) fn request_mode(&self, mode: BoatMode) -> Result<OperatorRequest, String> {
         let limit_pct = self.plan.gateway.limits.thrust_max_pct;
         match mode {
-            _ if !self.protocol.has_boat_modes() => Err("a boat that speaks MAVLink has no such mode".to_owned()),
-            BoatMode::Heading { heading_deg, .. } if !(0.0..=360.0).contains(&heading_deg) => {
-                Err(format!("the heading is {heading_deg}, expected 0 to 360 degrees"))
+            _ if !self.protocol.has_boat_modes() => {
+                Err("a boat that speaks MAVLink has no such mode".to_owned())
             }
+            BoatMode::Heading { heading_deg, .. } if !(0.0..=360.0).contains(&heading_deg) => Err(
+                format!("the heading is {heading_deg}, expected 0 to 360 degrees"),
+            ),
             BoatMode::Heading { thrust_pct, .. } if !(0.0..=limit_pct).contains(&thrust_pct) => {
-                Err(format!("the thrust is {thrust_pct}, expected 0 to {limit_pct} % (limits.thrust_max_pct)"))
+                Err(format!(
+                    "the thrust is {thrust_pct}, expected 0 to {limit_pct} % (limits.thrust_max_pct)"
+                ))
             }
             mode => Ok(OperatorRequest::Delegate(Task::Mode(mode))),
         }

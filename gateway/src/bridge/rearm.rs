@@ -17,13 +17,19 @@ pub(super) struct Rearm {
 
 impl Rearm {
     pub(super) fn new(within_s: f64) -> Rearm {
-        Rearm { within_s, failsafe_at: SimTime::LONG_AGO, fresh_since: None }
+        Rearm {
+            within_s,
+            failsafe_at: SimTime::LONG_AGO,
+            fresh_since: None,
+        }
     }
 
     /// Whether the boat may arm itself now.
     pub(super) fn is_allowed(&mut self, now: SimTime, order_fresh: bool) -> bool {
         self.fresh_since = order_fresh.then(|| self.fresh_since.unwrap_or(now));
-        let is_steady = self.fresh_since.is_some_and(|since| (now - since).as_s() >= STEADY_S);
+        let is_steady = self
+            .fresh_since
+            .is_some_and(|since| (now - since).as_s() >= STEADY_S);
         is_steady && (now - self.failsafe_at).as_s() <= self.within_s
     }
 }

@@ -25,8 +25,12 @@ impl RecoveryPoint {
     /// Checks the boat's report: the point counts as accepted when the boat runs the mission after
     /// it has accepted lines.
     pub(super) fn observe(&mut self, report: &ControlReport, is_uploading: bool) {
-        let RecoveryPoint::Uploading(erp, shown) = *self else { return };
-        let is_ours = report.operator.is_none_or(|operator| operator == Operator::Secondary);
+        let RecoveryPoint::Uploading(erp, shown) = *self else {
+            return;
+        };
+        let is_ours = report
+            .operator
+            .is_none_or(|operator| operator == Operator::Secondary);
         *self = match report.shown.mode {
             // Another operator may upload a mission of their own, and a boat does not report which
             // one it has.
@@ -41,7 +45,9 @@ impl RecoveryPoint {
 
     /// Compares the home that the boat reports, its recovery point, with ours.
     pub(super) fn take_home(&mut self, [lat_deg, lon_deg]: [f64; 2]) {
-        let (RecoveryPoint::Uploading(erp, _) | RecoveryPoint::Taken(erp)) = *self else { return };
+        let (RecoveryPoint::Uploading(erp, _) | RecoveryPoint::Taken(erp)) = *self else {
+            return;
+        };
         let is_it = (lat_deg - erp[0]).abs() <= HOME_DEG && (lon_deg - erp[1]).abs() <= HOME_DEG;
         *self = match *self {
             _ if is_it => RecoveryPoint::Taken(erp),

@@ -21,7 +21,10 @@ impl Bridge {
     /// The status now, with the conditions missing at the last step. Changes nothing, so queries do
     /// not affect a replay. The shell adds what only it knows: link name, control port, latencies.
     pub fn status(&self, now: SimTime) -> GatewayStatus {
-        let known = self.on_site.as_ref().and_then(|site| site.estimator.nav(now));
+        let known = self
+            .on_site
+            .as_ref()
+            .and_then(|site| site.estimator.nav(now));
         let battery = self.battery.volts(now);
         let text = |command: &Command| self.protocol.text(*command);
         let missing = self.conditions.missing().into_iter().map(Cause::missing);
@@ -31,7 +34,14 @@ impl Bridge {
             at_s: now.as_s(),
             link: if self.link_up { "up" } else { "down" }.to_owned(),
             state: self.state_in_words(),
-            missing: self.plan.preflight.missing().into_iter().cloned().chain(missing).collect(),
+            missing: self
+                .plan
+                .preflight
+                .missing()
+                .into_iter()
+                .cloned()
+                .chain(missing)
+                .collect(),
             alarms: self.alarms.texts(),
             failsafes: self.failsafes.clone(),
             mode: self.control.mode().map(|mode| mode.letter()),
@@ -43,8 +53,15 @@ impl Bridge {
             battery_v: battery.map(|(volts, _)| volts),
             battery_pct: self.battery.left_pct(),
             battery_age_s: battery.map(|(_, age_s)| age_s),
-            last_sent: self.last_sent.as_ref().map(|(_, command)| text(command)).unwrap_or_default(),
-            would_send: self.plan.dry_run.then(|| self.would_send.as_ref().map(text).unwrap_or_default()),
+            last_sent: self
+                .last_sent
+                .as_ref()
+                .map(|(_, command)| text(command))
+                .unwrap_or_default(),
+            would_send: self
+                .plan
+                .dry_run
+                .then(|| self.would_send.as_ref().map(text).unwrap_or_default()),
             counts: self.counts(),
             latency_us: [None; 2],
         }
@@ -53,7 +70,10 @@ impl Bridge {
     /// The supervisor's state as text.
     pub(crate) fn state_in_words(&self) -> String {
         match self.supervisor.state() {
-            State::EStopped => format!("e-stopped (by an E-stop of {})", self.supervisor.stopped_by()),
+            State::EStopped => format!(
+                "e-stopped (by an E-stop of {})",
+                self.supervisor.stopped_by()
+            ),
             // Keep the first word of the state: the stop commands and possibly external readers
             // parse it.
             state if self.protocol.is_uploading() => format!("{state}, uploading a mission"),
@@ -72,7 +92,9 @@ impl Bridge {
             ("orders ahead of the game", counters.orders_ahead),
             ("commands out", counters.sent),
         ];
-        let known = known.into_iter().map(|(name, count)| (name.to_owned(), count));
+        let known = known
+            .into_iter()
+            .map(|(name, count)| (name.to_owned(), count));
         received.into_iter().chain(known).chain(unknown).collect()
     }
 }

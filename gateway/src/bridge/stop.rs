@@ -33,7 +33,11 @@ impl Bridge {
         // Words such as THR_ON switch outputs of the boat and are sent once. They ride on standby
         // sentences, one at a time, and only while the boat reports us in control, so that a boat
         // that ignores us loses none.
-        let word = if listens { self.words.pop_front() } else { None };
+        let word = if listens {
+            self.words.pop_front()
+        } else {
+            None
+        };
         word.map_or(Command::Standby, Command::Switch)
     }
 }

@@ -13,30 +13,60 @@ const EXTENT_MAX_M: f64 = 50_000.0;
 const EARTH_RADIUS_M: f64 = 6_371_000.0;
 
 /// Checks a gateway.
-pub(super) fn gateway(diagnostics: &mut Diagnostics, document: &Document<Gateway>) -> Option<Gateway> {
-    check_thrust_map(diagnostics, document, "loops.thrust_map", &document.raw.loops.thrust_map);
+pub(super) fn gateway(
+    diagnostics: &mut Diagnostics,
+    document: &Document<Gateway>,
+) -> Option<Gateway> {
+    check_thrust_map(
+        diagnostics,
+        document,
+        "loops.thrust_map",
+        &document.raw.loops.thrust_map,
+    );
     check_geofence(diagnostics, document);
     if document.raw.protocol == BoatProtocol::Mavlink && !document.raw.startup_words.is_empty() {
         let message = "startup_words are a Surveyor's, expected none with protocol = \"mavlink\"";
         diagnostics.note(document.at("startup_words"), message);
     }
-    document.is_faultless(diagnostics).then(|| document.raw.clone())
+    document
+        .is_faultless(diagnostics)
+        .then(|| document.raw.clone())
 }
 
 fn check_geofence(diagnostics: &mut Diagnostics, document: &Document<Gateway>) {
     let fence = &document.raw.geofence;
-    let origin = fence.polygon.as_ref().or(fence.keep_out.first()).and_then(|corners| corners.first());
+    let origin = fence
+        .polygon
+        .as_ref()
+        .or(fence.keep_out.first())
+        .and_then(|corners| corners.first());
     let Some(&origin) = origin else { return };
     let mut check = |path: &str, corners: &[[f64; 2]]| {
-        document.is_sound(path).then(|| polygon(diagnostics, document, path, corners, origin)).flatten()
+        document
+            .is_sound(path)
+            .then(|| polygon(diagnostics, document, path, corners, origin))
+            .flatten()
     };
-    let outline = fence.polygon.as_ref().and_then(|corners| check("geofence.polygon", corners));
+    let outline = fence
+        .polygon
+        .as_ref()
+        .and_then(|corners| check("geofence.polygon", corners));
     let path = |i: usize| format!("geofence.keep_out.{i}");
-    let keep_out: Vec<_> = fence.keep_out.iter().enumerate().map(|(i, corners)| check(&path(i), corners)).collect();
+    let keep_out: Vec<_> = fence
+        .keep_out
+        .iter()
+        .enumerate()
+        .map(|(i, corners)| check(&path(i), corners))
+        .collect();
     for (i, keep_out) in keep_out.iter().enumerate() {
-        let (Some(outline), Some(keep_out)) = (&outline, keep_out) else { continue };
+        let (Some(outline), Some(keep_out)) = (&outline, keep_out) else {
+            continue;
+        };
         if sides(keep_out).all(|side| distance_to_line(outline, side) > 0.0) {
-            diagnostics.note(document.at(&path(i)), "keep_out lies outside the polygon, expected it inside");
+            diagnostics.note(
+                document.at(&path(i)),
+                "keep_out lies outside the polygon, expected it inside",
+            );
         }
     }
 }
@@ -51,24 +81,44 @@ fn polygon(
 ) -> Option<Vec<Ned>> {
     let at = |corner: usize| document.at(&format!("{path}.{corner}"));
     if let Some(corner) = places.iter().position(|[lat_deg, _]| lat_deg.abs() > 90.0) {
-        let message = format!("latitude is {}, expected -90 to 90: it comes before the longitude", places[corner][0]);
+        let message = format!(
+            "latitude is {}, expected -90 to 90: it comes before the longitude",
+            places[corner][0]
+        );
         diagnostics.note(at(corner), message);
         return None;
     }
-    let corners: Vec<Ned> = places.iter().map(|place| metres_from(origin, *place)).collect();
-    if let Some(corner) = corners.iter().position(|corner| corner.length() > EXTENT_MAX_M) {
+    let corners: Vec<Ned> = places
+        .iter()
+        .map(|place| metres_from(origin, *place))
+        .collect();
+    if let Some(corner) = corners
+        .iter()
+        .position(|corner| corner.length() > EXTENT_MAX_M)
+    {
         let [km, max_km] = [corners[corner].length(), EXTENT_MAX_M].map(|m| m / 1000.0);
-        diagnostics.note(at(corner), format!("corner is {km:.0} km from the first, expected at most {max_km} km"));
+        diagnostics.note(
+            at(corner),
+            format!("corner is {km:.0} km from the first, expected at most {max_km} km"),
+        );
         return None;
     }
     let checked = check_corners(&corners);
-    checked.map_err(|(corner, message)| diagnostics.note(at(corner), message)).ok().map(|()| corners)
+    checked
+        .map_err(|(corner, message)| diagnostics.note(at(corner), message))
+        .ok()
+        .map(|()| corners)
 }
 
 /// Projects a position on a sphere to a plane: good for the order of corners, not for distances of
 /// sides.
 fn metres_from([lat_deg, lon_deg]: [f64; 2], place: [f64; 2]) -> Ned {
     let (_, shrink) = math::sin_cos_deg(lat_deg);
-    let [north, east] = [place[0] - lat_deg, place[1] - lon_deg].map(|angle_deg| wrap_pi(angle_deg.to_radians()));
-    Ned { north, east: east * shrink }.scaled(EARTH_RADIUS_M)
+    let [north, east] =
+        [place[0] - lat_deg, place[1] - lon_deg].map(|angle_deg| wrap_pi(angle_deg.to_radians()));
+    Ned {
+        north,
+        east: east * shrink,
+    }
+    .scaled(EARTH_RADIUS_M)
 }

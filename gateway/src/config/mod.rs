@@ -103,8 +103,8 @@ pub struct Mavlink {
     /// The boat's system, 1 to 255; 0: the first boat heard.
     #[schemars(range(min = 0, max = 255), extend("default" = 0))]
     pub boat_system: u8,
-    /// The gateway's system. ArduPilot's ground station failsafe watches the system in its parameter,
-    /// 255 by default.
+    /// The gateway's system. ArduPilot's ground station failsafe watches the system in its
+    /// parameter, 255 by default.
     #[schemars(range(min = 1, max = 255), extend("default" = 255))]
     pub system: u8,
     /// The gateway's component.
@@ -226,11 +226,12 @@ pub struct Geofence {
     /// Margin around the field without a `polygon`, m.
     #[schemars(range(min = 0, max = 10000), extend("default" = 30))]
     pub margin_m: f64,
-    /// Measured stopping distances at zero thrust: pairs of speed through water in m/s and distance in m. They replace
-    /// `deceleration_m_s2`.
+    /// Measured stopping distances at zero thrust: pairs of speed through water in m/s and distance
+    /// in m. They replace `deceleration_m_s2`.
     #[schemars(with = "Vec<SpeedAndDistance>", length(max = 50), extend("default" = Vec::<f64>::new()))]
     pub coast_m: Vec<(f64, f64)>,
-    /// Deceleration at zero thrust, m/s². The resistance in the boat file is used instead where it gives a longer distance.
+    /// Deceleration at zero thrust, m/s². The resistance in the boat file is used instead where it
+    /// gives a longer distance.
     #[schemars(range(min = 0.01, max = 10), extend("default" = 0.25))]
     pub deceleration_m_s2: f64,
     /// Time before deceleration starts, s; at least `debounce_s` plus 0.5 s.
@@ -245,7 +246,10 @@ pub struct Geofence {
 #[derive(JsonSchema)]
 #[schemars(inline)]
 #[expect(dead_code, reason = "the schema of a pair")]
-struct SpeedAndDistance(#[schemars(range(min = 0.1, max = 60))] f64, #[schemars(range(min = 0.1, max = 10000))] f64);
+struct SpeedAndDistance(
+    #[schemars(range(min = 0.1, max = 60))] f64,
+    #[schemars(range(min = 0.1, max = 10000))] f64,
+);
 
 /// A box ahead of the boat, its length proportional to speed, in which no other real boat may be.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -285,7 +289,8 @@ pub struct CurrentWatch {
     /// A; 0: off.
     #[schemars(range(min = 0, max = 1000), extend("default" = 0.5))]
     pub thruster_min_a: f64,
-    /// Current from which a bilge pump counts as running, A; 0: off. A running pump means water in the boat.
+    /// Current from which a bilge pump counts as running, A; 0: off. A running pump means water in
+    /// the boat.
     #[schemars(range(min = 0, max = 1000), extend("default" = 0.1))]
     pub bilge_a: f64,
     /// How long a current must last before it counts, s.
@@ -309,8 +314,9 @@ pub struct FailsafeActions {
     /// The gateway hung.
     #[schemars(extend("default" = "standby"))]
     pub hung: FailsafeAction,
-    /// Arms the boat again after a failsafe for want of a fresh order, once orders have been fresh for 1 s and every
-    /// other condition holds, if that is within this time, s. At 0, an operator has to arm it.
+    /// Arms the boat again after a failsafe for want of a fresh order, once orders have been fresh
+    /// for 1 s and every other condition holds, if that is within this time, s. At 0, an operator
+    /// has to arm it.
     #[schemars(range(min = 0, max = 600), extend("default" = 0))]
     pub rearm_within_s: f64,
 }
@@ -357,8 +363,15 @@ pub struct PreflightRule {
 }
 
 /// The Surveyor's thrust map, from the 2024 West Point missions: thrust in per cent, speed in m/s.
-pub const SURVEYOR_THRUST_MAP: [(f64, f64); 7] =
-    [(-100.0, -2.0), (0.0, 0.0), (20.0, 1.0), (40.0, 1.5), (60.0, 2.0), (70.0, 2.25), (100.0, 3.0)];
+pub const SURVEYOR_THRUST_MAP: [(f64, f64); 7] = [
+    (-100.0, -2.0),
+    (0.0, 0.0),
+    (20.0, 1.0),
+    (40.0, 1.5),
+    (60.0, 2.0),
+    (70.0, 2.25),
+    (100.0, 3.0),
+];
 
 /// The gateway's heading and speed loops.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

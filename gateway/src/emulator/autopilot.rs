@@ -48,23 +48,30 @@ struct Upload {
 /// The order for thrust and difference in per cent.
 pub(super) fn thrust(thrust_pct: f64, difference_pct: f64) -> Order {
     let share = |pct: f64| (0.01 * pct).clamp(-1.0, 1.0);
-    Order::Thrust { port: share(thrust_pct + difference_pct), starboard: share(thrust_pct - difference_pct) }
+    Order::Thrust {
+        port: share(thrust_pct + difference_pct),
+        starboard: share(thrust_pct - difference_pct),
+    }
 }
 
 /// The order for a heading and a speed; both are required.
 pub(super) fn steer(heading_rad: Option<f64>, speed_m_s: Option<f64>) -> Order {
     match (heading_rad, speed_m_s) {
-        (Some(heading_rad), Some(speed_m_s)) => {
-            Order::Steer { heading_rad: wrap_pi(heading_rad), speed_m_s: speed_m_s.clamp(0.0, 100.0) }
-        }
+        (Some(heading_rad), Some(speed_m_s)) => Order::Steer {
+            heading_rad: wrap_pi(heading_rad),
+            speed_m_s: speed_m_s.clamp(0.0, 100.0),
+        },
         _ => Order::Hold,
     }
 }
 
 /// The order for this speed, m/s, astern, that turns the bow by this angle, rad.
 pub(super) fn astern(speed_m_s: f64, turn_rad: f64) -> Order {
-    let map = SURVEYOR_THRUST_MAP.iter().map(|(thrust, speed)| (*speed, *thrust));
-    let difference_pct = (ASTERN_PCT_PER_RAD * turn_rad).clamp(-ASTERN_DIFFERENCE_PCT, ASTERN_DIFFERENCE_PCT);
+    let map = SURVEYOR_THRUST_MAP
+        .iter()
+        .map(|(thrust, speed)| (*speed, *thrust));
+    let difference_pct =
+        (ASTERN_PCT_PER_RAD * turn_rad).clamp(-ASTERN_DIFFERENCE_PCT, ASTERN_DIFFERENCE_PCT);
     thrust(math::interpolate(map, speed_m_s), difference_pct)
 }
 
@@ -97,7 +104,10 @@ impl Autopilot {
     pub(super) fn begin_download(&mut self, announced: f64) {
         self.places.clear();
         self.throttle_pct = None;
-        self.upload = Some(Upload { announced, ..Upload::default() });
+        self.upload = Some(Upload {
+            announced,
+            ..Upload::default()
+        });
     }
 
     /// Ends the upload; returns a message. If a line is missing, there is no mission.
@@ -112,7 +122,10 @@ impl Autopilot {
             ));
         }
         (self.places, self.throttle_pct) = (upload.places, upload.throttle_pct);
-        Some(format!("a mission of {} places is accepted", self.places.len()))
+        Some(format!(
+            "a mission of {} places is accepted",
+            self.places.len()
+        ))
     }
 
     pub(super) fn take_throttle(&mut self, throttle_pct: f64) {
@@ -165,7 +178,8 @@ impl Autopilot {
     }
 
     fn speed_m_s(&self) -> f64 {
-        self.speed_m_s.unwrap_or_else(|| speed_of_thrust(self.throttle_pct.unwrap_or(THROTTLE_PCT)))
+        self.speed_m_s
+            .unwrap_or_else(|| speed_of_thrust(self.throttle_pct.unwrap_or(THROTTLE_PCT)))
     }
 }
 
@@ -181,5 +195,8 @@ fn go(pose: Pose, place: Ned, speed_m_s: f64) -> Option<Order> {
     // A boat that points elsewhere turns first: at full thrust it would circle its station.
     let share = ahead.max(0.0) * ahead.max(0.0);
     let limit_m_s = (APPROACH_PER_S * distance_m).min(speed_m_s);
-    Some(Order::Steer { heading_rad, speed_m_s: limit_m_s * share })
+    Some(Order::Steer {
+        heading_rad,
+        speed_m_s: limit_m_s * share,
+    })
 }

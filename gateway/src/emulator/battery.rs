@@ -27,11 +27,21 @@ impl Pack {
     /// The Surveyor's: 24 V, 1500 Wh and thrusters of 1000 W, from its specification. Boats showed
     /// 24.8 V with 15433 of 57741 left, which matches seven lithium cells at that charge if the
     /// count is in mAh.
-    pub(super) const SURVEYOR: Pack =
-        Pack { cells: 7.0, capacity_ah: 57.741, resistance_ohm: 0.03, system_a: 1.3, thruster_w: 1000.0 };
+    pub(super) const SURVEYOR: Pack = Pack {
+        cells: 7.0,
+        capacity_ah: 57.741,
+        resistance_ohm: 0.03,
+        system_a: 1.3,
+        thruster_w: 1000.0,
+    };
     /// Like a BlueBoat's: two lithium batteries of 14.8 V and 18 Ah, and thrusters of about 250 W.
-    pub(super) const BLUEBOAT: Pack =
-        Pack { cells: 4.0, capacity_ah: 36.0, resistance_ohm: 0.02, system_a: 1.3, thruster_w: 250.0 };
+    pub(super) const BLUEBOAT: Pack = Pack {
+        cells: 4.0,
+        capacity_ah: 36.0,
+        resistance_ohm: 0.02,
+        system_a: 1.3,
+        thruster_w: 250.0,
+    };
 }
 
 /// A battery with its charge.
@@ -68,7 +78,10 @@ impl Battery {
     /// Advances time under this order. An empty battery drives no thruster: returns the order as
     /// executed.
     pub(super) fn carry_out(&mut self, now: SimTime, order: Order) -> Order {
-        let step_s = self.at.replace(now).map_or(0.0, |at| (now - at).as_s().clamp(0.0, STEP_MAX_S));
+        let step_s = self
+            .at
+            .replace(now)
+            .map_or(0.0, |at| (now - at).as_s().clamp(0.0, STEP_MAX_S));
         let drawn_ah = self.amps() * step_s / 3600.0;
         self.used_ah += drawn_ah;
         if self.drains {
@@ -91,7 +104,8 @@ impl Battery {
 
     /// Its voltage under load, V.
     pub(super) fn volts(&self) -> f64 {
-        self.shown_v.unwrap_or_else(|| self.rest_v() - self.amps() * self.pack.resistance_ohm)
+        self.shown_v
+            .unwrap_or_else(|| self.rest_v() - self.amps() * self.pack.resistance_ohm)
     }
 
     /// Charge left, mAh.
@@ -131,7 +145,10 @@ fn powers(order: Order) -> [f64; 2] {
 mod tests {
     use super::*;
 
-    const HALF: Order = Order::Thrust { port: 0.4, starboard: 0.4 };
+    const HALF: Order = Order::Thrust {
+        port: 0.4,
+        starboard: 0.4,
+    };
 
     /// The battery after this many hours of an order, in steps of a second.
     fn after(mut battery: Battery, hours: f64, order: Order) -> (Battery, Order) {
@@ -145,7 +162,11 @@ mod tests {
     #[test]
     fn a_surveyor_shows_what_was_seen_on_one() {
         // $PSEAB,24.8,15433,1.3,22.3,42308,,,24.8,,1.3,0.0,0.0,,,26: from a boat at rest.
-        let (battery, _) = after(Battery::new(Pack::SURVEYOR, Some(15_433.0 / 57_741.0)), 0.0, Order::Hold);
+        let (battery, _) = after(
+            Battery::new(Pack::SURVEYOR, Some(15_433.0 / 57_741.0)),
+            0.0,
+            Order::Hold,
+        );
         assert!((battery.volts() - 24.8).abs() < 0.2, "{}", battery.volts());
         assert!((battery.left_mah() - 15_433.0).abs() < 1.0 && (battery.amps() - 1.3).abs() < 1e-9);
     }
@@ -164,23 +185,47 @@ mod tests {
         }
         let wh = joules / 3600.0;
         let hours = s / 3600.0;
-        assert!((1400.0..1600.0).contains(&wh), "{wh} Wh, specified are 1500");
+        assert!(
+            (1400.0..1600.0).contains(&wh),
+            "{wh} Wh, specified are 1500"
+        );
         // 1.5 m/s are half of the highest speed: an eighth of 2000 W, and 33 W of electronics.
         assert!((hours - 1500.0 / 283.0).abs() < 0.5, "{hours} h");
-        assert!(first_v > 29.0 && battery.volts() < 21.5, "{first_v} V, {} V", battery.volts());
+        assert!(
+            first_v > 29.0 && battery.volts() < 21.5,
+            "{first_v} V, {} V",
+            battery.volts()
+        );
         let (battery, carried_out) = after(battery, 0.1, HALF);
         assert_eq!((carried_out, battery.thruster_a), (Order::Hold, [0.0; 2]));
-        assert!((battery.used_mah() - 57_741.0).abs() < 300.0, "{} mAh", battery.used_mah());
+        assert!(
+            (battery.used_mah() - 57_741.0).abs() < 300.0,
+            "{} mAh",
+            battery.used_mah()
+        );
     }
 
     #[test]
     fn each_thruster_draws_for_itself_and_full_thrust_draws_all() {
         let thrust = |port, starboard| Order::Thrust { port, starboard };
-        let drawn = |order| after(Battery::new(Pack::SURVEYOR, Some(0.5)), 0.0, order).0.thruster_a;
+        let drawn = |order| {
+            after(Battery::new(Pack::SURVEYOR, Some(0.5)), 0.0, order)
+                .0
+                .thruster_a
+        };
         let [port_a, starboard_a] = drawn(thrust(1.0, 0.0));
-        assert!((port_a - 1000.0 / (7.0 * 3.7)).abs() < 1e-9 && starboard_a == 0.0, "{port_a} A, {starboard_a} A");
+        assert!(
+            (port_a - 1000.0 / (7.0 * 3.7)).abs() < 1e-9 && starboard_a == 0.0,
+            "{port_a} A, {starboard_a} A"
+        );
         let [ahead, astern] = drawn(thrust(0.4, -0.4));
         assert_eq!(ahead, astern);
-        assert_eq!(drawn(Order::Steer { heading_rad: 1.0, speed_m_s: 1.5 }), drawn(HALF));
+        assert_eq!(
+            drawn(Order::Steer {
+                heading_rad: 1.0,
+                speed_m_s: 1.5
+            }),
+            drawn(HALF)
+        );
     }
 }

@@ -19,7 +19,9 @@ pub use sitl::{Servos, Sitl};
 pub use telemetry::Extra;
 
 use crate::geodesy::LocalFrame;
-use crate::nmea::{Command, Date, Framer, M_S_PER_KN, Mode, Operator, Sentence, TimeOfDay, date_and_time};
+use crate::nmea::{
+    Command, Date, Framer, M_S_PER_KN, Mode, Operator, Sentence, TimeOfDay, date_and_time,
+};
 use autopilot::Autopilot;
 use battery::{Battery, Pack};
 use messages::Order;
@@ -116,16 +118,24 @@ impl Emulator {
 
     /// The thrusters' order from its command.
     fn commanded(&mut self) -> Order {
-        let Some(own) = &self.sensed.own else { return Order::Hold };
-        let heading = |command: &Command| command.heading_deg.map(|deg| deg.to_radians() + self.plan.declination_rad);
+        let Some(own) = &self.sensed.own else {
+            return Order::Hold;
+        };
+        let heading = |command: &Command| {
+            command
+                .heading_deg
+                .map(|deg| deg.to_radians() + self.plan.declination_rad)
+        };
         match self.command.mode {
             Mode::Thruster => autopilot::thrust(self.thrust_pct, self.difference_pct),
-            Mode::Heading => {
-                autopilot::steer(heading(&self.command), self.command.thrust.map(autopilot::speed_of_thrust))
-            }
-            Mode::Speed => {
-                autopilot::steer(heading(&self.command), self.command.thrust.map(|speed_kn| speed_kn * M_S_PER_KN))
-            }
+            Mode::Heading => autopilot::steer(
+                heading(&self.command),
+                self.command.thrust.map(autopilot::speed_of_thrust),
+            ),
+            Mode::Speed => autopilot::steer(
+                heading(&self.command),
+                self.command.thrust.map(|speed_kn| speed_kn * M_S_PER_KN),
+            ),
             Mode::StationKeep => self.autopilot.keep(own.nav.pose()),
             Mode::GoToErp => self.autopilot.go_to_erp(own.nav.pose()),
             Mode::Waypoint => self.autopilot.sail(own.nav.pose()),
@@ -164,9 +174,12 @@ impl Emulator {
                 self.followed += 1;
                 self.follow_command(now, command);
             }
-            Sentence::MissionSettings(settings) if in_control => self.autopilot.take_throttle(settings.throttle_pct),
+            Sentence::MissionSettings(settings) if in_control => {
+                self.autopilot.take_throttle(settings.throttle_pct)
+            }
             Sentence::Waypoint(waypoint) if in_control => {
-                self.autopilot.take_waypoint(waypoint.index, self.frame.ned(waypoint.at));
+                self.autopilot
+                    .take_waypoint(waypoint.index, self.frame.ned(waypoint.at));
             }
             _ => {}
         }
@@ -176,8 +189,14 @@ impl Emulator {
     /// secondary operator, `OP2_OFF` takes it away. These words are ours: the real console's are
     /// not public.
     fn take_primary(&mut self, now: SimTime, sentence: &Sentence) {
-        let Sentence::Command(command) = sentence else { return };
-        let operator = if command.words == "OP2_ON" { Operator::Secondary } else { Operator::Primary };
+        let Sentence::Command(command) = sentence else {
+            return;
+        };
+        let operator = if command.words == "OP2_ON" {
+            Operator::Secondary
+        } else {
+            Operator::Primary
+        };
         self.give_control(now, operator);
     }
 
@@ -186,9 +205,13 @@ impl Emulator {
         match command.mode {
             Mode::Thruster => {
                 let whole = |value: &f64| !self.plan.integers || value.fract() == 0.0;
-                let of = |given: Option<f64>, before: f64| given.filter(whole).unwrap_or(before).clamp(-100.0, 100.0);
-                (self.thrust_pct, self.difference_pct) =
-                    (of(command.thrust, self.thrust_pct), of(command.difference, self.difference_pct));
+                let of = |given: Option<f64>, before: f64| {
+                    given.filter(whole).unwrap_or(before).clamp(-100.0, 100.0)
+                };
+                (self.thrust_pct, self.difference_pct) = (
+                    of(command.thrust, self.thrust_pct),
+                    of(command.difference, self.difference_pct),
+                );
             }
             Mode::FileDownload => {
                 let lines = command.heading_deg.unwrap_or(0.0);

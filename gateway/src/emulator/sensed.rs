@@ -26,6 +26,7 @@ impl Sensed {
 
     /// Whether the receiver has a fix.
     pub(super) fn has_fix(&self, now: SimTime) -> bool {
-        self.fix_seen.is_some_and(|seen| (now - seen).as_s() <= FIX_AGE_MAX_S)
+        self.fix_seen
+            .is_some_and(|seen| (now - seen).as_s() <= FIX_AGE_MAX_S)
     }
 }

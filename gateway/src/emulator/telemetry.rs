@@ -2,8 +2,8 @@
 
 use super::Emulator;
 use crate::nmea::{
-    Attitude, Battery, BoatError, ControlState, Date, Gga, Hdg, Hdt, M_S_PER_KN, Mode, Rmc, Sentence, Talker,
-    TimeOfDay, Vtg, Zda,
+    Attitude, Battery, BoatError, ControlState, Date, Gga, Hdg, Hdt, M_S_PER_KN, Mode, Rmc,
+    Sentence, Talker, TimeOfDay, Vtg, Zda,
 };
 use messages::picture::{Imu, Nav};
 use primitives::angle::compass_deg_from_rad;
@@ -41,7 +41,10 @@ pub(super) fn burst(boat: &Emulator, now: SimTime, out: &mut Vec<u8>) {
     Sentence::Battery(battery(&boat.battery, now)).write(out);
     Sentence::ControlState(control_state(boat)).write(out);
     // The only known code, from West Point's driver, which treats any other as a warning.
-    Sentence::BoatError(BoatError { code: "N".to_owned() }).write(out);
+    Sentence::BoatError(BoatError {
+        code: "N".to_owned(),
+    })
+    .write(out);
 }
 
 /// A fix in reported form.
@@ -66,11 +69,15 @@ impl FixReport {
             date,
             now: began.later(now),
             time: began.later(seen),
-            at: boat.sensed.has_fix(now).then(|| boat.frame.lat_lon(nav.at())),
+            at: boat
+                .sensed
+                .has_fix(now)
+                .then(|| boat.frame.lat_lon(nav.at())),
             psi_rad: nav.psi_rad,
             // Blank, not zero: a reader that takes a missing course for north would get the
             // velocity of a boat at rest wrong.
-            course_rad: (speed_m_s >= COURSE_FROM_M_S).then(|| math::atan2(velocity.east, velocity.north)),
+            course_rad: (speed_m_s >= COURSE_FROM_M_S)
+                .then(|| math::atan2(velocity.east, velocity.north)),
             speed_m_s,
         }
     }
@@ -94,7 +101,9 @@ impl FixReport {
         Vtg {
             talker: Talker::GP,
             course_true_deg: self.course_rad.map(degrees),
-            course_magnetic_deg: self.course_rad.map(|rad| degrees(rad - boat.plan.declination_rad)),
+            course_magnetic_deg: self
+                .course_rad
+                .map(|rad| degrees(rad - boat.plan.declination_rad)),
             speed_kn: Some(self.speed_m_s / M_S_PER_KN),
             speed_km_h: Some(3.6 * self.speed_m_s),
             // Newer boats omit it.
@@ -114,16 +123,23 @@ impl FixReport {
                 course_deg: self.course_rad.map(compass_deg_from_rad),
                 date: Some(self.date),
             }),
-            Extra::Hdt => {
-                Sentence::Hdt(Hdt { talker: Talker::GP, heading_deg: Some(compass_deg_from_rad(self.psi_rad)) })
-            }
+            Extra::Hdt => Sentence::Hdt(Hdt {
+                talker: Talker::GP,
+                heading_deg: Some(compass_deg_from_rad(self.psi_rad)),
+            }),
             Extra::Hdg => Sentence::Hdg(Hdg {
                 talker: Talker::HC,
-                heading_deg: Some(compass_deg_from_rad(self.psi_rad - boat.plan.declination_rad)),
+                heading_deg: Some(compass_deg_from_rad(
+                    self.psi_rad - boat.plan.declination_rad,
+                )),
                 deviation_deg: None,
                 variation_deg: Some(east_deg),
             }),
-            Extra::Zda => Sentence::Zda(Zda { talker: Talker::GP, time: Some(self.now), date: Some(self.date) }),
+            Extra::Zda => Sentence::Zda(Zda {
+                talker: Talker::GP,
+                time: Some(self.now),
+                date: Some(self.date),
+            }),
         }
     }
 }
@@ -133,7 +149,9 @@ fn attitude(boat: &Emulator, nav: &Nav, imu: &Imu) -> Attitude {
     Attitude {
         pitch_deg: Some(0.0),
         roll_deg: Some(0.0),
-        heading_deg: Some(compass_deg_from_rad(nav.psi_rad - boat.plan.declination_rad)),
+        heading_deg: Some(compass_deg_from_rad(
+            nav.psi_rad - boat.plan.declination_rad,
+        )),
         box_c: Some(31.0),
         accel_ahead_g: g(imu.ahead_m_s2),
         accel_starboard_g: g(imu.starboard_m_s2),
@@ -164,14 +182,30 @@ fn control_state(boat: &Emulator) -> ControlState {
     // Without a commanded heading, it reports its own.
     // Seen in public samples of PSEAD: mode T shows the boat's own heading.
     let steers = matches!(boat.command.mode, Mode::Heading | Mode::Speed);
-    let has = || boat.sensed.own.as_ref().map(|own| compass_deg_from_rad(own.nav.psi_rad - boat.plan.declination_rad));
+    let has = || {
+        boat.sensed
+            .own
+            .as_ref()
+            .map(|own| compass_deg_from_rad(own.nav.psi_rad - boat.plan.declination_rad))
+    };
     // As the boat executes it: limited to full thrust, except for a speed.
     let is_speed = boat.command.mode == Mode::Speed;
-    let clamped =
-        |number: Option<f64>| number.map(|number| if is_speed { number } else { number.clamp(-100.0, 100.0) });
+    let clamped = |number: Option<f64>| {
+        number.map(|number| {
+            if is_speed {
+                number
+            } else {
+                number.clamp(-100.0, 100.0)
+            }
+        })
+    };
     ControlState {
         mode: boat.command.mode,
-        heading_deg: if steers { boat.command.heading_deg } else { has() },
+        heading_deg: if steers {
+            boat.command.heading_deg
+        } else {
+            has()
+        },
         thrust: clamped(boat.command.thrust),
         difference: clamped(boat.command.difference),
         words: boat.command.words.clone(),

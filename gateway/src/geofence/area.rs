@@ -37,10 +37,19 @@ impl GeofenceArea {
     pub fn new(field: &Field, rules: &Geofence) -> GeofenceArea {
         let frame = LocalFrame::new(field.plan.datum);
         let laid_out = |corners: &Vec<[f64; 2]>| -> Vec<Ned> {
-            corners.iter().map(|&[lat_deg, lon_deg]| frame.ned(LatLon { lat_deg, lon_deg })).collect()
+            corners
+                .iter()
+                .map(|&[lat_deg, lon_deg]| frame.ned(LatLon { lat_deg, lon_deg }))
+                .collect()
         };
-        let outline = rules.polygon.as_ref().map_or_else(|| with_margin(&field.corners, rules.margin_m), laid_out);
-        GeofenceArea { outline, keep_out: rules.keep_out.iter().map(laid_out).collect() }
+        let outline = rules
+            .polygon
+            .as_ref()
+            .map_or_else(|| with_margin(&field.corners, rules.margin_m), laid_out);
+        GeofenceArea {
+            outline,
+            keep_out: rules.keep_out.iter().map(laid_out).collect(),
+        }
     }
 
     /// Checks that it suits the game: it contains the keep-outs and the boat's start position.
@@ -51,7 +60,8 @@ impl GeofenceArea {
         // A keep-out that touches nothing has a mistyped coordinate, and leaves its shoal
         // unprotected.
         let is_apart = |keep_out: &Vec<Ned>| {
-            sides(keep_out).all(|(a, b)| !is_within(&self.outline, a) && met(&self.outline, a, b) == 0)
+            sides(keep_out)
+                .all(|(a, b)| !is_within(&self.outline, a) && met(&self.outline, a, b) == 0)
         };
         if let Some(number) = self.keep_out.iter().position(is_apart) {
             return Err(GeofenceError::KeepOutOutside(number));
@@ -60,19 +70,27 @@ impl GeofenceArea {
         let starts = match &boat.start_position {
             StartPosition::At(pose) => vec![pose.at],
             // A random position may be in any corner, so all corners must be inside.
-            StartPosition::Somewhere { along_m, across_m, .. } => {
+            StartPosition::Somewhere {
+                along_m, across_m, ..
+            } => {
                 let ends = [along_m.0, along_m.1].into_iter();
-                let corners = ends.flat_map(|along| [across_m.0, across_m.1].map(|across| (along, across)));
-                corners.map(|(along, across)| scenario.field.seen_from(boat.team, along, across)).collect()
+                let corners =
+                    ends.flat_map(|along| [across_m.0, across_m.1].map(|across| (along, across)));
+                corners
+                    .map(|(along, across)| scenario.field.seen_from(boat.team, along, across))
+                    .collect()
             }
         };
         let is_inside = starts.iter().all(|start| self.contains(*start));
-        is_inside.then_some(()).ok_or_else(|| GeofenceError::StartOutside(boat.name.clone()))
+        is_inside
+            .then_some(())
+            .ok_or_else(|| GeofenceError::StartOutside(boat.name.clone()))
     }
 
     /// Whether a boat may be here.
     pub(crate) fn contains(&self, at: Ned) -> bool {
-        is_within(&self.outline, at) && !self.keep_out.iter().any(|keep_out| is_within(keep_out, at))
+        is_within(&self.outline, at)
+            && !self.keep_out.iter().any(|keep_out| is_within(keep_out, at))
     }
 
     /// Whether a boat may be everywhere on the straight line between two points. The ends alone are
@@ -85,23 +103,35 @@ impl GeofenceArea {
     /// entered: a boat that is outside, or in a keep-out, returns along it.
     pub(crate) fn leads_in(&self, from: Ned, to: Ned) -> bool {
         // From the wrong side exactly one crossing leads in; a second one would lead out again.
-        let crosses_once = |polygon: &[Ned], wrong: bool| met(polygon, from, to) == usize::from(wrong);
+        let crosses_once =
+            |polygon: &[Ned], wrong: bool| met(polygon, from, to) == usize::from(wrong);
         self.contains(to)
             && crosses_once(&self.outline, !is_within(&self.outline, from))
-            && self.keep_out.iter().all(|keep_out| crosses_once(keep_out, is_within(keep_out, from)))
+            && self
+                .keep_out
+                .iter()
+                .all(|keep_out| crosses_once(keep_out, is_within(keep_out, from)))
     }
 
     /// The distance to the nearest edge, m: negative where a boat must not be.
     pub(crate) fn clearance_m(&self, at: Ned) -> f64 {
         let outlines = std::iter::once(&self.outline).chain(&self.keep_out);
-        let distance_m = outlines.map(|outline| distance_to_outline(outline, at)).fold(f64::INFINITY, f64::min);
-        if self.contains(at) { distance_m } else { -distance_m }
+        let distance_m = outlines
+            .map(|outline| distance_to_outline(outline, at))
+            .fold(f64::INFINITY, f64::min);
+        if self.contains(at) {
+            distance_m
+        } else {
+            -distance_m
+        }
     }
 }
 
 /// The number of polygon sides that touch the straight line.
 fn met(polygon: &[Ned], from: Ned, to: Ned) -> usize {
-    sides(polygon).filter(|side| do_meet(*side, (from, to))).count()
+    sides(polygon)
+        .filter(|side| do_meet(*side, (from, to)))
+        .count()
 }
 
 /// The area within a rectangle, clockwise on the chart, or within this distance of it: a rectangle
@@ -118,7 +148,11 @@ fn with_margin(corners: &[Ned; 4], margin_m: f64) -> Vec<Ned> {
         let [first, second] = [(before, corner), (corner, after)].map(|(a, b)| {
             let side = b - a;
             let length_m = a.distance(b);
-            Ned { north: side.east, east: -side.north }.scaled(margin_m / length_m)
+            Ned {
+                north: side.east,
+                east: -side.north,
+            }
+            .scaled(margin_m / length_m)
         });
         (0..=8).map(move |step| {
             let (sin, cos) = math::sin_cos_deg(f64::from(step) * ROUND_STEP_DEG);
@@ -126,5 +160,8 @@ fn with_margin(corners: &[Ned; 4], margin_m: f64) -> Vec<Ned> {
         })
     };
     let [a, b, c, d] = *corners;
-    [[d, a, b], [a, b, c], [b, c, d], [c, d, a]].into_iter().flat_map(round).collect()
+    [[d, a, b], [a, b, c], [b, c, d], [c, d, a]]
+        .into_iter()
+        .flat_map(round)
+        .collect()
 }

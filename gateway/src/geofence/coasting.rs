@@ -69,7 +69,8 @@ impl Coasting {
                 speed_max_m_s: boat.speed_max_m_s(),
                 slew_per_s: SLEW_SHARE * thruster.slew_per_s,
                 lag_s: thruster.lag_s + thruster.flaws.latency_s,
-                yaw_s: (hull.yaw_inertia_kg_m2 + hull.added_yaw_kg_m2) / hull.yaw_linear_kg_m2_s.max(1e-6),
+                yaw_s: (hull.yaw_inertia_kg_m2 + hull.added_yaw_kg_m2)
+                    / hull.yaw_linear_kg_m2_s.max(1e-6),
             },
             // It uses half of its limit (see `sim::kinematic`); 0 means none.
             Drive::Kinematic(kinematic) => Coasting {
@@ -91,30 +92,48 @@ impl Coasting {
     /// The same boat, but coasting at least the measured distance from each of these speeds: m/s
     /// and m.
     pub(super) fn as_measured(self, measured: &[(f64, f64)]) -> Coasting {
-        let longer = |(speed_m_s, distance_m): &(f64, f64)| distance_m / self.distance_m(*speed_m_s).max(1e-3);
+        let longer = |(speed_m_s, distance_m): &(f64, f64)| {
+            distance_m / self.distance_m(*speed_m_s).max(1e-3)
+        };
         // Time and distance of coasting are proportional to the mass.
         let factor = measured.iter().map(longer).fold(0.0, f64::max);
         match factor {
             0.0 => self,
-            _ => {
-                Coasting { mass_kg: self.mass_kg * factor, deceleration_m_s2: self.deceleration_m_s2 / factor, ..self }
-            }
+            _ => Coasting {
+                mass_kg: self.mass_kg * factor,
+                deceleration_m_s2: self.deceleration_m_s2 / factor,
+                ..self
+            },
         }
     }
 
     /// How far it coasts from this speed with an immediate thrust cut, m.
     pub(super) fn distance_m(&self, speed_m_s: f64) -> f64 {
-        let at_once = Coasting { lag_s: 0.0, slew_per_s: f64::INFINITY, ..*self };
-        let toward = Ned { north: 1.0, east: 0.0 };
+        let at_once = Coasting {
+            lag_s: 0.0,
+            slew_per_s: f64::INFINITY,
+            ..*self
+        };
+        let toward = Ned {
+            north: 1.0,
+            east: 0.0,
+        };
         at_once
-            .path(&Glide { water_m_s: toward.scaled(speed_m_s), ..Glide::default() })
+            .path(&Glide {
+                water_m_s: toward.scaled(speed_m_s),
+                ..Glide::default()
+            })
             .last()
             .map_or(0.0, |leg| leg.end.north)
     }
 
     /// The remaining distance from a low speed, where the resistance is linear, m.
     fn tail_m(&self, speed_m_s: f64) -> f64 {
-        if self.linear_kg_s > 0.0 { speed_m_s * self.mass_kg / self.linear_kg_s } else { 0.0 }
+        if self.linear_kg_s > 0.0 {
+            speed_m_s * self.mass_kg / self.linear_kg_s
+        } else {
+            0.0
+        }
     }
 
     /// Deceleration by resistance alone, m/s², signed.
@@ -129,7 +148,13 @@ impl Coasting {
 
     /// The path to rest from the boat on, in straight legs.
     pub(super) fn path(&self, glide: &Glide) -> Vec<Leg> {
-        let Glide { water_m_s, drift_m_s, yaw_rate_rad_s, reaction_s, .. } = *glide;
+        let Glide {
+            water_m_s,
+            drift_m_s,
+            yaw_rate_rad_s,
+            reaction_s,
+            ..
+        } = *glide;
         let mut speed_m_s = water_m_s.length();
         let mut thrust_m_s = glide.thrust_m_s.min(self.speed_max_m_s);
         let course_rad = math::atan2(water_m_s.east, water_m_s.north);
@@ -139,25 +164,47 @@ impl Coasting {
         let mut legs = vec![];
         for step in 1.. {
             let turned_s = t_s.min(reaction_s)
-                + self.yaw_s * (1.0 - math::exp((reaction_s - t_s).min(0.0) / self.yaw_s.max(1e-6)));
+                + self.yaw_s
+                    * (1.0 - math::exp((reaction_s - t_s).min(0.0) / self.yaw_s.max(1e-6)));
             let turned_rad = (yaw_rate_rad_s * turned_s).clamp(-TURN_MAX_RAD, TURN_MAX_RAD);
             let (sin, cos) = math::sin_cos(course_rad + turned_rad);
-            at = at + (Ned { north: cos, east: sin }.scaled(speed_m_s) + drift_m_s).scaled(STEP_S);
+            at = at
+                + (Ned {
+                    north: cos,
+                    east: sin,
+                }
+                .scaled(speed_m_s)
+                    + drift_m_s)
+                    .scaled(STEP_S);
             t_s += STEP_S;
             if t_s > until_fall_s {
                 thrust_m_s = self.fallen_thrust(thrust_m_s, 0.0, STEP_S);
                 let change = self.resistance_m_s2(thrust_m_s) - self.resistance_m_s2(speed_m_s);
                 // A boat that is slower than its thrust allows gains speed for a while.
-                let decelerated = if thrust_m_s > 0.0 { 0.0 } else { self.deceleration_m_s2 };
+                let decelerated = if thrust_m_s > 0.0 {
+                    0.0
+                } else {
+                    self.deceleration_m_s2
+                };
                 speed_m_s = (speed_m_s + (change - decelerated) * STEP_S).max(0.0);
             }
             let is_at_rest = speed_m_s < REST_M_S && t_s > until_fall_s;
-            let is_over = is_at_rest && (t_s >= DRIFT_S || drift_m_s == Ned::default()) || t_s >= LONGEST_S;
+            let is_over =
+                is_at_rest && (t_s >= DRIFT_S || drift_m_s == Ned::default()) || t_s >= LONGEST_S;
             if is_over {
-                at = at + Ned { north: cos, east: sin }.scaled(self.tail_m(speed_m_s));
+                at = at
+                    + Ned {
+                        north: cos,
+                        east: sin,
+                    }
+                    .scaled(self.tail_m(speed_m_s));
             }
             if is_over || step % STEPS_PER_LEG == 0 {
-                let slack_m = if drift_m_s == Ned::default() { 0.0 } else { slack_m(&drift_m_s, t_s, turned_rad, at) };
+                let slack_m = if drift_m_s == Ned::default() {
+                    0.0
+                } else {
+                    slack_m(&drift_m_s, t_s, turned_rad, at)
+                };
                 legs.push(Leg { end: at, slack_m });
             }
             if is_over {
@@ -170,7 +217,8 @@ impl Coasting {
 
 /// The lateral distance of a boat from its predicted position.
 fn slack_m(drift_m_s: &Ned, t_s: f64, turned_rad: f64, at: Ned) -> f64 {
-    (LEEWAY_M_S + DRIFT_SLACK * drift_m_s.length()) * t_s + (VEER_RAD + TURN_SLACK * turned_rad.abs()) * at.length()
+    (LEEWAY_M_S + DRIFT_SLACK * drift_m_s.length()) * t_s
+        + (VEER_RAD + TURN_SLACK * turned_rad.abs()) * at.length()
 }
 
 /// A leg of the path to rest.
@@ -226,12 +274,25 @@ impl DriftEstimate {
         (psi_rad, velocity_m_s): (f64, Ned),
     ) {
         let (sin, cos) = math::sin_cos(psi_rad);
-        let ahead = Ned { north: cos, east: sin };
-        let Some(at) = self.at.replace(now).filter(|at| (now - *at).as_s() <= GAP_MAX_S) else {
+        let ahead = Ned {
+            north: cos,
+            east: sin,
+        };
+        let Some(at) = self
+            .at
+            .replace(now)
+            .filter(|at| (now - *at).as_s() <= GAP_MAX_S)
+        else {
             let surge_m_s = velocity_m_s.dot(ahead);
             let thrust_m_s = ordered_m_s;
             let drift_m_s = Ned::default();
-            *self = DriftEstimate { at: Some(now), lasted_s: 0.0, surge_m_s, thrust_m_s, drift_m_s };
+            *self = DriftEstimate {
+                at: Some(now),
+                lasted_s: 0.0,
+                surge_m_s,
+                thrust_m_s,
+                drift_m_s,
+            };
             return;
         };
         let step_s = (now - at).as_s();
@@ -239,7 +300,8 @@ impl DriftEstimate {
         for _ in 0..6 {
             let step_s = step_s / 6.0;
             self.thrust_m_s = coasting.fallen_thrust(self.thrust_m_s, ordered_m_s, step_s);
-            let change = coasting.resistance_m_s2(self.thrust_m_s) - coasting.resistance_m_s2(self.surge_m_s);
+            let change = coasting.resistance_m_s2(self.thrust_m_s)
+                - coasting.resistance_m_s2(self.surge_m_s);
             self.surge_m_s += change * step_s;
         }
         let rest = velocity_m_s - ahead.scaled(self.surge_m_s);

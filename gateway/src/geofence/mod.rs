@@ -46,7 +46,9 @@ impl Breach {
     /// than `ends_s` without a fault.
     fn is_well(&mut self, now: SimTime, is_sound: bool, (debounce_s, ends_s): (f64, f64)) -> bool {
         if is_sound {
-            self.between = self.between.filter(|(_, last)| (now - *last).as_s() <= ends_s);
+            self.between = self
+                .between
+                .filter(|(_, last)| (now - *last).as_s() <= ends_s);
             return true;
         }
         let since = self.between.map_or(now, |(since, _)| since);
@@ -94,13 +96,16 @@ impl GeofenceWatch {
                 is_inside && (leg.slack_m == 0.0 || self.area.clearance_m(end) >= leg.slack_m)
             })
         };
-        let is_straight_sound = self.area.contains(at) && self.straight_paths(motion.0).iter().all(is_sound);
+        let is_straight_sound =
+            self.area.contains(at) && self.straight_paths(motion.0).iter().all(is_sound);
         let is_drift_sound = self.drifting_path(now, motion).iter().all(is_sound);
         // A single fix scattered across the line is not a breach. In waves a boat yaws, and its
         // path to rest swings with it: a path that is free for a moment does not end a breach.
         let is_well = [
-            self.straight.is_well(now, is_straight_sound, (self.rules.debounce_s, 0.0)),
-            self.drifting.is_well(now, is_drift_sound, (self.rules.debounce_s, BREACH_ENDS_S)),
+            self.straight
+                .is_well(now, is_straight_sound, (self.rules.debounce_s, 0.0)),
+            self.drifting
+                .is_well(now, is_drift_sound, (self.rules.debounce_s, BREACH_ENDS_S)),
         ];
         is_well == [true; 2]
     }
@@ -108,15 +113,24 @@ impl GeofenceWatch {
     /// The paths to rest that must be free for the boat, from its position: straight on as in still
     /// water, ...
     fn straight_paths(&self, velocity_m_s: Ned) -> Vec<Vec<Leg>> {
-        let Geofence { deceleration_m_s2, coast_m, .. } = &self.rules;
+        let Geofence {
+            deceleration_m_s2,
+            coast_m,
+            ..
+        } = &self.rules;
         let speed_m_s = velocity_m_s.length();
         let reaction_s = self.reaction_s();
         // v t + v²/2a: valid without a boat file, and above all at high speed. Water resistance
         // falls with the speed, so below 2 m/s boats coast farther than with any single
         // deceleration.
         let braked = velocity_m_s.scaled(reaction_s + speed_m_s / (2.0 * deceleration_m_s2));
-        let braked = Leg { end: braked, slack_m: 0.0 };
-        let Some(coasting) = &self.coasting else { return vec![vec![braked]] };
+        let braked = Leg {
+            end: braked,
+            slack_m: 0.0,
+        };
+        let Some(coasting) = &self.coasting else {
+            return vec![vec![braked]];
+        };
         let still = Glide {
             water_m_s: velocity_m_s,
             drift_m_s: Ned::default(),
@@ -133,13 +147,30 @@ impl GeofenceWatch {
     }
 
     /// ... and with the observed drift and turn.
-    fn drifting_path(&self, now: SimTime, (velocity_m_s, yaw_rate_rad_s): (Ned, f64)) -> Option<Vec<Leg>> {
-        let coasting = self.coasting.as_ref().filter(|_| self.drift.is_fresh(now))?;
-        let DriftEstimate { drift_m_s, thrust_m_s, .. } = self.drift;
+    fn drifting_path(
+        &self,
+        now: SimTime,
+        (velocity_m_s, yaw_rate_rad_s): (Ned, f64),
+    ) -> Option<Vec<Leg>> {
+        let coasting = self
+            .coasting
+            .as_ref()
+            .filter(|_| self.drift.is_fresh(now))?;
+        let DriftEstimate {
+            drift_m_s,
+            thrust_m_s,
+            ..
+        } = self.drift;
         let water_m_s = velocity_m_s - drift_m_s;
         let thrust_m_s = thrust_m_s.abs();
         let reaction_s = self.reaction_s();
-        Some(coasting.path(&Glide { water_m_s, drift_m_s, thrust_m_s, yaw_rate_rad_s, reaction_s }))
+        Some(coasting.path(&Glide {
+            water_m_s,
+            drift_m_s,
+            thrust_m_s,
+            yaw_rate_rad_s,
+            reaction_s,
+        }))
     }
 
     fn reaction_s(&self) -> f64 {
@@ -148,8 +179,12 @@ impl GeofenceWatch {
 
     /// Where the boat comes to rest, m from here, by the longest of the predicted paths.
     pub(crate) fn stopping_way(&self, now: SimTime, motion: (Ned, f64)) -> Ned {
-        let paths = self.straight_paths(motion.0).into_iter().chain(self.drifting_path(now, motion));
+        let paths = self
+            .straight_paths(motion.0)
+            .into_iter()
+            .chain(self.drifting_path(now, motion));
         let ends = paths.filter_map(|path| Some(path.last()?.end));
-        ends.max_by(|a, b| a.length().total_cmp(&b.length())).unwrap_or_default()
+        ends.max_by(|a, b| a.length().total_cmp(&b.length()))
+            .unwrap_or_default()
     }
 }

@@ -8,7 +8,8 @@ use proptest::prelude::*;
 use rules::field::sides;
 
 fn game() -> scenario::Scenario {
-    let game = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games/pav01_vs_pav01.toml");
+    let game = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../scenarios/games/pav01_vs_pav01.toml");
     scenario::load(&game).unwrap_or_else(|problems| panic!("{problems}"))
 }
 
@@ -34,15 +35,23 @@ fn a_boat_must_be_inside_and_able_to_stop_inside() {
         (80.0, -30.1, 0.0, false),
     ] {
         let mut geofence = GeofenceWatch::new(&game().field, &rules(), None);
-        let velocity = Ned { north: 0.0, east: east_m_s };
+        let velocity = Ned {
+            north: 0.0,
+            east: east_m_s,
+        };
         geofence.is_inside(at(0.0), Ned::from_xy(x, y), (velocity, 0.0));
-        assert_eq!(geofence.is_inside(at(0.5), Ned::from_xy(x, y), (velocity, 0.0)), inside, "{x}, {y} at {east_m_s}");
+        assert_eq!(
+            geofence.is_inside(at(0.5), Ned::from_xy(x, y), (velocity, 0.0)),
+            inside,
+            "{x}, {y} at {east_m_s}"
+        );
     }
 }
 
 /// The Surveyor of the shipped boat files.
 fn surveyor() -> Coasting {
-    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/boats/surveyor_m1_8.toml");
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../scenarios/boats/surveyor_m1_8.toml");
     Coasting::of(&scenario::load_file(&path).unwrap_or_else(|problems| panic!("{problems}")))
 }
 
@@ -51,7 +60,12 @@ const COARSE_M: f64 = 0.5;
 
 /// M / q ln(1 + q v / l): the coasting distance of a hull from a speed.
 fn coasted_m(coasting: &Coasting, speed_m_s: f64) -> f64 {
-    let Coasting { mass_kg, linear_kg_s, quadratic_kg_m, .. } = *coasting;
+    let Coasting {
+        mass_kg,
+        linear_kg_s,
+        quadratic_kg_m,
+        ..
+    } = *coasting;
     mass_kg / quadratic_kg_m * (quadratic_kg_m * speed_m_s / linear_kg_s).ln_1p()
 }
 
@@ -60,13 +74,22 @@ fn a_boat_coasts_as_far_as_its_file_says_or_as_was_measured() {
     let surveyor = surveyor();
     for (speed_m_s, glides_m) in [(0.5, 3.3), (1.0, 5.2), (1.5, 6.5), (3.0, 9.0)] {
         let exact_m = coasted_m(&surveyor, speed_m_s);
-        assert!((exact_m - glides_m).abs() < 0.1, "{exact_m} m from {speed_m_s} m/s");
+        assert!(
+            (exact_m - glides_m).abs() < 0.1,
+            "{exact_m} m from {speed_m_s} m/s"
+        );
         let found_m = surveyor.distance_m(speed_m_s);
-        assert!((found_m - exact_m).abs() < COARSE_M, "{found_m} m from {speed_m_s} m/s, {exact_m}");
+        assert!(
+            (found_m - exact_m).abs() < COARSE_M,
+            "{found_m} m from {speed_m_s} m/s, {exact_m}"
+        );
     }
     let measured = surveyor.as_measured(&[(0.5, 5.0), (2.0, 7.0)]);
     assert!((measured.distance_m(0.5) - 5.0).abs() < 0.3 && measured.distance_m(2.0) > 7.0);
-    assert!(surveyor.as_measured(&[(1.0, 2.0)]).distance_m(1.0) < 2.5, "it is better than the file says");
+    assert!(
+        surveyor.as_measured(&[(1.0, 2.0)]).distance_m(1.0) < 2.5,
+        "it is better than the file says"
+    );
 }
 
 #[test]
@@ -74,7 +97,10 @@ fn a_slow_boat_keeps_the_distance_that_it_coasts() {
     // The edge lies at x = 190 m. By v²/2a alone the first would need 1.0 m.
     for (speed_m_s, least_m) in [(0.5, 3.5), (1.0, 6.0), (1.5, 8.0), (3.0, 21.0)] {
         let mut geofence = GeofenceWatch::new(&game().field, &rules(), Some(surveyor()));
-        let velocity = Ned { north: 0.0, east: speed_m_s };
+        let velocity = Ned {
+            north: 0.0,
+            east: speed_m_s,
+        };
         let mut inside = |clearance_m: f64| {
             geofence.straight = Breach::default();
             let at_edge = Ned::from_xy(190.0 - clearance_m, 40.0);
@@ -90,10 +116,18 @@ fn one_fix_outside_is_not_enough() {
     let mut geofence = GeofenceWatch::new(&game().field, &rules(), None);
     let inside = Ned::from_xy(80.0, 40.0);
     let outside = Ned::from_xy(80.0, 400.0);
-    for (seconds, place, want) in
-        [(0.0, outside, true), (0.4, outside, true), (0.45, inside, true), (0.6, outside, true), (1.2, outside, false)]
-    {
-        assert_eq!(geofence.is_inside(at(seconds), place, (Ned::default(), 0.0)), want, "{seconds}");
+    for (seconds, place, want) in [
+        (0.0, outside, true),
+        (0.4, outside, true),
+        (0.45, inside, true),
+        (0.6, outside, true),
+        (1.2, outside, false),
+    ] {
+        assert_eq!(
+            geofence.is_inside(at(seconds), place, (Ned::default(), 0.0)),
+            want,
+            "{seconds}"
+        );
     }
 }
 
@@ -129,7 +163,11 @@ fn is_seen_around(polygon: &[Ned], at: Ned) -> bool {
 }
 
 fn may_be_at(area: &GeofenceArea, at: Ned) -> bool {
-    is_seen_around(&area.outline, at) && !area.keep_out.iter().any(|polygon| is_seen_around(polygon, at))
+    is_seen_around(&area.outline, at)
+        && !area
+            .keep_out
+            .iter()
+            .any(|polygon| is_seen_around(polygon, at))
 }
 
 /// Steps of the independent check, m.
@@ -150,8 +188,14 @@ fn area() -> impl Strategy<Value = GeofenceArea> {
     let outline = prop::collection::vec(40.0..140.0_f64, 3..12);
     let keep_out = (place(), prop::collection::vec(3.0..40.0_f64, 3..8));
     (outline, prop::collection::vec(keep_out, 0..4)).prop_map(|(radii_m, keep_out)| {
-        let keep_out = keep_out.into_iter().map(|(at, radii_m)| star(at.scaled(0.6), &radii_m)).collect();
-        GeofenceArea { outline: star(Ned::default(), &radii_m), keep_out }
+        let keep_out = keep_out
+            .into_iter()
+            .map(|(at, radii_m)| star(at.scaled(0.6), &radii_m))
+            .collect();
+        GeofenceArea {
+            outline: star(Ned::default(), &radii_m),
+            keep_out,
+        }
     })
 }
 
@@ -213,7 +257,9 @@ proptest! {
 fn a_concave_geofence_and_a_keep_out_count_on_all_of_the_way_to_rest() {
     let field = game().field;
     // A horseshoe, open to the north, with a rock in its eastern arm.
-    let xy = |corners: &[(f64, f64)]| -> Vec<Ned> { corners.iter().map(|&(x, y)| Ned::from_xy(x, y)).collect() };
+    let xy = |corners: &[(f64, f64)]| -> Vec<Ned> {
+        corners.iter().map(|&(x, y)| Ned::from_xy(x, y)).collect()
+    };
     let horseshoe = [
         (0.0, 0.0),
         (160.0, 0.0),
@@ -244,8 +290,15 @@ fn a_concave_geofence_and_a_keep_out_count_on_all_of_the_way_to_rest() {
         (122.0, 48.0, 0.0, true),
     ] {
         let mut geofence = GeofenceWatch::new(&field, &rules, None);
-        let velocity = Ned { north: 0.0, east: east_m_s };
-        assert_eq!(geofence.is_inside(at(0.0), Ned::from_xy(x, y), (velocity, 0.0)), inside, "{x}, {y} at {east_m_s}");
+        let velocity = Ned {
+            north: 0.0,
+            east: east_m_s,
+        };
+        assert_eq!(
+            geofence.is_inside(at(0.0), Ned::from_xy(x, y), (velocity, 0.0)),
+            inside,
+            "{x}, {y} at {east_m_s}"
+        );
     }
 }
 
@@ -255,8 +308,13 @@ fn a_geofence_that_does_not_go_with_the_game_is_refused() {
     let square = |x: f64, y: f64, half_m: f64| {
         typed(
             &scenario.field,
-            &[(-half_m, -half_m), (half_m, -half_m), (half_m, half_m), (-half_m, half_m)]
-                .map(|(dx, dy)| Ned::from_xy(x + dx, y + dy)),
+            &[
+                (-half_m, -half_m),
+                (half_m, -half_m),
+                (half_m, half_m),
+                (-half_m, half_m),
+            ]
+            .map(|(dx, dy)| Ned::from_xy(x + dx, y + dy)),
         )
     };
     let starts: Vec<Ned> = scenario
@@ -272,13 +330,27 @@ fn a_geofence_that_does_not_go_with_the_game_is_refused() {
     for (polygon, keep_out, refusal) in [
         (None, vec![], ""),
         (all(), vec![square(80.0, 40.0, 5.0)], ""),
-        (None, vec![square(80.0, 40.0, 5.0), square(80.0, 400.0, 5.0)], "keep_out 1 (the first is 0) lies outside"),
+        (
+            None,
+            vec![square(80.0, 40.0, 5.0), square(80.0, 400.0, 5.0)],
+            "keep_out 1 (the first is 0) lies outside",
+        ),
         (all(), vec![start(3.0)], "starts outside"),
         (Some(square(1000.0, 40.0, 200.0)), vec![], "starts outside"),
     ] {
-        let area = GeofenceArea::new(&scenario.field, &Geofence { polygon, keep_out, ..rules() });
-        let checked =
-            area.check(&scenario, primitives::VehicleId::at(0)).map_err(|e| e.to_string()).err().unwrap_or_default();
+        let area = GeofenceArea::new(
+            &scenario.field,
+            &Geofence {
+                polygon,
+                keep_out,
+                ..rules()
+            },
+        );
+        let checked = area
+            .check(&scenario, primitives::VehicleId::at(0))
+            .map_err(|e| e.to_string())
+            .err()
+            .unwrap_or_default();
         assert!(
             checked.contains(refusal) && checked.is_empty() == refusal.is_empty(),
             "{checked:?}, expected {refusal:?}"

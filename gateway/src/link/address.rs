@@ -7,15 +7,17 @@ use thiserror::Error;
 /// Supported speeds of a serial line, baud.
 // A Surveyor's serial speed and format are not published. These are the usual ones of NMEA devices,
 // 8N1. RTK receivers use the faster ones, and autopilots' telemetry ports 921600.
-const BAUDS: [u32; 9] = [4800, 9600, 19_200, 38_400, 57_600, 115_200, 230_400, 460_800, 921_600];
+const BAUDS: [u32; 9] = [
+    4800, 9600, 19_200, 38_400, 57_600, 115_200, 230_400, 460_800, 921_600,
+];
 
 /// The default speed of a serial line: NMEA 0183-HS.
 const BAUD: u32 = 38_400;
 
 const BAUDS_ALLOWED: &str = "4800, 9600, 19200, 38400, 57600, 115200, 230400, 460800, 921600";
-const TO_CONNECT: &str = "tcp://HOST:PORT, udp://HOST:PORT, udp-listen://HOST:PORT, serial:///dev/DEVICE?baud=38400";
-const TO_LISTEN: &str =
-    "tcp://HOST:PORT, udp://HOST:PORT, serial:///dev/DEVICE?baud=38400, pty, pty:///path/of/symlink";
+const TO_CONNECT: &str =
+    "tcp://HOST:PORT, udp://HOST:PORT, udp-listen://HOST:PORT, serial:///dev/DEVICE?baud=38400";
+const TO_LISTEN: &str = "tcp://HOST:PORT, udp://HOST:PORT, serial:///dev/DEVICE?baud=38400, pty, pty:///path/of/symlink";
 
 /// The address of a link.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -74,8 +76,8 @@ pub struct LinkAddressError {
 type Fault = (String, &'static str);
 
 impl LinkAddress {
-    /// Parses an address to connect to: `tcp://HOST:PORT`, `udp://HOST:PORT`, `udp-listen://HOST:PORT` or
-    /// `serial:///dev/ttyUSB0?baud=38400`.
+    /// Parses an address to connect to: `tcp://HOST:PORT`, `udp://HOST:PORT`,
+    /// `udp-listen://HOST:PORT` or `serial:///dev/ttyUSB0?baud=38400`.
     ///
     /// # Errors
     /// [`LinkAddressError`] with the value found and the values allowed.
@@ -83,7 +85,8 @@ impl LinkAddress {
         parse(text, Side::Connects).map_err(|fault| error(text, fault))
     }
 
-    /// Parses an address to listen on: those of [`LinkAddress::to_connect`], `pty`, or `pty:///path/of/symlink`.
+    /// Parses an address to listen on: those of [`LinkAddress::to_connect`], `pty`, or
+    /// `pty:///path/of/symlink`.
     ///
     /// # Errors
     /// [`LinkAddressError`] with the value found and the values allowed.
@@ -98,7 +101,9 @@ impl fmt::Display for LinkAddress {
             LinkAddress::Tcp(_, at) => write!(f, "tcp://{at}"),
             LinkAddress::Udp(_, at) => write!(f, "udp://{at}"),
             LinkAddress::UdpListen(at) => write!(f, "udp-listen://{at}"),
-            LinkAddress::Serial { path, baud } => write!(f, "serial://{}?baud={baud}", path.display()),
+            LinkAddress::Serial { path, baud } => {
+                write!(f, "serial://{}?baud={baud}", path.display())
+            }
             LinkAddress::Pty { link: None } => write!(f, "pty"),
             LinkAddress::Pty { link: Some(link) } => write!(f, "pty://{}", link.display()),
         }
@@ -108,16 +113,28 @@ impl fmt::Display for LinkAddress {
 impl fmt::Display for HostPort {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let HostPort { host, port } = self;
-        if host.contains(':') { write!(f, "[{host}]:{port}") } else { write!(f, "{host}:{port}") }
+        if host.contains(':') {
+            write!(f, "[{host}]:{port}")
+        } else {
+            write!(f, "{host}:{port}")
+        }
     }
 }
 
 fn error(text: &str, (found, allowed): Fault) -> LinkAddressError {
-    LinkAddressError { text: text.to_owned(), found, allowed }
+    LinkAddressError {
+        text: text.to_owned(),
+        found,
+        allowed,
+    }
 }
 
 fn parse(text: &str, side: Side) -> Result<LinkAddress, Fault> {
-    let forms = if side == Side::Connects { TO_CONNECT } else { TO_LISTEN };
+    let forms = if side == Side::Connects {
+        TO_CONNECT
+    } else {
+        TO_LISTEN
+    };
     let listens = side == Side::Listens;
     if listens && text == "pty" {
         return Ok(LinkAddress::Pty { link: None });
@@ -130,7 +147,9 @@ fn parse(text: &str, side: Side) -> Result<LinkAddress, Fault> {
         "udp" => Ok(LinkAddress::Udp(side, host_and_port(rest, side)?)),
         "udp-listen" if !listens => Ok(LinkAddress::UdpListen(host_and_port(rest, side)?)),
         "serial" => serial(rest),
-        "pty" if listens => Ok(LinkAddress::Pty { link: Some(absolute(rest)?) }),
+        "pty" if listens => Ok(LinkAddress::Pty {
+            link: Some(absolute(rest)?),
+        }),
         // To connect to another program's terminal, use its path as a serial line.
         "pty" => Err(("a pty can only be listened on".to_owned(), forms)),
         _ => Err((format!("the scheme is {scheme:?}"), forms)),
@@ -139,33 +158,53 @@ fn parse(text: &str, side: Side) -> Result<LinkAddress, Fault> {
 
 fn host_and_port(text: &str, side: Side) -> Result<HostPort, Fault> {
     // Split from the right because of IPv6 addresses, which end in a bracket without a port.
-    let Some((host, port)) = text.rsplit_once(':').filter(|(_, port)| !port.ends_with(']')) else {
+    let Some((host, port)) = text
+        .rsplit_once(':')
+        .filter(|(_, port)| !port.ends_with(']'))
+    else {
         return Err(("it has no port".to_owned(), "HOST:PORT"));
     };
-    let inside = host.strip_prefix('[').and_then(|rest| rest.strip_suffix(']'));
+    let inside = host
+        .strip_prefix('[')
+        .and_then(|rest| rest.strip_suffix(']'));
     if inside.is_none() && host.contains(':') {
-        return Err((format!("the host is {host:?}"), "an IPv6 address in brackets, as in [::1]:8003"));
+        return Err((
+            format!("the host is {host:?}"),
+            "an IPv6 address in brackets, as in [::1]:8003",
+        ));
     }
     let name = inside.unwrap_or(host);
     // The resolver's error for other characters is less clear.
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_.:%".contains(c);
     if name.is_empty() || !name.chars().all(plain) {
-        let hosts = "a name, an IPv4 address, or an IPv6 address in brackets; 0.0.0.0 listens everywhere";
+        let hosts =
+            "a name, an IPv4 address, or an IPv6 address in brackets; 0.0.0.0 listens everywhere";
         return Err((format!("the host is {host:?}"), hosts));
     }
-    let (first, ports) = if side == Side::Connects { (1, "1 to 65535") } else { (0, "0 to 65535; 0 is any free one") };
+    let (first, ports) = if side == Side::Connects {
+        (1, "1 to 65535")
+    } else {
+        (0, "0 to 65535; 0 is any free one")
+    };
     // `parse` alone would accept "+80".
     let number = Some(port).filter(|port| port.bytes().all(|b| b.is_ascii_digit()));
     match number.and_then(|port| port.parse::<u16>().ok()) {
-        Some(port) if port >= first => Ok(HostPort { host: name.to_owned(), port }),
+        Some(port) if port >= first => Ok(HostPort {
+            host: name.to_owned(),
+            port,
+        }),
         _ => Err((format!("the port is {port:?}"), ports)),
     }
 }
 
 fn serial(text: &str) -> Result<LinkAddress, Fault> {
-    let (path, query) = text.split_once('?').map_or((text, None), |(path, query)| (path, Some(query)));
+    let (path, query) = text
+        .split_once('?')
+        .map_or((text, None), |(path, query)| (path, Some(query)));
     let path = absolute(path)?;
-    let Some(query) = query else { return Ok(LinkAddress::Serial { path, baud: BAUD }) };
+    let Some(query) = query else {
+        return Ok(LinkAddress::Serial { path, baud: BAUD });
+    };
     let Some(wanted) = query.strip_prefix("baud=") else {
         return Err((format!("{query:?} follows the `?`"), "baud=38400"));
     };
@@ -179,5 +218,8 @@ fn absolute(path: &str) -> Result<PathBuf, Fault> {
     if path.starts_with('/') && path.len() > 1 && !path.contains('\0') {
         return Ok(PathBuf::from(path));
     }
-    Err((format!("the path is {path:?}"), "an absolute path, which makes three slashes: serial:///dev/ttyUSB0"))
+    Err((
+        format!("the path is {path:?}"),
+        "an absolute path, which makes three slashes: serial:///dev/ttyUSB0",
+    ))
 }

@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-/// A connection counts as good after it has received bytes for this long. The waits keep growing for a peer that
-/// accepts and closes at once, or dies after one line.
+/// A connection counts as good after it has received bytes for this long. The waits keep growing
+/// for a peer that accepts and closes at once, or dies after one line.
 pub(super) const STEADY: Duration = Duration::from_secs(1);
 
 /// Prevents a busy loop if the settings contain 0.
@@ -19,14 +19,18 @@ pub(super) struct Backoff {
 impl Backoff {
     pub(super) fn new(first: Duration, longest: Duration) -> Backoff {
         let first = first.max(SHORTEST);
-        Backoff { first, longest: longest.max(first), next: first }
+        Backoff {
+            first,
+            longest: longest.max(first),
+            next: first,
+        }
     }
 
     /// The wait before the next attempt.
     pub(super) fn wait(&mut self) -> Duration {
         let wait = self.next;
-        // At most a second between attempts: an uncontrolled boat travels two or three metres in that
-        // time.
+        // At most a second between attempts: an uncontrolled boat travels two or three metres in
+        // that time.
         self.next = wait.saturating_mul(2).min(self.longest);
         wait
     }
@@ -51,13 +55,21 @@ mod tests {
     fn waits_double_up_to_the_longest() {
         let ms = Duration::from_millis;
         for (first, longest, want) in [
-            (ms(100), ms(5000), vec![100, 200, 400, 800, 1600, 3200, 5000, 5000]),
+            (
+                ms(100),
+                ms(5000),
+                vec![100, 200, 400, 800, 1600, 3200, 5000, 5000],
+            ),
             (ms(100), ms(100), vec![100, 100]),
             (ms(300), ms(100), vec![300, 300]),
             (ms(0), ms(0), vec![10, 10]),
         ] {
             let mut backoff = Backoff::new(first, longest);
-            assert_eq!(waits_ms(&mut backoff, want.len()), want, "{first:?} to {longest:?}");
+            assert_eq!(
+                waits_ms(&mut backoff, want.len()),
+                want,
+                "{first:?} to {longest:?}"
+            );
         }
     }
 

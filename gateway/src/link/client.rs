@@ -16,8 +16,8 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Maximum time of an attempt to connect. The wait between attempts counts from the start of each, so a boat that
-/// becomes reachable is connected within a second.
+/// Maximum time of an attempt to connect. The wait between attempts counts from the start of each,
+/// so a boat that becomes reachable is connected within a second.
 const CONNECT: Duration = Duration::from_secs(1);
 
 /// How often an attempt is polled.
@@ -25,9 +25,10 @@ const CONNECT: Duration = Duration::from_secs(1);
 // does not answer.
 const POLL: Duration = Duration::from_millis(5);
 
-/// Maximum unacknowledged bytes of a TCP connection, and how long they may stay so before it counts as dead.
-// A half-open connection accepts bytes until the buffer is full. These become old commands, so the buffer is as
-// small as systems allow.
+/// Maximum unacknowledged bytes of a TCP connection, and how long they may stay so before it counts
+/// as dead.
+// A half-open connection accepts bytes until the buffer is full. These become old commands, so the
+// buffer is as small as systems allow.
 const SEND_BUFFER: usize = 4096;
 const UNACKNOWLEDGED: Duration = Duration::from_secs(2);
 
@@ -36,7 +37,8 @@ pub(super) fn run(threads: &Arc<Threads>, address: &LinkAddress) {
     let mut backoff = Backoff::new(threads.settings.retry_first, threads.settings.retry_max);
     loop {
         let begun_at = clock::now();
-        let connection = connect(threads, address).and_then(|(port, name)| Connection::open(threads, port, name));
+        let connection = connect(threads, address)
+            .and_then(|(port, name)| Connection::open(threads, port, name));
         let wait = match connection {
             Ok(connection) => {
                 backoff.note_connection(connection.serve());
@@ -47,8 +49,15 @@ pub(super) fn run(threads: &Arc<Threads>, address: &LinkAddress) {
                 let wait = backoff.wait();
                 let took = clock::since(begun_at);
                 // An attempt that nobody answered has taken its wait already.
-                let retry_in = if took < wait / 2 { wait } else { wait.saturating_sub(took) };
-                threads.emit(LinkEvent::Failed { reason: format!("{address}: {}", in_words(&e)), retry_in });
+                let retry_in = if took < wait / 2 {
+                    wait
+                } else {
+                    wait.saturating_sub(took)
+                };
+                threads.emit(LinkEvent::Failed {
+                    reason: format!("{address}: {}", in_words(&e)),
+                    retry_in,
+                });
                 retry_in
             }
         };
@@ -75,7 +84,10 @@ fn connect(threads: &Threads, address: &LinkAddress) -> io::Result<(Port, String
         LinkAddress::Udp(Side::Connects, at) => connect_udp(at),
         LinkAddress::UdpListen(at) => await_udp(threads, at),
         LinkAddress::Serial { path, baud } => open_serial(path, *baud),
-        _ => Err(io::Error::new(ErrorKind::Unsupported, "nothing to connect to")),
+        _ => Err(io::Error::new(
+            ErrorKind::Unsupported,
+            "nothing to connect to",
+        )),
     }
 }
 
@@ -92,7 +104,11 @@ fn connect_tcp(threads: &Threads, at: &HostPort) -> io::Result<(Port, String)> {
 
 /// Connects without blocking; `connect_timeout` could not be interrupted when the link is closed.
 fn connect_to(threads: &Threads, address: SocketAddr) -> io::Result<TcpStream> {
-    let socket = Socket::new(Domain::for_address(address), Type::STREAM, Some(Protocol::TCP))?;
+    let socket = Socket::new(
+        Domain::for_address(address),
+        Type::STREAM,
+        Some(Protocol::TCP),
+    )?;
     socket.set_nonblocking(true)?;
     let start = clock::now();
     match socket.connect(&address.into()) {
@@ -104,7 +120,10 @@ fn connect_to(threads: &Threads, address: SocketAddr) -> io::Result<TcpStream> {
             return Err(e);
         }
         if clock::since(start) >= CONNECT {
-            return Err(io::Error::new(ErrorKind::TimedOut, format!("no answer for {CONNECT:?}")));
+            return Err(io::Error::new(
+                ErrorKind::TimedOut,
+                format!("no answer for {CONNECT:?}"),
+            ));
         }
         if threads.stops_within(POLL) {
             return Err(ErrorKind::Interrupted.into());
@@ -121,16 +140,20 @@ fn connect_to(threads: &Threads, address: SocketAddr) -> io::Result<TcpStream> {
     tune(socket)
 }
 
-/// Sets the options for a TCP connection that carries commands: no delay, and early detection of a dead peer.
+/// Sets the options for a TCP connection that carries commands: no delay, and early detection of a
+/// dead peer.
 pub(super) fn tune(socket: Socket) -> io::Result<TcpStream> {
     // A sentence is a packet: Nagle's algorithm would delay the second one until the first is
     // acknowledged.
     socket.set_tcp_nodelay(true)?;
     socket.set_tcp_keepalive(
-        &TcpKeepalive::new().with_time(UNACKNOWLEDGED).with_interval(Duration::from_secs(1)).with_retries(2),
+        &TcpKeepalive::new()
+            .with_time(UNACKNOWLEDGED)
+            .with_interval(Duration::from_secs(1))
+            .with_retries(2),
     )?;
-    // Keepalive only works on idle connections. With unacknowledged bytes, Linux retransmits for a quarter
-    // of an hour unless this limit is set.
+    // Keepalive only works on idle connections. With unacknowledged bytes, Linux retransmits for a
+    // quarter of an hour unless this limit is set.
     socket.set_tcp_user_timeout(Some(UNACKNOWLEDGED))?;
     // Linux doubles the value for its own bookkeeping.
     socket.set_send_buffer_size(SEND_BUFFER)?;
@@ -142,7 +165,10 @@ pub(super) fn tune(socket: Socket) -> io::Result<TcpStream> {
 fn connect_udp(at: &HostPort) -> io::Result<(Port, String)> {
     let mut addresses = (at.host.as_str(), at.port).to_socket_addrs()?;
     let Some(address) = addresses.next() else {
-        return Err(io::Error::new(ErrorKind::NotFound, "the host has no address"));
+        return Err(io::Error::new(
+            ErrorKind::NotFound,
+            "the host has no address",
+        ));
     };
     // The socket has its peer's address family: on some systems an IPv6 socket cannot reach IPv4
     // addresses.
@@ -152,8 +178,9 @@ fn connect_udp(at: &HostPort) -> io::Result<(Port, String)> {
 }
 
 /// Waits for the first datagram, and connects to its sender.
-// A single peer rather than a server: there is one boat, and the guard needs a socket on which a plain write
-// reaches it. A boat that restarts sends from another port; it is found after silence has ended the link.
+// A single peer rather than a server: there is one boat, and the guard needs a socket on which a
+// plain write reaches it. A boat that restarts sends from another port; it is found after silence
+// has ended the link.
 fn await_udp(threads: &Threads, at: &HostPort) -> io::Result<(Port, String)> {
     let (socket, _) = udp_server::bind((&at.host, at.port))?;
     let start = clock::now();
@@ -164,11 +191,18 @@ fn await_udp(threads: &Threads, at: &HostPort) -> io::Result<(Port, String)> {
                 socket.connect(from)?;
                 return Ok((Port::Udp(socket), from.to_string()));
             }
-            Err(e) if matches!(e.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted) => {}
+            Err(e)
+                if matches!(
+                    e.kind(),
+                    ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted
+                ) => {}
             Err(e) => return Err(e),
         }
     }
-    Err(io::Error::new(ErrorKind::TimedOut, format!("received nothing for {CONNECT:?}")))
+    Err(io::Error::new(
+        ErrorKind::TimedOut,
+        format!("received nothing for {CONNECT:?}"),
+    ))
 }
 
 fn open_serial(path: &Path, baud: u32) -> io::Result<(Port, String)> {

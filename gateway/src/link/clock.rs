@@ -2,7 +2,10 @@
 
 use std::time::{Duration, Instant};
 
-#[expect(clippy::disallowed_methods, reason = "a shell stamps what it reads and limits its waits")]
+#[expect(
+    clippy::disallowed_methods,
+    reason = "a shell stamps what it reads and limits its waits"
+)]
 pub(super) fn now() -> Instant {
     Instant::now()
 }

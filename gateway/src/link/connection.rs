@@ -17,7 +17,8 @@ pub(super) const CHUNK: usize = 64 * 1024;
 /// A serial adapter forwards bytes within this time.
 const SETTLED: Duration = Duration::from_millis(30);
 
-/// A connection to a peer that is up. Dropping it ends it; [`Connection::close`] also emits [`LinkEvent::Down`].
+/// A connection to a peer that is up. Dropping it ends it; [`Connection::close`] also emits
+/// [`LinkEvent::Down`].
 pub(super) struct Connection {
     threads: Arc<Threads>,
     pub(super) peer: Arc<Peer>,
@@ -28,12 +29,19 @@ impl Connection {
     /// Opens a connection over a port.
     pub(super) fn open(threads: &Arc<Threads>, port: Port, name: String) -> io::Result<Connection> {
         let peer = Arc::new(Peer::new(threads.number(), port));
-        let mut connection = Connection { threads: Arc::clone(threads), peer, writer: None };
-        // Added before `Up` is announced, so that bytes sent in response to `Up` reach this peer. The writer starts
-        // last, so that no `Written` precedes `Up`.
+        let mut connection = Connection {
+            threads: Arc::clone(threads),
+            peer,
+            writer: None,
+        };
+        // Added before `Up` is announced, so that bytes sent in response to `Up` reach this peer.
+        // The writer starts last, so that no `Written` precedes `Up`.
         threads.tell_port(connection.peer.port.descriptor());
         threads.add(&connection.peer);
-        threads.emit(LinkEvent::Up { peer: connection.peer.number, name });
+        threads.emit(LinkEvent::Up {
+            peer: connection.peer.number,
+            name,
+        });
         let shared = Arc::clone(threads);
         let peer = Arc::clone(&connection.peer);
         match threads.spawn("link writer", move || write_on(&peer, &shared)) {
@@ -46,7 +54,8 @@ impl Connection {
         Ok(connection)
     }
 
-    /// Reads until the connection ends; returns the time between coming up and the last bytes received.
+    /// Reads until the connection ends; returns the time between coming up and the last bytes
+    /// received.
     pub(super) fn serve(self) -> Duration {
         let up_at = clock::now();
         let mut received_at = up_at;
@@ -58,7 +67,11 @@ impl Connection {
     fn read_on(&self, received_at: &mut Instant) -> End {
         let mut buffer = vec![0; CHUNK];
         // A pseudo-terminal may have no reader for hours, which is no fault.
-        let silence = self.threads.settings.silence.filter(|_| self.peer.port.can_fall_silent());
+        let silence = self
+            .threads
+            .settings
+            .silence
+            .filter(|_| self.peer.port.can_fall_silent());
         loop {
             if let Some(end) = self.peer.is_to_end() {
                 return end;
@@ -71,7 +84,11 @@ impl Connection {
                 Ok(Received::Bytes(count)) => {
                     *received_at = clock::now();
                     let bytes = buffer[..count].to_vec();
-                    self.threads.emit(LinkEvent::Bytes { peer: self.peer.number, at: *received_at, bytes });
+                    self.threads.emit(LinkEvent::Bytes {
+                        peer: self.peer.number,
+                        at: *received_at,
+                        bytes,
+                    });
                 }
                 Ok(Received::Nothing) => {}
                 Ok(Received::End) => return End::Lost("closed by the other side".to_owned()),
@@ -100,7 +117,10 @@ impl Connection {
             // A writer that panicked has ended too.
             drop(writer.join());
         }
-        self.threads.emit(LinkEvent::Down { peer: self.peer.number, reason: end.to_string() });
+        self.threads.emit(LinkEvent::Down {
+            peer: self.peer.number,
+            reason: end.to_string(),
+        });
     }
 }
 
@@ -121,10 +141,14 @@ fn write_on(peer: &Peer, threads: &Threads) {
         }
         let begun_at = clock::now();
         let transit = peer.port.transit(request.bytes().len());
-        match peer.port.write(request.bytes(), || peer.is_to_end().is_some()) {
+        match peer
+            .port
+            .write(request.bytes(), || peer.is_to_end().is_some())
+        {
             Ok(Wrote::All) => {
                 let at = clock::now();
-                // Reported after the system has accepted the last byte, to measure the latency of orders.
+                // Reported after the system has accepted the last byte, to measure the latency of
+                // orders.
                 if let Some(tag) = request.settle() {
                     threads.emit(LinkEvent::Written { tag, at });
                 }

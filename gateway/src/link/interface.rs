@@ -10,8 +10,9 @@ use thiserror::Error;
 /// The timeouts of a link.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LinkSettings {
-    /// Without bytes for this long, a peer counts as lost. `None`, for the side that listens, means never. The peer of a
-    /// pseudo-terminal may stay silent; a peer of a UDP server for at most 10 s.
+    /// Without bytes for this long, a peer counts as lost. `None`, for the side that listens, means
+    /// never. The peer of a pseudo-terminal may stay silent; a peer of a UDP server for at most 10
+    /// s.
     pub silence: Option<Duration>,
     /// The wait before the second attempt; doubles each time.
     pub retry_first: Duration,
@@ -22,8 +23,8 @@ pub struct LinkSettings {
 impl Default for LinkSettings {
     fn default() -> LinkSettings {
         LinkSettings {
-            // A boat sends at least once a second. TCP alone notices a pulled cable after minutes; UDP and
-            // serial lines never do.
+            // A boat sends at least once a second. TCP alone notices a pulled cable after minutes;
+            // UDP and serial lines never do.
             silence: Some(Duration::from_secs(3)),
             retry_first: Duration::from_millis(100),
             // No longer back-off, because an E-stop may be waiting for the connection.
@@ -65,8 +66,8 @@ pub enum LinkEvent {
         /// Time until the next attempt.
         retry_in: Duration,
     },
-    /// Everything sent with this tag has been written to all peers that were up at the time. Not emitted if there were
-    /// none, or if one of them missed it.
+    /// Everything sent with this tag has been written to all peers that were up at the time. Not
+    /// emitted if there were none, or if one of them missed it.
     Written {
         /// The tag.
         tag: u64,
@@ -114,11 +115,12 @@ pub enum LinkError {
 
 /// A gateway's connection to its boat.
 pub trait BoatLink {
-    /// Queues bytes for all peers without blocking. For each peer, displaces queued bytes whose write has not begun.
+    /// Queues bytes for all peers without blocking. For each peer, displaces queued bytes whose
+    /// write has not begun.
     fn send(&self, bytes: Vec<u8>, tag: u64);
 
-    /// Like [`BoatLink::send`], for a command that stops the boat: discards earlier commands that wait in a stalled line,
-    /// where possible.
+    /// Like [`BoatLink::send`], for a command that stops the boat: discards earlier commands that
+    /// wait in a stalled line, where possible.
     fn send_stop(&self, bytes: Vec<u8>, tag: u64) {
         self.send(bytes, tag);
     }
@@ -126,9 +128,10 @@ pub trait BoatLink {
     /// The number of displaced writes so far, over all peers.
     fn displaced(&self) -> u64;
 
-    /// Sends a shutdown message: displaces what is queued, writes these bytes to all peers, and waits up to `limit`.
-    /// Returns whether there was a peer and the system accepted the bytes for all of them. Bytes whose write has not
-    /// begun by then stay queued. Other threads' bytes do not displace them. Works while panicking.
+    /// Sends a shutdown message: displaces what is queued, writes these bytes to all peers, and
+    /// waits up to `limit`. Returns whether there was a peer and the system accepted the bytes for
+    /// all of them. Bytes whose write has not begun by then stay queued. Other threads' bytes do
+    /// not displace them. Works while panicking.
     fn send_and_wait(&self, bytes: &[u8], limit: Duration) -> bool;
 }
 

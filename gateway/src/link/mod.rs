@@ -1,8 +1,8 @@
 //! Byte links to boats and back seats that reconnect automatically.
 //!
-//! A link runs a few threads: one that connects or accepts, and for each peer one that reads and one that writes.
-//! They report events through one callback. Write requests go through outboxes of depth one, so that a slow peer
-//! gets the newest command late instead of old ones in order.
+//! A link runs a few threads: one that connects or accepts, and for each peer one that reads and
+//! one that writes. They report events through one callback. Write requests go through outboxes of
+//! depth one, so that a slow peer gets the newest command late instead of old ones in order.
 //! Read `connection` first, then `client`, then `port`.
 
 mod address;
@@ -34,8 +34,9 @@ use threads::Threads;
 // Several ticks of 25 ms in which threads notice, and a graceful close of 80 ms.
 const CLOSE_MAX: Duration = Duration::from_millis(190);
 
-/// A link that reconnects automatically, on its own threads. Dropping it closes everything within 200 ms: written
-/// bytes still arrive, queued ones are lost. To send a shutdown message, use [`BoatLink::send_and_wait`].
+/// A link that reconnects automatically, on its own threads. Dropping it closes everything within
+/// 200 ms: written bytes still arrive, queued ones are lost. To send a shutdown message, use
+/// [`BoatLink::send_and_wait`].
 pub struct Link {
     threads: Arc<Threads>,
     reach: String,
@@ -54,7 +55,8 @@ impl Link {
         Link::open_watched(address, settings, None, on_event)
     }
 
-    /// Like [`Link::open`]. `on_port` may duplicate the descriptors, to write to them when this process cannot.
+    /// Like [`Link::open`]. `on_port` may duplicate the descriptors, to write to them when this
+    /// process cannot.
     ///
     /// # Errors
     /// As for [`Link::open`].
@@ -66,13 +68,16 @@ impl Link {
     ) -> Result<Link, LinkError> {
         let threads = Threads::new(settings, on_port, on_event);
         let (reach, work) = prepare(Arc::clone(&threads), address)?;
-        let failed = |source| LinkError::Thread { address: address.to_string(), source };
+        let failed = |source| LinkError::Thread {
+            address: address.to_string(),
+            source,
+        };
         drop(threads.spawn("link", work).map_err(failed)?);
         Ok(Link { threads, reach })
     }
 
-    /// The address to connect to, such as `tcp://127.0.0.1:8003`: with the real port instead of 0, or a PTY slave's
-    /// path.
+    /// The address to connect to, such as `tcp://127.0.0.1:8003`: with the real port instead of 0,
+    /// or a PTY slave's path.
     pub fn reach(&self) -> String {
         self.reach.clone()
     }
@@ -93,7 +98,9 @@ impl BoatLink for Link {
     }
 
     fn send_and_wait(&self, bytes: &[u8], limit: Duration) -> bool {
-        self.threads.enqueue(bytes.to_vec(), None, Priority::Shutdown).wait(limit)
+        self.threads
+            .enqueue(bytes.to_vec(), None, Priority::Shutdown)
+            .wait(limit)
     }
 }
 
@@ -111,26 +118,49 @@ fn prepare(threads: Arc<Threads>, address: &LinkAddress) -> Result<(String, Work
     Ok(match address {
         LinkAddress::Tcp(Side::Listens, at) => {
             let (listener, at) = listening("TCP", at, tcp_server::bind)?;
-            (reached("tcp", at), Box::new(move || tcp_server::run(&threads, &listener)))
+            (
+                reached("tcp", at),
+                Box::new(move || tcp_server::run(&threads, &listener)),
+            )
         }
         LinkAddress::Udp(Side::Listens, at) => {
             let (socket, at) = listening("UDP", at, udp_server::bind)?;
             let socket = Arc::new(socket);
-            (reached("udp", at), Box::new(move || udp_server::run(&threads, &socket)))
+            (
+                reached("udp", at),
+                Box::new(move || udp_server::run(&threads, &socket)),
+            )
         }
         LinkAddress::Pty { link } => {
             let pty = Arc::new(pty::Pty::open(link.as_deref())?);
-            (pty.path().display().to_string(), Box::new(move || pty_server::run(&threads, &pty)))
+            (
+                pty.path().display().to_string(),
+                Box::new(move || pty_server::run(&threads, &pty)),
+            )
         }
-        LinkAddress::Tcp(..) | LinkAddress::Udp(..) | LinkAddress::UdpListen(_) | LinkAddress::Serial { .. } => {
+        LinkAddress::Tcp(..)
+        | LinkAddress::Udp(..)
+        | LinkAddress::UdpListen(_)
+        | LinkAddress::Serial { .. } => {
             let address = address.clone();
-            (address.to_string(), Box::new(move || client::run(&threads, &address)))
+            (
+                address.to_string(),
+                Box::new(move || client::run(&threads, &address)),
+            )
         }
     })
 }
 
-fn listening<T>(kind: &'static str, at: &HostPort, bind: fn((&str, u16)) -> io::Result<T>) -> Result<T, LinkError> {
-    bind((&at.host, at.port)).map_err(|e| LinkError::Listen { kind, at: at.clone(), reason: e.to_string() })
+fn listening<T>(
+    kind: &'static str,
+    at: &HostPort,
+    bind: fn((&str, u16)) -> io::Result<T>,
+) -> Result<T, LinkError> {
+    bind((&at.host, at.port)).map_err(|e| LinkError::Listen {
+        kind,
+        at: at.clone(),
+        reason: e.to_string(),
+    })
 }
 
 fn reached(scheme: &str, at: SocketAddr) -> String {

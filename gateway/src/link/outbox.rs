@@ -1,4 +1,5 @@
-//! The outbox of a peer: a queue of depth one, in which the newest write request displaces the previous one.
+//! The outbox of a peer: a queue of depth one, in which the newest write request displaces the
+//! previous one.
 
 use parking_lot::{Condvar, Mutex};
 use std::sync::Arc;
@@ -14,7 +15,8 @@ pub(super) enum Priority {
     Shutdown,
 }
 
-/// Bytes to write to one peer. If it is dropped before they are written, its completion counts them as lost.
+/// Bytes to write to one peer. If it is dropped before they are written, its completion counts them
+/// as lost.
 pub(super) struct WriteRequest {
     bytes: Arc<Vec<u8>>,
     completion: Arc<Completion>,
@@ -50,14 +52,22 @@ impl Completion {
     /// A completion for bytes that go to this many peers.
     pub(super) fn new(tag: Option<u64>, peers: usize) -> Arc<Completion> {
         // Without peers the bytes are lost.
-        let count = Mutex::new(Count { open: peers, lost: peers == 0 });
-        Arc::new(Completion { tag, count, changed: Condvar::new() })
+        let count = Mutex::new(Count {
+            open: peers,
+            lost: peers == 0,
+        });
+        Arc::new(Completion {
+            tag,
+            count,
+            changed: Condvar::new(),
+        })
     }
 
     /// Waits up to `limit`. Returns whether every peer accepted the bytes.
     pub(super) fn wait(&self, limit: Duration) -> bool {
         let mut count = self.count.lock();
-        self.changed.wait_while_for(&mut count, |count| count.open > 0, limit);
+        self.changed
+            .wait_while_for(&mut count, |count| count.open > 0, limit);
         count.open == 0 && !count.lost
     }
 
@@ -72,8 +82,17 @@ impl Completion {
 }
 
 impl WriteRequest {
-    pub(super) fn new(bytes: &Arc<Vec<u8>>, completion: &Arc<Completion>, priority: Priority) -> WriteRequest {
-        WriteRequest { bytes: Arc::clone(bytes), completion: Arc::clone(completion), priority, taken: false }
+    pub(super) fn new(
+        bytes: &Arc<Vec<u8>>,
+        completion: &Arc<Completion>,
+        priority: Priority,
+    ) -> WriteRequest {
+        WriteRequest {
+            bytes: Arc::clone(bytes),
+            completion: Arc::clone(completion),
+            priority,
+            taken: false,
+        }
     }
 
     pub(super) fn bytes(&self) -> &[u8] {
@@ -87,7 +106,11 @@ impl WriteRequest {
     /// Notes that the peer accepted the bytes. Returns the tag after the last peer.
     pub(super) fn settle(mut self) -> Option<u64> {
         self.taken = true;
-        if self.completion.settle(false) { self.completion.tag } else { None }
+        if self.completion.settle(false) {
+            self.completion.tag
+        } else {
+            None
+        }
     }
 }
 
@@ -101,17 +124,24 @@ impl Drop for WriteRequest {
 
 impl Outbox {
     pub(super) fn new() -> Outbox {
-        Outbox { state: Mutex::default(), changed: Condvar::new() }
+        Outbox {
+            state: Mutex::default(),
+            changed: Condvar::new(),
+        }
     }
 
-    /// Queues a request. Returns whether a request was displaced: the queued one, or this one by a shutdown message.
+    /// Queues a request. Returns whether a request was displaced: the queued one, or this one by a
+    /// shutdown message.
     pub(super) fn push(&self, request: WriteRequest) -> bool {
         let mut state = self.state.lock();
         if state.shut {
             return false;
         }
         if request.priority != Priority::Shutdown
-            && state.queued.as_ref().is_some_and(|queued| queued.priority == Priority::Shutdown)
+            && state
+                .queued
+                .as_ref()
+                .is_some_and(|queued| queued.priority == Priority::Shutdown)
         {
             // Nothing may displace the final message to a boat.
             return true;
@@ -125,7 +155,8 @@ impl Outbox {
     /// Waits for a request. Returns `None` after the outbox was shut.
     pub(super) fn next(&self) -> Option<WriteRequest> {
         let mut state = self.state.lock();
-        self.changed.wait_while(&mut state, |state| state.queued.is_none() && !state.shut);
+        self.changed
+            .wait_while(&mut state, |state| state.queued.is_none() && !state.shut);
         state.queued.take()
     }
 

@@ -33,7 +33,12 @@ impl fmt::Display for End {
 
 impl Peer {
     pub(super) fn new(number: u32, port: Port) -> Peer {
-        Peer { number, outbox: Outbox::new(), port, end: Mutex::new(None) }
+        Peer {
+            number,
+            outbox: Outbox::new(),
+            port,
+            end: Mutex::new(None),
+        }
     }
 
     /// Ends the connection; the first reason given counts.

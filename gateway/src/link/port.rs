@@ -53,8 +53,8 @@ impl Port {
             Port::Tcp(stream) => Some(stream.as_fd()),
             Port::Udp(socket) => Some(socket.as_fd()),
             Port::Serial { line, .. } => Some(line.as_fd()),
-            // The guard needs a descriptor on which a plain write reaches the boat. These ports are for emulated
-            // boats, which need no guard.
+            // The guard needs a descriptor on which a plain write reaches the boat. These ports are
+            // for emulated boats, which need no guard.
             Port::UdpTo(..) | Port::Pty(_) => None,
         }
     }
@@ -78,7 +78,8 @@ impl Port {
         }
     }
 
-    /// Writes all bytes, in one call if the system accepts that. Gives up when `is_given_up`, or after [`STALL`].
+    /// Writes all bytes, in one call if the system accepts that. Gives up when `is_given_up`, or
+    /// after [`STALL`].
     pub(super) fn write(&self, bytes: &[u8], is_given_up: impl Fn() -> bool) -> io::Result<Wrote> {
         if let Port::Pty(pty) = self {
             pty.begin()?;
@@ -100,7 +101,10 @@ impl Port {
                 // The beginning was discarded, so the rest would be an incomplete sentence.
                 Err(_) if self.flushes() != flushes => return Ok(Wrote::Dropped),
                 Err(_) if clock::since(progress_at) >= STALL => {
-                    return Err(io::Error::new(ErrorKind::TimedOut, format!("no data accepted for {STALL:?}")));
+                    return Err(io::Error::new(
+                        ErrorKind::TimedOut,
+                        format!("no data accepted for {STALL:?}"),
+                    ));
                 }
                 Err(_) => {}
             }
@@ -120,11 +124,19 @@ impl Port {
 
     /// Discards old unread bytes where that is possible.
     pub(super) fn flush_if_stale(&self) -> io::Result<()> {
-        if let Port::Pty(pty) = self { pty.flush_if_stale() } else { Ok(()) }
+        if let Port::Pty(pty) = self {
+            pty.flush_if_stale()
+        } else {
+            Ok(())
+        }
     }
 
     fn flushes(&self) -> u64 {
-        if let Port::Pty(pty) = self { pty.flushes() } else { 0 }
+        if let Port::Pty(pty) = self {
+            pty.flushes()
+        } else {
+            0
+        }
     }
 
     /// Whether silence means that the peer is lost. A reader of a terminal may never write.
@@ -135,8 +147,8 @@ impl Port {
     /// Closes gracefully, so that written bytes still arrive.
     pub(super) fn finish(&self) {
         let Port::Tcp(stream) = self else { return };
-        // Closing a socket with unread bytes makes the system send a reset, which may overtake the last bytes
-        // written. Read until the other side has closed too, for a moment.
+        // Closing a socket with unread bytes makes the system send a reset, which may overtake the
+        // last bytes written. Read until the other side has closed too, for a moment.
         if stream.shutdown(Shutdown::Write).is_err() {
             return;
         }
@@ -149,8 +161,8 @@ impl Port {
         }
     }
 
-    /// Resets the connection, because bytes still held by the system would arrive too late. A connection that is gone
-    /// needs no reset.
+    /// Resets the connection, because bytes still held by the system would arrive too late. A
+    /// connection that is gone needs no reset.
     pub(super) fn reset(&self) {
         match self {
             // A reset discards everything that the peer has not read.
@@ -161,7 +173,8 @@ impl Port {
         }
     }
 
-    /// Discards what a serial line has accepted but not sent. No test covers it: pseudo-terminals hold nothing back.
+    /// Discards what a serial line has accepted but not sent. No test covers it: pseudo-terminals
+    /// hold nothing back.
     pub(super) fn discard_unsent(&self) {
         if let Port::Serial { line, .. } = self {
             // If it cannot be discarded, it is sent as before.
@@ -169,8 +182,8 @@ impl Port {
         }
     }
 
-    /// The time to transmit this many bytes, if it is long. A serial driver accepts 4 KiB at once, which at
-    /// 4800 baud are 8 s of old commands.
+    /// The time to transmit this many bytes, if it is long. A serial driver accepts 4 KiB at once,
+    /// which at 4800 baud are 8 s of old commands.
     pub(super) fn transit(&self, count: usize) -> Duration {
         // Eight data bits, a start bit and a stop bit.
         if let Port::Serial { baud, .. } = self {
@@ -185,8 +198,8 @@ impl Port {
 fn is_pause(error: &io::Error) -> bool {
     match error.kind() {
         ErrorKind::WouldBlock | ErrorKind::Interrupted => true,
-        // With a system error number it is TCP's ETIMEDOUT, and the connection is lost; without one it is a
-        // timeout that we set.
+        // With a system error number it is TCP's ETIMEDOUT, and the connection is lost; without one
+        // it is a timeout that we set.
         ErrorKind::TimedOut => error.raw_os_error().is_none(),
         _ => false,
     }

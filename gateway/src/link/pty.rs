@@ -17,12 +17,12 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-/// Bytes unread for this long are discarded: a program that opens the terminal later needs the boat's current
-/// position, not an old one.
+/// Bytes unread for this long are discarded: a program that opens the terminal later needs the
+/// boat's current position, not an old one.
 const UNREAD_MAX: Duration = Duration::from_millis(500);
 
-/// Both ends of a pseudo-terminal. We keep the slave open too: with no process on it the master could not be
-/// written, and the next process would find echo and line editing enabled.
+/// Both ends of a pseudo-terminal. We keep the slave open too: with no process on it the master
+/// could not be written, and the next process would find echo and line editing enabled.
 pub(super) struct Pty {
     master: SerialPort,
     slave: OwnedFd,
@@ -44,11 +44,20 @@ struct ReaderState {
 impl Pty {
     /// Opens a raw pseudo-terminal, with a symlink to it if requested.
     pub(super) fn open(link: Option<&Path>) -> Result<Pty, LinkError> {
-        // The slave stays open here too: on Linux, a master whose last slave closes returns errors until
-        // a process opens it again.
-        let (master, slave, path) = pair().map_err(|e| LinkError::Pty { reason: e.to_string() })?;
+        // The slave stays open here too: on Linux, a master whose last slave closes returns errors
+        // until a process opens it again.
+        let (master, slave, path) = pair().map_err(|e| LinkError::Pty {
+            reason: e.to_string(),
+        })?;
         // Before the symlink, so that a failure leaves nothing behind.
-        let mut pty = Pty { master, slave, path, link: None, reader: Mutex::default(), flushes: AtomicU64::new(0) };
+        let mut pty = Pty {
+            master,
+            slave,
+            path,
+            link: None,
+            reader: Mutex::default(),
+            flushes: AtomicU64::new(0),
+        };
         if let Some(link) = link {
             make_symlink(link, &pty.path)?;
             pty.link = Some(link.to_owned());
@@ -78,16 +87,26 @@ impl Pty {
     pub(super) fn begin(&self) -> io::Result<()> {
         let mut reader = self.reader.lock();
         reader.begun_at = Some(clock::now());
-        if self.unread_for(&mut reader)? >= UNREAD_MAX { self.discard(&mut reader) } else { Ok(()) }
+        if self.unread_for(&mut reader)? >= UNREAD_MAX {
+            self.discard(&mut reader)
+        } else {
+            Ok(())
+        }
     }
 
-    /// Called regularly: discards bytes that have been unread for too long, unless some are new. The system does not
-    /// report that a process opened the slave, but a reader empties it.
+    /// Called regularly: discards bytes that have been unread for too long, unless some are new.
+    /// The system does not report that a process opened the slave, but a reader empties it.
     pub(super) fn flush_if_stale(&self) -> io::Result<()> {
         let mut reader = self.reader.lock();
-        let is_old = reader.begun_at.is_none_or(|at| clock::since(at) >= UNREAD_MAX);
+        let is_old = reader
+            .begun_at
+            .is_none_or(|at| clock::since(at) >= UNREAD_MAX);
         let unread_for = self.unread_for(&mut reader)?;
-        if is_old && unread_for >= UNREAD_MAX { self.discard(&mut reader) } else { Ok(()) }
+        if is_old && unread_for >= UNREAD_MAX {
+            self.discard(&mut reader)
+        } else {
+            Ok(())
+        }
     }
 
     /// How long there have always been unread bytes.
@@ -103,7 +122,10 @@ impl Pty {
         reader.unread_since = None;
         self.flushes.fetch_add(1, Ordering::Relaxed);
         // On the slave: flushing the master would discard what others wrote to us.
-        Ok(rustix::termios::tcflush(&self.slave, QueueSelector::IFlush)?)
+        Ok(rustix::termios::tcflush(
+            &self.slave,
+            QueueSelector::IFlush,
+        )?)
     }
 }
 
@@ -118,12 +140,17 @@ impl Drop for Pty {
 }
 
 fn pair() -> io::Result<(SerialPort, OwnedFd, PathBuf)> {
-    let master = rustix::pty::openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)?;
+    let master =
+        rustix::pty::openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)?;
     rustix::pty::grantpt(&master)?;
     rustix::pty::unlockpt(&master)?;
     let name = rustix::pty::ptsname(&master, Vec::new())?;
     let path = PathBuf::from(OsStr::from_bytes(name.as_bytes()));
-    let slave = rustix::fs::open(&path, OFlags::RDWR | OFlags::NOCTTY | OFlags::CLOEXEC, Mode::empty())?;
+    let slave = rustix::fs::open(
+        &path,
+        OFlags::RDWR | OFlags::NOCTTY | OFlags::CLOEXEC,
+        Mode::empty(),
+    )?;
     let mut settings = rustix::termios::tcgetattr(&slave)?;
     // Otherwise the line discipline echoes the back seat's bytes and converts CR to LF.
     settings.make_raw();
@@ -137,12 +164,18 @@ fn pair() -> io::Result<(SerialPort, OwnedFd, PathBuf)> {
 
 /// Links `link` to `target`. Replaces an old symlink, but nothing else.
 fn make_symlink(link: &Path, target: &Path) -> Result<(), LinkError> {
-    let refused = |reason: String| LinkError::Symlink { path: link.to_owned(), reason };
-    // Replaces symlinks, because a killed process leaves its own behind. Anything else may be a user's
-    // file.
+    let refused = |reason: String| LinkError::Symlink {
+        path: link.to_owned(),
+        reason,
+    };
+    // Replaces symlinks, because a killed process leaves its own behind. Anything else may be a
+    // user's file.
     match fs::symlink_metadata(link) {
         Ok(found) if !found.is_symlink() => {
-            return Err(refused("a file of another kind exists there, allowed: no file, or an old symlink".to_owned()));
+            return Err(refused(
+                "a file of another kind exists there, allowed: no file, or an old symlink"
+                    .to_owned(),
+            ));
         }
         Ok(_) => fs::remove_file(link).map_err(|e| refused(e.to_string()))?,
         Err(_) => {}

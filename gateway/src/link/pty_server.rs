@@ -12,8 +12,13 @@ pub(super) fn run(threads: &Arc<Threads>, pty: &Arc<Pty>) {
     let retry_in = threads.settings.retry_first;
     loop {
         let port = Port::Pty(Arc::clone(pty));
-        if let Err(e) = Connection::open(threads, port, pty.path().display().to_string()).map(Connection::serve) {
-            threads.emit(LinkEvent::Failed { reason: e.to_string(), retry_in });
+        if let Err(e) =
+            Connection::open(threads, port, pty.path().display().to_string()).map(Connection::serve)
+        {
+            threads.emit(LinkEvent::Failed {
+                reason: e.to_string(),
+                retry_in,
+            });
         }
         // We hold both ends: failures are rare, and a longer wait has no benefit.
         if threads.stops_within(retry_in) {

@@ -38,8 +38,12 @@ fn serve_peer(threads: &Arc<Threads>, stream: TcpStream, from: SocketAddr) {
         return;
     }
     // A peer that is already gone, or that gets no thread, finds the connection closed.
-    let Ok(stream) = tune(stream.into()) else { return };
-    let Ok(connection) = Connection::open(threads, Port::Tcp(stream), from.to_string()) else { return };
+    let Ok(stream) = tune(stream.into()) else {
+        return;
+    };
+    let Ok(connection) = Connection::open(threads, Port::Tcp(stream), from.to_string()) else {
+        return;
+    };
     drop(threads.spawn("link reader", move || {
         connection.serve();
     }));

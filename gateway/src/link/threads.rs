@@ -66,8 +66,8 @@ impl Threads {
         name: &str,
         work: impl FnOnce() + Send + 'static,
     ) -> io::Result<JoinHandle<()>> {
-        // Counted before the thread starts, so that a link that closes at this moment waits for it too. If the spawn
-        // fails, dropping the guard undoes it.
+        // Counted before the thread starts, so that a link that closes at this moment waits for it
+        // too. If the spawn fails, dropping the guard undoes it.
         self.state.lock().running += 1;
         let running = RunningThread(Arc::clone(self));
         thread::Builder::new().name(name.to_owned()).spawn(move || {
@@ -98,21 +98,34 @@ impl Threads {
     }
 
     pub(super) fn remove(&self, peer: &Peer) {
-        self.peers.lock().retain(|other| other.number != peer.number);
+        self.peers
+            .lock()
+            .retain(|other| other.number != peer.number);
     }
 
     pub(super) fn count(&self) -> usize {
         self.peers.lock().len()
     }
 
-    pub(super) fn enqueue(&self, bytes: Vec<u8>, tag: Option<u64>, priority: Priority) -> Arc<Completion> {
+    pub(super) fn enqueue(
+        &self,
+        bytes: Vec<u8>,
+        tag: Option<u64>,
+        priority: Priority,
+    ) -> Arc<Completion> {
         let bytes = Arc::new(bytes);
         // Held to the end, so that all peers get the same order.
         let peers = self.peers.lock();
-        // The number of current peers: one that connects later does not get this, so nothing may wait for it.
+        // The number of current peers: one that connects later does not get this, so nothing may
+        // wait for it.
         let completion = Completion::new(tag, peers.len());
-        let displaced =
-            peers.iter().filter(|peer| peer.outbox.push(WriteRequest::new(&bytes, &completion, priority))).count();
+        let displaced = peers
+            .iter()
+            .filter(|peer| {
+                peer.outbox
+                    .push(WriteRequest::new(&bytes, &completion, priority))
+            })
+            .count();
         self.note_displaced(displaced as u64);
         completion
     }
@@ -147,7 +160,8 @@ impl Threads {
 
     fn wait(&self, limit: Duration, nothing_new: impl Fn(&State) -> bool) -> MutexGuard<'_, State> {
         let mut state = self.state.lock();
-        self.changed.wait_while_for(&mut state, |state| nothing_new(state), limit);
+        self.changed
+            .wait_while_for(&mut state, |state| nothing_new(state), limit);
         state
     }
 }

@@ -31,7 +31,10 @@ pub(super) fn bind(at: (&str, u16)) -> io::Result<(UdpSocket, SocketAddr)> {
 
 /// Receives from all peers until the link is closed.
 pub(super) fn run(threads: &Arc<Threads>, socket: &Arc<UdpSocket>) {
-    let silence_max = threads.settings.silence.map_or(IDLE_MAX, |silence| silence.min(IDLE_MAX));
+    let silence_max = threads
+        .settings
+        .silence
+        .map_or(IDLE_MAX, |silence| silence.min(IDLE_MAX));
     let mut peers: Vec<UdpPeer> = Vec::new();
     let mut buffer = vec![0; CHUNK];
     while !threads.is_stopped() {
@@ -50,10 +53,16 @@ pub(super) fn run(threads: &Arc<Threads>, socket: &Arc<UdpSocket>) {
     }
 }
 
-fn receive(threads: &Arc<Threads>, socket: &Arc<UdpSocket>, peers: &mut Vec<UdpPeer>, from: SocketAddr, bytes: &[u8]) {
+fn receive(
+    threads: &Arc<Threads>,
+    socket: &Arc<UdpSocket>,
+    peers: &mut Vec<UdpPeer>,
+    from: SocketAddr,
+    bytes: &[u8],
+) {
     let at = clock::now();
-    // A peer is any sender of a datagram: UDP has no connections, and back seats expect replies on the port they
-    // sent from.
+    // A peer is any sender of a datagram: UDP has no connections, and back seats expect replies on
+    // the port they sent from.
     let known = peers.iter_mut().find(|peer| peer.from == from);
     let peer = if let Some(peer) = known {
         peer.received_at = at;
@@ -62,24 +71,42 @@ fn receive(threads: &Arc<Threads>, socket: &Arc<UdpSocket>, peers: &mut Vec<UdpP
     } else if peers.len() < PEERS_MAX {
         let port = Port::UdpTo(Arc::clone(socket), from);
         // Out of threads; the peer may send again later.
-        let Ok(connection) = Connection::open(threads, port, from.to_string()) else { return };
+        let Ok(connection) = Connection::open(threads, port, from.to_string()) else {
+            return;
+        };
         let peer = connection.peer.number;
-        peers.push(UdpPeer { from, connection, received_at: at });
+        peers.push(UdpPeer {
+            from,
+            connection,
+            received_at: at,
+        });
         peer
     } else {
         return;
     };
     if !bytes.is_empty() {
-        threads.emit(LinkEvent::Bytes { peer, at, bytes: bytes.to_vec() });
+        threads.emit(LinkEvent::Bytes {
+            peer,
+            at,
+            bytes: bytes.to_vec(),
+        });
     }
 }
 
 /// The first peer whose connection must end, with the reason.
 fn first_to_close(peers: &[UdpPeer], silence_max: Duration) -> Option<(usize, End)> {
     let end = |peer: &UdpPeer| {
-        let silent =
-            || (clock::since(peer.received_at) >= silence_max).then(|| format!("no bytes for {silence_max:?}"));
-        peer.connection.peer.is_to_end().or_else(|| silent().map(End::Lost))
+        let silent = || {
+            (clock::since(peer.received_at) >= silence_max)
+                .then(|| format!("no bytes for {silence_max:?}"))
+        };
+        peer.connection
+            .peer
+            .is_to_end()
+            .or_else(|| silent().map(End::Lost))
     };
-    peers.iter().enumerate().find_map(|(at, peer)| Some((at, end(peer)?)))
+    peers
+        .iter()
+        .enumerate()
+        .find_map(|(at, peer)| Some((at, end(peer)?)))
 }

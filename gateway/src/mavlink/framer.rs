@@ -50,7 +50,10 @@ impl Unreadable {
 
 /// A complete frame of a known message.
 #[derive(Clone, Debug, PartialEq)]
-#[expect(clippy::large_enum_variant, reason = "a frame is handled at once and never stored")]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "a frame is handled at once and never stored"
+)]
 pub enum Frame {
     /// The message could be read.
     Read(Received),
@@ -100,7 +103,14 @@ impl Layout {
                 let end = 6 + usize::from(len);
                 let version = MavlinkVersion::V1;
                 let id = u32::from(id);
-                Ok(Some(Layout { version, id, system, component, payload: (6, end), len: end + 2 }))
+                Ok(Some(Layout {
+                    version,
+                    id,
+                    system,
+                    component,
+                    payload: (6, end),
+                    len: end + 2,
+                }))
             }
             // A receiver that does not know such a flag must discard the frame.
             [MAV_STX_V2, _, flags, ..] if flags & !SIGNED != 0 => Err(NotAFrame),
@@ -109,7 +119,14 @@ impl Layout {
                 let signature = if flags & SIGNED == 0 { 0 } else { SIGNATURE };
                 let version = MavlinkVersion::V2;
                 let id = u32::from_le_bytes([a, b, c, 0]);
-                Ok(Some(Layout { version, id, system, component, payload: (10, end), len: end + 2 + signature }))
+                Ok(Some(Layout {
+                    version,
+                    id,
+                    system,
+                    component,
+                    payload: (10, end),
+                    len: end + 2 + signature,
+                }))
             }
             [MAV_STX | MAV_STX_V2, ..] | [] => Ok(None),
             _ => Err(NotAFrame),
@@ -129,8 +146,12 @@ impl Layout {
 
 /// Whether bytes begin with a complete frame of a known message, with a valid checksum.
 fn begins_with_good_frame(bytes: &[u8]) -> bool {
-    let Ok(Some(layout)) = Layout::of(bytes) else { return false };
-    layout.is_known() && bytes.len() >= layout.len && layout.has_right_checksum(&bytes[..layout.len])
+    let Ok(Some(layout)) = Layout::of(bytes) else {
+        return false;
+    };
+    layout.is_known()
+        && bytes.len() >= layout.len
+        && layout.has_right_checksum(&bytes[..layout.len])
 }
 
 /// These bytes do not begin a frame.
@@ -169,10 +190,12 @@ impl Framer {
                     self.counts.garbage += 1;
                     at += 1;
                 }
-                Ok(Some(layout)) if !layout.is_known() => match self.pass_unknown(&layout, &buffer[at..]) {
-                    0 => break,
-                    count => at += count,
-                },
+                Ok(Some(layout)) if !layout.is_known() => {
+                    match self.pass_unknown(&layout, &buffer[at..]) {
+                        0 => break,
+                        count => at += count,
+                    }
+                }
                 Ok(Some(layout)) if buffer.len() - at >= layout.len => {
                     at += self.read(&layout, &buffer[at..at + layout.len], take);
                 }
@@ -200,7 +223,11 @@ impl Framer {
         match bytes.get(layout.len) {
             None if !is_noise => 0,
             Some(&(MAV_STX | MAV_STX_V2)) if !is_noise => {
-                let key = if self.counts.unknown.len() < UNKNOWN_MAX { layout.id } else { u32::MAX };
+                let key = if self.counts.unknown.len() < UNKNOWN_MAX {
+                    layout.id
+                } else {
+                    u32::MAX
+                };
                 *self.counts.unknown.entry(key).or_default() += 1;
                 layout.len
             }
@@ -213,7 +240,14 @@ impl Framer {
 
     /// Reads a complete frame; returns the number of bytes consumed.
     fn read(&mut self, layout: &Layout, frame: &[u8], take: &mut dyn FnMut(Frame)) -> usize {
-        let Layout { version, id, system, component, payload: (start, end), len } = *layout;
+        let Layout {
+            version,
+            id,
+            system,
+            component,
+            payload: (start, end),
+            len,
+        } = *layout;
         if !layout.has_right_checksum(frame) {
             self.counts.bad_checksum += 1;
             self.counts.garbage += 1;
@@ -224,12 +258,21 @@ impl Framer {
         match MavMessage::parse(version, id, &frame[start..end]) {
             Ok(message) => {
                 self.counts.messages += 1;
-                take(Frame::Read(Received { system, component, message }));
+                take(Frame::Read(Received {
+                    system,
+                    component,
+                    message,
+                }));
             }
             Err(_) => {
                 self.counts.unreadable += 1;
                 let payload = frame[start..end].to_vec();
-                take(Frame::Unreadable(Unreadable { system, component, id, payload }));
+                take(Frame::Unreadable(Unreadable {
+                    system,
+                    component,
+                    id,
+                    payload,
+                }));
             }
         }
         len

@@ -1,7 +1,7 @@
 //! MAVLink as ArduPilot's boats speak it: bytes to messages and back, without ports or clocks.
 //!
-//! The messages are those of the crate `mavlink`, dialect `common`. Writes frames of version 2; reads
-//! versions 1 and 2.
+//! The messages are those of the crate `mavlink`, dialect `common`. Writes frames of version 2;
+//! reads versions 1 and 2.
 //! Signatures are neither written nor checked.
 
 mod framer;
@@ -32,16 +32,34 @@ pub struct Writer {
 impl Writer {
     /// A writer for this system and component.
     pub fn new(system: u8, component: u8) -> Writer {
-        Writer { system, component, sequence: 0 }
+        Writer {
+            system,
+            component,
+            sequence: 0,
+        }
     }
 
     /// Appends a message that the dialect cannot express, from its number, the byte of its
     /// definition that enters the checksum, and its payload.
     pub fn write_raw(&mut self, id: u32, extra_crc: u8, payload: &[u8], out: &mut Vec<u8>) {
         // Version 2 omits trailing zeros, except for the first byte.
-        let len = payload.iter().rposition(|byte| *byte != 0).map_or(1, |last| last + 1);
+        let len = payload
+            .iter()
+            .rposition(|byte| *byte != 0)
+            .map_or(1, |last| last + 1);
         let [a, b, c, _] = id.to_le_bytes();
-        let mut frame = vec![MAV_STX_V2, len as u8, 0, 0, self.sequence, self.system, self.component, a, b, c];
+        let mut frame = vec![
+            MAV_STX_V2,
+            len as u8,
+            0,
+            0,
+            self.sequence,
+            self.system,
+            self.component,
+            a,
+            b,
+            c,
+        ];
         frame.extend(&payload[..len]);
         let checksum = calculate_crc(&frame[1..], extra_crc);
         out.extend(frame);
@@ -51,7 +69,11 @@ impl Writer {
 
     /// Appends a message.
     pub fn write(&mut self, message: &MavMessage, out: &mut Vec<u8>) {
-        let header = MavHeader { system_id: self.system.into(), component_id: self.component, sequence: self.sequence };
+        let header = MavHeader {
+            system_id: self.system.into(),
+            component_id: self.component,
+            sequence: self.sequence,
+        };
         let mut frame = MAVLinkV2MessageRaw::new();
         frame.serialize_message(header, message);
         out.extend_from_slice(frame.raw_bytes());

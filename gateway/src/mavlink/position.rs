@@ -13,7 +13,10 @@ pub(crate) fn e7(deg: f64) -> i32 {
 
 /// The position in a message.
 pub(crate) fn lat_lon((lat_e7, lon_e7): (i32, i32)) -> LatLon {
-    LatLon { lat_deg: 1e-7 * f64::from(lat_e7), lon_deg: 1e-7 * f64::from(lon_e7) }
+    LatLon {
+        lat_deg: 1e-7 * f64::from(lat_e7),
+        lon_deg: 1e-7 * f64::from(lon_e7),
+    }
 }
 
 /// The position in a message if it is on the globe.

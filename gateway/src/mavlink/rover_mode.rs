@@ -49,7 +49,10 @@ impl RoverMode {
 
     /// Whether Rover arms in this mode. Unnamed modes are assumed not to arm.
     pub fn allows_arming(self) -> bool {
-        !matches!(self, RoverMode::Rtl | RoverMode::SmartRtl | RoverMode::Initialising | RoverMode::Other(_))
+        !matches!(
+            self,
+            RoverMode::Rtl | RoverMode::SmartRtl | RoverMode::Initialising | RoverMode::Other(_)
+        )
     }
 
     /// Its number.

@@ -35,7 +35,11 @@ impl TimeOfDay {
     pub(super) fn text(self) -> Option<String> {
         let ms = Some(self.0).filter(|ms| *ms < DAY_MS + 1000)?;
         // A leap second continues the last minute.
-        let (minute, ms) = if ms < DAY_MS { (ms / 60_000, ms % 60_000) } else { (1439, ms - DAY_MS + 60_000) };
+        let (minute, ms) = if ms < DAY_MS {
+            (ms / 60_000, ms % 60_000)
+        } else {
+            (1439, ms - DAY_MS + 60_000)
+        };
         let clock = format!("{:02}{:02}{:02}", minute / 60, minute % 60, ms / 1000);
         Some(match ms % 1000 {
             ms if ms % 10 == 0 => format!("{clock}.{:02}", ms / 10),
@@ -61,9 +65,17 @@ impl TimeOfDay {
 
 /// The date and the time of day at this UTC, ns since 1970.
 pub fn date_and_time(utc_ns: u64) -> (Date, TimeOfDay) {
-    let at = UtcDateTime::from_unix_timestamp_nanos(i128::from(utc_ns)).unwrap_or(UtcDateTime::UNIX_EPOCH);
-    let date = Date { year: u16::try_from(at.year()).unwrap_or(0), month: u8::from(at.month()), day: at.day() };
-    (date, TimeOfDay((utc_ns / 1_000_000 % u64::from(DAY_MS)) as u32))
+    let at = UtcDateTime::from_unix_timestamp_nanos(i128::from(utc_ns))
+        .unwrap_or(UtcDateTime::UNIX_EPOCH);
+    let date = Date {
+        year: u16::try_from(at.year()).unwrap_or(0),
+        month: u8::from(at.month()),
+        day: at.day(),
+    };
+    (
+        date,
+        TimeOfDay((utc_ns / 1_000_000 % u64::from(DAY_MS)) as u32),
+    )
 }
 
 /// A date of the Gregorian calendar.
@@ -83,7 +95,12 @@ impl Date {
         let [day, month, year] = pairs(text)?;
         // GPS began in 1980.
         let century = if year < 80 { 2000 } else { 1900 };
-        Some(Date { year: century + u16::from(year), month, day }).filter(|date| date.is_valid())
+        Some(Date {
+            year: century + u16::from(year),
+            month,
+            day,
+        })
+        .filter(|date| date.is_valid())
     }
 
     /// The text of its field `ddmmyy`; empty for a date that a two-digit year cannot express.
@@ -99,7 +116,10 @@ impl Date {
 
     /// The days from `other` to this date, negative if this one is earlier.
     pub fn days_since(self, other: Date) -> i64 {
-        let day = |date: Date| date.in_calendar().map_or(0, |date| i64::from(date.to_julian_day()));
+        let day = |date: Date| {
+            date.in_calendar()
+                .map_or(0, |date| i64::from(date.to_julian_day()))
+        };
         day(self) - day(other)
     }
 
@@ -111,7 +131,9 @@ impl Date {
 
 /// Three numbers of two digits each.
 fn pairs(text: &str) -> Option<[u8; 3]> {
-    let digits = <[u8; 6]>::try_from(text.as_bytes()).ok().filter(|digits| digits.iter().all(u8::is_ascii_digit))?;
+    let digits = <[u8; 6]>::try_from(text.as_bytes())
+        .ok()
+        .filter(|digits| digits.iter().all(u8::is_ascii_digit))?;
     let pair = |i: usize| (digits[i] - b'0') * 10 + digits[i + 1] - b'0';
     Some([pair(0), pair(2), pair(4)])
 }
@@ -126,7 +148,10 @@ mod tests {
         let morning = TimeOfDay(700);
         assert_eq!(evening.later(SimTime::from_s(1.2)), morning);
         assert_eq!(morning.later(SimTime::from_s(-1.2)), evening);
-        assert!((morning.since_s(evening) - 1.2).abs() < 1e-9 && (evening.since_s(morning) + 1.2).abs() < 1e-9);
+        assert!(
+            (morning.since_s(evening) - 1.2).abs() < 1e-9
+                && (evening.since_s(morning) + 1.2).abs() < 1e-9
+        );
     }
 
     #[test]
@@ -142,7 +167,11 @@ mod tests {
             (2026, 0, 1, false),
             (2026, 1, 0, false),
         ] {
-            assert_eq!(Date { year, month, day }.is_valid(), valid, "{year}-{month}-{day}");
+            assert_eq!(
+                Date { year, month, day }.is_valid(),
+                valid,
+                "{year}-{month}-{day}"
+            );
         }
     }
 }

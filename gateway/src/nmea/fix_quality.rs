@@ -71,7 +71,9 @@ mod tests {
     fn a_quality_meets_those_below_it_and_what_is_no_fix_meets_none() {
         let order: [&[u8]; 4] = [&[1], &[2, 3], &[5], &[4]];
         let rank = |number: u8| order.iter().position(|numbers| numbers.contains(&number));
-        for (got, required) in (0..=255).flat_map(|got| (1..=5).map(move |required| (got, required))) {
+        for (got, required) in
+            (0..=255).flat_map(|got| (1..=5).map(move |required| (got, required)))
+        {
             let want = rank(got).is_some_and(|rank_of_got| Some(rank_of_got) >= rank(required));
             let meets = FixQuality::from_gga(got).meets(FixQuality::from_gga(required));
             assert_eq!(meets, want, "{got} where {required} is required");

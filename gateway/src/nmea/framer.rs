@@ -60,7 +60,12 @@ impl Default for Framer {
 impl Framer {
     /// A framer that waits for its first `$`.
     pub fn new() -> Framer {
-        Framer { content: [0; CONTENT_MAX], filled: None, counts: Counts::default(), rejected: None }
+        Framer {
+            content: [0; CONTENT_MAX],
+            filled: None,
+            counts: Counts::default(),
+            rejected: None,
+        }
     }
 
     /// Accepts bytes in any split, with any garbage. Calls `take` with the body (between `$` and
@@ -141,8 +146,14 @@ impl Framer {
 /// The body, and the checksum stated after it. `None` unless `*` and two hex digits end the content
 /// apart from padding, or if the body contains a second `*`.
 fn split(content: &[u8]) -> Option<(&[u8], u8)> {
-    let (body, [b'*', high, low]) = content.trim_ascii_end().split_last_chunk::<3>()? else { return None };
-    let digit = |byte: u8| char::from(byte).to_digit(16).and_then(|digit| u8::try_from(digit).ok());
+    let (body, [b'*', high, low]) = content.trim_ascii_end().split_last_chunk::<3>()? else {
+        return None;
+    };
+    let digit = |byte: u8| {
+        char::from(byte)
+            .to_digit(16)
+            .and_then(|digit| u8::try_from(digit).ok())
+    };
     let stated = digit(*high)? * 16 + digit(*low)?;
     (!body.contains(&b'*')).then_some((body, stated))
 }

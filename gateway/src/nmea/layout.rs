@@ -86,22 +86,49 @@ pub(super) struct Format {
 }
 
 /// Without decimals.
-pub(super) const WHOLE: Format = Format { decimals: 0, width: 0, compass: false, brief: false };
+pub(super) const WHOLE: Format = Format {
+    decimals: 0,
+    width: 0,
+    compass: false,
+    brief: false,
+};
 /// With one decimal.
-pub(super) const TENTHS: Format = Format { decimals: 1, ..WHOLE };
+pub(super) const TENTHS: Format = Format {
+    decimals: 1,
+    ..WHOLE
+};
 /// With two decimals.
-pub(super) const HUNDREDTHS: Format = Format { decimals: 2, ..WHOLE };
+pub(super) const HUNDREDTHS: Format = Format {
+    decimals: 2,
+    ..WHOLE
+};
 /// With three decimals, without trailing zeros.
-pub(super) const BRIEF_THOUSANDTHS: Format = Format { decimals: 3, brief: true, ..WHOLE };
+pub(super) const BRIEF_THOUSANDTHS: Format = Format {
+    decimals: 3,
+    brief: true,
+    ..WHOLE
+};
 /// An angle in the format of most sentences: `005.0`.
-pub(super) const COMPASS: Format = Format { compass: true, width: 5, ..TENTHS };
+pub(super) const COMPASS: Format = Format {
+    compass: true,
+    width: 5,
+    ..TENTHS
+};
 
 impl Format {
     /// The text of a number, never `-0`; empty for a missing or non-finite number.
     pub(super) fn text(self, number: Option<f64>) -> String {
-        let Some(number) = number.filter(|number| number.is_finite()) else { return String::new() };
-        let Format { decimals, width, .. } = self;
-        let number = if self.compass { compass_deg(number, decimals) } else { number };
+        let Some(number) = number.filter(|number| number.is_finite()) else {
+            return String::new();
+        };
+        let Format {
+            decimals, width, ..
+        } = self;
+        let number = if self.compass {
+            compass_deg(number, decimals)
+        } else {
+            number
+        };
         let mut text = format!("{number:0width$.decimals$}");
         // Rounding turns small negative numbers into "-0.0", which strict readers reject.
         if text.starts_with('-') && !text.bytes().any(|byte| matches!(byte, b'1'..=b'9')) {
@@ -119,5 +146,9 @@ fn compass_deg(angle_deg: f64, decimals: usize) -> f64 {
     let turned = angle_deg.rem_euclid(360.0);
     let steps_per_deg = [1.0, 10.0, 100.0, 1000.0][decimals];
     // 359.97 would be rounded to 360.0, which some readers reject as a heading.
-    if (turned * steps_per_deg).round() >= 360.0 * steps_per_deg { 0.0 } else { turned }
+    if (turned * steps_per_deg).round() >= 360.0 * steps_per_deg {
+        0.0
+    } else {
+        turned
+    }
 }

@@ -30,7 +30,9 @@ pub use framer::{ACCEPTED_MAX, Counts, Framer, Rejected};
 pub use mode::Mode;
 pub use operator::Operator;
 pub use standard::{Gga, Gll, Hdg, Hdt, Mwv, Rmc, Vhw, Vtg, Zda};
-pub use surveyor::{Attitude, Battery, BoatError, Command, ControlState, MissionSettings, Waypoint};
+pub use surveyor::{
+    Attitude, Battery, BoatError, Command, ControlState, MissionSettings, Waypoint,
+};
 pub use talker::Talker;
 pub use wind::{M_S_PER_KN, SpeedUnit, WindReference};
 
@@ -120,7 +122,9 @@ impl Sentence {
     pub fn parse(body: &str) -> Result<Sentence, ParseError> {
         let reader = Reader::of(body);
         let blank = Sentence::blank(reader.address);
-        let mut sentence = blank.ok_or_else(|| ParseError::Unknown { address: reader.address.to_owned() })?;
+        let mut sentence = blank.ok_or_else(|| ParseError::Unknown {
+            address: reader.address.to_owned(),
+        })?;
         reader.read(sentence.layout())?;
         Ok(sentence)
     }
@@ -148,27 +152,29 @@ impl Sentence {
     /// An empty sentence with this address: a Surveyor's own, or a standard one with a
     /// two-character talker.
     fn blank(address: &str) -> Option<Sentence> {
-        Some(match (address, Talker::split(address).map_or("", |(_, kind)| kind)) {
-            ("PSEAC", _) => Sentence::Command(Command::default()),
-            ("PSEAA", _) => Sentence::Attitude(Attitude::default()),
-            ("PSEAB", _) => Sentence::Battery(Battery::default()),
-            ("PSEAD", _) => Sentence::ControlState(ControlState::default()),
-            ("PSEAG", _) => Sentence::BoatError(BoatError::default()),
-            ("PSEAR", _) => Sentence::MissionSettings(MissionSettings::default()),
-            ("OIWPL", _) => Sentence::Waypoint(Waypoint::default()),
-            // Standard sentences are identified by their last three letters, whatever the talker:
-            // GP, GN and others are all in use.
-            (_, "GGA") => Sentence::Gga(Gga::default()),
-            (_, "RMC") => Sentence::Rmc(Rmc::default()),
-            (_, "VTG") => Sentence::Vtg(Vtg::default()),
-            (_, "HDT") => Sentence::Hdt(Hdt::default()),
-            (_, "HDG") => Sentence::Hdg(Hdg::default()),
-            (_, "ZDA") => Sentence::Zda(Zda::default()),
-            (_, "GLL") => Sentence::Gll(Gll::default()),
-            (_, "MWV") => Sentence::Mwv(Mwv::default()),
-            (_, "VHW") => Sentence::Vhw(Vhw::default()),
-            _ => return None,
-        })
+        Some(
+            match (address, Talker::split(address).map_or("", |(_, kind)| kind)) {
+                ("PSEAC", _) => Sentence::Command(Command::default()),
+                ("PSEAA", _) => Sentence::Attitude(Attitude::default()),
+                ("PSEAB", _) => Sentence::Battery(Battery::default()),
+                ("PSEAD", _) => Sentence::ControlState(ControlState::default()),
+                ("PSEAG", _) => Sentence::BoatError(BoatError::default()),
+                ("PSEAR", _) => Sentence::MissionSettings(MissionSettings::default()),
+                ("OIWPL", _) => Sentence::Waypoint(Waypoint::default()),
+                // Standard sentences are identified by their last three letters, whatever the
+                // talker: GP, GN and others are all in use.
+                (_, "GGA") => Sentence::Gga(Gga::default()),
+                (_, "RMC") => Sentence::Rmc(Rmc::default()),
+                (_, "VTG") => Sentence::Vtg(Vtg::default()),
+                (_, "HDT") => Sentence::Hdt(Hdt::default()),
+                (_, "HDG") => Sentence::Hdg(Hdg::default()),
+                (_, "ZDA") => Sentence::Zda(Zda::default()),
+                (_, "GLL") => Sentence::Gll(Gll::default()),
+                (_, "MWV") => Sentence::Mwv(Mwv::default()),
+                (_, "VHW") => Sentence::Vhw(Vhw::default()),
+                _ => return None,
+            },
+        )
     }
 
     fn layout(&mut self) -> Layout<'_> {

@@ -74,7 +74,10 @@ impl Mode {
 
     /// The mode for a letter, which is case-sensitive.
     pub fn from_letter(letter: char) -> Option<Mode> {
-        Mode::LETTERS.iter().find(|(_, known)| *known == letter).map(|(mode, _)| *mode)
+        Mode::LETTERS
+            .iter()
+            .find(|(_, known)| *known == letter)
+            .map(|(mode, _)| *mode)
     }
 }
 
@@ -85,7 +88,10 @@ mod tests {
     #[test]
     fn every_mode_is_found_by_its_letter() {
         for (mode, letter) in Mode::LETTERS {
-            assert_eq!((mode.letter(), Mode::from_letter(letter)), (letter, Some(mode)));
+            assert_eq!(
+                (mode.letter(), Mode::from_letter(letter)),
+                (letter, Some(mode))
+            );
         }
         for unknown in ['l', 'X', ' ', '0', 'é'] {
             assert_eq!(Mode::from_letter(unknown), None, "{unknown:?}");

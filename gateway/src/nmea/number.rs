@@ -7,6 +7,10 @@ pub(super) fn number(text: &str) -> Option<f64> {
     // Parsed by hand, because `parse` also accepts "inf", "nan" and exponents, which no sentence
     // contains.
     let digits = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
-    let number = if digits(whole) && digits(decimals) { text.parse::<f64>().ok() } else { None };
+    let number = if digits(whole) && digits(decimals) {
+        text.parse::<f64>().ok()
+    } else {
+        None
+    };
     number.filter(|number| number.is_finite())
 }

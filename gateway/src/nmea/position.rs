@@ -31,7 +31,10 @@ pub(super) const LONGITUDE: Axis = Axis {
 impl Axis {
     /// The sign for a letter: north and east are positive.
     pub(super) fn sign(&self, letter: &str) -> Option<f64> {
-        let place = self.letters.iter().position(|known| letter.chars().eq([*known]))?;
+        let place = self
+            .letters
+            .iter()
+            .position(|known| letter.chars().eq([*known]))?;
         Some([1.0, -1.0][place])
     }
 
@@ -41,7 +44,8 @@ impl Axis {
         let whole = text.split('.').next().unwrap_or_default();
         // A missing leading zero would shift degrees into minutes: as a longitude, 8022.3 could
         // mean 802 degrees or 80.
-        if whole.len() != self.degree_digits + 2 || !whole.bytes().all(|byte| byte.is_ascii_digit()) {
+        if whole.len() != self.degree_digits + 2 || !whole.bytes().all(|byte| byte.is_ascii_digit())
+        {
             return None;
         }
         let (degrees, minutes) = text.split_at_checked(self.degree_digits)?;
@@ -71,6 +75,8 @@ impl Axis {
         let part_digits = decimals as usize;
         let degrees = minutes / 60;
         let minutes = minutes % 60;
-        Some(format!("{degrees:0degree_digits$}{minutes:02}.{part:0part_digits$},{letter}"))
+        Some(format!(
+            "{degrees:0degree_digits$}{minutes:02}.{part:0part_digits$},{letter}"
+        ))
     }
 }

@@ -24,7 +24,11 @@ impl<'a> Reader<'a> {
     pub(super) fn of(body: &'a str) -> Reader<'a> {
         let mut parts = body.split(',');
         let address = parts.next().unwrap_or_default();
-        Reader { address, data: parts.collect(), at: 0 }
+        Reader {
+            address,
+            data: parts.collect(),
+            at: 0,
+        }
     }
 
     /// Reads all fields of a layout.
@@ -34,9 +38,16 @@ impl<'a> Reader<'a> {
         let found = self.data.len();
         let expected = layout.fields_min;
         if found < expected {
-            return Err(ParseError::TooFew { address: self.address.to_owned(), found, expected });
+            return Err(ParseError::TooFew {
+                address: self.address.to_owned(),
+                found,
+                expected,
+            });
         }
-        layout.fields.into_iter().try_for_each(|field| self.read_field(field))
+        layout
+            .fields
+            .into_iter()
+            .try_for_each(|field| self.read_field(field))
     }
 
     fn read_field(&mut self, field: Field<'_>) -> Result<(), ParseError> {
@@ -44,7 +55,9 @@ impl<'a> Reader<'a> {
             Field::Address(_) => {}
             // Any talker: the same sentence arrives as GP, GN or II, depending on the receiver's
             // manufacturer.
-            Field::Standard(talker, _) => *talker = Talker::split(self.address).map_or(*talker, |(talker, _)| talker),
+            Field::Standard(talker, _) => {
+                *talker = Talker::split(self.address).map_or(*talker, |(talker, _)| talker)
+            }
             Field::Constant(_) => self.at += 1,
             Field::Unit(letter) => self.unit(letter)?,
             Field::Optional(is_there, _) => {
@@ -52,11 +65,17 @@ impl<'a> Reader<'a> {
                 self.next();
             }
             Field::Number(number, _) | Field::ReadOnly(number) => *number = self.number()?,
-            Field::Required(number, _, expected) => *number = self.number()?.ok_or_else(|| self.wrong(expected))?,
+            Field::Required(number, _, expected) => {
+                *number = self.number()?.ok_or_else(|| self.wrong(expected))?
+            }
             Field::East(number) => *number = self.east()?,
             Field::Whole(number, _) => *number = self.whole()?,
             Field::Quality(quality) => *quality = self.whole()?.unwrap_or_default(),
-            Field::Index(index) => *index = self.whole()?.ok_or_else(|| self.wrong("the waypoint's number"))?,
+            Field::Index(index) => {
+                *index = self
+                    .whole()?
+                    .ok_or_else(|| self.wrong("the waypoint's number"))?
+            }
             Field::Text(text) => *text = self.next().to_owned(),
             Field::Letter(letter) => *letter = self.next().chars().next(),
             Field::Mode(mode) => *mode = self.mode()?,
@@ -66,13 +85,17 @@ impl<'a> Reader<'a> {
             Field::ValidFix(valid, ahead) => {
                 *valid = self.valid()? && !matches!(self.peek(ahead), "E" | "M" | "S" | "N");
             }
-            Field::Time(time) => *time = self.parsed(TimeOfDay::parse, "a time hhmmss.ss or nothing")?,
+            Field::Time(time) => {
+                *time = self.parsed(TimeOfDay::parse, "a time hhmmss.ss or nothing")?
+            }
             Field::Date(date) => *date = self.parsed(Date::parse, "a date ddmmyy or nothing")?,
             Field::DayMonthYear(date) => *date = self.day_month_year()?,
             Field::Position(at, _) => *at = self.position()?,
             Field::Place(at, _) => {
                 let latitude = self.at + 1;
-                *at = self.position()?.ok_or_else(|| self.wrong_at(latitude, "a latitude"))?;
+                *at = self
+                    .position()?
+                    .ok_or_else(|| self.wrong_at(latitude, "a latitude"))?;
             }
             Field::WindReference(reference) => *reference = self.wind_reference()?,
             Field::WindSpeed(speed_m_s, unit) => self.wind_speed(speed_m_s, unit)?,
@@ -94,11 +117,17 @@ impl<'a> Reader<'a> {
 
     // Real boats send a space for a field that they do not have.
     fn text(&self, at: usize) -> &'a str {
-        self.data.get(at - 1).map_or("", |text| text.trim_matches(' '))
+        self.data
+            .get(at - 1)
+            .map_or("", |text| text.trim_matches(' '))
     }
 
     /// The next field parsed with `parse`; `None` if it is empty.
-    fn parsed<T>(&mut self, parse: fn(&str) -> Option<T>, expected: &'static str) -> Result<Option<T>, ParseError> {
+    fn parsed<T>(
+        &mut self,
+        parse: fn(&str) -> Option<T>,
+        expected: &'static str,
+    ) -> Result<Option<T>, ParseError> {
         match self.next() {
             "" => Ok(None),
             text => parse(text).map(Some).ok_or_else(|| self.wrong(expected)),
@@ -114,13 +143,20 @@ impl<'a> Reader<'a> {
     fn whole<T: FromStr>(&mut self) -> Result<Option<T>, ParseError> {
         // The library's parser accepts a plus sign, which never occurs in a sentence and means that
         // fields have shifted.
-        let whole = |text: &str| text.parse().ok().filter(|_| text.bytes().all(|byte| byte.is_ascii_digit()));
+        let whole = |text: &str| {
+            text.parse()
+                .ok()
+                .filter(|_| text.bytes().all(|byte| byte.is_ascii_digit()))
+        };
         self.parsed(whole, "a small whole number or nothing")
     }
 
     fn mode(&mut self) -> Result<Mode, ParseError> {
         let mut letters = self.next().chars();
-        let mode = letters.next().and_then(Mode::from_letter).filter(|_| letters.next().is_none());
+        let mode = letters
+            .next()
+            .and_then(Mode::from_letter)
+            .filter(|_| letters.next().is_none());
         mode.ok_or_else(|| self.wrong("the letter of a control mode"))
     }
 
@@ -136,8 +172,12 @@ impl<'a> Reader<'a> {
     }
 
     fn coordinate(&mut self, axis: &Axis) -> Result<f64, ParseError> {
-        let size_deg = axis.degrees(self.next()).ok_or_else(|| self.wrong(axis.expected))?;
-        let sign = axis.sign(self.next()).ok_or_else(|| self.wrong(axis.expected_letter))?;
+        let size_deg = axis
+            .degrees(self.next())
+            .ok_or_else(|| self.wrong(axis.expected))?;
+        let sign = axis
+            .sign(self.next())
+            .ok_or_else(|| self.wrong(axis.expected_letter))?;
         Ok(sign * size_deg)
     }
 
@@ -149,7 +189,11 @@ impl<'a> Reader<'a> {
             (Some(day), Some(month), Some(year)) => Date { year, month, day },
             _ => return Err(self.wrong_at(first, "a day, month and year, or none of them")),
         };
-        if date.is_valid() { Ok(Some(date)) } else { Err(self.wrong_at(first, "a date of the calendar")) }
+        if date.is_valid() {
+            Ok(Some(date))
+        } else {
+            Err(self.wrong_at(first, "a date of the calendar"))
+        }
     }
 
     /// `A` (data valid) or `D` (with differential corrections); `V` or an empty field means
@@ -166,7 +210,11 @@ impl<'a> Reader<'a> {
     /// Rejects any text except the unit `letter`: another unit means another layout.
     fn unit(&mut self, letter: &'static str) -> Result<(), ParseError> {
         let text = self.next();
-        if text.is_empty() || text == letter { Ok(()) } else { Err(self.wrong(letter)) }
+        if text.is_empty() || text == letter {
+            Ok(())
+        } else {
+            Err(self.wrong(letter))
+        }
     }
 
     fn east(&mut self) -> Result<Option<f64>, ParseError> {
@@ -187,7 +235,11 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn wind_speed(&mut self, speed_m_s: &mut Option<f64>, unit: &mut SpeedUnit) -> Result<(), ParseError> {
+    fn wind_speed(
+        &mut self,
+        speed_m_s: &mut Option<f64>,
+        unit: &mut SpeedUnit,
+    ) -> Result<(), ParseError> {
         let speed = self.number()?;
         let letter = self.next();
         *unit = match (SpeedUnit::from_letter(letter), speed) {
@@ -215,7 +267,17 @@ impl<'a> Reader<'a> {
 
     /// The same of another field.
     fn wrong_at(&self, field: usize, expected: &'static str) -> ParseError {
-        let found = self.data.get(field - 1).copied().unwrap_or_default().to_owned();
-        ParseError::Field { address: self.address.to_owned(), field, found, expected }
+        let found = self
+            .data
+            .get(field - 1)
+            .copied()
+            .unwrap_or_default()
+            .to_owned();
+        ParseError::Field {
+            address: self.address.to_owned(),
+            field,
+            found,
+            expected,
+        }
     }
 }

@@ -46,7 +46,10 @@ impl Gga {
             Field::Constant(""),
             Field::Constant(""),
         ];
-        Layout { fields_min: 6, fields }
+        Layout {
+            fields_min: 6,
+            fields,
+        }
     }
 }
 
@@ -86,7 +89,10 @@ impl Rmc {
             Field::Constant(mode),
         ];
         // Nine: before version 2.3 of the standard there was no mode at the end.
-        Layout { fields_min: 9, fields }
+        Layout {
+            fields_min: 9,
+            fields,
+        }
     }
 }
 
@@ -127,7 +133,10 @@ impl Vtg {
             Field::Unit("K"),
             Field::Optional(&mut self.with_mode, mode),
         ];
-        Layout { fields_min: 8, fields }
+        Layout {
+            fields_min: 8,
+            fields,
+        }
     }
 }
 
@@ -143,7 +152,14 @@ pub struct Hdt {
 impl Hdt {
     pub(super) fn layout(&mut self) -> Layout<'_> {
         let heading = Field::Number(&mut self.heading_deg, COMPASS);
-        Layout { fields_min: 1, fields: vec![Field::Standard(&mut self.talker, "HDT"), heading, Field::Unit("T")] }
+        Layout {
+            fields_min: 1,
+            fields: vec![
+                Field::Standard(&mut self.talker, "HDT"),
+                heading,
+                Field::Unit("T"),
+            ],
+        }
     }
 }
 
@@ -168,7 +184,10 @@ impl Hdg {
             Field::East(&mut self.deviation_deg),
             Field::East(&mut self.variation_deg),
         ];
-        Layout { fields_min: 1, fields }
+        Layout {
+            fields_min: 1,
+            fields,
+        }
     }
 }
 
@@ -193,7 +212,10 @@ impl Zda {
             Field::Constant("00"),
             Field::Constant("00"),
         ];
-        Layout { fields_min: 4, fields }
+        Layout {
+            fields_min: 4,
+            fields,
+        }
     }
 }
 
@@ -221,7 +243,10 @@ impl Gll {
             Field::ValidFix(&mut self.valid, 1),
             Field::Constant(mode),
         ];
-        Layout { fields_min: 4, fields }
+        Layout {
+            fields_min: 4,
+            fields,
+        }
     }
 }
 
@@ -252,7 +277,10 @@ impl Mwv {
             Field::Valid(&mut self.valid),
         ];
         // All five: an angle and a number without reference and unit do not describe a wind.
-        Layout { fields_min: 5, fields }
+        Layout {
+            fields_min: 5,
+            fields,
+        }
     }
 }
 
@@ -279,6 +307,9 @@ impl Vhw {
             Field::Unit("M"),
             Field::KnotsAndKmH(&mut self.speed_kn),
         ];
-        Layout { fields_min: 6, fields }
+        Layout {
+            fields_min: 6,
+            fields,
+        }
     }
 }

@@ -27,13 +27,31 @@ impl Command {
     /// keep the previous value.
     pub(super) fn layout(&mut self) -> Layout<'_> {
         // In a download without following lines, the three unused fields are zero.
-        let zeros = |number: &Option<f64>| Format { width: if *number == Some(0.0) { 3 } else { 0 }, ..WHOLE };
-        let heading = Format { compass: true, brief: true, ..TENTHS };
+        let zeros = |number: &Option<f64>| Format {
+            width: if *number == Some(0.0) { 3 } else { 0 },
+            ..WHOLE
+        };
+        let heading = Format {
+            compass: true,
+            brief: true,
+            ..TENTHS
+        };
         let (heading, thrust, difference) = match self.mode {
-            Mode::FileDownload => (zeros(&self.heading_deg), zeros(&self.thrust), zeros(&self.difference)),
+            Mode::FileDownload => (
+                zeros(&self.heading_deg),
+                zeros(&self.thrust),
+                zeros(&self.difference),
+            ),
             // Whole numbers in mode T: a stand-in for the boat reads each field as an integer, and
             // keeps the previous difference if it has decimals.
-            Mode::Thruster => (Format { compass: true, ..WHOLE }, WHOLE, WHOLE),
+            Mode::Thruster => (
+                Format {
+                    compass: true,
+                    ..WHOLE
+                },
+                WHOLE,
+                WHOLE,
+            ),
             Mode::Speed => (heading, BRIEF_THOUSANDTHS, WHOLE),
             _ => (heading, WHOLE, WHOLE),
         };
@@ -45,15 +63,27 @@ impl Command {
             Field::Number(&mut self.difference, difference),
             Field::Text(&mut self.words),
         ];
-        Layout { fields_min: 4, fields }
+        Layout {
+            fields_min: 4,
+            fields,
+        }
     }
 
     /// The command as written: percentages are whole numbers.
     pub(crate) fn rounded(mut self) -> Command {
         round_percents(self.mode, &mut self.thrust, &mut self.difference);
         if self.mode == Mode::FileDownload {
-            for number in [&mut self.heading_deg, &mut self.thrust, &mut self.difference] {
-                *number = Some(number.filter(|number| number.is_finite()).unwrap_or_default().round());
+            for number in [
+                &mut self.heading_deg,
+                &mut self.thrust,
+                &mut self.difference,
+            ] {
+                *number = Some(
+                    number
+                        .filter(|number| number.is_finite())
+                        .unwrap_or_default()
+                        .round(),
+                );
             }
         }
         self
@@ -65,14 +95,21 @@ impl Command {
 ///
 /// A thruster receives their sum, so where rounding would exceed 100 the boat turns a little less.
 fn round_percents(mode: Mode, thrust: &mut Option<f64>, difference: &mut Option<f64>) {
-    let sum = |thrust: Option<f64>, difference: Option<f64>| Some(thrust?.abs() + difference?.abs());
+    let sum =
+        |thrust: Option<f64>, difference: Option<f64>| Some(thrust?.abs() + difference?.abs());
     let whole_thrust = thrust.map(f64::round);
     let whole_difference = difference.map(f64::round);
     // 49.5 and 50.5 add up to 100 % but round to 50 and 51. It is not known how a boat handles more
     // than 100 %, so the difference is reduced.
     let by_rounding = sum(*thrust, *difference).is_some_and(|sum| sum < 100.5)
         && sum(whole_thrust, whole_difference).is_some_and(|sum| sum > 100.0);
-    *difference = whole_difference.map(|whole| if by_rounding { whole - whole.signum() } else { whole });
+    *difference = whole_difference.map(|whole| {
+        if by_rounding {
+            whole - whole.signum()
+        } else {
+            whole
+        }
+    });
     if mode != Mode::Speed {
         *thrust = whole_thrust;
     }
@@ -107,7 +144,13 @@ impl Attitude {
             Field::Address("PSEAA"),
             Field::Number(&mut self.pitch_deg, TENTHS),
             Field::Number(&mut self.roll_deg, TENTHS),
-            Field::Number(&mut self.heading_deg, Format { compass: true, ..TENTHS }),
+            Field::Number(
+                &mut self.heading_deg,
+                Format {
+                    compass: true,
+                    ..TENTHS
+                },
+            ),
             // Written blank: a public client treats a field that contains only a space as a broken
             // sentence, and boats omit heave.
             Field::ReadOnly(&mut self.heave_m),
@@ -117,7 +160,10 @@ impl Attitude {
             Field::Number(&mut self.accel_down_g, HUNDREDTHS),
             Field::Number(&mut self.yaw_rate_deg_s, HUNDREDTHS),
         ];
-        Layout { fields_min: 3, fields }
+        Layout {
+            fields_min: 3,
+            fields,
+        }
     }
 }
 
@@ -158,7 +204,8 @@ pub struct Battery {
 }
 
 impl Battery {
-    /// 15 fields: real drivers refuse any other number of them. The two fuel gauges after the 15th are ignored.
+    /// 15 fields: real drivers refuse any other number of them. The two fuel gauges after the 15th
+    /// are ignored.
     pub(super) fn layout(&mut self) -> Layout<'_> {
         let fields = vec![
             Field::Address("PSEAB"),
@@ -178,7 +225,10 @@ impl Battery {
             Field::Number(&mut self.starboard_bilge_amps, TENTHS),
             Field::Number(&mut self.hours, WHOLE),
         ];
-        Layout { fields_min: 1, fields }
+        Layout {
+            fields_min: 1,
+            fields,
+        }
     }
 }
 
@@ -205,11 +255,21 @@ pub struct ControlState {
 
 impl ControlState {
     pub(super) fn layout(&mut self) -> Layout<'_> {
-        let thrust = if self.mode == Mode::Speed { BRIEF_THOUSANDTHS } else { WHOLE };
+        let thrust = if self.mode == Mode::Speed {
+            BRIEF_THOUSANDTHS
+        } else {
+            WHOLE
+        };
         let fields = vec![
             Field::Address("PSEAD"),
             Field::Mode(&mut self.mode),
-            Field::Number(&mut self.heading_deg, Format { compass: true, ..TENTHS }),
+            Field::Number(
+                &mut self.heading_deg,
+                Format {
+                    compass: true,
+                    ..TENTHS
+                },
+            ),
             Field::Number(&mut self.thrust, thrust),
             Field::Number(&mut self.difference, WHOLE),
             Field::Text(&mut self.words),
@@ -217,7 +277,10 @@ impl ControlState {
             Field::Whole(&mut self.sent_to, 0),
             Field::Operator(&mut self.operator),
         ];
-        Layout { fields_min: 1, fields }
+        Layout {
+            fields_min: 1,
+            fields,
+        }
     }
 
     /// The state as written: percentages are whole numbers.
@@ -236,7 +299,10 @@ pub struct BoatError {
 
 impl BoatError {
     pub(super) fn layout(&mut self) -> Layout<'_> {
-        Layout { fields_min: 1, fields: vec![Field::Address("PSEAG"), Field::Text(&mut self.code)] }
+        Layout {
+            fields_min: 1,
+            fields: vec![Field::Address("PSEAG"), Field::Text(&mut self.code)],
+        }
     }
 }
 
@@ -260,16 +326,22 @@ impl MissionSettings {
             Field::Constant("0"),
             Field::Constant("000"),
         ];
-        Layout { fields_min: 3, fields }
+        Layout {
+            fields_min: 3,
+            fields,
+        }
     }
 
     /// The settings as written: a whole percentage.
     pub(super) fn rounded(self) -> MissionSettings {
-        MissionSettings { throttle_pct: self.throttle_pct.round() }
+        MissionSettings {
+            throttle_pct: self.throttle_pct.round(),
+        }
     }
 }
 
-/// `OIWPL`, a waypoint of a mission that is being uploaded. Four decimals of minutes place it to 0.1 m.
+/// `OIWPL`, a waypoint of a mission that is being uploaded. Four decimals of minutes place it to
+/// 0.1 m.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Waypoint {
     /// The waypoint's position.
@@ -281,7 +353,14 @@ pub struct Waypoint {
 impl Waypoint {
     pub(super) fn layout(&mut self) -> Layout<'_> {
         let place = Field::Place(&mut self.at, 4);
-        Layout { fields_min: 5, fields: vec![Field::Address("OIWPL"), place, Field::Index(&mut self.index)] }
+        Layout {
+            fields_min: 5,
+            fields: vec![
+                Field::Address("OIWPL"),
+                place,
+                Field::Index(&mut self.index),
+            ],
+        }
     }
 }
 
@@ -306,7 +385,11 @@ mod tests {
             let mut got_thrust = Some(thrust);
             let mut got_difference = Some(difference);
             round_percents(Mode::Thruster, &mut got_thrust, &mut got_difference);
-            assert_eq!((got_thrust, got_difference), (Some(want.0), Some(want.1)), "{thrust}, {difference}");
+            assert_eq!(
+                (got_thrust, got_difference),
+                (Some(want.0), Some(want.1)),
+                "{thrust}, {difference}"
+            );
         }
     }
 }

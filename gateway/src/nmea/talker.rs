@@ -17,7 +17,8 @@ impl Talker {
         let (talker, kind) = address.split_at_checked(2)?;
         let characters: [u8; 2] = talker.as_bytes().try_into().ok()?;
         let known = |byte: &u8| byte.is_ascii_uppercase() || byte.is_ascii_digit();
-        (characters.iter().all(known) && characters[0] != b'P').then_some((Talker(characters), kind))
+        (characters.iter().all(known) && characters[0] != b'P')
+            .then_some((Talker(characters), kind))
     }
 }
 

@@ -59,6 +59,9 @@ impl SpeedUnit {
     }
 
     pub(super) fn from_letter(letter: &str) -> Option<SpeedUnit> {
-        SpeedUnit::ALL.iter().find(|(_, known, _)| *known == letter).map(|(unit, ..)| *unit)
+        SpeedUnit::ALL
+            .iter()
+            .find(|(_, known, _)| *known == letter)
+            .map(|(unit, ..)| *unit)
     }
 }

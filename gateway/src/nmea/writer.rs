@@ -24,8 +24,14 @@ pub(super) struct Writer {
 impl Writer {
     /// The sentence of this layout.
     pub(super) fn line(layout: Layout<'_>) -> String {
-        let mut line = Writer { body: String::with_capacity(EMITTED_MAX), spare: Vec::new() };
-        layout.fields.into_iter().for_each(|field| line.field(field));
+        let mut line = Writer {
+            body: String::with_capacity(EMITTED_MAX),
+            spare: Vec::new(),
+        };
+        layout
+            .fields
+            .into_iter()
+            .for_each(|field| line.field(field));
         // Better to omit a field than to send a sentence that a strict reader rejects.
         while line.body.len() + FRAME > EMITTED_MAX {
             line.empty_the_longest();
@@ -56,15 +62,21 @@ impl Writer {
                 self.number(number.map(f64::abs), TENTHS);
                 self.spare(number.map_or("", |number| if number < 0.0 { "W" } else { "E" }));
             }
-            Field::Whole(number, width) => self.spare(&number.map_or_else(String::new, |n| format!("{n:0width$}"))),
+            Field::Whole(number, width) => {
+                self.spare(&number.map_or_else(String::new, |n| format!("{n:0width$}")))
+            }
             Field::Quality(quality) => self.fixed(&quality.to_string()),
             Field::Index(index) => self.fixed(&index.to_string()),
             Field::Text(text) => self.text(text),
             Field::Letter(letter) => self.text(&letter.map_or_else(String::new, String::from)),
             Field::Mode(mode) => self.fixed(&String::from(mode.letter())),
-            Field::Operator(operator) => self.spare(&operator.map_or_else(String::new, |o| o.number().to_string())),
+            Field::Operator(operator) => {
+                self.spare(&operator.map_or_else(String::new, |o| o.number().to_string()))
+            }
             // Never omitted: without it a reader would have to guess whether a fix is valid.
-            Field::Valid(valid) | Field::ValidFix(valid, _) => self.fixed(if *valid { "A" } else { "V" }),
+            Field::Valid(valid) | Field::ValidFix(valid, _) => {
+                self.fixed(if *valid { "A" } else { "V" })
+            }
             Field::Time(time) => self.fixed(&time.and_then(TimeOfDay::text).unwrap_or_default()),
             Field::Date(date) => self.fixed(&date.and_then(Date::text).unwrap_or_default()),
             Field::DayMonthYear(date) => self.day_month_year(*date),
@@ -88,8 +100,12 @@ impl Writer {
     fn position(&mut self, at: Option<LatLon>, decimals: u32) {
         // Both or neither: half a position would be read as one on the equator or the prime
         // meridian.
-        let texts =
-            at.and_then(|at| Some((LATITUDE.printed(at.lat_deg, decimals)?, LONGITUDE.printed(at.lon_deg, decimals)?)));
+        let texts = at.and_then(|at| {
+            Some((
+                LATITUDE.printed(at.lat_deg, decimals)?,
+                LONGITUDE.printed(at.lon_deg, decimals)?,
+            ))
+        });
         let (lat, lon) = texts.unwrap_or_else(|| (",".to_owned(), ",".to_owned()));
         self.fixed(&lat);
         self.fixed(&lon);
@@ -98,7 +114,9 @@ impl Writer {
     /// A date in three fields.
     fn day_month_year(&mut self, date: Option<Date>) {
         match date.filter(|date| date.is_valid() && date.year < 10_000) {
-            Some(Date { year, month, day }) => self.fixed(&format!("{day:02},{month:02},{year:04}")),
+            Some(Date { year, month, day }) => {
+                self.fixed(&format!("{day:02},{month:02},{year:04}"))
+            }
             None => self.fixed(",,"),
         }
     }
@@ -130,10 +148,21 @@ impl Writer {
 
     /// Empties the longest optional field, the last of equal ones.
     fn empty_the_longest(&mut self) {
-        let longest = self.spare.iter().enumerate().max_by_key(|(_, range)| range.len()).map(|(i, _)| i);
-        let gone = self.spare.remove(longest.expect("the fixed fields of every sentence fit"));
+        let longest = self
+            .spare
+            .iter()
+            .enumerate()
+            .max_by_key(|(_, range)| range.len())
+            .map(|(i, _)| i);
+        let gone = self
+            .spare
+            .remove(longest.expect("the fixed fields of every sentence fit"));
         self.body.replace_range(gone.clone(), "");
-        for later in self.spare.iter_mut().filter(|range| range.start > gone.start) {
+        for later in self
+            .spare
+            .iter_mut()
+            .filter(|range| range.start > gone.start)
+        {
             *later = later.start - gone.len()..later.end - gone.len();
         }
     }

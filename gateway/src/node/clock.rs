@@ -17,7 +17,10 @@ pub(super) struct Moment {
 
 impl Moment {
     pub(super) fn now() -> Moment {
-        Moment { at: clock::now(), suspended: clock::suspended() }
+        Moment {
+            at: clock::now(),
+            suspended: clock::suspended(),
+        }
     }
 
     /// How long before `now` it was, and how long of that the machine was suspended, if it was.
@@ -26,7 +29,10 @@ impl Moment {
         // old data counts as old after waking.
         let suspended = now.suspended.saturating_sub(self.suspended);
         let awake = now.at.saturating_duration_since(self.at);
-        (awake + suspended, (suspended >= SUSPENSION_MIN).then_some(suspended))
+        (
+            awake + suspended,
+            (suspended >= SUSPENSION_MIN).then_some(suspended),
+        )
     }
 }
 
@@ -41,13 +47,21 @@ pub(super) struct Clock {
 
 impl Clock {
     pub(super) fn start() -> Clock {
-        Clock { start: Moment::now(), base: SimTime::ZERO, factor: 1.0 }
+        Clock {
+            start: Moment::now(),
+            base: SimTime::ZERO,
+            factor: 1.0,
+        }
     }
 
     /// Runs at this pace of a game from now on.
     pub(super) fn set_pace(&mut self, factor: f64) {
         let now = Moment::now();
-        *self = Clock { base: self.time_at(now), start: now, factor };
+        *self = Clock {
+            base: self.time_at(now),
+            start: now,
+            factor,
+        };
     }
 
     pub(super) fn now(&self) -> SimTime {
@@ -56,7 +70,10 @@ impl Clock {
 
     /// The gateway's time at a moment of real time since the machine was last suspended.
     pub(super) fn at(&self, at: Instant) -> SimTime {
-        self.time_at(Moment { at, ..Moment::now() })
+        self.time_at(Moment {
+            at,
+            ..Moment::now()
+        })
     }
 
     fn time_at(&self, moment: Moment) -> SimTime {
@@ -81,7 +98,10 @@ mod tests {
         let second = Duration::from_secs(1);
         let hour = Duration::from_secs(3600);
         let before = clock.start;
-        let after = |suspended| Moment { at: before.at + second, suspended: before.suspended + suspended };
+        let after = |suspended| Moment {
+            at: before.at + second,
+            suspended: before.suspended + suspended,
+        };
         assert_eq!(clock.time_at(after(Duration::ZERO)), SimTime::from_s(1.0));
         assert_eq!(clock.time_at(after(hour)), SimTime::from_s(3601.0));
         assert_eq!(before.gap(after(Duration::ZERO)), (second, None));
@@ -92,7 +112,10 @@ mod tests {
     fn the_clock_of_this_machine_does_not_run_backwards() {
         let clock = Clock::start();
         let times: Vec<SimTime> = (0..1000).map(|_| clock.now()).collect();
-        let backwards = times.windows(2).map(|two| (two[0] - two[1]).as_s()).fold(0.0, f64::max);
+        let backwards = times
+            .windows(2)
+            .map(|two| (two[0] - two[1]).as_s())
+            .fold(0.0, f64::max);
         // The two clocks are read one after the other.
         assert!(backwards < 0.01, "{backwards} s");
     }

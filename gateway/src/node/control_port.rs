@@ -12,7 +12,9 @@ use crate::supervisor::Scope;
 use bus::stop::{DatagramPort, States, StopRequest};
 use bus::token::{self, Checked, Guard};
 use bus::{CurrentToken, GATEWAY_PORT_KEY, Slot};
-use messages::external::{FleetCommand, GatewayCommand, GatewayStatus, OperatorCommand, OperatorReply};
+use messages::external::{
+    FleetCommand, GatewayCommand, GatewayStatus, OperatorCommand, OperatorReply,
+};
 use std::io::{self, BufRead, BufReader, Read, Write};
 use std::net::{SocketAddr, TcpStream, UdpSocket};
 use std::sync::Arc;
@@ -62,7 +64,12 @@ impl ControlPort {
         input: LoopInput,
     ) -> Result<ControlPort, NodeError> {
         let is_running = AtomicBool::new(false);
-        let server = Arc::new(Server { vehicle: vehicle.to_owned(), token, input, is_running });
+        let server = Arc::new(Server {
+            vehicle: vehicle.to_owned(),
+            token,
+            input,
+            is_running,
+        });
         let open = || ControlPort::open_once(listen, Arc::clone(&server));
         // Port 0 is chosen for TCP; the same number may be in use for UDP.
         let attempts = if listen.port() == 0 { ATTEMPTS } else { 1 };
@@ -77,9 +84,18 @@ impl ControlPort {
         let port = TcpPort::open(listen, "control port", CONNECTIONS_MAX, serve).map_err(failed)?;
         let shared = Arc::clone(&server);
         let address = port.address;
-        let read = |socket| DatagramPort::open(socket, "control datagrams", move |bytes| shared.serve_datagram(bytes));
+        let read = |socket| {
+            DatagramPort::open(socket, "control datagrams", move |bytes| {
+                shared.serve_datagram(bytes)
+            })
+        };
         let datagrams = UdpSocket::bind(address).and_then(read).map_err(failed)?;
-        Ok(ControlPort { server, address, _port: port, _datagrams: datagrams })
+        Ok(ControlPort {
+            server,
+            address,
+            _port: port,
+            _datagrams: datagrams,
+        })
     }
 
     /// The token that it requires.
@@ -105,21 +121,28 @@ impl Server {
         loop {
             let mut line = Vec::new();
             // A line without an end must not fill the memory.
-            reader.by_ref().take(REQUEST_MAX).read_until(b'\n', &mut line)?;
+            reader
+                .by_ref()
+                .take(REQUEST_MAX)
+                .read_until(b'\n', &mut line)?;
             if line.pop() != Some(b'\n') {
                 return Ok(());
             }
             // Read before the check, so that a request checked without a token never reaches the
             // loop.
             let is_running = self.is_running.load(Ordering::SeqCst);
-            let (mut answer, is_garbage) = match guard.check(GATEWAY_PORT_KEY, &line, GatewayCommand::needs_token) {
-                Checked::Granted(command) => {
-                    slot.touch();
-                    (token::answer(&self.execute(command, is_running)), false)
-                }
-                Checked::Challenged(challenge) => (challenge, false),
-                Checked::Garbage(e) => (token::answer(&self.refusal(&format!("cannot parse the request: {e}"))), true),
-            };
+            let (mut answer, is_garbage) =
+                match guard.check(GATEWAY_PORT_KEY, &line, GatewayCommand::needs_token) {
+                    Checked::Granted(command) => {
+                        slot.touch();
+                        (token::answer(&self.execute(command, is_running)), false)
+                    }
+                    Checked::Challenged(challenge) => (challenge, false),
+                    Checked::Garbage(e) => (
+                        token::answer(&self.refusal(&format!("cannot parse the request: {e}"))),
+                        true,
+                    ),
+                };
             answer.push(b'\n');
             stream.write_all(&answer)?;
             // A browser that a web page makes post here speaks HTTP: its first line is garbage, and
@@ -135,7 +158,10 @@ impl Server {
             && *name != self.vehicle
             && !(name.is_empty() && *command == OperatorCommand::Status)
         {
-            return self.refusal(&format!("this is the gateway of {}, not of {name}", self.vehicle));
+            return self.refusal(&format!(
+                "this is the gateway of {}, not of {name}",
+                self.vehicle
+            ));
         }
         // The loop reads stops before everything else; the query only returns the boat's state
         // afterwards.
@@ -143,14 +169,26 @@ impl Server {
             Some(stop) => {
                 // Before the reply is even prepared, so that nothing can delay it.
                 self.input.stop(stop);
-                GatewayCommand::Boat { name: self.vehicle.clone(), command: OperatorCommand::Status }
+                GatewayCommand::Boat {
+                    name: self.vehicle.clone(),
+                    command: OperatorCommand::Status,
+                }
             }
             None => command,
         };
         if !is_running {
-            let is_free = matches!(&ask, GatewayCommand::Boat { command: OperatorCommand::Status, .. });
+            let is_free = matches!(
+                &ask,
+                GatewayCommand::Boat {
+                    command: OperatorCommand::Status,
+                    ..
+                }
+            );
             let refused = (!is_free).then(|| "there is no link to the boat yet".to_owned());
-            return OperatorReply { refused, status: self.status_before() };
+            return OperatorReply {
+                refused,
+                status: self.status_before(),
+            };
         }
         let (reply, replied) = sync_channel(1);
         self.input.request((ask, reply));
@@ -171,7 +209,13 @@ impl Server {
     /// no state to report.
     fn serve_datagram(&self, bytes: &[u8]) -> Option<Vec<u8>> {
         let request = StopRequest::decode(bytes)?;
-        let asks_status = matches!(request.command, GatewayCommand::Boat { command: OperatorCommand::Status, .. });
+        let asks_status = matches!(
+            request.command,
+            GatewayCommand::Boat {
+                command: OperatorCommand::Status,
+                ..
+            }
+        );
         let count = match self.stop_in(&request.command) {
             Some(stop) => self.input.stop(stop),
             None if asks_status => 0,
@@ -181,20 +225,39 @@ impl Server {
         if !self.is_running.load(Ordering::SeqCst) {
             return None;
         }
-        let state = self.input.state_after(count, STATE_MAX).filter(|state| !state.is_empty())?;
-        request.answer(bytes.len(), self.token.get().as_ref(), &States::from([(self.vehicle.clone(), (state, 0))]))
+        let state = self
+            .input
+            .state_after(count, STATE_MAX)
+            .filter(|state| !state.is_empty())?;
+        request.answer(
+            bytes.len(),
+            self.token.get().as_ref(),
+            &States::from([(self.vehicle.clone(), (state, 0))]),
+        )
     }
 
     fn refusal(&self, reason: &str) -> OperatorReply {
-        OperatorReply { refused: Some(reason.to_owned()), status: self.status_before() }
+        OperatorReply {
+            refused: Some(reason.to_owned()),
+            status: self.status_before(),
+        }
     }
 
     /// The status while the loop is not running.
     fn status_before(&self) -> GatewayStatus {
         let is_stopped = self.input.has_e_stop();
-        let state = if is_stopped { "e-stopped once there is a link" } else { "no link to the boat yet" };
+        let state = if is_stopped {
+            "e-stopped once there is a link"
+        } else {
+            "no link to the boat yet"
+        };
         let link = "no link yet: looking for the game".to_owned();
-        GatewayStatus { vehicle: self.vehicle.clone(), link, state: state.to_owned(), ..GatewayStatus::default() }
+        GatewayStatus {
+            vehicle: self.vehicle.clone(),
+            link,
+            state: state.to_owned(),
+            ..GatewayStatus::default()
+        }
     }
 }
 
@@ -207,37 +270,77 @@ mod tests {
     const LIMIT: Duration = Duration::from_secs(10);
 
     fn boat(command: OperatorCommand) -> GatewayCommand {
-        GatewayCommand::Boat { name: "blue_one".to_owned(), command }
+        GatewayCommand::Boat {
+            name: "blue_one".to_owned(),
+            command,
+        }
     }
 
     fn port() -> (ControlPort, Token, super::super::loop_input::LoopOutput) {
         let (input, output) = loop_input();
         let token = Token::random();
         let here = SocketAddr::from(([127, 0, 0, 1], 0));
-        let port = ControlPort::open(here, "blue_one", Some(token.clone()).into(), input).expect("a free port");
+        let port = ControlPort::open(here, "blue_one", Some(token.clone()).into(), input)
+            .expect("a free port");
         (port, token, output)
     }
 
     #[test]
     fn before_there_is_a_link_everybody_may_stop_and_look_and_nobody_arms() {
         let (port, token, output) = port();
-        let ask = |token: Option<&Token>, command| ask_gateway(port.address, token, &command, LIMIT);
+        let ask =
+            |token: Option<&Token>, command| ask_gateway(port.address, token, &command, LIMIT);
         let other = Token::random();
         let status = ask(None, boat(OperatorCommand::Status)).expect("a reply");
-        assert_eq!((status.refused, status.status.vehicle.as_str()), (None, "blue_one"));
-        for command in [boat(OperatorCommand::Arm), GatewayCommand::Fleet(FleetCommand::Release)] {
-            assert!(matches!(ask(None, command.clone()), Err(BusError::NeedsToken)));
-            assert!(matches!(ask(Some(&other), command.clone()), Err(BusError::WrongToken)));
-            assert!(ask(Some(&token), command).expect("a reply").refused.expect("refused").contains("no link"));
+        assert_eq!(
+            (status.refused, status.status.vehicle.as_str()),
+            (None, "blue_one")
+        );
+        for command in [
+            boat(OperatorCommand::Arm),
+            GatewayCommand::Fleet(FleetCommand::Release),
+        ] {
+            assert!(matches!(
+                ask(None, command.clone()),
+                Err(BusError::NeedsToken)
+            ));
+            assert!(matches!(
+                ask(Some(&other), command.clone()),
+                Err(BusError::WrongToken)
+            ));
+            assert!(
+                ask(Some(&token), command)
+                    .expect("a reply")
+                    .refused
+                    .expect("refused")
+                    .contains("no link")
+            );
         }
         let [boat_stop, fleet_stop] = [Scope::Boat, Scope::Fleet].map(Stop::EStop);
         assert!(!output.take_stop(boat_stop) && !output.take_stop(fleet_stop));
-        assert_eq!(ask(None, boat(OperatorCommand::EStop)).expect("a reply").refused, None);
+        assert_eq!(
+            ask(None, boat(OperatorCommand::EStop))
+                .expect("a reply")
+                .refused,
+            None
+        );
         let stopped = ask(None, GatewayCommand::Fleet(FleetCommand::EStop)).expect("a reply");
-        assert!(stopped.refused.is_none() && stopped.status.state.contains("e-stopped"), "{stopped:?}");
+        assert!(
+            stopped.refused.is_none() && stopped.status.state.contains("e-stopped"),
+            "{stopped:?}"
+        );
         assert!(output.take_stop(boat_stop) && output.take_stop(fleet_stop));
-        let other = GatewayCommand::Boat { name: "red_one".to_owned(), command: OperatorCommand::EStop };
-        assert!(ask(None, other).expect("a reply").refused.expect("refused").contains("of blue_one, not of red_one"));
+        let other = GatewayCommand::Boat {
+            name: "red_one".to_owned(),
+            command: OperatorCommand::EStop,
+        };
+        assert!(
+            ask(None, other)
+                .expect("a reply")
+                .refused
+                .expect("refused")
+                .contains("of blue_one, not of red_one")
+        );
     }
 
     #[test]
@@ -245,30 +348,59 @@ mod tests {
         let (port, token, output) = port();
         let socket = UdpSocket::bind("127.0.0.1:0").expect("a free port");
         socket.connect(port.address).expect("an address");
-        socket.set_read_timeout(Some(Duration::from_millis(300))).expect("a time");
-        let request = |command| StopRequest { session: 1, number: 2, game: None, command };
+        socket
+            .set_read_timeout(Some(Duration::from_millis(300)))
+            .expect("a time");
+        let request = |command| StopRequest {
+            session: 1,
+            number: 2,
+            game: None,
+            command,
+        };
         // Before its loop runs it obeys, but has nothing to report.
-        socket.send(&request(boat(OperatorCommand::EStop)).encode()).expect("it is sent");
+        socket
+            .send(&request(boat(OperatorCommand::EStop)).encode())
+            .expect("it is sent");
         let mut buffer = [0; 2000];
         assert!(socket.recv(&mut buffer).is_err() && output.take_stop(Stop::EStop(Scope::Boat)));
         port.begin();
         output.show_state(output.stop_count(), "armed".to_owned());
-        let other = GatewayCommand::Boat { name: "red_one".to_owned(), command: OperatorCommand::EStop };
-        let refused = [other, boat(OperatorCommand::Arm), GatewayCommand::Fleet(FleetCommand::Release)];
+        let other = GatewayCommand::Boat {
+            name: "red_one".to_owned(),
+            command: OperatorCommand::EStop,
+        };
+        let refused = [
+            other,
+            boat(OperatorCommand::Arm),
+            GatewayCommand::Fleet(FleetCommand::Release),
+        ];
         let refused = refused.map(|command| request(command).encode());
-        for bytes in refused.iter().map(Vec::as_slice).chain([&b"garbage"[..], &[b' '; 1401]]) {
+        for bytes in refused
+            .iter()
+            .map(Vec::as_slice)
+            .chain([&b"garbage"[..], &[b' '; 1401]])
+        {
             socket.send(bytes).expect("it is sent");
-            assert!(socket.recv(&mut buffer).is_err(), "{}", String::from_utf8_lossy(bytes));
+            assert!(
+                socket.recv(&mut buffer).is_err(),
+                "{}",
+                String::from_utf8_lossy(bytes)
+            );
         }
         assert_eq!(output.stop_count(), 1);
         let status = request(boat(OperatorCommand::Status)).encode();
         socket.send(&status).expect("it is sent");
         let count = socket.recv(&mut buffer).expect("an answer");
         let text = String::from_utf8_lossy(&buffer[..count]);
-        assert!(count <= status.len() && text.contains("armed") && text.contains("mac"), "{text}");
+        assert!(
+            count <= status.len() && text.contains("armed") && text.contains("mac"),
+            "{text}"
+        );
         assert!(!text.contains(&token.hex()));
         // A request without room for an answer gets none.
-        socket.send(br#"{"body":{"fleet":"e_stop"}}"#).expect("it is sent");
+        socket
+            .send(br#"{"body":{"fleet":"e_stop"}}"#)
+            .expect("it is sent");
         assert!(socket.recv(&mut buffer).is_err() && output.take_stop(Stop::EStop(Scope::Fleet)));
     }
 
@@ -286,7 +418,12 @@ mod tests {
             })
             .collect();
         for _ in 0..50 {
-            let stopped = ask_gateway(port.address, None, &GatewayCommand::Fleet(FleetCommand::EStop), LIMIT);
+            let stopped = ask_gateway(
+                port.address,
+                None,
+                &GatewayCommand::Fleet(FleetCommand::EStop),
+                LIMIT,
+            );
             assert_eq!(stopped.expect("a reply").refused, None);
             assert!(output.take_stop(Stop::EStop(Scope::Fleet)));
         }
@@ -305,8 +442,19 @@ mod tests {
         };
         // Any web page can make a browser send this.
         let post = b"POST / HTTP/1.1\r\n\r\n{\"body\":{\"fleet\":\"e_stop\"}}\n";
-        assert!(said(post).contains("cannot parse") && !output.take_stop(Stop::EStop(Scope::Fleet)));
-        assert!(said(&[b'['; 1000].iter().chain(b"\n").copied().collect::<Vec<u8>>()).contains("cannot parse"));
+        assert!(
+            said(post).contains("cannot parse") && !output.take_stop(Stop::EStop(Scope::Fleet))
+        );
+        assert!(
+            said(
+                &[b'['; 1000]
+                    .iter()
+                    .chain(b"\n")
+                    .copied()
+                    .collect::<Vec<u8>>()
+            )
+            .contains("cannot parse")
+        );
         assert_eq!(said(&vec![b'x'; 10 * REQUEST_MAX as usize]), "");
     }
 }

@@ -99,8 +99,12 @@ struct Incoming {
 /// Emulates a boat until the game is over, or until it is stopped.
 ///
 /// # Errors
-/// [`NodeError`] if there is no such game or boat, if it has another agent, or if the network or a link cannot work.
-pub fn emulate(settings: &EmulatorSettings, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Result<(), NodeError> {
+/// [`NodeError`] if there is no such game or boat, if it has another agent, or if the network or a
+/// link cannot work.
+pub fn emulate(
+    settings: &EmulatorSettings,
+    notify: &mut dyn FnMut(NodeEvent<'_>),
+) -> Result<(), NodeError> {
     let mut search = GameSearch::new(settings.wait, &settings.stop);
     let mut looking = |reason: &str| notify(NodeEvent::Looking { reason });
     let (bus, game, info) = search.game(&mut looking, &settings.place, settings.game.as_ref())?;
@@ -112,31 +116,44 @@ pub fn emulate(settings: &EmulatorSettings, notify: &mut dyn FnMut(NodeEvent<'_>
     let datum = scenario.field.plan.datum;
     let incoming = Arc::new(Watched::new(Incoming::default()));
     let pictures = Arc::clone(&incoming);
-    let _subscription = bus.subscribe(topic::picture(&game, scenario, scenario.team_of(vehicle)), move |bytes| {
-        // Only the newest: a boat does not act on an outdated picture.
-        pictures.visit(|incoming| incoming.picture = Some(bytes.to_vec()));
-    })?;
+    let _subscription = bus.subscribe(
+        topic::picture(&game, scenario, scenario.team_of(vehicle)),
+        move |bytes| {
+            // Only the newest: a boat does not act on an outdated picture.
+            pictures.visit(|incoming| incoming.picture = Some(bytes.to_vec()));
+        },
+    )?;
     let (front_seat, links) = open_front_seat(&settings.front_seat, datum, &incoming, notify)?;
     let frames = Arc::clone(&incoming);
     // A firmware has sensor models of its own.
-    let _truth = matches!(settings.front_seat, FrontSeatSettings::Sitl { .. })
-        .then(|| bus.subscribe(topic::frame(&game), move |bytes| frames.visit(|incoming| incoming.keep_frame(bytes))));
+    let _truth = matches!(settings.front_seat, FrontSeatSettings::Sitl { .. }).then(|| {
+        bus.subscribe(topic::frame(&game), move |bytes| {
+            frames.visit(|incoming| incoming.keep_frame(bytes))
+        })
+    });
     let _truth = _truth.transpose()?;
     let names = [settings.vehicle.clone()];
     let mut say = |reason: &str| notify(NodeEvent::Looking { reason });
     let sim = SimWatch::open(&bus, &game, Patience::of_player(settings.silence))?;
     let place = &settings.place;
     let all = (&game, scenario);
-    let joined = search.until(&mut say, || game_search::join(&bus, place, all, Role::Agent, &names))?;
-    let boat = EmulatedBoat { vehicle, front_seat };
+    let joined = search.until(&mut say, || {
+        game_search::join(&bus, place, all, Role::Agent, &names)
+    })?;
+    let boat = EmulatedBoat {
+        vehicle,
+        front_seat,
+    };
     let mut node = EmulatorNode {
         runner: MindRunner::new([(vehicle, Box::new(boat))]),
         ticket: joined.ticket,
         sim,
         now: SimTime::ZERO,
         links,
-        orders: bus
-            .publisher(topic::orders(&game, scenario, &[scenario.team_of(vehicle)], &bus.id()), Priority::Normal)?,
+        orders: bus.publisher(
+            topic::orders(&game, scenario, &[scenario.team_of(vehicle)], &bus.id()),
+            Priority::Normal,
+        )?,
         operator: Some(Operator::Secondary),
         sent: 0,
     };
@@ -157,10 +174,19 @@ fn open_front_seat(
 ) -> Result<Opened, NodeError> {
     let mut open_both = |listen: &LinkAddress, other: &Option<LinkAddress>| {
         let back_seat = open(listen, Port::Secondary, incoming)?;
-        notify(NodeEvent::Listening { what: "back seat", reach: &back_seat.reach() });
-        let other = other.as_ref().map(|address| open(address, Port::Primary, incoming)).transpose()?;
+        notify(NodeEvent::Listening {
+            what: "back seat",
+            reach: &back_seat.reach(),
+        });
+        let other = other
+            .as_ref()
+            .map(|address| open(address, Port::Primary, incoming))
+            .transpose()?;
         if let Some(other) = &other {
-            notify(NodeEvent::Listening { what: "primary operator", reach: &other.reach() });
+            notify(NodeEvent::Listening {
+                what: "primary operator",
+                reach: &other.reach(),
+            });
         }
         Ok::<_, NodeError>([Some(back_seat), other])
     };
@@ -185,25 +211,45 @@ fn open_front_seat(
             };
             Ok((Box::new(Emulator::new(plan)), open_both(listen, primary)?))
         }
-        FrontSeatSettings::ArduPilot { listen, ground_station, charge } => {
-            Ok((Box::new(ArduPilot::new(datum, *charge)), open_both(listen, ground_station)?))
-        }
+        FrontSeatSettings::ArduPilot {
+            listen,
+            ground_station,
+            charge,
+        } => Ok((
+            Box::new(ArduPilot::new(datum, *charge)),
+            open_both(listen, ground_station)?,
+        )),
         FrontSeatSettings::Sitl { listen, servos } => {
             let port = SitlPort::open(*listen, *servos)?;
             let LatLon { lat_deg, lon_deg } = datum;
-            let reach = format!("udp://{}, started with --home {lat_deg},{lon_deg},0,0", port.address());
-            notify(NodeEvent::Listening { what: "firmware", reach: &reach });
+            let reach = format!(
+                "udp://{}, started with --home {lat_deg},{lon_deg},0,0",
+                port.address()
+            );
+            notify(NodeEvent::Listening {
+                what: "firmware",
+                reach: &reach,
+            });
             Ok((Box::new(port), [None, None]))
         }
     }
 }
 
 /// Opens a port of the boat.
-fn open(address: &LinkAddress, port: Port, incoming: &Arc<Watched<Incoming>>) -> Result<Link, NodeError> {
+fn open(
+    address: &LinkAddress,
+    port: Port,
+    incoming: &Arc<Watched<Incoming>>,
+) -> Result<Link, NodeError> {
     let shared = Arc::clone(incoming);
     // A back seat may listen silently for hours.
-    let settings = LinkSettings { silence: None, ..LinkSettings::default() };
-    Ok(Link::open(address, settings, move |event| shared.visit(|incoming| incoming.handle_event(port, event)))?)
+    let settings = LinkSettings {
+        silence: None,
+        ..LinkSettings::default()
+    };
+    Ok(Link::open(address, settings, move |event| {
+        shared.visit(|incoming| incoming.handle_event(port, event))
+    })?)
 }
 
 impl Incoming {
@@ -215,7 +261,9 @@ impl Incoming {
             }
             LinkEvent::Bytes { .. } | LinkEvent::Written { .. } => {}
             LinkEvent::Up { name, .. } => self.remarks.push(format!("{name} is connected")),
-            LinkEvent::Down { reason, .. } | LinkEvent::Failed { reason, .. } => self.remarks.push(reason),
+            LinkEvent::Down { reason, .. } | LinkEvent::Failed { reason, .. } => {
+                self.remarks.push(reason)
+            }
         }
     }
 
@@ -226,7 +274,10 @@ impl Incoming {
     }
 
     fn is_something(&self) -> bool {
-        !self.bytes.is_empty() || !self.remarks.is_empty() || self.picture.is_some() || !self.frames.is_empty()
+        !self.bytes.is_empty()
+            || !self.remarks.is_empty()
+            || self.picture.is_some()
+            || !self.frames.is_empty()
     }
 }
 
@@ -269,9 +320,17 @@ impl EmulatorNode {
     ) -> Result<(), NodeError> {
         while !stop.load(Ordering::Relaxed) {
             incoming.wait(LOOK, Incoming::is_something);
-            let Incoming { bytes, remarks, picture, frames, .. } = incoming.visit(std::mem::take);
+            let Incoming {
+                bytes,
+                remarks,
+                picture,
+                frames,
+                ..
+            } = incoming.visit(std::mem::take);
             frames.iter().for_each(|bytes| self.observe_truth(bytes));
-            remarks.into_iter().for_each(|text| self.remark(text, notify));
+            remarks
+                .into_iter()
+                .for_each(|text| self.remark(text, notify));
             for (port, bytes) in &bytes {
                 let now = self.now;
                 self.front_seat().receive(now, *port, bytes);
@@ -299,28 +358,43 @@ impl EmulatorNode {
 
     /// Passes the boat's part of a frame to its front seat.
     fn observe_truth(&mut self, bytes: &[u8]) {
-        let Ok(frame) = codec::decode::<Frame>(bytes) else { return };
-        let truth = self.runner.minds().next().and_then(|(vehicle, _)| frame.vehicles.get(vehicle.index()));
+        let Ok(frame) = codec::decode::<Frame>(bytes) else {
+            return;
+        };
+        let truth = self
+            .runner
+            .minds()
+            .next()
+            .and_then(|(vehicle, _)| frame.vehicles.get(vehicle.index()));
         if let Some(truth) = truth {
             self.front_seat().observe_truth(frame.stamp.valid_ns, truth);
         }
     }
 
     fn front_seat(&mut self) -> &mut dyn FrontSeat {
-        let (_, boat) = self.runner.minds_mut().next().expect("one boat is run here");
+        let (_, boat) = self
+            .runner
+            .minds_mut()
+            .next()
+            .expect("one boat is run here");
         &mut *boat.front_seat
     }
 
     /// Reports who commands the boat, if that changed.
     fn report_operator(&mut self, notify: &mut dyn FnMut(NodeEvent<'_>)) {
-        let Some(operator) = self.front_seat().operator() else { return };
+        let Some(operator) = self.front_seat().operator() else {
+            return;
+        };
         if self.operator.replace(operator) != Some(operator) {
             self.remark(format!("{operator:?} commands the boat"), notify);
         }
     }
 
     fn remark(&self, text: String, notify: &mut dyn FnMut(NodeEvent<'_>)) {
-        notify(NodeEvent::Event { at_s: self.now.as_s(), event: &Event::Remark(text) });
+        notify(NodeEvent::Event {
+            at_s: self.now.as_s(),
+            event: &Event::Remark(text),
+        });
     }
 
     /// Answers a picture with the boat's order, and sends telemetry.

@@ -48,16 +48,31 @@ fn find(settings: &Settings, tell: &mut dyn FnMut(&str)) -> Result<FoundGame, No
     let file = plan.gateway.name.clone();
     // Before the boat joins: otherwise a geofence that excludes the start would be noticed with
     // the boat on the water.
-    area.check(&info.scenario, vehicle).map_err(|source| NodeError::Geofence { file, source })?;
+    area.check(&info.scenario, vehicle)
+        .map_err(|source| NodeError::Geofence { file, source })?;
     let declination_rad = declination_rad(plan.gateway.declination_rad, field.plan.datum)?;
     let boat = info.scenario.boat_of(vehicle);
     let coasting = Some(Coasting::of(boat));
-    let site = Site { length_m: boat.length_m, field, declination_rad, coasting };
+    let site = Site {
+        length_m: boat.length_m,
+        field,
+        declination_rad,
+        coasting,
+    };
     // The thread that keeps it joined asks again, and gets the same boat.
     let names = [plan.vehicle.clone()];
     let all = (&game, &info.scenario);
     // Joining once here reports a wrong token or a taken boat while the operator is still
     // watching.
-    search.until(tell, || game_search::join(&bus, place, all, Role::Gateway, &names))?;
-    Ok(FoundGame { bus, game, info, vehicle, factor, site })
+    search.until(tell, || {
+        game_search::join(&bus, place, all, Role::Gateway, &names)
+    })?;
+    Ok(FoundGame {
+        bus,
+        game,
+        info,
+        vehicle,
+        factor,
+        site,
+    })
 }

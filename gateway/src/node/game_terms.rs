@@ -16,7 +16,9 @@ pub(super) fn external_vehicle(info: &GameInfo, name: &str) -> Result<VehicleId,
     if info.scenario.vehicles[vehicle.index()].source == Source::External {
         return Ok(vehicle);
     }
-    Err(NodeError::Refused(format!("{name} is simulated in this game: a real boat needs source = \"external\"")))
+    Err(NodeError::Refused(format!(
+        "{name} is simulated in this game: a real boat needs source = \"external\""
+    )))
 }
 
 /// Seconds of game time per second of real time.
@@ -26,7 +28,11 @@ pub(super) fn pace_factor(pace: &str, at_game_pace: bool) -> Result<f64, NodeErr
         (pace, true) => pace
             .strip_suffix('x')
             .and_then(|factor| factor.parse().ok())
-            .ok_or_else(|| NodeError::Refused(format!("the game's pace is {pace}, expected realtime or a factor"))),
+            .ok_or_else(|| {
+                NodeError::Refused(format!(
+                    "the game's pace is {pace}, expected realtime or a factor"
+                ))
+            }),
         (pace, false) => Err(NodeError::Refused(format!(
             "the game's pace is {pace}, expected realtime: a real boat runs in real time (--at-game-pace is for emulated ones)"
         ))),

@@ -132,12 +132,17 @@ impl GatewayLoop<'_> {
             self.take_requests()?;
             // With the count from before the stops were taken: a published state covers all stops
             // up to that count, and no later ones.
-            self.input.show_state(stop_count, self.bridge.state_in_words());
+            self.input
+                .show_state(stop_count, self.bridge.state_in_words());
             let due = self.bridge.due(self.clock.now());
             let wait = self.clock.until(due);
             // No longer than a heartbeat: the guard cannot tell a loop that waits for a boat from
             // one that hangs.
-            let call = self.input.calls.take(if self.guarded.is_some() { wait.min(HEARTBEAT) } else { wait });
+            let call = self.input.calls.take(if self.guarded.is_some() {
+                wait.min(HEARTBEAT)
+            } else {
+                wait
+            });
             // The suspension is noted before the input that arrived meanwhile.
             beat_at = self.beat(beat_at)?;
             match call {
@@ -175,7 +180,10 @@ impl GatewayLoop<'_> {
         let (gap, suspended) = last.gap(now);
         if let Some(suspended) = suspended {
             self.counters.awake_since = now.at;
-            self.warn(&format!("this machine was suspended for {:.1} s", suspended.as_secs_f64()));
+            self.warn(&format!(
+                "this machine was suspended for {:.1} s",
+                suspended.as_secs_f64()
+            ));
         }
         if let Some(guarded) = &self.guarded {
             // The stop message may change: with the operator in control, or during an upload.
@@ -221,7 +229,10 @@ impl GatewayLoop<'_> {
                 GatewayCommand::Fleet(command) => self.step_core(Input::Fleet(command), None)?,
             };
             // The requester may be gone.
-            drop(reply.try_send(OperatorReply { refused, status: self.full_status() }));
+            drop(reply.try_send(OperatorReply {
+                refused,
+                status: self.full_status(),
+            }));
         }
         match self.input.queries.take_now() {
             Some(query) => self.operate(query, None),
@@ -235,7 +246,10 @@ impl GatewayLoop<'_> {
         while let Some((command, reply)) = self.input.port_requests.take_now() {
             let refused = command.needs_token().then(|| DISARMED.to_owned());
             // The requester may be gone.
-            drop(reply.try_send(OperatorReply { refused, status: self.full_status() }));
+            drop(reply.try_send(OperatorReply {
+                refused,
+                status: self.full_status(),
+            }));
         }
         while let Some(query) = self.input.queries.take_now() {
             self.operate(query, Some(DISARMED))?;
@@ -245,7 +259,14 @@ impl GatewayLoop<'_> {
 
     /// Enters the game that was found.
     fn enter(&mut self, found: FoundGame) -> Result<(), NodeError> {
-        let FoundGame { bus, game, info, vehicle, factor, site } = found;
+        let FoundGame {
+            bus,
+            game,
+            info,
+            vehicle,
+            factor,
+            site,
+        } = found;
         let scenario = &info.scenario;
         let name = &self.settings.plan.vehicle;
         let newest = |key| bus.publisher_with(key, Priority::Normal, Delivery::Newest);
@@ -254,9 +275,18 @@ impl GatewayLoop<'_> {
             status: newest(topic::report(&game, Reported::Status, name))?,
             link_bytes: newest(topic::report(&game, Reported::Link, name))?,
             vehicle,
-            others: scenario.externals().filter(|other| *other != vehicle).collect(),
+            others: scenario
+                .externals()
+                .filter(|other| *other != vehicle)
+                .collect(),
             _subscriptions: subscribe(&bus, &game, &info, vehicle, &self.input.back)?,
-            _join: Join::begin(&bus, &self.settings.place, (&game, scenario), name, self.input.back.calls.clone())?,
+            _join: Join::begin(
+                &bus,
+                &self.settings.place,
+                (&game, scenario),
+                name,
+                self.input.back.calls.clone(),
+            )?,
             bus,
         };
         // The link has been served before: only what needs a field starts here.
@@ -286,16 +316,24 @@ impl GatewayLoop<'_> {
             // Its subject was read before.
             Call::Look => {}
             Call::Looking(reason) => (self.notify)(NodeEvent::Looking { reason: &reason }),
-            Call::Joined(joined) if self.vehicle().is_some_and(|vehicle| joined.vehicles == [vehicle]) => {
+            Call::Joined(joined)
+                if self
+                    .vehicle()
+                    .is_some_and(|vehicle| joined.vehicles == [vehicle]) =>
+            {
                 self.counters.ticket = Some(joined.ticket);
                 self.counters.game_now = joined.now;
-                self.game_clock.join(self.clock.at(joined.asked), joined.now);
+                self.game_clock
+                    .join(self.clock.at(joined.asked), joined.now);
                 if let Some(port) = self.port {
                     // In a game with keys the port keeps its own.
                     if let Some(known) = self.settings.place.token.get() {
                         port.token().set(Some(known));
                     }
-                    (self.notify)(NodeEvent::ControlPort { address: port.address, token: port.token().get() });
+                    (self.notify)(NodeEvent::ControlPort {
+                        address: port.address,
+                        token: port.token().get(),
+                    });
                 }
                 self.remark("joined: the sim accepts the boat's reports");
                 self.step(Input::Joined, None)?;
@@ -336,11 +374,16 @@ impl GatewayLoop<'_> {
             }
             LinkEvent::Failed { reason, retry_in } => {
                 self.counters.link = reason.clone();
-                self.remark(&format!("{reason}: trying again in {:.1} s", retry_in.as_secs_f64()));
+                self.remark(&format!(
+                    "{reason}: trying again in {:.1} s",
+                    retry_in.as_secs_f64()
+                ));
                 Ok(())
             }
             LinkEvent::Written { tag, at } => {
-                while let Some((sent, came)) = self.counters.writing.pop_front_if(|(sent, _)| *sent <= tag) {
+                while let Some((sent, came)) =
+                    self.counters.writing.pop_front_if(|(sent, _)| *sent <= tag)
+                {
                     if sent == tag {
                         self.counters.order_to_sentence.note(came, at);
                     }
@@ -353,7 +396,9 @@ impl GatewayLoop<'_> {
     fn take_order(&mut self) -> Result<(), NodeError> {
         // Only the newest order: executing an older one first would delay it.
         let taken = self.input.back.latest_order.lock().take();
-        let Some((message, came)) = taken else { return Ok(()) };
+        let Some((message, came)) = taken else {
+            return Ok(());
+        };
         if self.is_too_old(came) {
             return self.step(Input::OldOrder, None);
         }
@@ -368,7 +413,10 @@ impl GatewayLoop<'_> {
         }
         // Checked here as well as in the sim: the core receives only valid numbers, whatever is on
         // the topic.
-        let sound = message.order.order().and_then(|order: Order| order.check().ok());
+        let sound = message
+            .order
+            .order()
+            .and_then(|order: Order| order.check().ok());
         match sound {
             Some(order) => {
                 self.counters.order_came = Some(came);
@@ -379,8 +427,15 @@ impl GatewayLoop<'_> {
     }
 
     fn take_frame(&mut self, bytes: &[u8]) -> Result<(), NodeError> {
-        let Ok(frame) = codec::decode::<Frame>(bytes) else { return Ok(()) };
-        let place = |vehicle: &VehicleId| frame.vehicles.get(vehicle.index()).map(|truth| truth.nav.at());
+        let Ok(frame) = codec::decode::<Frame>(bytes) else {
+            return Ok(());
+        };
+        let place = |vehicle: &VehicleId| {
+            frame
+                .vehicles
+                .get(vehicle.index())
+                .map(|truth| truth.nav.at())
+        };
         let others = self.in_game.iter().flat_map(|in_game| &in_game.others);
         let others: Vec<Ned> = others.filter_map(place).collect();
         self.step(Input::Others(others), None)
@@ -389,16 +444,25 @@ impl GatewayLoop<'_> {
     /// Answers a query; with an objection, nothing that needs the token is done.
     fn operate(&mut self, query: Query, objection: Option<&str>) -> Result<(), NodeError> {
         let token = self.settings.place.token.get();
-        let refused = match self.guard.check(query.key(), query.payload(), OperatorCommand::needs_token) {
-            Checked::Granted(command) if objection.is_some() && command.needs_token() => objection.map(str::to_owned),
-            Checked::Granted(command) => self.execute(command)?,
-            Checked::Challenged(challenge) => {
-                query.answer_as(challenge, token.as_ref());
-                return Ok(());
-            }
-            Checked::Garbage(e) => Some(format!("cannot parse the command: {e}")),
+        let refused =
+            match self
+                .guard
+                .check(query.key(), query.payload(), OperatorCommand::needs_token)
+            {
+                Checked::Granted(command) if objection.is_some() && command.needs_token() => {
+                    objection.map(str::to_owned)
+                }
+                Checked::Granted(command) => self.execute(command)?,
+                Checked::Challenged(challenge) => {
+                    query.answer_as(challenge, token.as_ref());
+                    return Ok(());
+                }
+                Checked::Garbage(e) => Some(format!("cannot parse the command: {e}")),
+            };
+        let reply = OperatorReply {
+            refused,
+            status: self.full_status(),
         };
-        let reply = OperatorReply { refused, status: self.full_status() };
         query.answer_as(token::answer(&reply), token.as_ref());
         Ok(())
     }
@@ -422,7 +486,11 @@ impl GatewayLoop<'_> {
 
     /// Runs one step of the core; returns why a request was refused. `read` is when the bytes were
     /// read from the link.
-    fn step_core(&mut self, input: Input, read: Option<Instant>) -> Result<Option<String>, NodeError> {
+    fn step_core(
+        &mut self,
+        input: Input,
+        read: Option<Instant>,
+    ) -> Result<Option<String>, NodeError> {
         let now = self.clock.now();
         let mut out = Output::default();
         self.bridge.process(now, &input, &mut out);
@@ -435,7 +503,11 @@ impl GatewayLoop<'_> {
                 self.counters.writing.drain(..surplus);
             }
             // Sent before anything is published or recorded, which may be slow.
-            let send = if out.stops { BoatLink::send_stop } else { BoatLink::send };
+            let send = if out.stops {
+                BoatLink::send_stop
+            } else {
+                BoatLink::send
+            };
             send(&*self.link, out.bytes.clone(), self.counters.tag);
         }
         if let Some(nav) = &out.nav {
@@ -445,10 +517,17 @@ impl GatewayLoop<'_> {
             }
         }
         for event in &out.events {
-            (self.notify)(NodeEvent::Event { at_s: now.as_s(), event });
+            (self.notify)(NodeEvent::Event {
+                at_s: now.as_s(),
+                event,
+            });
         }
         // Operators wait for this: a stop counts as done when the status shows it.
-        if out.events.iter().any(|event| matches!(event, Event::State { .. })) {
+        if out
+            .events
+            .iter()
+            .any(|event| matches!(event, Event::State { .. }))
+        {
             self.report_status(&self.full_status())?;
         }
         self.record_step(now, &input, &out)?;
@@ -470,7 +549,10 @@ impl GatewayLoop<'_> {
     /// are compared in a replay.
     fn log(&mut self, event: &Event, text: &str) {
         let at = self.clock.now();
-        (self.notify)(NodeEvent::Event { at_s: at.as_s(), event });
+        (self.notify)(NodeEvent::Event {
+            at_s: at.as_s(),
+            event,
+        });
         if let Some(recorder) = &self.recorder {
             recorder.record(StepEncoder::event(at, Event::Remark(text.to_owned())));
         }
@@ -480,7 +562,12 @@ impl GatewayLoop<'_> {
 impl InGame {
     /// Leaves the game.
     pub(super) fn leave(self) {
-        let InGame { bus, _join, _subscriptions, .. } = self;
+        let InGame {
+            bus,
+            _join,
+            _subscriptions,
+            ..
+        } = self;
         drop((_join, _subscriptions));
         bus.close();
     }

@@ -1,4 +1,5 @@
-//! The guard of a gateway: a small process that stops the boat when the gateway dies, hangs or is suspended.
+//! The guard of a gateway: a small process that stops the boat when the gateway dies, hangs or is
+//! suspended.
 //!
 //! It has a duplicate of the link, which outlives a killed process, and one end of a socket pair.
 //! Over that the gateway sends the stop message of its protocol, a heartbeat from its loop, every
@@ -9,8 +10,9 @@ use bus::clock;
 use parking_lot::Mutex;
 use rustix::net::sockopt::{Timeout, set_socket_timeout};
 use rustix::net::{
-    AddressFamily, RecvAncillaryBuffer, RecvAncillaryMessage, RecvFlags, SendAncillaryBuffer, SendAncillaryMessage,
-    SendFlags, Shutdown, SocketFlags, SocketType, recvmsg, sendmsg, shutdown, socketpair,
+    AddressFamily, RecvAncillaryBuffer, RecvAncillaryMessage, RecvFlags, SendAncillaryBuffer,
+    SendAncillaryMessage, SendFlags, Shutdown, SocketFlags, SocketType, recvmsg, sendmsg, shutdown,
+    socketpair,
 };
 use std::io::{self, IoSlice, IoSliceMut};
 use std::mem::MaybeUninit;
@@ -61,12 +63,25 @@ impl Guarded {
     pub(super) fn start(mut command: Command, stop: &[u8]) -> io::Result<Guarded> {
         // Packets keep their boundaries, can carry descriptors, and the kernel notifies the other
         // end when a process dies.
-        let (socket, its_end) = socketpair(AddressFamily::UNIX, SocketType::SEQPACKET, SocketFlags::CLOEXEC, None)?;
+        let (socket, its_end) = socketpair(
+            AddressFamily::UNIX,
+            SocketType::SEQPACKET,
+            SocketFlags::CLOEXEC,
+            None,
+        )?;
         // A signal from the terminal that ends the gateway must not end the guard.
-        command.stdin(Stdio::from(its_end)).stdout(Stdio::null()).process_group(0);
+        command
+            .stdin(Stdio::from(its_end))
+            .stdout(Stdio::null())
+            .process_group(0);
         let process = Mutex::new(command.spawn()?);
         let is_gone = AtomicBool::new(false);
-        let guarded = Guarded(Arc::new(Inner { socket, process, is_gone, stop: Mutex::default() }));
+        let guarded = Guarded(Arc::new(Inner {
+            socket,
+            process,
+            is_gone,
+            stop: Mutex::default(),
+        }));
         guarded.stop_with(stop);
         Ok(guarded)
     }
@@ -86,7 +101,10 @@ impl Guarded {
 
     /// Passes on a new link, or the loss of the link.
     pub(super) fn link(&self, descriptor: Option<BorrowedFd<'_>>) {
-        self.send(&[if descriptor.is_some() { LINK } else { NO_LINK }], descriptor);
+        self.send(
+            &[if descriptor.is_some() { LINK } else { NO_LINK }],
+            descriptor,
+        );
     }
 
     /// Reports that the gateway has stopped the boat itself, and exits.
@@ -186,7 +204,12 @@ fn hear(socket: BorrowedFd<'_>) -> io::Result<Heard> {
     let mut control = RecvAncillaryBuffer::new(&mut space);
     // A signal does not count as silence.
     let received = rustix::io::retry_on_intr(|| {
-        recvmsg(socket, &mut [IoSliceMut::new(&mut bytes)], &mut control, RecvFlags::CMSG_CLOEXEC)
+        recvmsg(
+            socket,
+            &mut [IoSliceMut::new(&mut bytes)],
+            &mut control,
+            RecvFlags::CMSG_CLOEXEC,
+        )
     });
     match received {
         Ok(received) if received.bytes == 0 => Ok(Heard::Died),
@@ -212,7 +235,9 @@ fn write(link: &OwnedFd, bytes: &[u8]) {
         match rustix::io::write(link, rest) {
             Ok(count) => rest = &rest[count..],
             // Sockets have already waited for a moment; serial lines have not.
-            Err(rustix::io::Errno::AGAIN | rustix::io::Errno::INTR) => clock::rest(Duration::from_millis(2)),
+            Err(rustix::io::Errno::AGAIN | rustix::io::Errno::INTR) => {
+                clock::rest(Duration::from_millis(2))
+            }
             Err(_) => return,
         }
     }

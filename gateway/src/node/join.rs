@@ -37,14 +37,19 @@ impl Join {
         let scenario = scenario.clone();
         let vehicles = [vehicle.to_owned()];
         let ended = Arc::clone(&stop);
-        let join = move || game_search::join(&bus, &place, (&game, &scenario), Role::Gateway, &vehicles);
+        let join =
+            move || game_search::join(&bus, &place, (&game, &scenario), Role::Gateway, &vehicles);
         let failed = |e: std::io::Error| BusError::Use {
             doing: "start the thread that joins as",
             key: vehicle.to_owned(),
             reason: e.to_string(),
         };
-        let thread = NodeThread::start(move || keep_joined(&join, &sim, &ended, &calls)).map_err(failed)?;
-        Ok(Join { stop, _thread: thread })
+        let thread =
+            NodeThread::start(move || keep_joined(&join, &sim, &ended, &calls)).map_err(failed)?;
+        Ok(Join {
+            stop,
+            _thread: thread,
+        })
     }
 }
 
@@ -71,7 +76,9 @@ fn keep_joined(
             Ok(joined) => calls.put(Call::Joined(joined)),
             // Keep trying: the gateway that has the boat may be about to leave, or the next sim
             // may have the boat.
-            Err(NotFound::Refused(refusal)) => calls.put(Call::Remark(format!("the sim refuses: {refusal}"))),
+            Err(NotFound::Refused(refusal)) => {
+                calls.put(Call::Remark(format!("the sim refuses: {refusal}")))
+            }
             Err(NotFound::InTime(..)) => return,
         }
         while !stop.load(Ordering::Relaxed) && !sim.is_lost(LOOK) {}

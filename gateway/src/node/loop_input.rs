@@ -109,16 +109,31 @@ pub(super) fn loop_input() -> (LoopInput, LoopOutput) {
     let (queries, queries_out) = inbox(REQUESTS_MAX);
     let (port_requests, port_requests_out) = inbox(REQUESTS_MAX);
     let (latest_order, stops, found) = Default::default();
-    let input = LoopInput { calls, latest_order, stops, found, queries, port_requests };
+    let input = LoopInput {
+        calls,
+        latest_order,
+        stops,
+        found,
+        queries,
+        port_requests,
+    };
     let back = input.clone();
-    (input, LoopOutput { calls: calls_out, queries: queries_out, port_requests: port_requests_out, back })
+    (
+        input,
+        LoopOutput {
+            calls: calls_out,
+            queries: queries_out,
+            port_requests: port_requests_out,
+            back,
+        },
+    )
 }
 
 impl LoopInput {
     /// Adds a stop. Returns the number of stops received.
     pub(super) fn stop(&self, stop: Stop) -> u64 {
-        // Sequentially consistent, like everything about stops: a thread that sees the count also sees
-        // the flag.
+        // Sequentially consistent, like everything about stops: a thread that sees the count also
+        // sees the flag.
         let is_first = !self.stops.of(stop).swap(true, Ordering::SeqCst);
         // Counted once it is visible.
         let count = self.stops.count.fetch_add(1, Ordering::SeqCst) + 1;
@@ -131,14 +146,20 @@ impl LoopInput {
 
     /// Whether an E-stop is waiting.
     pub(super) fn has_e_stop(&self) -> bool {
-        [Scope::Boat, Scope::Fleet].iter().any(|scope| self.stops.of(Stop::EStop(*scope)).load(Ordering::SeqCst))
+        [Scope::Boat, Scope::Fleet]
+            .iter()
+            .any(|scope| self.stops.of(Stop::EStop(*scope)).load(Ordering::SeqCst))
     }
 
     /// The boat's state after this many stops; `None` if the loop does not execute them within
     /// `limit`.
     pub(super) fn state_after(&self, count: u64, limit: Duration) -> Option<String> {
-        self.stops.state.wait(limit, |(carried_out, _)| *carried_out >= count);
-        self.stops.state.visit(|(carried_out, state)| (*carried_out >= count).then(|| state.clone()))
+        self.stops
+            .state
+            .wait(limit, |(carried_out, _)| *carried_out >= count);
+        self.stops
+            .state
+            .visit(|(carried_out, state)| (*carried_out >= count).then(|| state.clone()))
     }
 
     /// Sets the game, or why there is none. This cannot be displaced either.
@@ -184,7 +205,10 @@ impl LoopOutput {
 
     /// Publishes the boat's state, and the number of stops executed before.
     pub(super) fn show_state(&self, stop_count: u64, state: String) {
-        self.back.stops.state.visit(|shown| *shown = (stop_count, state));
+        self.back
+            .stops
+            .state
+            .visit(|shown| *shown = (stop_count, state));
     }
 }
 
@@ -198,7 +222,10 @@ mod tests {
         let (input, output) = loop_input();
         let [boat, fleet] = [Scope::Boat, Scope::Fleet].map(Stop::EStop);
         (0..2 * CALLS_MAX).for_each(|_| assert!(input.stop(fleet) > 0));
-        assert!(matches!(output.calls.take(Duration::ZERO), Some(Call::Look)) && output.calls.take_now().is_none());
+        assert!(
+            matches!(output.calls.take(Duration::ZERO), Some(Call::Look))
+                && output.calls.take_now().is_none()
+        );
         assert!(output.take_stop(fleet) && !output.take_stop(fleet));
         (0..2 * CALLS_MAX).for_each(|_| input.calls.put(Call::Release));
         assert!(!input.has_e_stop());
@@ -213,10 +240,16 @@ mod tests {
     fn the_state_is_that_after_the_stop() {
         let (input, output) = loop_input();
         output.show_state(output.stop_count(), "armed".to_owned());
-        assert_eq!(input.state_after(0, Duration::ZERO).as_deref(), Some("armed"));
+        assert_eq!(
+            input.state_after(0, Duration::ZERO).as_deref(),
+            Some("armed")
+        );
         let count = input.stop(Stop::Disarm);
         assert_eq!(input.state_after(count, Duration::from_millis(1)), None);
         output.show_state(output.stop_count(), "disarmed".to_owned());
-        assert_eq!(input.state_after(count, Duration::ZERO).as_deref(), Some("disarmed"));
+        assert_eq!(
+            input.state_after(count, Duration::ZERO).as_deref(),
+            Some("disarmed")
+        );
     }
 }

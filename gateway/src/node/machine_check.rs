@@ -19,7 +19,10 @@ fn space(folder: &Path) -> Check {
     let name = "recording space";
     match free_mib(folder) {
         Ok(free_mib) => {
-            let found = format!("{free_mib} MiB free in {}, expected {SPACE_MIN_MIB}", folder.display());
+            let found = format!(
+                "{free_mib} MiB free in {}, expected {SPACE_MIN_MIB}",
+                folder.display()
+            );
             Check::of(name, free_mib >= SPACE_MIN_MIB, found)
         }
         Err(e) => Check::not_done(name, format!("{}: {e}", folder.display())),
@@ -36,21 +39,33 @@ fn sleep(inhibitors: &Path) -> Check {
     let Ok(entries) = std::fs::read_dir(inhibitors) else {
         return Check::not_done(
             "sleep",
-            format!("{} does not exist: make sure that this machine stays awake", inhibitors.display()),
+            format!(
+                "{} does not exist: make sure that this machine stays awake",
+                inhibitors.display()
+            ),
         );
     };
-    let texts = entries.flatten().filter_map(|entry| std::fs::read_to_string(entry.path()).ok());
+    let texts = entries
+        .flatten()
+        .filter_map(|entry| std::fs::read_to_string(entry.path()).ok());
     let holders: Vec<String> = texts.filter_map(|text| sleep_inhibitor(&text)).collect();
     if holders.is_empty() {
         let found = "nothing prevents this machine from sleeping; use systemd-inhibit --what=sleep, or the unit";
         return Check::of("sleep", false, found.to_owned());
     }
-    Check::of("sleep", true, format!("prevented by {}", holders.join(", ")))
+    Check::of(
+        "sleep",
+        true,
+        format!("prevented by {}", holders.join(", ")),
+    )
 }
 
 /// The name of the process that prevents sleep by this entry, if it does.
 fn sleep_inhibitor(text: &str) -> Option<String> {
-    let value = |key: &str| text.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix('='));
+    let value = |key: &str| {
+        text.lines()
+            .find_map(|line| line.strip_prefix(key)?.strip_prefix('='))
+    };
     // An inhibitor of mode "delay" only delays sleep by some seconds.
     let blocks = value("MODE")? == "block" && value("WHAT")?.split(':').any(|what| what == "sleep");
     blocks.then(|| value("WHO").unwrap_or("somebody").to_owned())
@@ -65,21 +80,32 @@ mod tests {
     fn only_who_blocks_sleep_keeps_a_machine_awake() {
         let folder = tempfile::tempdir().expect("a folder");
         let entry = |name: &str, what: &str, mode: &str| {
-            let text = format!("# made by logind\nWHAT={what}\nWHO={name}\nWHY=because\nMODE={mode}\nUID=0\nPID=1\n");
+            let text = format!(
+                "# made by logind\nWHAT={what}\nWHO={name}\nWHY=because\nMODE={mode}\nUID=0\nPID=1\n"
+            );
             std::fs::write(folder.path().join(name), text).expect("written");
         };
         entry("NetworkManager", "sleep", "delay");
         entry("desktop", "handle-lid-switch:idle", "block");
         assert_eq!(sleep(folder.path()).verdict, Verdict::Failed);
         entry("squall", "idle:sleep", "block");
-        assert_eq!(sleep(folder.path()), Check::of("sleep", true, "prevented by squall".to_owned()));
-        assert_eq!(sleep(&folder.path().join("none")).verdict, Verdict::NotChecked);
+        assert_eq!(
+            sleep(folder.path()),
+            Check::of("sleep", true, "prevented by squall".to_owned())
+        );
+        assert_eq!(
+            sleep(&folder.path().join("none")).verdict,
+            Verdict::NotChecked
+        );
     }
 
     #[test]
     fn a_folder_that_is_not_there_has_no_room() {
         let folder = tempfile::tempdir().expect("a folder");
         assert_ne!(space(folder.path()).verdict, Verdict::NotChecked);
-        assert_eq!(space(&folder.path().join("none")).verdict, Verdict::NotChecked);
+        assert_eq!(
+            space(&folder.path().join("none")).verdict,
+            Verdict::NotChecked
+        );
     }
 }

@@ -93,13 +93,17 @@ pub fn serve(
     outside: Outside,
     notify: &mut dyn FnMut(NodeEvent<'_>),
 ) -> Result<(), NodeError> {
-    file.iter().for_each(|file| notify(NodeEvent::Recording(file.path())));
+    file.iter()
+        .for_each(|file| notify(NodeEvent::Recording(file.path())));
     let _lock = match LinkLock::take(&outside.link.to_string()) {
         Ok(lock) => Some(lock),
         Err(held @ LinkLockError::Held { .. }) => return Err(held.into()),
         // Failure to write a file is no reason to abandon the boat.
         Err(LinkLockError::File { link, source }) => {
-            warn(notify, format!("the link {link} is not locked against a second gateway: {source}"));
+            warn(
+                notify,
+                format!("the link {link} is not locked against a second gateway: {source}"),
+            );
             None
         }
     };
@@ -111,30 +115,64 @@ pub fn serve(
     // that.
     let token = settings.place.token.get().unwrap_or_else(Token::random);
     // Before the link: a port in use is an error before the boat receives anything from us.
-    let port = ControlPort::open(outside.control, &settings.plan.vehicle, Some(token).into(), input.0.clone())?;
+    let port = ControlPort::open(
+        outside.control,
+        &settings.plan.vehicle,
+        Some(token).into(),
+        input.0.clone(),
+    )?;
     // A boat that receives only standby needs no guard.
     let guard = outside.guard.filter(|_| !settings.plan.dry_run);
     let guarded = guard.and_then(|guard| start_guard(settings, guard, notify));
-    let on_port = guarded.clone().map(|guarded| -> OnPort { Box::new(move |descriptor| guarded.link(descriptor)) });
+    let on_port = guarded
+        .clone()
+        .map(|guarded| -> OnPort { Box::new(move |descriptor| guarded.link(descriptor)) });
     let open = |on_event: OnLinkEvent| -> Result<Box<dyn BoatLink>, LinkError> {
-        let link_settings = LinkSettings { silence: Some(outside.silence), ..LinkSettings::default() };
-        Ok(Box::new(Link::open_watched(&outside.link, link_settings, on_port, on_event)?))
+        let link_settings = LinkSettings {
+            silence: Some(outside.silence),
+            ..LinkSettings::default()
+        };
+        Ok(Box::new(Link::open_watched(
+            &outside.link,
+            link_settings,
+            on_port,
+            on_event,
+        )?))
     };
-    connect(settings, input, file, (Some(port), guarded, &outside.payloads), open, notify)
+    connect(
+        settings,
+        input,
+        file,
+        (Some(port), guarded, &outside.payloads),
+        open,
+        notify,
+    )
 }
 
 /// Warns before the gateway's time begins.
 fn warn(notify: &mut dyn FnMut(NodeEvent<'_>), text: String) {
-    notify(NodeEvent::Event { at_s: 0.0, event: &Event::Warning(text) });
+    notify(NodeEvent::Event {
+        at_s: 0.0,
+        event: &Event::Warning(text),
+    });
 }
 
 /// Starts the guard. Failure to start it does not abandon the boat.
-fn start_guard(settings: &Settings, mut command: Command, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Option<Guarded> {
+fn start_guard(
+    settings: &Settings,
+    mut command: Command,
+    notify: &mut dyn FnMut(NodeEvent<'_>),
+) -> Option<Guarded> {
     // Without the environment it has no token and no address, and needs neither.
     command.env_clear();
-    let started = Guarded::start(command, &Protocol::new(&settings.plan.gateway).guard_message());
+    let started = Guarded::start(
+        command,
+        &Protocol::new(&settings.plan.gateway).guard_message(),
+    );
     let text = "there is no guard: if the gateway is killed, nothing stops the boat";
-    started.inspect_err(|e| warn(notify, format!("{text}: {e}"))).ok()
+    started
+        .inspect_err(|e| warn(notify, format!("{text}: {e}")))
+        .ok()
 }
 
 /// Like [`serve`], without a control port, and over a link from `open`: for simulated networks.
@@ -146,7 +184,14 @@ pub fn serve_over(
     open: impl FnOnce(OnLinkEvent) -> Result<Box<dyn BoatLink>, LinkError>,
     notify: &mut dyn FnMut(NodeEvent<'_>),
 ) -> Result<(), NodeError> {
-    connect(settings, loop_input(), None, (None, None, &[]), open, notify)
+    connect(
+        settings,
+        loop_input(),
+        None,
+        (None, None, &[]),
+        open,
+        notify,
+    )
 }
 
 /// Opens the link, runs the loop, and finds the game in the meantime.
@@ -159,7 +204,10 @@ fn connect(
     notify: &mut dyn FnMut(NodeEvent<'_>),
 ) -> Result<(), NodeError> {
     if let Some(port) = &port {
-        notify(NodeEvent::ControlPort { address: port.address, token: port.token().get() });
+        notify(NodeEvent::ControlPort {
+            address: port.address,
+            token: port.token().get(),
+        });
     }
     let plan = &settings.plan;
     let path = file.as_ref().map(|file| file.path().to_owned());
@@ -170,7 +218,12 @@ fn connect(
     // numbers.
     let clock = Clock::start();
     let record = recorder.as_ref().map(Recorder::bulk).zip(path);
-    let shell = payload::Shell { record, space_min_mib: SPACE_MIN_MIB, clock, calls: input.calls.clone() };
+    let shell = payload::Shell {
+        record,
+        space_min_mib: SPACE_MIN_MIB,
+        clock,
+        calls: input.calls.clone(),
+    };
     // After the link: a slow payload must not delay standby for the boat.
     let payloads = Payloads::open(payloads, &shell, notify);
     let mut gateway_loop = GatewayLoop {
@@ -195,7 +248,9 @@ fn connect(
     port.iter().for_each(ControlPort::begin);
     let result = match &finder {
         Ok(_) => gateway_loop.run(&settings.stop),
-        Err(e) => Err(NodeError::Refused(format!("cannot start a thread to look for the game: {e}"))),
+        Err(e) => Err(NodeError::Refused(format!(
+            "cannot start a thread to look for the game: {e}"
+        ))),
     };
     if result.is_err() {
         gateway_loop.await_boat();
@@ -219,7 +274,16 @@ fn connect(
 }
 
 /// Starts the recording. Failure to start it does not abandon the boat.
-fn recorder(file: NewFile, settings: &Settings, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Option<Recorder> {
-    let begun = Recorder::begin(file, &record::opening(&settings.plan, utc::now_ns(), settings.commit));
-    begun.inspect_err(|e| warn(notify, format!("nothing is recorded: {e}"))).ok()
+fn recorder(
+    file: NewFile,
+    settings: &Settings,
+    notify: &mut dyn FnMut(NodeEvent<'_>),
+) -> Option<Recorder> {
+    let begun = Recorder::begin(
+        file,
+        &record::opening(&settings.plan, utc::now_ns(), settings.commit),
+    );
+    begun
+        .inspect_err(|e| warn(notify, format!("nothing is recorded: {e}")))
+        .ok()
 }

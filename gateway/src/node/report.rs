@@ -29,10 +29,13 @@ impl GatewayLoop<'_> {
         if status.link != "up" {
             status.link.clone_from(&self.counters.link);
         }
-        status.latency_us =
-            [self.counters.sentence_to_topic.summary_us(), self.counters.order_to_sentence.summary_us()];
-        let lost =
-            self.recorder.as_ref().map_or([0; 2], |recorder| [recorder.state().dropped, recorder.bulk_dropped()]);
+        status.latency_us = [
+            self.counters.sentence_to_topic.summary_us(),
+            self.counters.order_to_sentence.summary_us(),
+        ];
+        let lost = self.recorder.as_ref().map_or([0; 2], |recorder| {
+            [recorder.state().dropped, recorder.bulk_dropped()]
+        });
         let more = [
             ("nav reports", self.counters.reports),
             ("displaced writes", self.link.displaced()),
@@ -41,13 +44,19 @@ impl GatewayLoop<'_> {
             ("payload messages not recorded", lost[1]),
         ];
         status.alarms.extend(self.counters.recording_fault.clone());
-        status.counts.extend(more.map(|(name, count)| (name.to_owned(), count)));
+        status
+            .counts
+            .extend(more.map(|(name, count)| (name.to_owned(), count)));
         status
     }
 
     /// Warns once if the recording ends before the gateway does, or loses entries.
     pub(super) fn check_recording(&mut self) {
-        let Some(fault) = self.recorder.as_ref().and_then(|recorder| recording_fault(&recorder.state())) else {
+        let Some(fault) = self
+            .recorder
+            .as_ref()
+            .and_then(|recorder| recording_fault(&recorder.state()))
+        else {
             return;
         };
         if self.counters.recording_fault.as_ref() != Some(&fault) {
@@ -60,22 +69,39 @@ impl GatewayLoop<'_> {
     pub(super) fn report_status(&self, status: &GatewayStatus) -> Result<(), NodeError> {
         if let (Some(ticket), Some(in_game)) = (self.counters.ticket, &self.in_game) {
             let json = serde_json::to_vec(status).expect("a status is JSON");
-            in_game.status.send_raw(Reported::with_ticket(ticket, &json))?;
+            in_game
+                .status
+                .send_raw(Reported::with_ticket(ticket, &json))?;
         }
         Ok(())
     }
 
     /// Publishes the bytes that went over the link, and records the whole step.
-    pub(super) fn record_step(&mut self, now: SimTime, input: &Input, out: &Output) -> Result<(), NodeError> {
+    pub(super) fn record_step(
+        &mut self,
+        now: SimTime,
+        input: &Input,
+        out: &Output,
+    ) -> Result<(), NodeError> {
         let link_bytes = self.in_game.as_ref().map(|in_game| &in_game.link_bytes);
         // Encode only for a reader: without a recorder and observers the bytes are dropped here.
-        let ticket = self.counters.ticket.filter(|_| link_bytes.is_some_and(Publisher::is_heard));
+        let ticket = self
+            .counters
+            .ticket
+            .filter(|_| link_bytes.is_some_and(Publisher::is_heard));
         if ticket.is_none() && self.recorder.is_none() {
             return Ok(());
         }
         for entry in self.encoder.step(now, self.counters.game_now, input, out) {
-            if let (Some(ticket), Some(link_bytes), Entry::Message { schema: Some(LinkBytes::SCHEMA), bytes, .. }) =
-                (ticket, link_bytes, &entry)
+            if let (
+                Some(ticket),
+                Some(link_bytes),
+                Entry::Message {
+                    schema: Some(LinkBytes::SCHEMA),
+                    bytes,
+                    ..
+                },
+            ) = (ticket, link_bytes, &entry)
             {
                 link_bytes.send_raw(Reported::with_ticket(ticket, bytes))?;
             }
@@ -87,11 +113,24 @@ impl GatewayLoop<'_> {
     }
 
     pub(super) fn report(&mut self, out: &NavOut) -> Result<(), NodeError> {
-        let (Some(ticket), Some(in_game)) = (self.counters.ticket, &self.in_game) else { return Ok(()) };
+        let (Some(ticket), Some(in_game)) = (self.counters.ticket, &self.in_game) else {
+            return Ok(());
+        };
         self.counters.reports += 1;
-        let stamp = Stamp { valid_ns: self.counters.game_now, seq: self.counters.reports, version: NavReport::VERSION };
+        let stamp = Stamp {
+            valid_ns: self.counters.game_now,
+            seq: self.counters.reports,
+            version: NavReport::VERSION,
+        };
         let age_ns = SimTime::from_s(out.age_s).0;
-        let report = NavReport { stamp, ticket, vehicle: in_game.vehicle, valid: out.valid, age_ns, nav: out.nav };
+        let report = NavReport {
+            stamp,
+            ticket,
+            vehicle: in_game.vehicle,
+            valid: out.valid,
+            age_ns,
+            nav: out.nav,
+        };
         Ok(in_game.nav.send(&report)?)
     }
 }

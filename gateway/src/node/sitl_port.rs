@@ -38,8 +38,16 @@ impl SitlPort {
         let stop = Arc::new(AtomicBool::new(false));
         let (shared, ends) = (Arc::clone(&firmware), Arc::clone(&stop));
         let serve = move || serve(&socket, &shared, &ends);
-        let thread = std::thread::Builder::new().name("SITL port".to_owned()).spawn(serve).map_err(fail)?;
-        Ok(SitlPort { firmware, stop, thread: Some(thread), address })
+        let thread = std::thread::Builder::new()
+            .name("SITL port".to_owned())
+            .spawn(serve)
+            .map_err(fail)?;
+        Ok(SitlPort {
+            firmware,
+            stop,
+            thread: Some(thread),
+            address,
+        })
     }
 
     /// Its address.
@@ -79,7 +87,8 @@ fn serve(socket: &UdpSocket, firmware: &Mutex<Sitl>, stop: &AtomicBool) {
     while !stop.load(Ordering::Relaxed) {
         // A timeout, or the error of an earlier reply to a closed port: the reply may be due.
         if let Ok((count, from)) = socket.recv_from(&mut buffer) {
-            let is_taken = user.is_some_and(|(by, heard)| by != from && clock::since(heard) < IDLE_MAX);
+            let is_taken =
+                user.is_some_and(|(by, heard)| by != from && clock::since(heard) < IDLE_MAX);
             if is_taken {
                 continue;
             }

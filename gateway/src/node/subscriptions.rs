@@ -19,9 +19,12 @@ pub(super) fn subscribe(
     input: &LoopInput,
 ) -> Result<Vec<Declaration>, BusError> {
     let scenario = &info.scenario;
-    let [orders, queries, stops, controls, releases, frames, runs] = std::array::from_fn(|_| input.clone());
+    let [orders, queries, stops, controls, releases, frames, runs] =
+        std::array::from_fn(|_| input.clone());
     let take_order = move |bytes: &[u8]| {
-        let Ok(order) = codec::decode(bytes) else { return };
+        let Ok(order) = codec::decode(bytes) else {
+            return;
+        };
         let mut latest_order = orders.latest_order.lock();
         // A call that is still waiting will find the newest.
         if latest_order.replace((order, bus::clock::now())).is_none() {
@@ -36,7 +39,8 @@ pub(super) fn subscribe(
         bus.subscribe(topic::external_order(game, scenario, vehicle), take_order)?,
         bus.answer(topic::operate(game, name), move |query| {
             // It is read again, behind other requests, to be answered.
-            let command = Guard::default().check(query.key(), query.payload(), OperatorCommand::needs_token);
+            let command =
+                Guard::default().check(query.key(), query.payload(), OperatorCommand::needs_token);
             if let Checked::Granted(command) = command
                 && let Some(stop) = Stop::of(&command)
             {
@@ -55,7 +59,9 @@ pub(super) fn subscribe(
                 controls.stop(Stop::EStop(Scope::Fleet));
             }
         })?,
-        bus.subscribe(topic::released(game), move |_| releases.calls.put(Call::Release))?,
+        bus.subscribe(topic::released(game), move |_| {
+            releases.calls.put(Call::Release)
+        })?,
         bus.subscribe(topic::run(game), move |bytes| {
             if serde_json::from_slice(bytes).is_ok_and(|run: RunState| run.phase == Phase::Over) {
                 runs.calls.put(Call::Over);

@@ -49,8 +49,14 @@ impl TcpPort {
             connections: Connections::new(connections_max),
         });
         let shared = Arc::clone(&server);
-        let thread = std::thread::Builder::new().name(name.to_owned()).spawn(move || shared.accept(&listener))?;
-        Ok(TcpPort { server, thread: Some(thread), address })
+        let thread = std::thread::Builder::new()
+            .name(name.to_owned())
+            .spawn(move || shared.accept(&listener))?;
+        Ok(TcpPort {
+            server,
+            thread: Some(thread),
+            address,
+        })
     }
 }
 
@@ -58,7 +64,11 @@ impl Drop for TcpPort {
     fn drop(&mut self) {
         self.server.is_closing.store(true, Ordering::SeqCst);
         // The result of a thread that panicked is not needed.
-        self.thread.take().map(JoinHandle::join).into_iter().for_each(drop);
+        self.thread
+            .take()
+            .map(JoinHandle::join)
+            .into_iter()
+            .for_each(drop);
         self.server.connections.close();
     }
 }
@@ -77,13 +87,21 @@ impl Server {
 
     /// Starts a connection's thread. Without a thread, the connection is closed.
     fn open(self: &Arc<Self>, stream: TcpStream, from: IpAddr) {
-        let Ok(other) = stream.try_clone() else { return };
+        let Ok(other) = stream.try_clone() else {
+            return;
+        };
         // The reading thread will notice; the stream may be closed already.
         // The connection that has been idle longest is closed, so that many silent connections
         // cannot lock anybody out.
-        let slot = self.connections.admit(from, move || drop(other.shutdown(Shutdown::Both)));
+        let slot = self
+            .connections
+            .admit(from, move || drop(other.shutdown(Shutdown::Both)));
         let server = Arc::clone(self);
         let serve = move || (server.serve)(&slot, &stream);
-        drop(std::thread::Builder::new().name(self.name.clone()).spawn(serve));
+        drop(
+            std::thread::Builder::new()
+                .name(self.name.clone())
+                .spawn(serve),
+        );
     }
 }

@@ -16,7 +16,13 @@ const LOOK: Duration = Duration::from_millis(50);
 /// So nothing is read unless this process is in the foreground, and no read blocks.
 pub fn on_enter(pressed: impl Fn() + Send + 'static) {
     let flags = OFlags::NONBLOCK.bits().cast_signed();
-    let Ok(mut terminal) = OpenOptions::new().read(true).custom_flags(flags).open("/dev/tty") else { return };
+    let Ok(mut terminal) = OpenOptions::new()
+        .read(true)
+        .custom_flags(flags)
+        .open("/dev/tty")
+    else {
+        return;
+    };
     let read = move || {
         let mut bytes = [0; 256];
         loop {
@@ -35,7 +41,11 @@ pub fn on_enter(pressed: impl Fn() + Send + 'static) {
         }
     };
     // Without a thread the key does not work; nothing else is lost.
-    drop(std::thread::Builder::new().name("terminal key".to_owned()).spawn(read));
+    drop(
+        std::thread::Builder::new()
+            .name("terminal key".to_owned())
+            .spawn(read),
+    );
 }
 
 fn is_in_foreground(terminal: &File) -> bool {

@@ -18,16 +18,34 @@ pub struct PayloadEncoder {
 impl PayloadEncoder {
     /// For the payload of this name.
     pub fn new(name: &str) -> PayloadEncoder {
-        PayloadEncoder { bytes_topic: format!("payload/{name}"), values_topic: format!("values/{name}"), pieces: 0 }
+        PayloadEncoder {
+            bytes_topic: format!("payload/{name}"),
+            values_topic: format!("values/{name}"),
+            pieces: 0,
+        }
     }
 
     /// The entry for bytes of this connection at `at` by the gateway's clock; empty if that side
     /// has closed it.
     pub fn bytes(&mut self, at: SimTime, connection: u32, outward: bool, data: &[u8]) -> Entry {
-        let stamp = Stamp { valid_ns: at, seq: self.pieces, version: PayloadBytes::VERSION };
+        let stamp = Stamp {
+            valid_ns: at,
+            seq: self.pieces,
+            version: PayloadBytes::VERSION,
+        };
         self.pieces += 1;
-        let bytes = codec::encode(&PayloadBytes { stamp, connection, outward, data: data.to_vec() });
-        Entry::Message { topic: self.bytes_topic.clone(), schema: Some(PayloadBytes::SCHEMA), bytes, at }
+        let bytes = codec::encode(&PayloadBytes {
+            stamp,
+            connection,
+            outward,
+            data: data.to_vec(),
+        });
+        Entry::Message {
+            topic: self.bytes_topic.clone(),
+            schema: Some(PayloadBytes::SCHEMA),
+            bytes,
+            at,
+        }
     }
 
     /// The entry for a measurement.

@@ -24,9 +24,18 @@ pub struct Water {
 }
 
 /// The checks of what a boat has sent so far, by the host's clock.
-pub fn boat_checks(seen: &SensorCheck, host: HostTime, gateway: &Gateway, water: Option<&Water>) -> Vec<Check> {
+pub fn boat_checks(
+    seen: &SensorCheck,
+    host: HostTime,
+    gateway: &Gateway,
+    water: Option<&Water>,
+) -> Vec<Check> {
     let missing = seen.missing();
-    let sentences = if missing.is_empty() { "nothing is missing".to_owned() } else { missing.join("; ") };
+    let sentences = if missing.is_empty() {
+        "nothing is missing".to_owned()
+    } else {
+        missing.join("; ")
+    };
     vec![
         Check::of("sentences", missing.is_empty(), sentences),
         fix(seen, gateway),
@@ -42,10 +51,16 @@ pub fn boat_checks(seen: &SensorCheck, host: HostTime, gateway: &Gateway, water:
 }
 
 fn fix(seen: &SensorCheck, gateway: &Gateway) -> Check {
-    let Some(fix) = seen.fix else { return Check::not_done("fix", "no fix with a quality was received") };
+    let Some(fix) = seen.fix else {
+        return Check::not_done("fix", "no fix with a quality was received");
+    };
     let nav = &gateway.nav;
-    let satellites = fix.satellites.map_or("unknown".to_owned(), |count| count.to_string());
-    let hdop = fix.hdop.map_or("unknown".to_owned(), |hdop| hdop.to_string());
+    let satellites = fix
+        .satellites
+        .map_or("unknown".to_owned(), |count| count.to_string());
+    let hdop = fix
+        .hdop
+        .map_or("unknown".to_owned(), |hdop| hdop.to_string());
     let quality = fix.quality.unwrap_or_default();
     let found = format!(
         "{}, {satellites} satellites, dilution {hdop}; expected quality {} or better, dilution up to {}",
@@ -54,39 +69,69 @@ fn fix(seen: &SensorCheck, gateway: &Gateway) -> Check {
         nav.hdop_max
     );
     let is_sharp = fix.hdop.is_none_or(|hdop| hdop <= nav.hdop_max);
-    Check::of("fix", fix.at.is_some() && quality.meets(nav.quality_min) && is_sharp, found)
+    Check::of(
+        "fix",
+        fix.at.is_some() && quality.meets(nav.quality_min) && is_sharp,
+        found,
+    )
 }
 
 fn scatter(seen: &SensorCheck) -> Check {
     let fixes = &seen.fixes;
-    let lasted_s = fixes.first().zip(fixes.last()).map_or(0.0, |(first, last)| (last.0 - first.0).as_s());
+    let lasted_s = fixes
+        .first()
+        .zip(fixes.last())
+        .map_or(0.0, |(first, last)| (last.0 - first.0).as_s());
     let places: Vec<LatLon> = fixes.iter().map(|(_, at)| *at).collect();
     // Drift of a fix shows over tens of seconds; a few good fixes do not reveal it.
     match FixScatter::of(&places).filter(|_| lasted_s >= SCATTER_S) {
-        None => Check::not_done("scatter", format!("{lasted_s:.0} s of fixes, expected {SCATTER_S}: use --for-s 30")),
-        Some(FixScatter { radius_95_m, drift_m }) => {
+        None => Check::not_done(
+            "scatter",
+            format!("{lasted_s:.0} s of fixes, expected {SCATTER_S}: use --for-s 30"),
+        ),
+        Some(FixScatter {
+            radius_95_m,
+            drift_m,
+        }) => {
             let found = format!(
                 "95 % within {radius_95_m:.2} m, drift {drift_m:.2} m in {lasted_s:.0} s; expected up to {SCATTER_MAX_M} m for a boat at rest"
             );
-            Check::of("scatter", radius_95_m <= SCATTER_MAX_M && drift_m <= SCATTER_MAX_M, found)
+            Check::of(
+                "scatter",
+                radius_95_m <= SCATTER_MAX_M && drift_m <= SCATTER_MAX_M,
+                found,
+            )
         }
     }
 }
 
 fn geofence(seen: &SensorCheck, water: Option<&Water>) -> Check {
     let Some(water) = water else {
-        return Check::not_done("geofence", "the field is unknown without a game: use --vehicle NAME with --game");
+        return Check::not_done(
+            "geofence",
+            "the field is unknown without a game: use --vehicle NAME with --game",
+        );
     };
-    let Some((_, at)) = seen.fixes.last() else { return Check::not_done("geofence", "received no position") };
+    let Some((_, at)) = seen.fixes.last() else {
+        return Check::not_done("geofence", "received no position");
+    };
     let place = LocalFrame::new(water.field.plan.datum).ned(*at);
     let clearance_m = water.area.clearance_m(place);
-    let on_field = if water.field.contains(place) { "on the field" } else { "off the field" };
+    let on_field = if water.field.contains(place) {
+        "on the field"
+    } else {
+        "off the field"
+    };
     let found = format!(
         "x {:.1} m, y {:.1} m, {on_field}, {:.1} m {} the nearest edge of the geofence",
         place.east,
         place.north,
         clearance_m.abs(),
-        if clearance_m > 0.0 { "inside" } else { "OUTSIDE" }
+        if clearance_m > 0.0 {
+            "inside"
+        } else {
+            "OUTSIDE"
+        }
     );
     Check::of("geofence", clearance_m > 0.0, found)
 }
@@ -96,7 +141,11 @@ fn compass(seen: &SensorCheck) -> Check {
         Some(heading_deg) if (0.0..=360.0).contains(&heading_deg) => {
             Check::of("compass", true, seen.heading().unwrap_or_default())
         }
-        Some(heading_deg) => Check::of("compass", false, format!("heading {heading_deg}, expected 0 to 360")),
+        Some(heading_deg) => Check::of(
+            "compass",
+            false,
+            format!("heading {heading_deg}, expected 0 to 360"),
+        ),
         None => Check::not_done("compass", "received no heading"),
     }
 }
@@ -106,11 +155,21 @@ fn control(seen: &SensorCheck, gateway: &Gateway) -> Check {
         let found = "the boat does not report who commands it";
         // For boats without such a sentence the file may state it: then a person takes
         // responsibility for who has control.
-        return Check::of("control", gateway.control.assumed, format!("{found}; expected PSEAD, or control.assumed"));
+        return Check::of(
+            "control",
+            gateway.control.assumed,
+            format!("{found}; expected PSEAD, or control.assumed"),
+        );
     };
     let mode = control.shown.mode;
-    let is_ours = control.operator.is_none_or(|operator| operator == Operator::Secondary);
-    let operator = control.operator.map_or("nobody identified".to_owned(), |operator| format!("{operator:?}"));
+    let is_ours = control
+        .operator
+        .is_none_or(|operator| operator == Operator::Secondary);
+    let operator = control
+        .operator
+        .map_or("nobody identified".to_owned(), |operator| {
+            format!("{operator:?}")
+        });
     let found = format!(
         "mode {}, commanded by {operator}; expected {}, and Secondary",
         seen.mode_in_words(mode),
@@ -123,7 +182,11 @@ fn control(seen: &SensorCheck, gateway: &Gateway) -> Check {
 fn battery(seen: &SensorCheck, gateway: &Gateway) -> Check {
     let least = gateway.battery.volts_min;
     match seen.power.volts {
-        Some(volts) => Check::of("battery", volts >= least, format!("{volts:.1} V, expected {least} or more")),
+        Some(volts) => Check::of(
+            "battery",
+            volts >= least,
+            format!("{volts:.1} V, expected {least} or more"),
+        ),
         None => Check::not_done("battery", "the boat does not report it"),
     }
 }
@@ -134,10 +197,14 @@ fn bilge(seen: &SensorCheck, gateway: &Gateway) -> Check {
     let amps = currents.iter().flatten().copied().reduce(f64::max);
     match amps {
         Some(amps) if most_a > 0.0 => {
-            let found = format!("pumps draw {amps:.1} A, expected less than {most_a}: more is a leak");
+            let found =
+                format!("pumps draw {amps:.1} A, expected less than {most_a}: more is a leak");
             Check::of("bilge", amps < most_a, found)
         }
-        _ => Check::not_done("bilge", "the boat does not report its pumps, or they are not monitored"),
+        _ => Check::not_done(
+            "bilge",
+            "the boat does not report its pumps, or they are not monitored",
+        ),
     }
 }
 
@@ -145,7 +212,8 @@ fn clock(seen: &SensorCheck, host: HostTime) -> Check {
     match (seen.clock_fault(host), seen.clock_behind_s(host)) {
         (Some(fault), _) => Check::of("clock", false, fault),
         (None, Some(behind_s)) => {
-            let found = format!("fixes are {behind_s:.2} s behind this machine's clock, expected -1 to 5");
+            let found =
+                format!("fixes are {behind_s:.2} s behind this machine's clock, expected -1 to 5");
             Check::of("clock", true, found)
         }
         (None, None) => Check::not_done("clock", "received no time of day"),
@@ -168,8 +236,11 @@ mod tests {
     use primitives::frame::Ned;
 
     fn water() -> Water {
-        let game = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games/pav01_vs_pav01.toml");
-        let field = scenario::load(&game).unwrap_or_else(|problems| panic!("{problems}")).field;
+        let game = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("../scenarios/games/pav01_vs_pav01.toml");
+        let field = scenario::load(&game)
+            .unwrap_or_else(|problems| panic!("{problems}"))
+            .field;
         let area = GeofenceArea::new(&field, &crate::config::default_gateway().geofence);
         Water { field, area }
     }
@@ -216,28 +287,90 @@ mod tests {
         for (place, fix, more, failed, found) in [
             (home, fix, SOUND, "", ""),
             (home, "0,11,0.98", SOUND, "fix", "no fix, 11 satellites"),
-            (home, "6,11,0.98", SOUND, "fix", "dead reckoning, 11 satellites"),
+            (
+                home,
+                "6,11,0.98",
+                SOUND,
+                "fix",
+                "dead reckoning, 11 satellites",
+            ),
             (home, "7,11,0.98", SOUND, "fix", "manual input"),
             (home, "8,11,0.98", SOUND, "fix", "simulator"),
             (home, "9,11,0.98", SOUND, "fix", "an unknown quality"),
-            (home, "5,4,7.50", SOUND, "fix", "RTK float, 4 satellites, dilution 7.5"),
-            ([80.0, 400.0], fix, SOUND, "geofence", "off the field, 290.0 m OUTSIDE"),
-            (home, fix, sound(0, "PSEAA,-2.2,0.7,400000,,47.8,-0.04,-0.01,-1.00,-0.01"), "compass", "heading 400000"),
-            (home, fix, sound(1, "PSEAD,T,0.0,20,0,,T,2,2"), "control", "mode T"),
-            (home, fix, sound(1, "PSEAD,L,0.0,0,0,,T,2,5"), "control", "commanded by Rc"),
-            (home, fix, sound(2, "PSEAB,21.0,15433,1.3,22.3,42308,,,24.8,,1.3,0.0,0.0,,,26"), "battery", "21.0 V"),
-            (home, fix, sound(2, "PSEAB,24.8,15433,1.3,22.3,42308,,,24.8,,1.3,0.0,0.0,,0.9,26"), "bilge", "0.9 A"),
+            (
+                home,
+                "5,4,7.50",
+                SOUND,
+                "fix",
+                "RTK float, 4 satellites, dilution 7.5",
+            ),
+            (
+                [80.0, 400.0],
+                fix,
+                SOUND,
+                "geofence",
+                "off the field, 290.0 m OUTSIDE",
+            ),
+            (
+                home,
+                fix,
+                sound(0, "PSEAA,-2.2,0.7,400000,,47.8,-0.04,-0.01,-1.00,-0.01"),
+                "compass",
+                "heading 400000",
+            ),
+            (
+                home,
+                fix,
+                sound(1, "PSEAD,T,0.0,20,0,,T,2,2"),
+                "control",
+                "mode T",
+            ),
+            (
+                home,
+                fix,
+                sound(1, "PSEAD,L,0.0,0,0,,T,2,5"),
+                "control",
+                "commanded by Rc",
+            ),
+            (
+                home,
+                fix,
+                sound(
+                    2,
+                    "PSEAB,21.0,15433,1.3,22.3,42308,,,24.8,,1.3,0.0,0.0,,,26",
+                ),
+                "battery",
+                "21.0 V",
+            ),
+            (
+                home,
+                fix,
+                sound(
+                    2,
+                    "PSEAB,24.8,15433,1.3,22.3,42308,,,24.8,,1.3,0.0,0.0,,0.9,26",
+                ),
+                "bilge",
+                "0.9 A",
+            ),
             (home, fix, sound(3, "PSEAG,E"), "error", "error \"E\""),
         ] {
             let seen = seen(&water, place, fix, &more);
-            let host = HostTime { now: SimTime::from_s(59.5), utc_ns: 54_360_000_000_000 };
+            let host = HostTime {
+                now: SimTime::from_s(59.5),
+                utc_ns: 54_360_000_000_000,
+            };
             let checks = boat_checks(&seen, host, &crate::config::default_gateway(), Some(&water));
-            let wrong: Vec<_> = checks.iter().filter(|check| check.verdict != Verdict::Passed).collect();
+            let wrong: Vec<_> = checks
+                .iter()
+                .filter(|check| check.verdict != Verdict::Passed)
+                .collect();
             if failed.is_empty() {
                 assert!(wrong.is_empty(), "{wrong:?}");
             } else {
                 assert!(
-                    wrong.iter().any(|check| check.name == failed && check.found.contains(found)),
+                    wrong
+                        .iter()
+                        .any(|check| check.name == failed && check.found.contains(found)),
                     "{failed}: {wrong:?}"
                 );
             }
@@ -247,11 +380,23 @@ mod tests {
     #[test]
     fn what_a_short_look_cannot_tell_is_not_checked() {
         let mut check = SensorCheck::new(&crate::config::default_gateway());
-        check.receive(SimTime::ZERO, b"$GPGGA,150502.00,4221.50616,N,07105.24688,W,2,11,0.98,5.5,M,-33.2,M,,*62\r\n");
-        let host = HostTime { now: SimTime::ZERO, utc_ns: 54_302_400_000_000 };
+        check.receive(
+            SimTime::ZERO,
+            b"$GPGGA,150502.00,4221.50616,N,07105.24688,W,2,11,0.98,5.5,M,-33.2,M,,*62\r\n",
+        );
+        let host = HostTime {
+            now: SimTime::ZERO,
+            utc_ns: 54_302_400_000_000,
+        };
         let checks = boat_checks(&check, host, &crate::config::default_gateway(), None);
-        let not_checked = checks.iter().filter(|check| check.verdict == Verdict::NotChecked);
+        let not_checked = checks
+            .iter()
+            .filter(|check| check.verdict == Verdict::NotChecked);
         let names: Vec<&str> = not_checked.map(|check| check.name.as_str()).collect();
-        assert_eq!(names, ["scatter", "geofence", "compass", "battery", "bilge"], "{checks:?}");
+        assert_eq!(
+            names,
+            ["scatter", "geofence", "compass", "battery", "bilge"],
+            "{checks:?}"
+        );
     }
 }

@@ -1,4 +1,5 @@
-//! A compass swing: the boat is turned through all headings, and the deviation of its compass is fitted.
+//! A compass swing: the boat is turned through all headings, and the deviation of its compass is
+//! fitted.
 //!
 //! The deviation is A + B sin h + C cos h + D sin 2h + E cos 2h at the heading h (Bowditch,
 //! *American Practical Navigator*, ch. 6), east positive: it is added to the compass reading to
@@ -35,7 +36,8 @@ impl CompassSwing {
     /// Adds a compass heading, with the declination, and a true one of the same moment, rad.
     pub fn add_reading(&mut self, compass_rad: f64, true_rad: f64) {
         if self.pairs.len() < PAIRS_MAX && compass_rad.is_finite() && true_rad.is_finite() {
-            self.pairs.push((true_rad.rem_euclid(TAU), wrap_pi(true_rad - compass_rad)));
+            self.pairs
+                .push((true_rad.rem_euclid(TAU), wrap_pi(true_rad - compass_rad)));
         }
     }
 
@@ -43,7 +45,9 @@ impl CompassSwing {
     pub fn sectors(&self) -> usize {
         let sector = |psi_rad: f64| (psi_rad / TAU * SECTORS as f64) as usize % SECTORS;
         let mut seen = [false; SECTORS];
-        self.pairs.iter().for_each(|(psi_rad, _)| seen[sector(*psi_rad)] = true);
+        self.pairs
+            .iter()
+            .for_each(|(psi_rad, _)| seen[sector(*psi_rad)] = true);
         seen.iter().filter(|seen| **seen).count()
     }
 
@@ -55,7 +59,9 @@ impl CompassSwing {
         let sectors = self.sectors();
         // With only part of the circle, the sines of one and two turns cannot be distinguished.
         if sectors < SECTORS {
-            return Err(format!("{sectors} of {SECTORS} sectors of 30 degrees were swept, expected all of them"));
+            return Err(format!(
+                "{sectors} of {SECTORS} sectors of 30 degrees were swept, expected all of them"
+            ));
         }
         // Relative to their mean, so that angles near half a turn do not wrap.
         let [sin, cos] = self.pairs.iter().fold([0.0; 2], |[s, c], (_, off)| {
@@ -74,12 +80,25 @@ impl CompassSwing {
             }
         }
         let solved = solve_positive_definite(normal, right);
-        let mut found = solved.ok_or_else(|| "the headings do not determine a deviation curve".to_owned())?;
+        let mut found =
+            solved.ok_or_else(|| "the headings do not determine a deviation curve".to_owned())?;
         found[0] = wrap_pi(found[0] + mean_rad);
-        let value = |psi_rad: f64| basis(psi_rad).iter().zip(found).map(|(base, factor)| base * factor).sum::<f64>();
-        let squares = self.pairs.iter().map(|(psi_rad, off)| wrap_pi(off - value(*psi_rad))).map(|rest| rest * rest);
+        let value = |psi_rad: f64| {
+            basis(psi_rad)
+                .iter()
+                .zip(found)
+                .map(|(base, factor)| base * factor)
+                .sum::<f64>()
+        };
+        let squares = self
+            .pairs
+            .iter()
+            .map(|(psi_rad, off)| wrap_pi(off - value(*psi_rad)))
+            .map(|rest| rest * rest);
         let residual_rad = (squares.sum::<f64>() / self.pairs.len() as f64).sqrt();
-        let largest_rad = (0..360).map(|deg| value(f64::from(deg).to_radians()).abs()).fold(0.0, f64::max);
+        let largest_rad = (0..360)
+            .map(|deg| value(f64::from(deg).to_radians()).abs())
+            .fold(0.0, f64::max);
         Ok(Deviation {
             a_to_e_deg: found.map(f64::to_degrees),
             residual_deg: residual_rad.to_degrees(),
@@ -92,8 +111,14 @@ impl Deviation {
     /// The lines to paste into the boat's file.
     pub fn toml(&self) -> String {
         let names = ["a_deg", "b_deg", "c_deg", "d_deg", "e_deg"].into_iter();
-        let lines = names.zip(self.a_to_e_deg).map(|(name, value_deg)| format!("{name} = {value_deg:.2}\n"));
-        format!("[compass]\n{}noise_deg = {:.2}\n", lines.collect::<String>(), self.residual_deg)
+        let lines = names
+            .zip(self.a_to_e_deg)
+            .map(|(name, value_deg)| format!("{name} = {value_deg:.2}\n"));
+        format!(
+            "[compass]\n{}noise_deg = {:.2}\n",
+            lines.collect::<String>(),
+            self.residual_deg
+        )
     }
 }
 
@@ -141,7 +166,11 @@ mod tests {
         let mut swing = CompassSwing::default();
         for i in 0..720_u32 {
             let psi_rad = (f64::from(i) * 0.97).to_radians();
-            let deviation_deg: f64 = basis(psi_rad).iter().zip(a_to_e_deg).map(|(base, factor)| base * factor).sum();
+            let deviation_deg: f64 = basis(psi_rad)
+                .iter()
+                .zip(a_to_e_deg)
+                .map(|(base, factor)| base * factor)
+                .sum();
             let noise_deg = if i % 2 == 0 { noise_deg } else { -noise_deg };
             swing.add_reading(psi_rad - (deviation_deg + noise_deg).to_radians(), psi_rad);
         }
@@ -164,31 +193,56 @@ mod tests {
 
     #[test]
     fn a_system_that_is_not_positive_definite_has_no_solution() {
-        let scaled = |factor: f64| std::array::from_fn(|i| std::array::from_fn(|j| if i == j { factor } else { 0.0 }));
-        assert_eq!(solve_positive_definite(scaled(4.0), [4.0; 5]), Some([1.0; 5]));
+        let scaled = |factor: f64| {
+            std::array::from_fn(|i| std::array::from_fn(|j| if i == j { factor } else { 0.0 }))
+        };
+        assert_eq!(
+            solve_positive_definite(scaled(4.0), [4.0; 5]),
+            Some([1.0; 5])
+        );
         for factor in [0.0, -1.0, f64::NAN] {
-            assert_eq!(solve_positive_definite(scaled(factor), [4.0; 5]), None, "{factor}");
+            assert_eq!(
+                solve_positive_definite(scaled(factor), [4.0; 5]),
+                None,
+                "{factor}"
+            );
         }
     }
 
     #[test]
     fn half_a_circle_is_no_swing() {
         let mut swing = CompassSwing::default();
-        (0..180).for_each(|deg| swing.add_reading(f64::from(deg).to_radians(), f64::from(deg).to_radians()));
-        assert_eq!(swing.fit(), Err("6 of 12 sectors of 30 degrees were swept, expected all of them".to_owned()));
+        (0..180).for_each(|deg| {
+            swing.add_reading(f64::from(deg).to_radians(), f64::from(deg).to_radians())
+        });
+        assert_eq!(
+            swing.fit(),
+            Err("6 of 12 sectors of 30 degrees were swept, expected all of them".to_owned())
+        );
     }
 
     #[test]
     fn what_is_to_be_pasted_is_what_boat_files_take() {
-        let toml = swung([1.0, 2.0, -3.0, 0.5, 0.25], 0.5).fit().expect("all headings").toml();
-        assert!(toml.starts_with("[compass]\na_deg = 1.00\nb_deg = 2.00\nc_deg = -3.00\n"), "{toml}");
+        let toml = swung([1.0, 2.0, -3.0, 0.5, 0.25], 0.5)
+            .fit()
+            .expect("all headings")
+            .toml();
+        assert!(
+            toml.starts_with("[compass]\na_deg = 1.00\nb_deg = 2.00\nc_deg = -3.00\n"),
+            "{toml}"
+        );
         let folder = tempfile::tempdir().expect("a folder");
-        let base = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/boats/surveyor_m1_8.toml");
+        let base = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("../scenarios/boats/surveyor_m1_8.toml");
         let base = base.canonicalize().expect("it is there");
         let file = folder.path().join("boat.toml");
         std::fs::write(&file, format!("base = {base:?}\n\n{toml}")).expect("written");
-        let boat = scenario::load_file::<scenario::Boat>(&file).unwrap_or_else(|problems| panic!("{problems}"));
+        let boat = scenario::load_file::<scenario::Boat>(&file)
+            .unwrap_or_else(|problems| panic!("{problems}"));
         let compass = boat.sensors.compass.expect("it has one");
-        assert!((compass.deviation_rad[2].to_degrees() + 3.0).abs() < 0.01, "{compass:?}");
+        assert!(
+            (compass.deviation_rad[2].to_degrees() + 3.0).abs() < 0.01,
+            "{compass:?}"
+        );
     }
 }

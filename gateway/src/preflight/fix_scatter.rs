@@ -22,14 +22,20 @@ impl FixScatter {
         let frame = LocalFrame::new(fixes[0]);
         let places: Vec<Ned> = fixes.iter().map(|fix| frame.ned(*fix)).collect();
         let mean = |places: &[Ned]| {
-            places.iter().fold(Ned::default(), |sum, place| sum + *place).scaled(1.0 / places.len() as f64)
+            places
+                .iter()
+                .fold(Ned::default(), |sum, place| sum + *place)
+                .scaled(1.0 / places.len() as f64)
         };
         let middle = mean(&places);
         let mut distances: Vec<f64> = places.iter().map(|place| place.distance(middle)).collect();
         distances.sort_by(f64::total_cmp);
         let (first, second) = places.split_at(places.len() / 2);
         let at = (0.95 * distances.len() as f64).ceil() as usize - 1;
-        Some(FixScatter { radius_95_m: distances[at], drift_m: mean(first).distance(mean(second)) })
+        Some(FixScatter {
+            radius_95_m: distances[at],
+            drift_m: mean(first).distance(mean(second)),
+        })
     }
 }
 
@@ -39,15 +45,26 @@ mod tests {
 
     #[test]
     fn the_radius_holds_nineteen_of_twenty_and_a_boat_that_drifts_is_seen() {
-        let frame = LocalFrame::new(LatLon { lat_deg: 42.0, lon_deg: -71.0 });
+        let frame = LocalFrame::new(LatLon {
+            lat_deg: 42.0,
+            lon_deg: -71.0,
+        });
         let fixes = |place: &dyn Fn(f64) -> Ned| -> Vec<LatLon> {
-            (0..100).map(|i| frame.lat_lon(place(f64::from(i)))).collect()
+            (0..100)
+                .map(|i| frame.lat_lon(place(f64::from(i))))
+                .collect()
         };
         // Round a circle of 2 m, and four of a hundred far off, evenly round it.
-        let round = fixes(&|i| Ned::toward_deg(i * 90.0 + 3.6 * i).scaled(if i < 4.0 { 50.0 } else { 2.0 }));
+        let round = fixes(&|i| {
+            Ned::toward_deg(i * 90.0 + 3.6 * i).scaled(if i < 4.0 { 50.0 } else { 2.0 })
+        });
         let scatter = FixScatter::of(&round).expect("enough");
         assert!((1.5..2.6).contains(&scatter.radius_95_m), "{scatter:?}");
-        let drifting = FixScatter::of(&fixes(&|i| Ned { north: 0.1 * i, east: 0.0 })).expect("enough");
+        let drifting = FixScatter::of(&fixes(&|i| Ned {
+            north: 0.1 * i,
+            east: 0.0,
+        }))
+        .expect("enough");
         assert!((drifting.drift_m - 5.0).abs() < 1e-3, "{drifting:?}");
         assert_eq!(FixScatter::of(&round[..9]), None);
     }

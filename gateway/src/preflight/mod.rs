@@ -10,7 +10,14 @@ pub use compass_swing::{CompassSwing, Deviation};
 use serde::{Deserialize, Serialize};
 
 /// A report must contain these for a boat to be armed.
-const NEEDED: [&str; 6] = ["sentences", "fix", "scatter", "geofence", "compass", "control"];
+const NEEDED: [&str; 6] = [
+    "sentences",
+    "fix",
+    "scatter",
+    "geofence",
+    "compass",
+    "control",
+];
 
 /// The result of one check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -38,12 +45,24 @@ pub struct Check {
 impl Check {
     /// A check that passes if `is_well`.
     pub fn of(name: &str, is_well: bool, found: String) -> Check {
-        Check { name: name.to_owned(), verdict: if is_well { Verdict::Passed } else { Verdict::Failed }, found }
+        Check {
+            name: name.to_owned(),
+            verdict: if is_well {
+                Verdict::Passed
+            } else {
+                Verdict::Failed
+            },
+            found,
+        }
     }
 
     /// A check that was not done, and why.
     pub fn not_done(name: &str, why: impl Into<String>) -> Check {
-        Check { name: name.to_owned(), verdict: Verdict::NotChecked, found: why.into() }
+        Check {
+            name: name.to_owned(),
+            verdict: Verdict::NotChecked,
+            found: why.into(),
+        }
     }
 }
 
@@ -65,11 +84,20 @@ pub struct Report {
 impl Report {
     /// The reasons why it has not passed: failed checks, and required checks that were not done.
     pub fn faults(&self) -> Vec<String> {
-        let failed = self.checks.iter().filter(|check| check.verdict == Verdict::Failed);
+        let failed = self
+            .checks
+            .iter()
+            .filter(|check| check.verdict == Verdict::Failed);
         let failed = failed.map(|check| format!("{} ({})", check.name, check.found));
-        let is_done =
-            |name: &str| self.checks.iter().any(|check| check.name == name && check.verdict != Verdict::NotChecked);
-        let missing = NEEDED.iter().filter(|name| !is_done(name)).map(|name| format!("{name} (not checked)"));
+        let is_done = |name: &str| {
+            self.checks
+                .iter()
+                .any(|check| check.name == name && check.verdict != Verdict::NotChecked)
+        };
+        let missing = NEEDED
+            .iter()
+            .filter(|name| !is_done(name))
+            .map(|name| format!("{name} (not checked)"));
         failed.chain(missing).collect()
     }
 
@@ -77,13 +105,22 @@ impl Report {
     ///
     /// # Errors
     /// The reason why not.
-    pub fn admits(&self, vehicle: &str, link: &str, now_unix_s: u64, age_max_h: f64) -> Result<(), String> {
+    pub fn admits(
+        &self,
+        vehicle: &str,
+        link: &str,
+        now_unix_s: u64,
+        age_max_h: f64,
+    ) -> Result<(), String> {
         let faults = self.faults();
         if !faults.is_empty() {
             return Err(format!("it has not passed: {}", faults.join("; ")));
         }
         if (self.vehicle.as_str(), self.link.as_str()) != (vehicle, link) {
-            return Err(format!("it is for {} at {}, expected {vehicle} at {link}", self.vehicle, self.link));
+            return Err(format!(
+                "it is for {} at {}, expected {vehicle} at {link}",
+                self.vehicle, self.link
+            ));
         }
         let age_h = (now_unix_s as f64 - self.at_unix_s as f64) / 3600.0;
         // A report from the future comes from a machine with a different clock, so its age is
@@ -91,7 +128,9 @@ impl Report {
         if (0.0..=age_max_h).contains(&age_h) {
             return Ok(());
         }
-        Err(format!("it is {age_h:.1} h old, expected 0 to {age_max_h} (preflight.age_max_h)"))
+        Err(format!(
+            "it is {age_h:.1} h old, expected 0 to {age_max_h} (preflight.age_max_h)"
+        ))
     }
 
     /// The report as text.
@@ -106,8 +145,15 @@ impl Report {
         };
         let lines: String = self.checks.iter().map(line).collect();
         let faults = self.faults();
-        let end = if faults.is_empty() { "passed".to_owned() } else { format!("NOT passed: {}", faults.join("; ")) };
-        format!("pre-flight check of {} at {}, {}\n{lines}{end}\n", self.vehicle, self.link, self.at)
+        let end = if faults.is_empty() {
+            "passed".to_owned()
+        } else {
+            format!("NOT passed: {}", faults.join("; "))
+        };
+        format!(
+            "pre-flight check of {} at {}, {}\n{lines}{end}\n",
+            self.vehicle, self.link, self.at
+        )
     }
 }
 
@@ -116,11 +162,20 @@ mod tests {
     use super::*;
 
     fn report(checks: Vec<Check>) -> Report {
-        Report { vehicle: "blue_one".into(), link: "tcp://a:1".into(), at_unix_s: 7200, at: "then".into(), checks }
+        Report {
+            vehicle: "blue_one".into(),
+            link: "tcp://a:1".into(),
+            at_unix_s: 7200,
+            at: "then".into(),
+            checks,
+        }
     }
 
     fn all_well() -> Vec<Check> {
-        NEEDED.iter().map(|name| Check::of(name, true, String::new())).collect()
+        NEEDED
+            .iter()
+            .map(|name| Check::of(name, true, String::new()))
+            .collect()
     }
 
     #[test]
@@ -129,29 +184,65 @@ mod tests {
         for (vehicle, link, now_s, refusal) in [
             ("blue_one", "tcp://a:1", 7200, ""),
             ("blue_one", "tcp://a:1", 10_800, ""),
-            ("blue_one", "tcp://a:1", 11_000, "it is 1.1 h old, expected 0 to 1"),
+            (
+                "blue_one",
+                "tcp://a:1",
+                11_000,
+                "it is 1.1 h old, expected 0 to 1",
+            ),
             ("blue_one", "tcp://a:1", 7000, "it is -0.1 h old"),
-            ("red_one", "tcp://a:1", 7200, "it is for blue_one at tcp://a:1, expected red_one at tcp://a:1"),
-            ("blue_one", "tcp://b:1", 7200, "expected blue_one at tcp://b:1"),
+            (
+                "red_one",
+                "tcp://a:1",
+                7200,
+                "it is for blue_one at tcp://a:1, expected red_one at tcp://a:1",
+            ),
+            (
+                "blue_one",
+                "tcp://b:1",
+                7200,
+                "expected blue_one at tcp://b:1",
+            ),
         ] {
-            let refused = report.admits(vehicle, link, now_s, 1.0).err().unwrap_or_default();
-            assert!(refused.contains(refusal) && refused.is_empty() == refusal.is_empty(), "{refused}");
+            let refused = report
+                .admits(vehicle, link, now_s, 1.0)
+                .err()
+                .unwrap_or_default();
+            assert!(
+                refused.contains(refusal) && refused.is_empty() == refusal.is_empty(),
+                "{refused}"
+            );
         }
     }
 
     #[test]
     fn what_failed_and_what_nobody_looked_at_is_named() {
         let mut checks = all_well();
-        checks.push(Check::of("battery", false, "21.0 V, expected 22 or more".into()));
+        checks.push(Check::of(
+            "battery",
+            false,
+            "21.0 V, expected 22 or more".into(),
+        ));
         checks.push(Check::not_done("sleep", "no systemd here"));
         checks[3] = Check::not_done("geofence", "no game");
         let report = report(checks);
-        assert_eq!(report.faults(), ["battery (21.0 V, expected 22 or more)", "geofence (not checked)"]);
+        assert_eq!(
+            report.faults(),
+            [
+                "battery (21.0 V, expected 22 or more)",
+                "geofence (not checked)"
+            ]
+        );
         assert!(report.admits("blue_one", "tcp://a:1", 7200, 1.0).is_err());
         let text = report.text();
-        assert!(text.contains("FAILED  battery") && text.contains("-       sleep"), "{text}");
         assert!(
-            text.ends_with("NOT passed: battery (21.0 V, expected 22 or more); geofence (not checked)\n"),
+            text.contains("FAILED  battery") && text.contains("-       sleep"),
+            "{text}"
+        );
+        assert!(
+            text.ends_with(
+                "NOT passed: battery (21.0 V, expected 22 or more); geofence (not checked)\n"
+            ),
             "{text}"
         );
     }

@@ -64,7 +64,8 @@ pub trait Codec {
     /// a boat from others.
     fn stop_message(&self) -> Vec<u8>;
 
-    /// Like [`Codec::stop_message`], regardless of who commands the boat, as far as its protocol allows.
+    /// Like [`Codec::stop_message`], regardless of who commands the boat, as far as its protocol
+    /// allows.
     fn forced_stop_message(&self) -> Vec<u8>;
 
     /// Like [`Codec::stop_message`], after an incomplete write by a gateway that died.

@@ -13,10 +13,11 @@ use super::mission_check;
 use super::report::{Report, Shown};
 use crate::config::{Gateway, Mavlink as Settings};
 use crate::mavlink::dialect::{
-    ATTITUDE_DATA, AttitudeTargetTypemask, COMMAND_LONG_DATA, GLOBAL_POSITION_INT_DATA, GPS_RAW_INT_DATA,
-    HEARTBEAT_DATA, HOME_POSITION_DATA, MISSION_ACK_DATA, MavAutopilot, MavCmd, MavFrame, MavMessage, MavMissionResult,
-    MavModeFlag, MavState, MavType, NAV_CONTROLLER_OUTPUT_DATA, POSITION_TARGET_GLOBAL_INT_DATA,
-    PositionTargetTypemask, SET_ATTITUDE_TARGET_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA, SYS_STATUS_DATA,
+    ATTITUDE_DATA, AttitudeTargetTypemask, COMMAND_LONG_DATA, GLOBAL_POSITION_INT_DATA,
+    GPS_RAW_INT_DATA, HEARTBEAT_DATA, HOME_POSITION_DATA, MISSION_ACK_DATA, MavAutopilot, MavCmd,
+    MavFrame, MavMessage, MavMissionResult, MavModeFlag, MavState, MavType,
+    NAV_CONTROLLER_OUTPUT_DATA, POSITION_TARGET_GLOBAL_INT_DATA, PositionTargetTypemask,
+    SET_ATTITUDE_TARGET_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA, SYS_STATUS_DATA,
     SYSTEM_TIME_DATA,
 };
 use crate::mavlink::{Framer, Received, RoverMode, Writer, lat_lon};
@@ -109,11 +110,16 @@ impl Mavlink {
             MavMessage::MISSION_ACK(ack) if (ack.target_system, ack.target_component) == ours => {
                 // For our system and component: ground stations on the same link upload missions,
                 // too.
-                self.upload.iter_mut().for_each(|upload| upload.take_ack(ack.mavtype, now));
+                self.upload
+                    .iter_mut()
+                    .for_each(|upload| upload.take_ack(ack.mavtype, now));
             }
             other => match item_request(other) {
                 Some((seq, from)) if from == ours => {
-                    let item = self.upload.as_mut().and_then(|upload| upload.take_request(seq, now));
+                    let item = self
+                        .upload
+                        .as_mut()
+                        .and_then(|upload| upload.take_request(seq, now));
                     self.answers.extend(item);
                 }
                 _ => self.boat.report(now, other, take),
@@ -127,12 +133,21 @@ impl Mavlink {
         let is_done = asked.is_some_and(|asked| asked.mode == wanted && asked.is_shown);
         let is_armed = self.boat.mode.is_some_and(|shown| shown.is_armed);
         // Rover does not arm in RTL ("Mode not armable"): a boat at rest is armed in HOLD first.
-        let mode = if is_done || is_armed || wanted.allows_arming() { wanted } else { RoverMode::Hold };
+        let mode = if is_done || is_armed || wanted.allows_arming() {
+            wanted
+        } else {
+            RoverMode::Hold
+        };
         let before = asked.filter(|asked| asked.mode == mode);
         if before.is_some_and(|asked| asked.is_shown || (now - asked.at).as_s() < AGAIN_S) {
             return;
         }
-        self.asked = Some(Asked { mode, is_armed: true, at: now, is_shown: false });
+        self.asked = Some(Asked {
+            mode,
+            is_armed: true,
+            at: now,
+            is_shown: false,
+        });
         self.write_mode(mode, out);
         self.write_arming(true, out);
     }
@@ -140,7 +155,13 @@ impl Mavlink {
     /// Requests mode HOLD, disarmed, if the boat is ours: until it shows that, and whenever it is
     /// driven again.
     fn stand_by(&mut self, now: SimTime, out: &mut Vec<u8>) {
-        let Some(shown) = self.boat.mode.filter(|_| self.boat.is_ours(self.asked.as_ref())) else { return };
+        let Some(shown) = self
+            .boat
+            .mode
+            .filter(|_| self.boat.is_ours(self.asked.as_ref()))
+        else {
+            return;
+        };
         let before = self.asked.filter(|asked| !asked.is_armed);
         let is_driven = shown.is_armed && shown.mode != RoverMode::Hold;
         if before.is_some_and(|asked| asked.is_shown) && !is_driven {
@@ -148,13 +169,23 @@ impl Mavlink {
         }
         // The mode of a task that we requested stays ours until the boat has left it.
         if shown.mode == RoverMode::Hold && !shown.is_armed {
-            self.asked = Some(Asked { mode: RoverMode::Hold, is_armed: false, at: now, is_shown: true });
+            self.asked = Some(Asked {
+                mode: RoverMode::Hold,
+                is_armed: false,
+                at: now,
+                is_shown: true,
+            });
             return;
         }
         self.write_mode(RoverMode::Hold, out);
         self.write_arming(false, out);
         if matches!(shown.mode, RoverMode::Hold | RoverMode::Guided) {
-            self.asked = Some(Asked { mode: RoverMode::Hold, is_armed: false, at: now, is_shown: false });
+            self.asked = Some(Asked {
+                mode: RoverMode::Hold,
+                is_armed: false,
+                at: now,
+                is_shown: false,
+            });
         }
     }
 
@@ -163,53 +194,86 @@ impl Mavlink {
     }
 
     fn write_command(&mut self, command: MavCmd, [param1, param2]: [f32; 2], out: &mut Vec<u8>) {
-        let Target { system: target_system, component: target_component } = self.boat.target();
-        let params = COMMAND_LONG_DATA { param1, param2, ..COMMAND_LONG_DATA::default() };
-        let message = COMMAND_LONG_DATA { command, target_system, target_component, ..params };
+        let Target {
+            system: target_system,
+            component: target_component,
+        } = self.boat.target();
+        let params = COMMAND_LONG_DATA {
+            param1,
+            param2,
+            ..COMMAND_LONG_DATA::default()
+        };
+        let message = COMMAND_LONG_DATA {
+            command,
+            target_system,
+            target_component,
+            ..params
+        };
         self.send(MavMessage::COMMAND_LONG(message), out);
     }
 
     fn write_mode(&mut self, mode: RoverMode, out: &mut Vec<u8>) {
         // Of the base mode, only the flag for a custom mode counts.
-        self.write_command(MavCmd::MAV_CMD_DO_SET_MODE, [1.0, mode.number() as f32], out);
+        self.write_command(
+            MavCmd::MAV_CMD_DO_SET_MODE,
+            [1.0, mode.number() as f32],
+            out,
+        );
     }
 
     fn write_arming(&mut self, arm: bool, out: &mut Vec<u8>) {
-        self.write_command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, [f32::from(u8::from(arm)), 0.0], out);
+        self.write_command(
+            MavCmd::MAV_CMD_COMPONENT_ARM_DISARM,
+            [f32::from(u8::from(arm)), 0.0],
+            out,
+        );
     }
 
     /// See "Rover commands in guided mode" in ArduPilot's documentation. A boat drops a set-point
     /// after three seconds.
     fn write_set_point(&mut self, set_point: SetPoint, out: &mut Vec<u8>) {
-        let Target { system: target_system, component: target_component } = self.boat.target();
-        let no_roll_no_pitch = AttitudeTargetTypemask::ATTITUDE_TARGET_TYPEMASK_BODY_ROLL_RATE_IGNORE
-            | AttitudeTargetTypemask::ATTITUDE_TARGET_TYPEMASK_BODY_PITCH_RATE_IGNORE;
+        let Target {
+            system: target_system,
+            component: target_component,
+        } = self.boat.target();
+        let no_roll_no_pitch =
+            AttitudeTargetTypemask::ATTITUDE_TARGET_TYPEMASK_BODY_ROLL_RATE_IGNORE
+                | AttitudeTargetTypemask::ATTITUDE_TARGET_TYPEMASK_BODY_PITCH_RATE_IGNORE;
         let message = match set_point {
             // Thrust is a fraction of the boat's cruise speed, ahead positive; the rate of turn is
             // to starboard.
-            SetPoint::Thrust { thrust_pct, difference_pct } => {
-                MavMessage::SET_ATTITUDE_TARGET(SET_ATTITUDE_TARGET_DATA {
-                    body_yaw_rate: (0.01 * difference_pct * self.settings.turn_rate_max_rad_s) as f32,
-                    thrust: (0.01 * thrust_pct) as f32,
-                    target_system,
-                    target_component,
-                    type_mask: no_roll_no_pitch | AttitudeTargetTypemask::ATTITUDE_TARGET_TYPEMASK_ATTITUDE_IGNORE,
-                    ..SET_ATTITUDE_TARGET_DATA::default()
-                })
-            }
+            SetPoint::Thrust {
+                thrust_pct,
+                difference_pct,
+            } => MavMessage::SET_ATTITUDE_TARGET(SET_ATTITUDE_TARGET_DATA {
+                body_yaw_rate: (0.01 * difference_pct * self.settings.turn_rate_max_rad_s) as f32,
+                thrust: (0.01 * thrust_pct) as f32,
+                target_system,
+                target_component,
+                type_mask: no_roll_no_pitch
+                    | AttitudeTargetTypemask::ATTITUDE_TARGET_TYPEMASK_ATTITUDE_IGNORE,
+                ..SET_ATTITUDE_TARGET_DATA::default()
+            }),
             // A zero velocity has no direction, and the boat would turn north: it receives the
             // heading, and zero thrust.
-            SetPoint::Speed { heading_deg, speed_m_s } if speed_m_s < VELOCITY_MIN_M_S => {
+            SetPoint::Speed {
+                heading_deg,
+                speed_m_s,
+            } if speed_m_s < VELOCITY_MIN_M_S => {
                 let (z, w) = math::sin_cos(0.5 * heading_deg.to_radians());
                 MavMessage::SET_ATTITUDE_TARGET(SET_ATTITUDE_TARGET_DATA {
                     q: [w as f32, 0.0, 0.0, z as f32],
                     target_system,
                     target_component,
-                    type_mask: no_roll_no_pitch | AttitudeTargetTypemask::ATTITUDE_TARGET_TYPEMASK_BODY_YAW_RATE_IGNORE,
+                    type_mask: no_roll_no_pitch
+                        | AttitudeTargetTypemask::ATTITUDE_TARGET_TYPEMASK_BODY_YAW_RATE_IGNORE,
                     ..SET_ATTITUDE_TARGET_DATA::default()
                 })
             }
-            SetPoint::Speed { heading_deg, speed_m_s } => {
+            SetPoint::Speed {
+                heading_deg,
+                speed_m_s,
+            } => {
                 let (east, north) = math::sin_cos(heading_deg.to_radians());
                 // Without a yaw, which the velocity implies. With a yaw or a yaw rate, Rover takes
                 // the sign of `vx`, which points north, for the sign of the speed in every frame: a
@@ -251,7 +315,9 @@ impl Codec for Mavlink {
 
     fn read(&mut self, now: SimTime, bytes: &[u8], take: &mut dyn FnMut(Report)) {
         let mut framer = std::mem::take(&mut self.framer);
-        framer.push(bytes, &mut |received| self.read_message(now, &received, take));
+        framer.push(bytes, &mut |received| {
+            self.read_message(now, &received, take)
+        });
         self.framer = framer;
     }
 
@@ -302,7 +368,11 @@ impl Codec for Mavlink {
             self.streams_due = now + SimTime::from_s(STREAMS_AGAIN_S);
             for (id, rate_hz) in STREAMS {
                 let interval_us = 1e6 / rate_hz;
-                self.write_command(MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL, [id as f32, interval_us as f32], out);
+                self.write_command(
+                    MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL,
+                    [id as f32, interval_us as f32],
+                    out,
+                );
             }
         }
     }
@@ -313,7 +383,9 @@ impl Codec for Mavlink {
 
     fn shown(&self, command: Command) -> Shown {
         let mode = match command {
-            Command::Standby | Command::Switch(_) | Command::Zero | Command::EndOfUpload => Mode::Standby,
+            Command::Standby | Command::Switch(_) | Command::Zero | Command::EndOfUpload => {
+                Mode::Standby
+            }
             Command::SetPoint(_) => Mode::Speed,
             Command::Task(task) => mode_of(task).1,
         };
@@ -321,21 +393,39 @@ impl Codec for Mavlink {
             Command::SetPoint(SetPoint::Speed { heading_deg, .. }) => Some(heading_deg),
             _ => None,
         };
-        Shown { mode, heading_deg, thrust: None, difference: None }
+        Shown {
+            mode,
+            heading_deg,
+            thrust: None,
+            difference: None,
+        }
     }
 
     fn text(&self, command: Command) -> String {
         match command {
             Command::Standby | Command::Switch(_) => "HOLD, disarm".to_owned(),
             Command::Zero => "SET_ATTITUDE_TARGET thrust 0".to_owned(),
-            Command::SetPoint(SetPoint::Thrust { thrust_pct, difference_pct }) => {
-                format!("GUIDED, SET_ATTITUDE_TARGET thrust {thrust_pct:.0} %, turn {difference_pct:.0} %")
+            Command::SetPoint(SetPoint::Thrust {
+                thrust_pct,
+                difference_pct,
+            }) => {
+                format!(
+                    "GUIDED, SET_ATTITUDE_TARGET thrust {thrust_pct:.0} %, turn {difference_pct:.0} %"
+                )
             }
-            Command::SetPoint(SetPoint::Speed { heading_deg, speed_m_s }) if speed_m_s < VELOCITY_MIN_M_S => {
+            Command::SetPoint(SetPoint::Speed {
+                heading_deg,
+                speed_m_s,
+            }) if speed_m_s < VELOCITY_MIN_M_S => {
                 format!("GUIDED, SET_ATTITUDE_TARGET heading {heading_deg:.1}, thrust 0")
             }
-            Command::SetPoint(SetPoint::Speed { heading_deg, speed_m_s }) => {
-                format!("GUIDED, SET_POSITION_TARGET_LOCAL_NED heading {heading_deg:.1}, speed {speed_m_s:.2} m/s")
+            Command::SetPoint(SetPoint::Speed {
+                heading_deg,
+                speed_m_s,
+            }) => {
+                format!(
+                    "GUIDED, SET_POSITION_TARGET_LOCAL_NED heading {heading_deg:.1}, speed {speed_m_s:.2} m/s"
+                )
             }
             Command::Task(task) => mode_of(task).2.to_owned(),
             Command::EndOfUpload => "MISSION_ITEM_INT".to_owned(),
@@ -377,10 +467,14 @@ impl Codec for Mavlink {
     }
 
     fn continue_upload(&mut self, now: SimTime, out: &mut Vec<u8>) -> UploadStep {
-        let Some(upload) = &mut self.upload else { return UploadStep::Done };
+        let Some(upload) = &mut self.upload else {
+            return UploadStep::Done;
+        };
         let mut messages = vec![];
         let step = upload.next(now, self.boat.target(), &mut messages);
-        messages.into_iter().for_each(|message| self.send(message, out));
+        messages
+            .into_iter()
+            .for_each(|message| self.send(message, out));
         if matches!(step, UploadStep::Done | UploadStep::Failed(_)) {
             self.upload = None;
         }
@@ -395,7 +489,8 @@ impl Codec for Mavlink {
         self.upload.take().is_some()
     }
 
-    /// MAVLink needs a message every second even without commands: otherwise a boat may enter a failsafe of its own.
+    /// MAVLink needs a message every second even without commands: otherwise a boat may enter a
+    /// failsafe of its own.
     fn due(&self) -> Option<SimTime> {
         let upload = self.upload.as_ref().map_or(SimTime::NEVER, Upload::due);
         Some(upload.min(self.heartbeat_due))
@@ -410,8 +505,17 @@ impl Codec for Mavlink {
             ("unreadable", framed.unreadable),
             ("messages from other systems", self.boat.others),
         ];
-        let unknown = framed.unknown.iter().map(|(id, count)| (format!("unknown message {id}"), *count));
-        [known.into_iter().map(|(name, count)| (name.to_owned(), count)).collect(), unknown.collect()]
+        let unknown = framed
+            .unknown
+            .iter()
+            .map(|(id, count)| (format!("unknown message {id}"), *count));
+        [
+            known
+                .into_iter()
+                .map(|(name, count)| (name.to_owned(), count))
+                .collect(),
+            unknown.collect(),
+        ]
     }
 }
 
@@ -429,13 +533,20 @@ fn mode_of(task: Task) -> (RoverMode, Mode, &'static str) {
 }
 
 /// The mission item that a boat requests, and from whom.
-#[expect(deprecated, reason = "ArduPilot asks by MISSION_REQUEST too, and is answered as the specification says")]
+#[expect(
+    deprecated,
+    reason = "ArduPilot asks by MISSION_REQUEST too, and is answered as the specification says"
+)]
 fn item_request(message: &MavMessage) -> Option<(u16, (u8, u8))> {
     match message {
-        MavMessage::MISSION_REQUEST_INT(request) => {
-            Some((request.seq, (request.target_system, request.target_component)))
-        }
-        MavMessage::MISSION_REQUEST(request) => Some((request.seq, (request.target_system, request.target_component))),
+        MavMessage::MISSION_REQUEST_INT(request) => Some((
+            request.seq,
+            (request.target_system, request.target_component),
+        )),
+        MavMessage::MISSION_REQUEST(request) => Some((
+            request.seq,
+            (request.target_system, request.target_component),
+        )),
         _ => None,
     }
 }

@@ -3,8 +3,8 @@
 use super::report::{ControlReport, Fix, Heading, North, Power, Report, Shown};
 use super::status_text::StatusTexts;
 use crate::mavlink::dialect::{
-    ATTITUDE_DATA, COMMAND_ACK_DATA, GLOBAL_POSITION_INT_DATA, GPS_RAW_INT_DATA, GpsFixType, HEARTBEAT_DATA,
-    MavAutopilot, MavCmd, MavMessage, MavModeFlag, MavResult, MavSeverity, MavType,
+    ATTITUDE_DATA, COMMAND_ACK_DATA, GLOBAL_POSITION_INT_DATA, GPS_RAW_INT_DATA, GpsFixType,
+    HEARTBEAT_DATA, MavAutopilot, MavCmd, MavMessage, MavModeFlag, MavResult, MavSeverity, MavType,
 };
 use crate::mavlink::{AUTOPILOT, Received, RoverMode, on_globe};
 use crate::nmea::{FixQuality, Mode, Operator, date_and_time};
@@ -86,14 +86,20 @@ impl Boat {
     }
 
     pub(super) fn forget(&mut self, system: u8) {
-        *self = Boat { others: self.others, ..Boat::new(system) };
+        *self = Boat {
+            others: self.others,
+            ..Boat::new(system)
+        };
     }
 
     /// The target of messages for it.
     pub(super) fn target(&self) -> Target {
         // No target means everybody: a set-point of zero may be for all.
         let system = self.system.unwrap_or(0);
-        Target { system, component: if system == 0 { 0 } else { AUTOPILOT } }
+        Target {
+            system,
+            component: if system == 0 { 0 } else { AUTOPILOT },
+        }
     }
 
     /// Whether a message is from this boat. Without a system number, the first boat's autopilot is
@@ -122,8 +128,14 @@ impl Boat {
     /// Notes other senders' set-points for the boat, and other ground stations, if the boat or a
     /// router passes them on to us.
     pub(super) fn report_stranger(&mut self, received: &Received, take: &mut dyn FnMut(Report)) {
-        let Received { system, component, message } = received;
-        let is_for_it = message.target_system_id().is_some_and(|target| target == 0 || Some(target) == self.system);
+        let Received {
+            system,
+            component,
+            message,
+        } = received;
+        let is_for_it = message
+            .target_system_id()
+            .is_some_and(|target| target == 0 || Some(target) == self.system);
         match message {
             MavMessage::SET_ATTITUDE_TARGET(_)
             | MavMessage::SET_POSITION_TARGET_LOCAL_NED(_)
@@ -138,7 +150,9 @@ impl Boat {
                     && !self.stations.contains(&(*system, *component)) =>
             {
                 self.stations.push((*system, *component));
-                let text = format!("another ground station is on the link: system {system}, component {component}");
+                let text = format!(
+                    "another ground station is on the link: system {system}, component {component}"
+                );
                 take(Report::Station(text));
             }
             _ => {}
@@ -151,8 +165,13 @@ impl Boat {
         heartbeat: &HEARTBEAT_DATA,
         asked: &mut Option<Asked>,
     ) -> ControlReport {
-        let is_armed = heartbeat.base_mode.contains(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED);
-        let shown = ShownMode { mode: RoverMode::from_number(heartbeat.custom_mode), is_armed };
+        let is_armed = heartbeat
+            .base_mode
+            .contains(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED);
+        let shown = ShownMode {
+            mode: RoverMode::from_number(heartbeat.custom_mode),
+            is_armed,
+        };
         self.mode = Some(shown);
         let is_ours = self.is_ours(asked.as_ref());
         if !is_ours {
@@ -185,15 +204,36 @@ impl Boat {
             // A ground station, or a failsafe of its own.
             _ => Operator::Primary,
         };
-        let heading_deg = self.ordered.filter(|(at, _)| is_fresh(*at)).map(|(_, heading_deg)| heading_deg);
-        let shown = Shown { mode, heading_deg, thrust: None, difference: None };
-        ControlReport { shown, operator: Some(operator) }
+        let heading_deg = self
+            .ordered
+            .filter(|(at, _)| is_fresh(*at))
+            .map(|(_, heading_deg)| heading_deg);
+        let shown = Shown {
+            mode,
+            heading_deg,
+            thrust: None,
+            difference: None,
+        };
+        ControlReport {
+            shown,
+            operator: Some(operator),
+        }
     }
 
     /// The reports in a message.
-    pub(super) fn report(&mut self, now: SimTime, message: &MavMessage, take: &mut dyn FnMut(Report)) {
-        self.texts.take_overdue(now, &mut |text| take(Report::Notice(text)));
-        let is_guided = self.mode == Some(ShownMode { mode: RoverMode::Guided, is_armed: true });
+    pub(super) fn report(
+        &mut self,
+        now: SimTime,
+        message: &MavMessage,
+        take: &mut dyn FnMut(Report),
+    ) {
+        self.texts
+            .take_overdue(now, &mut |text| take(Report::Notice(text)));
+        let is_guided = self.mode
+            == Some(ShownMode {
+                mode: RoverMode::Guided,
+                is_armed: true,
+            });
         match message {
             // The ordered heading, from version 4.7 on; before that it is 0, except for the bearing
             // of a position.
@@ -208,37 +248,66 @@ impl Boat {
             }
             MavMessage::GPS_RAW_INT(gps) => self.fix = Some((now, fix(gps))),
             MavMessage::GLOBAL_POSITION_INT(position) => self.take_position(now, position, take),
-            MavMessage::ATTITUDE(ATTITUDE_DATA { roll, pitch, yaw, yawspeed, .. }) => {
-                take(Report::Tilt([*roll, *pitch].map(|angle| f64::from(angle).to_degrees())));
+            MavMessage::ATTITUDE(ATTITUDE_DATA {
+                roll,
+                pitch,
+                yaw,
+                yawspeed,
+                ..
+            }) => {
+                take(Report::Tilt(
+                    [*roll, *pitch].map(|angle| f64::from(angle).to_degrees()),
+                ));
                 self.attitude_at = now;
                 let deg = f64::from(*yaw).to_degrees();
                 let yaw_rate = f64::from(*yawspeed).to_degrees();
-                take(Report::Heading(Heading { deg, north: North::True, yaw_rate_deg_s: Some(yaw_rate) }));
+                take(Report::Heading(Heading {
+                    deg,
+                    north: North::True,
+                    yaw_rate_deg_s: Some(yaw_rate),
+                }));
             }
             MavMessage::SYS_STATUS(status) => {
                 // Both messages may report the same battery; every board sends SYS_STATUS.
                 let volts = millivolts(status.voltage_battery);
                 self.has_volts = volts.is_some();
                 let left_pct = charge_pct(status.battery_remaining);
-                volts
-                    .into_iter()
-                    .for_each(|volts| take(Report::Power(Power { volts: Some(volts), left_pct, ..Power::default() })));
+                volts.into_iter().for_each(|volts| {
+                    take(Report::Power(Power {
+                        volts: Some(volts),
+                        left_pct,
+                        ..Power::default()
+                    }))
+                });
             }
             MavMessage::BATTERY_STATUS(battery) if battery.id == 0 && !self.has_volts => {
-                let cells: Vec<f64> = battery.voltages.iter().filter_map(|cell| millivolts(*cell)).collect();
+                let cells: Vec<f64> = battery
+                    .voltages
+                    .iter()
+                    .filter_map(|cell| millivolts(*cell))
+                    .collect();
                 let volts = (!cells.is_empty()).then(|| cells.iter().sum());
                 let left_pct = charge_pct(battery.battery_remaining);
-                take(Report::Power(Power { volts, left_pct, ..Power::default() }));
+                take(Report::Power(Power {
+                    volts,
+                    left_pct,
+                    ..Power::default()
+                }));
             }
             MavMessage::SYSTEM_TIME(time) if time.time_unix_usec > 0 => {
                 let (_, time) = date_and_time(time.time_unix_usec.saturating_mul(1000));
                 take(Report::Clock(time));
             }
             // Texts below a warning are sent all the time, and would hide important ones.
-            MavMessage::STATUSTEXT(status) if status.severity as u8 <= MavSeverity::MAV_SEVERITY_WARNING as u8 => {
-                self.texts.take(now, status, &mut |text| take(Report::Notice(text)));
+            MavMessage::STATUSTEXT(status)
+                if status.severity as u8 <= MavSeverity::MAV_SEVERITY_WARNING as u8 =>
+            {
+                self.texts
+                    .take(now, status, &mut |text| take(Report::Notice(text)));
             }
-            MavMessage::COMMAND_ACK(COMMAND_ACK_DATA { command, result, .. }) => {
+            MavMessage::COMMAND_ACK(COMMAND_ACK_DATA {
+                command, result, ..
+            }) => {
                 // Only for commands that we send ourselves: an answer goes to everybody on the
                 // link.
                 let is_orderly = matches!(
@@ -248,7 +317,10 @@ impl Boat {
                         | MavCmd::MAV_CMD_DO_SET_HOME
                         | MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL
                 );
-                let is_taken = matches!(result, MavResult::MAV_RESULT_ACCEPTED | MavResult::MAV_RESULT_IN_PROGRESS);
+                let is_taken = matches!(
+                    result,
+                    MavResult::MAV_RESULT_ACCEPTED | MavResult::MAV_RESULT_IN_PROGRESS
+                );
                 if is_orderly && !is_taken {
                     take(Report::Notice(format!("{command:?}: {result:?}")));
                 }
@@ -257,8 +329,21 @@ impl Boat {
         }
     }
 
-    fn take_position(&mut self, now: SimTime, position: &GLOBAL_POSITION_INT_DATA, take: &mut dyn FnMut(Report)) {
-        let GLOBAL_POSITION_INT_DATA { time_boot_ms, lat, lon, vx, vy, hdg, .. } = *position;
+    fn take_position(
+        &mut self,
+        now: SimTime,
+        position: &GLOBAL_POSITION_INT_DATA,
+        take: &mut dyn FnMut(Report),
+    ) {
+        let GLOBAL_POSITION_INT_DATA {
+            time_boot_ms,
+            lat,
+            lon,
+            vx,
+            vy,
+            hdg,
+            ..
+        } = *position;
         // Repetitions are not news.
         // A router may deliver a message by two routes.
         if self.position_ms.replace(time_boot_ms) == Some(time_boot_ms) {
@@ -266,19 +351,40 @@ impl Boat {
         }
         if hdg < 36_000 && (now - self.attitude_at).as_s() > ATTITUDE_AGE_MAX_S {
             let deg = 0.01 * f64::from(hdg);
-            take(Report::Heading(Heading { deg, north: North::True, yaw_rate_deg_s: None }));
+            take(Report::Heading(Heading {
+                deg,
+                north: North::True,
+                yaw_rate_deg_s: None,
+            }));
         }
-        take(Report::Velocity(Ned { north: 0.01 * f64::from(vx), east: 0.01 * f64::from(vy) }));
+        take(Report::Velocity(Ned {
+            north: 0.01 * f64::from(vx),
+            east: 0.01 * f64::from(vy),
+        }));
         // The position is an estimate that continues without a receiver: its fix shows its quality.
-        let fix = self.fix.filter(|(at, _)| (now - *at).as_s() <= FIX_TYPE_AGE_MAX_S);
-        let fix = fix.map_or(Fix { quality: Some(FixQuality::NONE), ..Fix::default() }, |(_, fix)| fix);
-        take(Report::Fix(Fix { at: on_globe((lat, lon)), ..fix }));
+        let fix = self
+            .fix
+            .filter(|(at, _)| (now - *at).as_s() <= FIX_TYPE_AGE_MAX_S);
+        let fix = fix.map_or(
+            Fix {
+                quality: Some(FixQuality::NONE),
+                ..Fix::default()
+            },
+            |(_, fix)| fix,
+        );
+        take(Report::Fix(Fix {
+            at: on_globe((lat, lon)),
+            ..fix
+        }));
     }
 }
 
 /// ArduPilot on a boat, or on a rover, which runs the same program.
 fn is_boat(heartbeat: &HEARTBEAT_DATA) -> bool {
-    let is_vehicle = matches!(heartbeat.mavtype, MavType::MAV_TYPE_SURFACE_BOAT | MavType::MAV_TYPE_GROUND_ROVER);
+    let is_vehicle = matches!(
+        heartbeat.mavtype,
+        MavType::MAV_TYPE_SURFACE_BOAT | MavType::MAV_TYPE_GROUND_ROVER
+    );
     is_vehicle && heartbeat.autopilot == MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA
 }
 
@@ -296,7 +402,9 @@ fn fix(gps: &GPS_RAW_INT_DATA) -> Fix {
 /// The quality of a fix in GGA's numbering.
 fn quality(gps: &GPS_RAW_INT_DATA) -> FixQuality {
     FixQuality::from_gga(match gps.fix_type {
-        GpsFixType::GPS_FIX_TYPE_NO_GPS | GpsFixType::GPS_FIX_TYPE_NO_FIX | GpsFixType::GPS_FIX_TYPE_2D_FIX => 0,
+        GpsFixType::GPS_FIX_TYPE_NO_GPS
+        | GpsFixType::GPS_FIX_TYPE_NO_FIX
+        | GpsFixType::GPS_FIX_TYPE_2D_FIX => 0,
         GpsFixType::GPS_FIX_TYPE_3D_FIX => 1,
         GpsFixType::GPS_FIX_TYPE_DGPS | GpsFixType::GPS_FIX_TYPE_PPP => 2,
         GpsFixType::GPS_FIX_TYPE_RTK_FLOAT => 5,

@@ -5,8 +5,8 @@ use super::codec::UploadStep;
 use super::mavlink_boat::Target;
 use crate::mavlink::dialect::HOME_POSITION_DATA;
 use crate::mavlink::dialect::{
-    COMMAND_INT_DATA, COMMAND_LONG_DATA, MISSION_COUNT_DATA, MISSION_ITEM_INT_DATA, MavCmd, MavFrame, MavMessage,
-    MavMissionResult,
+    COMMAND_INT_DATA, COMMAND_LONG_DATA, MISSION_COUNT_DATA, MISSION_ITEM_INT_DATA, MavCmd,
+    MavFrame, MavMessage, MavMissionResult,
 };
 use crate::mavlink::e7;
 use ::mavlink::MessageData;
@@ -66,12 +66,23 @@ impl Upload {
             ..item(MavCmd::MAV_CMD_DO_CHANGE_SPEED, [0.0; 2])
         };
         let mut items = vec![item(MavCmd::MAV_CMD_NAV_WAYPOINT, mission.erp), speed];
-        items.extend(mission.waypoints.iter().map(|at| item(MavCmd::MAV_CMD_NAV_WAYPOINT, *at)));
+        items.extend(
+            mission
+                .waypoints
+                .iter()
+                .map(|at| item(MavCmd::MAV_CMD_NAV_WAYPOINT, *at)),
+        );
         for (seq, item) in items.iter_mut().enumerate() {
             item.seq = seq as u16;
         }
         let [lat_deg, lon_deg] = mission.erp;
-        Upload { items, home: (e7(lat_deg), e7(lon_deg)), phase: Phase::Home, tries: 0, due: now }
+        Upload {
+            items,
+            home: (e7(lat_deg), e7(lon_deg)),
+            phase: Phase::Home,
+            tries: 0,
+            due: now,
+        }
     }
 
     /// When the next step is due.
@@ -80,7 +91,12 @@ impl Upload {
     }
 
     /// Appends the messages that are due.
-    pub(super) fn next(&mut self, now: SimTime, target: Target, messages: &mut Vec<MavMessage>) -> UploadStep {
+    pub(super) fn next(
+        &mut self,
+        now: SimTime,
+        target: Target,
+        messages: &mut Vec<MavMessage>,
+    ) -> UploadStep {
         let unanswered = match &self.phase {
             Phase::Done => return UploadStep::Done,
             Phase::Refused(reason) => return UploadStep::Failed(reason.clone()),
@@ -103,7 +119,8 @@ impl Upload {
 
     /// Handles the home that the boat reports.
     pub(super) fn take_home(&mut self, (lat_e7, lon_e7): (i32, i32), now: SimTime) {
-        let is_near = lat_e7.abs_diff(self.home.0) <= SAME_E7 && lon_e7.abs_diff(self.home.1) <= SAME_E7;
+        let is_near =
+            lat_e7.abs_diff(self.home.0) <= SAME_E7 && lon_e7.abs_diff(self.home.1) <= SAME_E7;
         if self.phase == Phase::Home && is_near {
             // RTL goes to the home, so a boat that has not accepted it must not get a mission with
             // that recovery point.
@@ -113,7 +130,10 @@ impl Upload {
 
     /// Handles the boat's request for an item.
     pub(super) fn take_request(&mut self, seq: u16, now: SimTime) -> Option<MavMessage> {
-        let item = self.items.get(usize::from(seq)).filter(|_| self.phase == Phase::Items)?;
+        let item = self
+            .items
+            .get(usize::from(seq))
+            .filter(|_| self.phase == Phase::Items)?;
         // Each request shows that the upload continues, so the attempts are counted again from
         // zero.
         (self.tries, self.due) = (1, now + SimTime::from_s(AGAIN_S));
@@ -126,7 +146,11 @@ impl Upload {
         // and continues.
         if self.phase == Phase::Items && result != MavMissionResult::MAV_MISSION_INVALID_SEQUENCE {
             let is_taken = result == MavMissionResult::MAV_MISSION_ACCEPTED;
-            self.phase = if is_taken { Phase::Done } else { Phase::Refused(format!("the boat answers {result:?}")) };
+            self.phase = if is_taken {
+                Phase::Done
+            } else {
+                Phase::Refused(format!("the boat answers {result:?}"))
+            };
             self.due = now;
         }
     }

@@ -14,14 +14,25 @@ const THROTTLE_MAX_PCT: f64 = 70.0;
 /// The fault of the mission.
 pub(super) fn check(mission: &Mission) -> Result<(), String> {
     if !(0.0..=THROTTLE_MAX_PCT).contains(&mission.throttle_pct) {
-        return Err(format!("throttle_pct is {}, expected 0 to {THROTTLE_MAX_PCT}", mission.throttle_pct));
+        return Err(format!(
+            "throttle_pct is {}, expected 0 to {THROTTLE_MAX_PCT}",
+            mission.throttle_pct
+        ));
     }
     if !(1..=WAYPOINTS_MAX).contains(&mission.waypoints.len()) {
-        return Err(format!("waypoints are {}, expected 1 to {WAYPOINTS_MAX}", mission.waypoints.len()));
+        return Err(format!(
+            "waypoints are {}, expected 1 to {WAYPOINTS_MAX}",
+            mission.waypoints.len()
+        ));
     }
-    for (index, [lat_deg, lon_deg]) in std::iter::once(&mission.erp).chain(&mission.waypoints).enumerate() {
+    for (index, [lat_deg, lon_deg]) in std::iter::once(&mission.erp)
+        .chain(&mission.waypoints)
+        .enumerate()
+    {
         if !((-90.0..=90.0).contains(lat_deg) && (-180.0..=180.0).contains(lon_deg)) {
-            return Err(format!("waypoint {index} is [{lat_deg}, {lon_deg}], expected latitude and longitude"));
+            return Err(format!(
+                "waypoint {index} is [{lat_deg}, {lon_deg}], expected latitude and longitude"
+            ));
         }
     }
     Ok(())

@@ -32,7 +32,9 @@ impl Protocol {
     /// The protocol of a boat that this gateway drives.
     pub fn new(gateway: &Gateway) -> Protocol {
         match gateway.protocol {
-            BoatProtocol::Surveyor => Protocol::Surveyor(Box::new(Surveyor::new(gateway.upload_gap_s))),
+            BoatProtocol::Surveyor => {
+                Protocol::Surveyor(Box::new(Surveyor::new(gateway.upload_gap_s)))
+            }
             BoatProtocol::Mavlink => Protocol::Mavlink(Box::new(Mavlink::new(gateway))),
         }
     }

@@ -29,7 +29,12 @@ struct Unfinished {
 
 impl StatusTexts {
     /// Accepts a message; calls `say` with each text that it completes.
-    pub(super) fn take(&mut self, now: SimTime, status: &STATUSTEXT_DATA, say: &mut dyn FnMut(String)) {
+    pub(super) fn take(
+        &mut self,
+        now: SimTime,
+        status: &STATUSTEXT_DATA,
+        say: &mut dyn FnMut(String),
+    ) {
         let letters = status.text.iter().take_while(|letter| **letter != 0);
         let capacity = status.text.len();
         let letters: Vec<u8> = letters.copied().collect();
@@ -41,7 +46,15 @@ impl StatusTexts {
         // A repeated chunk number starts another text: numbers are reused.
         let (mut text, again) = match place.map(|place| self.unfinished.remove(place)) {
             Some(text) if text.next_chunk <= status.chunk_seq => (text, None),
-            other => (Unfinished { id: status.id, next_chunk: 0, at: now, text: vec![] }, other),
+            other => (
+                Unfinished {
+                    id: status.id,
+                    next_chunk: 0,
+                    at: now,
+                    text: vec![],
+                },
+                other,
+            ),
         };
         again.into_iter().for_each(|text| say(text.cut_off()));
         if status.chunk_seq > text.next_chunk {
@@ -65,7 +78,9 @@ impl StatusTexts {
     /// Calls `say` with each text whose next chunk is overdue.
     pub(super) fn take_overdue(&mut self, now: SimTime, say: &mut dyn FnMut(String)) {
         let is_overdue = |text: &mut Unfinished| (now - text.at).as_s() > CHUNK_AGE_MAX_S;
-        self.unfinished.extract_if(.., is_overdue).for_each(|text| say(text.cut_off()));
+        self.unfinished
+            .extract_if(.., is_overdue)
+            .for_each(|text| say(text.cut_off()));
     }
 }
 
@@ -84,8 +99,7 @@ fn in_words(letters: &[u8]) -> String {
 mod tests {
     use super::*;
 
-    const LONG: &str =
-        "PreArm: Compass not calibrated and the accelerometers are inconsistent at 12° and 50°, please wait a while";
+    const LONG: &str = "PreArm: Compass not calibrated and the accelerometers are inconsistent at 12° and 50°, please wait a while";
 
     /// The texts shown for these chunks, which arrive every 0.1 s, and 2 s later.
     fn said(chunks: &[(u16, u8, &[u8])]) -> Vec<String> {
@@ -97,34 +111,62 @@ mod tests {
             let id = *id;
             let chunk_seq = *chunk_seq;
             let text = letters.into();
-            let status = STATUSTEXT_DATA { id, chunk_seq, text, ..STATUSTEXT_DATA::default() };
-            texts.take(SimTime::from_s(0.1 * i as f64), &status, &mut |text| said.push(text));
+            let status = STATUSTEXT_DATA {
+                id,
+                chunk_seq,
+                text,
+                ..STATUSTEXT_DATA::default()
+            };
+            texts.take(SimTime::from_s(0.1 * i as f64), &status, &mut |text| {
+                said.push(text)
+            });
         }
-        texts.take_overdue(SimTime::from_s(0.1 * chunks.len() as f64 + 2.0), &mut |text| said.push(text));
+        texts.take_overdue(
+            SimTime::from_s(0.1 * chunks.len() as f64 + 2.0),
+            &mut |text| said.push(text),
+        );
         said
     }
 
     #[test]
     fn chunks_are_joined_and_a_lost_one_leaves_a_mark() {
         let parts: Vec<&[u8]> = LONG.as_bytes().chunks(50).collect();
-        let [a, b, c] = parts[..] else { panic!("{} parts", parts.len()) };
+        let [a, b, c] = parts[..] else {
+            panic!("{} parts", parts.len())
+        };
         let part = |bytes: &[u8]| String::from_utf8_lossy(bytes).trim().to_owned();
         let full = &[b'x'; 50][..];
         let whole = vec![LONG.to_owned()];
         for (chunks, want) in [
             (vec![(7, 0, a), (7, 1, b), (7, 2, c)], whole),
             (vec![(0, 0, c), (0, 0, c)], vec![part(c), part(c)]),
-            (vec![(7, 0, a), (8, 0, c), (7, 1, b), (7, 2, c)], vec![part(c), LONG.to_owned()]),
-            (vec![(7, 0, a), (7, 2, c)], vec![part(&[a, LOST, c].concat())]),
-            (vec![(7, 1, b), (7, 2, c)], vec![part(&[LOST, b, c].concat())]),
+            (
+                vec![(7, 0, a), (8, 0, c), (7, 1, b), (7, 2, c)],
+                vec![part(c), LONG.to_owned()],
+            ),
+            (
+                vec![(7, 0, a), (7, 2, c)],
+                vec![part(&[a, LOST, c].concat())],
+            ),
+            (
+                vec![(7, 1, b), (7, 2, c)],
+                vec![part(&[LOST, b, c].concat())],
+            ),
             (vec![(7, 0, a)], vec![part(&[a, LOST].concat())]),
-            (vec![(7, 0, a), (7, 0, c)], vec![part(&[a, LOST].concat()), part(c)]),
+            (
+                vec![(7, 0, a), (7, 0, c)],
+                vec![part(&[a, LOST].concat()), part(c)],
+            ),
             // Exactly 50 characters, followed by the empty chunk that ends it.
             (vec![(7, 0, full), (7, 1, b"")], vec![part(full)]),
         ] {
             assert_eq!(said(&chunks), want);
         }
         let endless: Vec<_> = (0..=255).map(|i| (7, i, full)).collect();
-        assert!(said(&endless).iter().all(|text| text.len() < TEXT_MAX + 100));
+        assert!(
+            said(&endless)
+                .iter()
+                .all(|text| text.len() < TEXT_MAX + 100)
+        );
     }
 }

@@ -4,7 +4,8 @@ use super::codec::{Codec, Command, UploadStep};
 use super::mission_check;
 use super::report::{ControlReport, Fix, Heading, North, Power, Report, Shown};
 use crate::nmea::{
-    self, ControlState, FixQuality, Framer, Gga, M_S_PER_KN, MissionSettings, Mode, ParseError, Sentence, Waypoint,
+    self, ControlState, FixQuality, Framer, Gga, M_S_PER_KN, MissionSettings, Mode, ParseError,
+    Sentence, Waypoint,
 };
 use crate::set_point::SetPoint;
 use crate::supervisor::Task;
@@ -36,7 +37,13 @@ pub struct Surveyor {
 
 impl Surveyor {
     pub(super) fn new(upload_gap_s: f64) -> Surveyor {
-        Surveyor { framer: Framer::new(), upload: None, upload_gap_s, unreadable: 0, unknown: BTreeMap::new() }
+        Surveyor {
+            framer: Framer::new(),
+            upload: None,
+            upload_gap_s,
+            unreadable: 0,
+            unknown: BTreeMap::new(),
+        }
     }
 }
 
@@ -48,14 +55,23 @@ impl Codec for Surveyor {
     }
 
     fn read(&mut self, _: SimTime, bytes: &[u8], take: &mut dyn FnMut(Report)) {
-        let Surveyor { framer, unreadable, unknown, .. } = self;
+        let Surveyor {
+            framer,
+            unreadable,
+            unknown,
+            ..
+        } = self;
         framer.push(bytes, &mut |body| match Sentence::parse(body) {
             Ok(sentence) => report(&sentence, take),
             Err(ParseError::Unknown { address }) => {
                 // Names arrive over a wire that may carry noise: without a limit they would fill
                 // the memory.
                 let room = unknown.len() < UNKNOWN_MAX;
-                let name = if room || unknown.contains_key(&address) { address } else { "others".to_owned() };
+                let name = if room || unknown.contains_key(&address) {
+                    address
+                } else {
+                    "others".to_owned()
+                };
                 *unknown.entry(name).or_default() += 1;
             }
             Err(_) => *unreadable += 1,
@@ -75,12 +91,26 @@ impl Codec for Surveyor {
 
     fn shown(&self, command: Command) -> Shown {
         // Compared with what was sent: whole percentages.
-        let nmea::Command { mode, heading_deg, thrust, difference, .. } = sentence(command).rounded();
-        Shown { mode, heading_deg, thrust, difference }
+        let nmea::Command {
+            mode,
+            heading_deg,
+            thrust,
+            difference,
+            ..
+        } = sentence(command).rounded();
+        Shown {
+            mode,
+            heading_deg,
+            thrust,
+            difference,
+        }
     }
 
     fn text(&self, command: Command) -> String {
-        Sentence::Command(sentence(command)).line().trim_end().to_owned()
+        Sentence::Command(sentence(command))
+            .line()
+            .trim_end()
+            .to_owned()
     }
 
     fn stop_message(&self) -> Vec<u8> {
@@ -102,12 +132,17 @@ impl Codec for Surveyor {
 
     fn begin_upload(&mut self, now: SimTime, mission: &Mission) -> Result<(), String> {
         mission_check::check(mission)?;
-        self.upload = Some(Upload { lines: lines_of(mission), due: now });
+        self.upload = Some(Upload {
+            lines: lines_of(mission),
+            due: now,
+        });
         Ok(())
     }
 
     fn continue_upload(&mut self, now: SimTime, out: &mut Vec<u8>) -> UploadStep {
-        let Some(upload) = &mut self.upload else { return UploadStep::Done };
+        let Some(upload) = &mut self.upload else {
+            return UploadStep::Done;
+        };
         if now < upload.due {
             return UploadStep::Waiting;
         }
@@ -146,22 +181,46 @@ impl Codec for Surveyor {
             ("bytes of garbage", framed.garbage),
             ("unreadable", self.unreadable),
         ];
-        let unknown = self.unknown.iter().map(|(name, count)| (format!("unknown {name}"), *count));
-        [known.into_iter().map(|(name, count)| (name.to_owned(), count)).collect(), unknown.collect()]
+        let unknown = self
+            .unknown
+            .iter()
+            .map(|(name, count)| (format!("unknown {name}"), *count));
+        [
+            known
+                .into_iter()
+                .map(|(name, count)| (name.to_owned(), count))
+                .collect(),
+            unknown.collect(),
+        ]
     }
 }
 
-/// The lines of a mission: start of download, settings, emergency recovery point (index 0), waypoints, end.
+/// The lines of a mission: start of download, settings, emergency recovery point (index 0),
+/// waypoints, end.
 fn lines_of(mission: &Mission) -> VecDeque<Sentence> {
     // The lines that follow: settings, recovery point, waypoints.
     let count = mission.waypoints.len() + 2;
     let mut lines = VecDeque::from([
-        Sentence::Command(pseac(Mode::FileDownload, [Some(count as f64), Some(0.0), Some(0.0)])),
-        Sentence::MissionSettings(MissionSettings { throttle_pct: mission.throttle_pct }),
+        Sentence::Command(pseac(
+            Mode::FileDownload,
+            [Some(count as f64), Some(0.0), Some(0.0)],
+        )),
+        Sentence::MissionSettings(MissionSettings {
+            throttle_pct: mission.throttle_pct,
+        }),
     ]);
-    for (index, [lat_deg, lon_deg]) in std::iter::once(&mission.erp).chain(&mission.waypoints).enumerate() {
-        let at = LatLon { lat_deg: *lat_deg, lon_deg: *lon_deg };
-        lines.push_back(Sentence::Waypoint(Waypoint { at, index: index as u16 }));
+    for (index, [lat_deg, lon_deg]) in std::iter::once(&mission.erp)
+        .chain(&mission.waypoints)
+        .enumerate()
+    {
+        let at = LatLon {
+            lat_deg: *lat_deg,
+            lon_deg: *lon_deg,
+        };
+        lines.push_back(Sentence::Waypoint(Waypoint {
+            at,
+            index: index as u16,
+        }));
     }
     lines.push_back(Sentence::Command(sentence(Command::EndOfUpload)));
     lines
@@ -171,34 +230,87 @@ fn lines_of(mission: &Mission) -> VecDeque<Sentence> {
 fn report(sentence: &Sentence, take: &mut dyn FnMut(Report)) {
     match sentence {
         Sentence::Gga(gga) => {
-            let Gga { time, at, quality, hdop, satellites, .. } = *gga;
-            take(Report::Fix(Fix { time, at, quality: Some(FixQuality::from_gga(quality)), hdop, satellites }));
-            gga.time.into_iter().for_each(|time| take(Report::Clock(time)));
+            let Gga {
+                time,
+                at,
+                quality,
+                hdop,
+                satellites,
+                ..
+            } = *gga;
+            take(Report::Fix(Fix {
+                time,
+                at,
+                quality: Some(FixQuality::from_gga(quality)),
+                hdop,
+                satellites,
+            }));
+            gga.time
+                .into_iter()
+                .for_each(|time| take(Report::Clock(time)));
         }
         Sentence::Rmc(rmc) => {
-            velocity(rmc.course_deg, rmc.speed_kn).into_iter().for_each(|velocity| take(Report::Velocity(velocity)));
+            velocity(rmc.course_deg, rmc.speed_kn)
+                .into_iter()
+                .for_each(|velocity| take(Report::Velocity(velocity)));
             // It contains no quality, only whether there is a fix.
             let quality = (!rmc.valid).then_some(FixQuality::NONE);
-            take(Report::Fix(Fix { time: rmc.time, at: rmc.at, quality, ..Fix::default() }));
+            take(Report::Fix(Fix {
+                time: rmc.time,
+                at: rmc.at,
+                quality,
+                ..Fix::default()
+            }));
         }
         Sentence::Vtg(vtg) => {
             let speed_kn = vtg.speed_kn.or(vtg.speed_km_h.map(|km_h| km_h / 1.852));
             let velocity = velocity(vtg.course_true_deg, speed_kn);
-            velocity.into_iter().for_each(|velocity| take(Report::Velocity(velocity)));
+            velocity
+                .into_iter()
+                .for_each(|velocity| take(Report::Velocity(velocity)));
         }
         Sentence::Attitude(attitude) => {
             let yaw_rate_deg_s = attitude.yaw_rate_deg_s;
-            let heading = attitude.heading_deg.map(|deg| Heading { deg, north: North::Compass, yaw_rate_deg_s });
-            heading.into_iter().for_each(|heading| take(Report::Heading(heading)));
-            take(Report::Tilt([attitude.roll_deg, attitude.pitch_deg].map(Option::unwrap_or_default)));
+            let heading = attitude.heading_deg.map(|deg| Heading {
+                deg,
+                north: North::Compass,
+                yaw_rate_deg_s,
+            });
+            heading
+                .into_iter()
+                .for_each(|heading| take(Report::Heading(heading)));
+            take(Report::Tilt(
+                [attitude.roll_deg, attitude.pitch_deg].map(Option::unwrap_or_default),
+            ));
         }
         Sentence::Hdt(hdt) => {
-            let heading = hdt.heading_deg.map(|deg| Heading { deg, north: North::True, yaw_rate_deg_s: None });
-            heading.into_iter().for_each(|heading| take(Report::Heading(heading)));
+            let heading = hdt.heading_deg.map(|deg| Heading {
+                deg,
+                north: North::True,
+                yaw_rate_deg_s: None,
+            });
+            heading
+                .into_iter()
+                .for_each(|heading| take(Report::Heading(heading)));
         }
         Sentence::ControlState(state) => {
-            let ControlState { mode, heading_deg, thrust, difference, operator, .. } = *state;
-            take(Report::Control(ControlReport { shown: Shown { mode, heading_deg, thrust, difference }, operator }));
+            let ControlState {
+                mode,
+                heading_deg,
+                thrust,
+                difference,
+                operator,
+                ..
+            } = *state;
+            take(Report::Control(ControlReport {
+                shown: Shown {
+                    mode,
+                    heading_deg,
+                    thrust,
+                    difference,
+                },
+                operator,
+            }));
         }
         Sentence::Battery(battery) => take(Report::Power(Power {
             volts: battery.volts,
@@ -206,7 +318,9 @@ fn report(sentence: &Sentence, take: &mut dyn FnMut(Report)) {
             thruster_a: [battery.port_amps, battery.starboard_amps],
             bilge_a: [battery.port_bilge_amps, battery.starboard_bilge_amps],
         })),
-        Sentence::BoatError(error) => take(Report::Error((error.code != "N").then(|| error.code.clone()))),
+        Sentence::BoatError(error) => take(Report::Error(
+            (error.code != "N").then(|| error.code.clone()),
+        )),
         _ => {}
     }
 }
@@ -215,7 +329,9 @@ fn velocity(course_deg: Option<f64>, speed_kn: Option<f64>) -> Option<Ned> {
     match (course_deg, speed_kn) {
         // Receivers leave the course of a boat at rest blank; it is not north.
         (None, Some(speed_kn)) if speed_kn < 0.5 => Some(Ned::default()),
-        (Some(course_deg), Some(speed_kn)) => Some(Ned::toward_deg(course_deg).scaled(speed_kn * M_S_PER_KN)),
+        (Some(course_deg), Some(speed_kn)) => {
+            Some(Ned::toward_deg(course_deg).scaled(speed_kn * M_S_PER_KN))
+        }
         _ => None,
     }
 }
@@ -223,7 +339,13 @@ fn velocity(course_deg: Option<f64>, speed_kn: Option<f64>) -> Option<Ned> {
 /// `PSEAC` with these numbers in its second to fourth field.
 fn pseac(mode: Mode, numbers: [Option<f64>; 3]) -> nmea::Command {
     let [heading_deg, thrust, difference] = numbers;
-    nmea::Command { mode, heading_deg, thrust, difference, ..nmea::Command::default() }
+    nmea::Command {
+        mode,
+        heading_deg,
+        thrust,
+        difference,
+        ..nmea::Command::default()
+    }
 }
 
 fn sentence(command: Command) -> nmea::Command {
@@ -231,21 +353,33 @@ fn sentence(command: Command) -> nmea::Command {
         // Zeros, as in the public drivers that run these boats: an empty field might mean
         // "unchanged".
         Command::Standby => pseac(Mode::Standby, [Some(0.0); 3]),
-        Command::Switch(word) => nmea::Command { words: word.text().to_owned(), ..sentence(Command::Standby) },
+        Command::Switch(word) => nmea::Command {
+            words: word.text().to_owned(),
+            ..sentence(Command::Standby)
+        },
         Command::Zero => sentence(Command::SetPoint(SetPoint::ZERO)),
-        Command::SetPoint(SetPoint::Thrust { thrust_pct, difference_pct }) => {
-            pseac(Mode::Thruster, [Some(0.0), Some(thrust_pct), Some(difference_pct)])
-        }
-        Command::SetPoint(SetPoint::Speed { heading_deg, speed_m_s }) => {
-            pseac(Mode::Speed, [Some(heading_deg), Some(speed_m_s / M_S_PER_KN), None])
-        }
+        Command::SetPoint(SetPoint::Thrust {
+            thrust_pct,
+            difference_pct,
+        }) => pseac(
+            Mode::Thruster,
+            [Some(0.0), Some(thrust_pct), Some(difference_pct)],
+        ),
+        Command::SetPoint(SetPoint::Speed {
+            heading_deg,
+            speed_m_s,
+        }) => pseac(
+            Mode::Speed,
+            [Some(heading_deg), Some(speed_m_s / M_S_PER_KN), None],
+        ),
         // Empty fields, as sent by the one public driver that has used it.
         Command::Task(Task::StationKeep) => pseac(Mode::StationKeep, [None; 3]),
         Command::Task(Task::GoToErp) => pseac(Mode::GoToErp, [Some(0.0); 3]),
         Command::Task(Task::Mission) => pseac(Mode::Waypoint, [Some(0.0); 3]),
-        Command::Task(Task::Mode(BoatMode::Heading { heading_deg, thrust_pct })) => {
-            pseac(Mode::Heading, [Some(heading_deg), Some(thrust_pct), None])
-        }
+        Command::Task(Task::Mode(BoatMode::Heading {
+            heading_deg,
+            thrust_pct,
+        })) => pseac(Mode::Heading, [Some(heading_deg), Some(thrust_pct), None]),
         Command::Task(Task::Mode(mode)) => pseac(mode_of(mode), [Some(0.0); 3]),
         Command::EndOfUpload => pseac(Mode::FileDownload, [Some(0.0); 3]),
     }
@@ -273,14 +407,22 @@ mod tests {
     #[test]
     fn what_a_boat_should_show_is_what_it_was_sent() {
         for (thrust_pct, difference_pct) in [(40.4, -9.6), (12.5, 0.49), (-33.3, 66.7)] {
-            let command = Command::SetPoint(SetPoint::Thrust { thrust_pct, difference_pct });
+            let command = Command::SetPoint(SetPoint::Thrust {
+                thrust_pct,
+                difference_pct,
+            });
             let mut bytes = vec![];
             let mut sent = None;
             write(command, &mut bytes);
             Framer::new().push(&bytes, &mut |body| sent = Sentence::parse(body).ok());
-            let Some(Sentence::Command(sent)) = sent else { panic!("no command: {bytes:?}") };
+            let Some(Sentence::Command(sent)) = sent else {
+                panic!("no command: {bytes:?}")
+            };
             let shown = Surveyor::new(1.0).shown(command);
-            assert_eq!((shown.thrust, shown.difference), (sent.thrust, sent.difference));
+            assert_eq!(
+                (shown.thrust, shown.difference),
+                (sent.thrust, sent.difference)
+            );
         }
     }
 }

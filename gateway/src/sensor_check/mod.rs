@@ -1,4 +1,5 @@
-//! The sensor check before arming: what a boat sends, how often, who commands it, and what is missing.
+//! The sensor check before arming: what a boat sends, how often, who commands it, and what is
+//! missing.
 
 mod need;
 #[cfg(test)]
@@ -8,7 +9,9 @@ use crate::config::{BoatProtocol, Gateway};
 use crate::mavlink;
 use crate::mavlink::dialect::{HEARTBEAT_DATA, MavMessage};
 use crate::nav_estimate::HEADINGS_DEG;
-use crate::nmea::{self, Date, FixQuality, Mode, Operator, ParseError, Sentence, TimeOfDay, date_and_time};
+use crate::nmea::{
+    self, Date, FixQuality, Mode, Operator, ParseError, Sentence, TimeOfDay, date_and_time,
+};
 use crate::protocol::{ControlReport, Fix, Heading, North, Power, Protocol, Report};
 use ::mavlink::Message;
 use need::Usable;
@@ -49,7 +52,8 @@ pub struct HostTime {
 impl HostTime {
     /// The host's time at an earlier moment.
     fn utc_ns_at(self, came: SimTime) -> u64 {
-        self.utc_ns.saturating_add_signed(came.0.saturating_sub(self.now.0))
+        self.utc_ns
+            .saturating_add_signed(came.0.saturating_sub(self.now.0))
     }
 }
 
@@ -163,11 +167,15 @@ impl SensorCheck {
         // A separate framer counts by name. The reports come from the gateway's own codec, so that
         // the check judges what the gateway would use.
         self.bytes += bytes.len();
-        self.has_sentences |= bytes.starts_with(b"$") || bytes.windows(3).any(|part| part == b"\r\n$");
+        self.has_sentences |=
+            bytes.starts_with(b"$") || bytes.windows(3).any(|part| part == b"\r\n$");
         self.count(now, bytes);
         let mut reports = vec![];
-        self.protocol.read(now, bytes, &mut |report| reports.push(report));
-        reports.into_iter().for_each(|report| self.apply(now, report));
+        self.protocol
+            .read(now, bytes, &mut |report| reports.push(report));
+        reports
+            .into_iter()
+            .for_each(|report| self.apply(now, report));
     }
 
     /// Appends the requests that make a boat send data: none for a Surveyor; for MAVLink, its
@@ -184,8 +192,11 @@ impl SensorCheck {
 
     /// A true heading for comparison, degrees: as reported, or the course of a boat that makes way.
     pub fn true_deg(&self) -> Option<f64> {
-        let course =
-            || self.track.filter(|(_, speed_m_s)| *speed_m_s >= COURSE_MIN_M_S).map(|(course_deg, _)| course_deg);
+        let course = || {
+            self.track
+                .filter(|(_, speed_m_s)| *speed_m_s >= COURSE_MIN_M_S)
+                .map(|(course_deg, _)| course_deg)
+        };
         self.true_deg.or_else(course)
     }
 
@@ -196,24 +207,40 @@ impl SensorCheck {
 
     /// How far the boat's time of day is behind the host's, s.
     pub(crate) fn clock_behind_s(&self, host: HostTime) -> Option<f64> {
-        self.clock.map(|(came, time)| date_and_time(host.utc_ns_at(came)).1.since_s(time))
+        self.clock
+            .map(|(came, time)| date_and_time(host.utc_ns_at(came)).1.since_s(time))
     }
 
     /// The fault of the boat's clock or date, or of the host's, if any.
     pub fn clock_fault(&self, host: HostTime) -> Option<String> {
-        let off = self.clock_behind_s(host).filter(|behind_s| !CLOCK_BEHIND_S.contains(behind_s));
+        let off = self
+            .clock_behind_s(host)
+            .filter(|behind_s| !CLOCK_BEHIND_S.contains(behind_s));
         let days = self.date.map_or(0, |(came, date)| {
             let at = host.utc_ns_at(came);
             let ns = |s: f64| (s * 1e9) as u64;
             // Around midnight a fix may have the previous day's date.
-            let about = [at.saturating_sub(ns(*CLOCK_BEHIND_S.end())), at + ns(-CLOCK_BEHIND_S.start())];
-            if about.iter().any(|at| date_and_time(*at).0 == date) { 0 } else { date_and_time(at).0.days_since(date) }
+            let about = [
+                at.saturating_sub(ns(*CLOCK_BEHIND_S.end())),
+                at + ns(-CLOCK_BEHIND_S.start()),
+            ];
+            if about.iter().any(|at| date_and_time(*at).0 == date) {
+                0
+            } else {
+                date_and_time(at).0.days_since(date)
+            }
         });
         if days != 0 {
             // A receiver counts weeks modulo 1024: after a rollover it is wrong by this much.
-            let rollover = if days >= GPS_WEEKS_DAYS { ", as after a GPS week rollover (7168 days)" } else { "" };
+            let rollover = if days >= GPS_WEEKS_DAYS {
+                ", as after a GPS week rollover (7168 days)"
+            } else {
+                ""
+            };
             let (days, side) = (days.abs(), side(days < 0));
-            return Some(format!("the date is {days} days {side} this host's{rollover}: one of the two is wrong"));
+            return Some(format!(
+                "the date is {days} days {side} this host's{rollover}: one of the two is wrong"
+            ));
         }
         off.map(|behind_s| format!("{}: one of the two is wrong", fixes_in_words(behind_s)))
     }
@@ -221,27 +248,42 @@ impl SensorCheck {
     /// The boat's reports as text.
     pub fn findings(&self, host: HostTime) -> Vec<String> {
         let mut found = Vec::new();
-        if let Some(Fix { at, quality: Some(quality), hdop, .. }) = self.fix {
-            let place = at.map_or("no position".to_owned(), |at| format!("{:.6}, {:.6}", at.lat_deg, at.lon_deg));
+        if let Some(Fix {
+            at,
+            quality: Some(quality),
+            hdop,
+            ..
+        }) = self.fix
+        {
+            let place = at.map_or("no position".to_owned(), |at| {
+                format!("{:.6}, {:.6}", at.lat_deg, at.lon_deg)
+            });
             let hdop = hdop.map_or(String::new(), |hdop| format!(", dilution {hdop}"));
             found.push(format!("position: {place}, fix quality {quality}{hdop}"));
         }
         found.extend(self.heading());
         if let Some(ControlReport { shown, operator }) = &self.control {
-            let who = operator.map_or("it does not report who commands it".to_owned(), |operator| {
-                format!("commanded by {operator:?}")
-            });
-            found.push(format!("control: mode {}, {who}", self.mode_in_words(shown.mode)));
+            let who = operator.map_or(
+                "it does not report who commands it".to_owned(),
+                |operator| format!("commanded by {operator:?}"),
+            );
+            found.push(format!(
+                "control: mode {}, {who}",
+                self.mode_in_words(shown.mode)
+            ));
         }
         found.extend(self.power.volts.map(|volts| format!("battery: {volts} V")));
         found.extend(self.error.as_ref().map(|error| format!("error: {error}")));
         if let Some(behind_s) = self.clock_behind_s(host) {
-            let date = self
-                .date
-                .map_or("it sends no date".to_owned(), |(_, d)| format!("date {}-{:02}-{:02}", d.year, d.month, d.day));
+            let date = self.date.map_or("it sends no date".to_owned(), |(_, d)| {
+                format!("date {}-{:02}-{:02}", d.year, d.month, d.day)
+            });
             found.push(format!("clock: {}; {date}", fixes_in_words(behind_s)));
         }
-        found.extend(self.clock_fault(host).map(|fault| format!("clock: {fault}")));
+        found.extend(
+            self.clock_fault(host)
+                .map(|fault| format!("clock: {fault}")),
+        );
         found.extend(self.rejected());
         found
     }
@@ -257,10 +299,14 @@ impl SensorCheck {
     /// Its headings as text.
     pub(crate) fn heading(&self) -> Option<String> {
         let Some(compass_deg) = self.compass_deg else {
-            return self.true_deg.map(|true_deg| format!("heading: {true_deg:.1} true"));
+            return self
+                .true_deg
+                .map(|true_deg| format!("heading: {true_deg:.1} true"));
         };
         Some(match self.true_deg {
-            None => format!("heading: {compass_deg:.1} by its compass; no true heading to compare it with"),
+            None => format!(
+                "heading: {compass_deg:.1} by its compass; no true heading to compare it with"
+            ),
             Some(true_deg) => {
                 let apart_rad = wrap_pi((true_deg - compass_deg).to_radians());
                 let frame = if apart_rad.abs() < SAME_HEADING_RAD {
@@ -281,9 +327,13 @@ impl SensorCheck {
             && operator != Operator::Secondary
         {
             missing.push(match self.framer {
-                Framer::Nmea(_) => "secondary control: the operator ashore must enable it".to_owned(),
+                Framer::Nmea(_) => {
+                    "secondary control: the operator ashore must enable it".to_owned()
+                }
                 Framer::Mavlink(_) => {
-                    format!("control: {operator:?} has control, and the mode is neither GUIDED nor HOLD")
+                    format!(
+                        "control: {operator:?} has control, and the mode is neither GUIDED nor HOLD"
+                    )
                 }
             });
         }
@@ -315,25 +365,43 @@ impl SensorCheck {
             Some(lines) => lines,
             None if self.bytes == 0 => "received nothing".to_owned(),
             None => {
-                format!("received {} bytes, none of them readable: check the protocol and the baud rate", self.bytes)
+                format!(
+                    "received {} bytes, none of them readable: check the protocol and the baud rate",
+                    self.bytes
+                )
             }
         }
     }
 
     /// The last rejected line, if any, with the reason.
     fn rejected(&self) -> Option<String> {
-        let Framer::Nmea(framer) = &self.framer else { return None };
-        framer.rejected().map(|last| format!("rejected: {} {}", last.line, last.why))
+        let Framer::Nmea(framer) = &self.framer else {
+            return None;
+        };
+        framer
+            .rejected()
+            .map(|last| format!("rejected: {} {}", last.line, last.why))
     }
 
     /// Counts sentences or messages by name.
     fn count(&mut self, now: SimTime, bytes: &[u8]) {
-        let SensorCheck { framer, received, date, heard, .. } = self;
+        let SensorCheck {
+            framer,
+            received,
+            date,
+            heard,
+            ..
+        } = self;
         match framer {
             Framer::Nmea(framer) => framer.push(bytes, &mut |body| {
                 let sentence = Sentence::parse(body);
                 let name = body.split(',').next().unwrap_or_default();
-                note(received, now, name, (body.to_owned(), sentence.as_ref().err()));
+                note(
+                    received,
+                    now,
+                    name,
+                    (body.to_owned(), sentence.as_ref().err()),
+                );
                 let sent = match sentence {
                     Ok(Sentence::Rmc(rmc)) => rmc.date,
                     Ok(Sentence::Zda(zda)) => zda.date,
@@ -341,36 +409,53 @@ impl SensorCheck {
                 };
                 *date = sent.map(|date| (now, date)).or(*date);
             }),
-            Framer::Mavlink(framer) => framer.push(bytes, &mut |mavlink::Received { system, message, .. }| {
-                note(received, now, message.message_name(), (mavlink::message_text(&message), None));
-                match &message {
-                    MavMessage::SYSTEM_TIME(time) if time.time_unix_usec > 0 => {
-                        *date = Some((now, date_and_time(time.time_unix_usec.saturating_mul(1000)).0));
+            Framer::Mavlink(framer) => {
+                framer.push(bytes, &mut |mavlink::Received {
+                                             system, message, ..
+                                         }| {
+                    note(
+                        received,
+                        now,
+                        message.message_name(),
+                        (mavlink::message_text(&message), None),
+                    );
+                    match &message {
+                        MavMessage::SYSTEM_TIME(time) if time.time_unix_usec > 0 => {
+                            *date = Some((
+                                now,
+                                date_and_time(time.time_unix_usec.saturating_mul(1000)).0,
+                            ));
+                        }
+                        MavMessage::HEARTBEAT(heartbeat) if heard.len() < HEARD_MAX => {
+                            heard.insert(vehicle_in_words(system, heartbeat));
+                        }
+                        _ => {}
                     }
-                    MavMessage::HEARTBEAT(heartbeat) if heard.len() < HEARD_MAX => {
-                        heard.insert(vehicle_in_words(system, heartbeat));
-                    }
-                    _ => {}
-                }
-            }),
+                })
+            }
         }
     }
 
     /// Notes data in a form that the gateway can use.
     fn note_usable(&mut self, now: SimTime, report: &Report) {
         let usable = match report {
-            Report::Fix(Fix { time, at: Some(at), .. }) if (at.lat_deg, at.lon_deg) != (0.0, 0.0) => {
+            Report::Fix(Fix {
+                time, at: Some(at), ..
+            }) if (at.lat_deg, at.lon_deg) != (0.0, 0.0) => {
                 let is_new = time.is_none() || *time != self.time_of_position;
                 self.time_of_position = *time;
                 is_new.then_some(Usable::Position)
             }
             Report::Velocity(_) => Some(Usable::Velocity),
-            Report::Heading(heading) => HEADINGS_DEG.contains(&heading.deg).then_some(Usable::Heading),
+            Report::Heading(heading) => HEADINGS_DEG
+                .contains(&heading.deg)
+                .then_some(Usable::Heading),
             Report::Control(_) => Some(Usable::Control),
             Report::Power(power) => power.volts.map(|_| Usable::Voltage),
             _ => None,
         };
-        let is_fix = matches!(report, Report::Fix(Fix { quality: Some(quality), .. }) if quality.is_fix());
+        let is_fix =
+            matches!(report, Report::Fix(Fix { quality: Some(quality), .. }) if quality.is_fix());
         for usable in usable.into_iter().chain(is_fix.then_some(Usable::Quality)) {
             self.usable.entry(usable).or_default().note(now);
         }
@@ -396,13 +481,30 @@ impl SensorCheck {
                 let course_deg = compass_deg_from_rad(math::atan2(velocity.east, velocity.north));
                 self.track = Some((course_deg, velocity.length()));
             }
-            Report::Heading(Heading { deg, north: North::Compass, .. }) => self.compass_deg = Some(deg),
-            Report::Heading(Heading { deg, north: North::True, .. }) => self.true_deg = Some(deg),
+            Report::Heading(Heading {
+                deg,
+                north: North::Compass,
+                ..
+            }) => self.compass_deg = Some(deg),
+            Report::Heading(Heading {
+                deg,
+                north: North::True,
+                ..
+            }) => self.true_deg = Some(deg),
             Report::Control(control) => self.control = Some(control),
-            Report::Power(power) => self.power = Power { volts: power.volts.or(self.power.volts), ..power },
+            Report::Power(power) => {
+                self.power = Power {
+                    volts: power.volts.or(self.power.volts),
+                    ..power
+                }
+            }
             Report::Error(error) => self.error = error,
             Report::Notice(text) => self.error = Some(text),
-            Report::Fix(_) | Report::Tilt(_) | Report::Home(_) | Report::ForeignOrder | Report::Station(_) => {}
+            Report::Fix(_)
+            | Report::Tilt(_)
+            | Report::Home(_)
+            | Report::ForeignOrder
+            | Report::Station(_) => {}
         }
     }
 }
@@ -412,7 +514,11 @@ fn side(is_ahead: bool) -> &'static str {
 }
 
 fn fixes_in_words(behind_s: f64) -> String {
-    format!("fixes are {:.2} s {} this host's clock", behind_s.abs(), side(behind_s < 0.0))
+    format!(
+        "fixes are {:.2} s {} this host's clock",
+        behind_s.abs(),
+        side(behind_s < 0.0)
+    )
 }
 
 /// Notes received data: its text, and why it could not be read.
@@ -423,7 +529,9 @@ fn note(
     (text, error): (String, Option<&ParseError>),
 ) {
     let room = received.len() < NAMES_MAX || received.contains_key(name);
-    let received = received.entry(if room { name } else { "others" }.to_owned()).or_default();
+    let received = received
+        .entry(if room { name } else { "others" }.to_owned())
+        .or_default();
     received.note(now);
     received.unreadable += u64::from(error.is_some());
     if let (None, Some(error @ (ParseError::Field { .. } | ParseError::TooFew { .. }))) =
@@ -436,7 +544,10 @@ fn note(
 
 /// The vehicle that sent a heartbeat, such as `a QUADROTOR is system 1`.
 fn vehicle_in_words(system: u8, heartbeat: &HEARTBEAT_DATA) -> String {
-    let [kind, autopilot] = [format!("{:?}", heartbeat.mavtype), format!("{:?}", heartbeat.autopilot)];
+    let [kind, autopilot] = [
+        format!("{:?}", heartbeat.mavtype),
+        format!("{:?}", heartbeat.autopilot),
+    ];
     let kind = kind.trim_start_matches("MAV_TYPE_");
     match autopilot.trim_start_matches("MAV_AUTOPILOT_") {
         "ARDUPILOTMEGA" => format!("a {kind} is system {system}"),

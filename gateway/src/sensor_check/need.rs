@@ -29,27 +29,73 @@ struct Need {
     without: &'static str,
 }
 
-const fn need(usable: Usable, what: &'static str, kinds: &'static [&'static str], without: &'static str) -> Need {
-    Need { usable, what, kinds, without }
+const fn need(
+    usable: Usable,
+    what: &'static str,
+    kinds: &'static [&'static str],
+    without: &'static str,
+) -> Need {
+    Need {
+        usable,
+        what,
+        kinds,
+        without,
+    }
 }
 
 const FOR_A_FIX: &str = "without a fix it cannot be driven";
 const FOR_A_HEADING: &str = "without a heading it cannot be driven";
 const FOR_ITS_BATTERY: &str = "its battery would not be monitored";
-const UNKNOWN_CONTROL: &str = "it is not known who commands it: it can only be armed with control.assumed = true";
+const UNKNOWN_CONTROL: &str =
+    "it is not known who commands it: it can only be armed with control.assumed = true";
 const SURVEYOR_NEEDS: [Need; 5] = [
     need(Usable::Position, "a position", &["GGA", "RMC"], FOR_A_FIX),
-    need(Usable::Heading, "a heading", &["PSEAA", "HDT"], FOR_A_HEADING),
+    need(
+        Usable::Heading,
+        "a heading",
+        &["PSEAA", "HDT"],
+        FOR_A_HEADING,
+    ),
     need(Usable::Control, "its operator", &["PSEAD"], UNKNOWN_CONTROL),
-    need(Usable::Velocity, "a velocity", &["VTG", "RMC"], "its velocity would be computed from its positions"),
+    need(
+        Usable::Velocity,
+        "a velocity",
+        &["VTG", "RMC"],
+        "its velocity would be computed from its positions",
+    ),
     need(Usable::Voltage, "a voltage", &["PSEAB"], FOR_ITS_BATTERY),
 ];
 const MAVLINK_NEEDS: [Need; 5] = [
-    need(Usable::Position, "a position", &["GLOBAL_POSITION_INT"], FOR_A_FIX),
-    need(Usable::Quality, "a fix", &["GPS_RAW_INT"], "without the quality of its fix it cannot be driven"),
-    need(Usable::Heading, "a heading", &["ATTITUDE", "GLOBAL_POSITION_INT"], FOR_A_HEADING),
-    need(Usable::Control, "its mode", &["HEARTBEAT"], "it is not known who commands it"),
-    need(Usable::Voltage, "a voltage", &["SYS_STATUS", "BATTERY_STATUS"], FOR_ITS_BATTERY),
+    need(
+        Usable::Position,
+        "a position",
+        &["GLOBAL_POSITION_INT"],
+        FOR_A_FIX,
+    ),
+    need(
+        Usable::Quality,
+        "a fix",
+        &["GPS_RAW_INT"],
+        "without the quality of its fix it cannot be driven",
+    ),
+    need(
+        Usable::Heading,
+        "a heading",
+        &["ATTITUDE", "GLOBAL_POSITION_INT"],
+        FOR_A_HEADING,
+    ),
+    need(
+        Usable::Control,
+        "its mode",
+        &["HEARTBEAT"],
+        "it is not known who commands it",
+    ),
+    need(
+        Usable::Voltage,
+        "a voltage",
+        &["SYS_STATUS", "BATTERY_STATUS"],
+        FOR_ITS_BATTERY,
+    ),
 ];
 
 impl SensorCheck {
@@ -57,7 +103,9 @@ impl SensorCheck {
     pub(super) fn unmet(&self) -> Vec<String> {
         let needs = match self.framer {
             Framer::Nmea(_) => &SURVEYOR_NEEDS,
-            Framer::Mavlink(_) if self.usable.is_empty() && !self.received.is_empty() => return vec![self.no_boat()],
+            Framer::Mavlink(_) if self.usable.is_empty() && !self.received.is_empty() => {
+                return vec![self.no_boat()];
+            }
             Framer::Mavlink(_) => &MAVLINK_NEEDS,
         };
         needs.iter().filter_map(|need| self.lacks(need)).collect()
@@ -65,33 +113,53 @@ impl SensorCheck {
 
     /// Judged by what the gateway could use, not by names: a sentence may be unreadable or empty.
     fn lacks(&self, need: &Need) -> Option<String> {
-        let Need { usable, what, kinds, without } = need;
-        let rate_hz = self.usable.get(usable).and_then(Received::rate_hz).unwrap_or(0.0);
+        let Need {
+            usable,
+            what,
+            kinds,
+            without,
+        } = need;
+        let rate_hz = self
+            .usable
+            .get(usable)
+            .and_then(Received::rate_hz)
+            .unwrap_or(0.0);
         if rate_hz >= RATE_MIN_HZ {
             return None;
         }
         // By the ending, because talkers differ (GPGGA, GNGGA).
-        let named = self.received.iter().filter(|(name, _)| kinds.iter().any(|kind| name.ends_with(kind)));
+        let named = self
+            .received
+            .iter()
+            .filter(|(name, _)| kinds.iter().any(|kind| name.ends_with(kind)));
         let named: Vec<_> = named.collect();
         let names = kinds.join(" or ");
         if *usable == Usable::Position && self.no_fix().is_some() {
             // Its quality is reported instead.
             return None;
         }
-        let lost = named.iter().find_map(|(_, received)| received.why_unreadable.as_ref());
+        let lost = named
+            .iter()
+            .find_map(|(_, received)| received.why_unreadable.as_ref());
         Some(match (named.first(), lost) {
             (None, _) => format!("{names}: {without}"),
             (_, Some(why)) if !self.usable.contains_key(usable) => format!("{what}: {why}"),
             (Some((name, _)), _) if !self.usable.contains_key(usable) => {
                 format!("{what}: {name} comes without it: {without}")
             }
-            _ => format!("{names} arrive only {rate_hz:.2} times a second with new data: {without}"),
+            _ => {
+                format!("{names} arrive only {rate_hz:.2} times a second with new data: {without}")
+            }
         })
     }
 
     fn no_boat(&self) -> String {
         let heard: Vec<String> = self.heard.iter().cloned().collect();
-        let heard = if heard.is_empty() { "received no HEARTBEAT".to_owned() } else { heard.join(", ") };
+        let heard = if heard.is_empty() {
+            "received no HEARTBEAT".to_owned()
+        } else {
+            heard.join(", ")
+        };
         format!("a boat: all messages are from other systems ({heard})")
     }
 }

@@ -21,7 +21,10 @@ fn checked(text: &str, hz: f64) -> SensorCheck {
 
 /// 15:05:03.30 on this day of November 2026, at the moment 0.
 fn host(day: u64) -> HostTime {
-    HostTime { now: SimTime::ZERO, utc_ns: (1_793_491_200 + 86_400 * (day - 1)) * 1_000_000_000 + 54_303_300_000_000 }
+    HostTime {
+        now: SimTime::ZERO,
+        utc_ns: (1_793_491_200 + 86_400 * (day - 1)) * 1_000_000_000 + 54_303_300_000_000,
+    }
 }
 
 #[test]
@@ -35,7 +38,10 @@ fn sentences_are_counted_and_missing_ones_are_named() {
     for want in ["VTG or RMC", "PSEAB", "the operator ashore must enable it"] {
         assert!(missing.contains(want), "{missing}");
     }
-    assert!(!missing.contains("GGA") && !missing.contains("PSEAA"), "{missing}");
+    assert!(
+        !missing.contains("GGA") && !missing.contains("PSEAA"),
+        "{missing}"
+    );
 }
 
 #[test]
@@ -51,7 +57,12 @@ fn findings_are_in_words() {
         assert!(findings.contains(want), "{want} is not in\n{findings}");
     }
     let with_true = format!("{TELEMETRY}$GPHDT,209.1,T*3F\r\n");
-    assert!(checked(&with_true, 10.0).findings(host).join("\n").contains("counts from magnetic north"));
+    assert!(
+        checked(&with_true, 10.0)
+            .findings(host)
+            .join("\n")
+            .contains("counts from magnetic north")
+    );
 }
 
 /// `$body*HH` and the line's end.
@@ -70,14 +81,32 @@ fn what_came_but_cannot_be_used_is_missing_with_the_reason() {
             "GPGGA,150503.00,4121.2880,N,07403.3060,W,1,12,.9,12.0,M,-33.2,M,,",
             "a position: GPGGA field 8 is \".9\", expected a number or nothing",
         ),
-        ("GPGGA,150503.00,,,,,1,12,0.9,12.0,M,-33.2,M,,", "a position: its fix has quality 1"),
-        ("GPGGA,150503.00,0000.00000,N,00000.00000,E,1,12,0.9,1,M,1,M,,", "a position: GPGGA comes without it"),
+        (
+            "GPGGA,150503.00,,,,,1,12,0.9,12.0,M,-33.2,M,,",
+            "a position: its fix has quality 1",
+        ),
+        (
+            "GPGGA,150503.00,0000.00000,N,00000.00000,E,1,12,0.9,1,M,1,M,,",
+            "a position: GPGGA comes without it",
+        ),
         // The receiver's time does not advance.
-        ("GPGGA,150503.00,4121.2880,N,07403.3060,W,1,12,0.9,12.0,M,-33.2,M,,", "GGA or RMC arrive only 0.00 times"),
-        ("PSEAA,-2.2,0.7,,,47.8,-0.04,-0.01,-1.00,-0.01", "a heading: PSEAA comes without it"),
-        ("PSEAA,-2.2,0.7,400,,47.8,-0.04,-0.01,-1.00,-0.01", "a heading: PSEAA comes without it"),
+        (
+            "GPGGA,150503.00,4121.2880,N,07403.3060,W,1,12,0.9,12.0,M,-33.2,M,,",
+            "GGA or RMC arrive only 0.00 times",
+        ),
+        (
+            "PSEAA,-2.2,0.7,,,47.8,-0.04,-0.01,-1.00,-0.01",
+            "a heading: PSEAA comes without it",
+        ),
+        (
+            "PSEAA,-2.2,0.7,400,,47.8,-0.04,-0.01,-1.00,-0.01",
+            "a heading: PSEAA comes without it",
+        ),
         ("GPVTG,,T,,M,,N,,K", "a velocity: GPVTG comes without it"),
-        ("PSEAB,,98,1.2,24.0,10,,,26.4,26.4,1.0,0.1,0.1,0.0,0.0,12", "a voltage: PSEAB comes without it"),
+        (
+            "PSEAB,,98,1.2,24.0,10,,,26.4,26.4,1.0,0.1,0.1,0.0,0.0,12",
+            "a voltage: PSEAB comes without it",
+        ),
     ] {
         let missing = checked(&sentence(body), 10.0).missing().join("\n");
         assert!(missing.contains(want), "{body}: {missing}");
@@ -87,18 +116,40 @@ fn what_came_but_cannot_be_used_is_missing_with_the_reason() {
 #[test]
 fn a_link_without_sentences_says_what_came() {
     for (stream, want) in [
-        ("$PSEAG,N\r\n", "received 10 lines, none of them a valid sentence: $PSEAG,N has no checksum"),
-        ("$PSEAG,N*23\r\n", "received 10 lines, none of them a valid sentence: $PSEAG,N*23 has a wrong checksum"),
-        ("\u{1}\u{2}", "received 20 bytes, none of them readable: check the protocol and the baud rate"),
+        (
+            "$PSEAG,N\r\n",
+            "received 10 lines, none of them a valid sentence: $PSEAG,N has no checksum",
+        ),
+        (
+            "$PSEAG,N*23\r\n",
+            "received 10 lines, none of them a valid sentence: $PSEAG,N*23 has a wrong checksum",
+        ),
+        (
+            "\u{1}\u{2}",
+            "received 20 bytes, none of them readable: check the protocol and the baud rate",
+        ),
         ("", "received nothing"),
     ] {
         let check = checked(stream, 10.0);
-        assert!(check.received.is_empty() && check.unread() == want, "{}", check.unread());
+        assert!(
+            check.received.is_empty() && check.unread() == want,
+            "{}",
+            check.unread()
+        );
     }
     let gateway = crate::config::default_gateway();
-    let mut check = SensorCheck::new(&Gateway { protocol: BoatProtocol::Mavlink, ..gateway });
+    let mut check = SensorCheck::new(&Gateway {
+        protocol: BoatProtocol::Mavlink,
+        ..gateway
+    });
     check.receive(SimTime::ZERO, TELEMETRY.as_bytes());
-    assert!(check.unread().contains("bytes of NMEA sentences, expected MAVLink"), "{}", check.unread());
+    assert!(
+        check
+            .unread()
+            .contains("bytes of NMEA sentences, expected MAVLink"),
+        "{}",
+        check.unread()
+    );
 }
 
 #[test]
@@ -107,23 +158,49 @@ fn a_date_that_is_not_the_hosts_is_a_fault_and_midnight_is_none() {
     let fault = |date: &str, host| checked(&zda(date), 10.0).clock_fault(host);
     assert_eq!(fault("20,11,2026", host(20)), None);
     for (date, want) in [
-        ("06,04,2007", "the date is 7168 days behind this host's, as after a GPS week rollover (7168 days)"),
-        ("18,04,2005", "the date is 7886 days behind this host's, as after a GPS week rollover"),
-        ("19,11,2026", "the date is 1 days behind this host's: one of the two is wrong"),
-        ("21,11,2026", "the date is 1 days AHEAD of this host's: one of the two is wrong"),
+        (
+            "06,04,2007",
+            "the date is 7168 days behind this host's, as after a GPS week rollover (7168 days)",
+        ),
+        (
+            "18,04,2005",
+            "the date is 7886 days behind this host's, as after a GPS week rollover",
+        ),
+        (
+            "19,11,2026",
+            "the date is 1 days behind this host's: one of the two is wrong",
+        ),
+        (
+            "21,11,2026",
+            "the date is 1 days AHEAD of this host's: one of the two is wrong",
+        ),
     ] {
         let found = fault(date, host(20)).unwrap_or_default();
         assert!(found.starts_with(want), "{found}");
     }
     // Two seconds after midnight, a fix from the evening before is merely delayed.
-    let midnight = HostTime { utc_ns: host(21).utc_ns - 54_303_300_000_000 + 2_000_000_000, ..host(21) };
+    let midnight = HostTime {
+        utc_ns: host(21).utc_ns - 54_303_300_000_000 + 2_000_000_000,
+        ..host(21)
+    };
     assert_eq!(fault("20,11,2026", midnight), None);
     let gga = checked(TELEMETRY, 10.0);
-    let late = HostTime { utc_ns: host(20).utc_ns + 7_000_000_000, ..host(20) };
-    assert!(gga.clock_fault(late).is_some_and(|fault| fault.contains("behind this host's clock: one of")));
+    let late = HostTime {
+        utc_ns: host(20).utc_ns + 7_000_000_000,
+        ..host(20)
+    };
+    assert!(
+        gga.clock_fault(late)
+            .is_some_and(|fault| fault.contains("behind this host's clock: one of"))
+    );
 }
 
 #[test]
 fn a_low_rate_is_reported() {
-    assert!(checked(TELEMETRY, 0.5).missing().join("\n").contains("GGA or RMC arrive only 0.50 times a second"));
+    assert!(
+        checked(TELEMETRY, 0.5)
+            .missing()
+            .join("\n")
+            .contains("GGA or RMC arrive only 0.50 times a second")
+    );
 }

@@ -28,7 +28,9 @@ pub enum Cause {
     #[error("{0}")]
     Control(ControlFault),
     /// The boat has no known recovery point.
-    #[error("no recovery point inside the geofence that this gateway uploaded and the boat confirmed")]
+    #[error(
+        "no recovery point inside the geofence that this gateway uploaded and the boat confirmed"
+    )]
     NoRecoveryPoint,
     /// The gateway did not run for this long, s, and its guard may have stopped the boat.
     #[error("the gateway hung for {0:.1} s, and its guard may have stopped the boat")]
@@ -108,7 +110,10 @@ impl Cause {
     pub(crate) fn leaves_control(self) -> bool {
         // Only for these may a file name a task after a failsafe. A table of every cause with every
         // action would let somebody keep station on a lost fix.
-        matches!(self, Cause::OrderStale | Cause::BatteryLow | Cause::Geofence | Cause::Hung(_))
+        matches!(
+            self,
+            Cause::OrderStale | Cause::BatteryLow | Cause::Geofence | Cause::Hung(_)
+        )
     }
 
     /// Rank among the causes that leave control: the gravest decides what the boat does.
@@ -173,7 +178,10 @@ impl fmt::Display for State {
             State::Disarmed => f.write_str("disarmed"),
             State::Armed => f.write_str("armed"),
             State::Failsafe { cause, task: None } => write!(f, "failsafe: {cause}"),
-            State::Failsafe { cause, task: Some(task) } => write!(f, "failsafe: {cause}; {task}"),
+            State::Failsafe {
+                cause,
+                task: Some(task),
+            } => write!(f, "failsafe: {cause}; {task}"),
             State::Delegated(task) => write!(f, "delegated: {task}"),
             State::EStopped => f.write_str("e-stopped"),
         }

@@ -184,11 +184,16 @@ pub(crate) struct Supervisor {
 }
 
 impl Supervisor {
-    /// A disarmed supervisor. With `arms_itself` it arms when it is ready for the first time, unless
-    /// an operator makes a request before. After any later stop it must be armed by request, unless
-    /// [`Conditions::may_rearm`] says otherwise.
+    /// A disarmed supervisor. With `arms_itself` it arms when it is ready for the first time,
+    /// unless an operator makes a request before. After any later stop it must be armed by request,
+    /// unless [`Conditions::may_rearm`] says otherwise.
     pub(crate) fn new(arms_itself: bool, actions: FailsafeActions) -> Supervisor {
-        Supervisor { state: State::Disarmed, stops: [false; 2], arms_itself, actions }
+        Supervisor {
+            state: State::Disarmed,
+            stops: [false; 2],
+            arms_itself,
+            actions,
+        }
     }
 
     /// The current state.
@@ -212,7 +217,10 @@ impl Supervisor {
         let refusal = request.and_then(|request| self.take_request(now, request));
         let arms_itself = match self.state {
             State::Disarmed => self.arms_itself,
-            State::Failsafe { cause: Cause::OrderStale, .. } => now.may_rearm,
+            State::Failsafe {
+                cause: Cause::OrderStale,
+                ..
+            } => now.may_rearm,
             _ => false,
         };
         if arms_itself && now.missing().is_empty() {
@@ -224,7 +232,11 @@ impl Supervisor {
         // Any change of state or request uses up self-arming.
         self.arms_itself &= self.state == State::Disarmed && request.is_none();
         let changed = (self.state != before).then_some(before);
-        Step { action: self.action(now), refusal, before: changed }
+        Step {
+            action: self.action(now),
+            refusal,
+            before: changed,
+        }
     }
 
     fn take_request(&mut self, now: &Conditions, request: OperatorRequest) -> Option<Refusal> {
@@ -235,7 +247,9 @@ impl Supervisor {
                 return Some(Refusal::EStopped(self.stopped_by()));
             }
             OperatorRequest::Arm => return self.enter(State::Armed, now.missing()),
-            OperatorRequest::Delegate(task) => return self.enter(State::Delegated(task), now.unfit(task)),
+            OperatorRequest::Delegate(task) => {
+                return self.enter(State::Delegated(task), now.unfit(task));
+            }
             OperatorRequest::Disarm => self.state = State::Disarmed,
         }
         None
@@ -257,18 +271,29 @@ impl Supervisor {
     fn check_failsafes(&mut self, now: &Conditions) {
         self.state = match self.state {
             _ if self.is_stopped() => State::EStopped,
-            // After release the boat is disarmed, whatever its state before: somebody has to arm it.
+            // After release the boat is disarmed, whatever its state before: somebody has to arm
+            // it.
             State::EStopped => State::Disarmed,
-            State::Armed => now.causes().next().map_or(State::Armed, |cause| self.failsafe(now, cause)),
-            State::Delegated(task) => now.unfit_failsafe(task).map_or(self.state, |cause| self.failsafe(now, cause)),
-            State::Failsafe { cause, task: Some(task) } => self.watch_task(now, cause, task),
+            State::Armed => now
+                .causes()
+                .next()
+                .map_or(State::Armed, |cause| self.failsafe(now, cause)),
+            State::Delegated(task) => now
+                .unfit_failsafe(task)
+                .map_or(self.state, |cause| self.failsafe(now, cause)),
+            State::Failsafe {
+                cause,
+                task: Some(task),
+            } => self.watch_task(now, cause, task),
             State::Disarmed | State::Failsafe { task: None, .. } => self.state,
         };
     }
 
     /// The failsafe of this cause, with its configured task if the boat can still do it.
     fn failsafe(&self, now: &Conditions, cause: Cause) -> State {
-        let task = self.task_after(cause).filter(|task| now.hindrance(*task).is_none());
+        let task = self
+            .task_after(cause)
+            .filter(|task| now.hindrance(*task).is_none());
         State::Failsafe { cause, task }
     }
 
@@ -310,8 +335,12 @@ impl Supervisor {
             State::Armed if now.blocked => Action::Zero,
             State::Armed => Action::Follow,
             State::Delegated(task) => Action::Task(task),
-            State::Failsafe { task: Some(task), .. } => Action::Task(task),
-            State::Disarmed | State::Failsafe { task: None, .. } | State::EStopped => Action::Standby,
+            State::Failsafe {
+                task: Some(task), ..
+            } => Action::Task(task),
+            State::Disarmed | State::Failsafe { task: None, .. } | State::EStopped => {
+                Action::Standby
+            }
         }
     }
 }
@@ -329,17 +358,23 @@ impl Conditions {
         let nav = self.nav.map(Cause::Nav);
         let thrust = self.thrust.map(Cause::Thrust);
         // The order in which operators see them: a cause that makes others meaningless comes first.
-        [link, hung, control, nav, thrust, geofence, battery, order].into_iter().flatten()
+        [link, hung, control, nav, thrust, geofence, battery, order]
+            .into_iter()
+            .flatten()
     }
 
     /// The failsafe cause of a delegated boat: no order is needed, but some tasks need more.
     fn unfit_failsafe(&self, task: Task) -> Option<Cause> {
-        self.causes().find(|cause| *cause != Cause::OrderStale).or(self.missing_for(task))
+        self.causes()
+            .find(|cause| *cause != Cause::OrderStale)
+            .or(self.missing_for(task))
     }
 
     /// What makes a task impossible after a failsafe of any cause.
     fn hindrance(&self, task: Task) -> Option<Cause> {
-        self.causes().find(|cause| !cause.leaves_control()).or(self.missing_for(task))
+        self.causes()
+            .find(|cause| !cause.leaves_control())
+            .or(self.missing_for(task))
     }
 
     /// What this task needs beyond the common conditions.
@@ -350,14 +385,21 @@ impl Conditions {
     /// All conditions that are missing for arming.
     pub(crate) fn missing(&self) -> Vec<Cause> {
         // The reported mode means nothing while we do not command the boat.
-        let is_reported =
-            |cause: &Cause| matches!(cause, Cause::Control(ControlFault::Disobeyed(_) | ControlFault::Deaf));
+        let is_reported = |cause: &Cause| {
+            matches!(
+                cause,
+                Cause::Control(ControlFault::Disobeyed(_) | ControlFault::Deaf)
+            )
+        };
         self.causes().filter(|cause| !is_reported(cause)).collect()
     }
 
     /// All conditions that are missing for delegating this task to the boat's own controller.
     pub(crate) fn unfit(&self, task: Task) -> Vec<Cause> {
-        let general = self.missing().into_iter().filter(|cause| *cause != Cause::OrderStale);
+        let general = self
+            .missing()
+            .into_iter()
+            .filter(|cause| *cause != Cause::OrderStale);
         general.chain(self.missing_for(task)).collect()
     }
 }

@@ -40,7 +40,14 @@ fn all_actions() -> Vec<FailsafeActions> {
 
 fn all_conditions() -> Vec<Conditions> {
     use ControlFault::{Deaf, Disobeyed, ForeignOrders, TakenOver, Unknown};
-    let controls = [None, Some(Unknown), Some(TakenOver(5)), Some(Disobeyed('L')), Some(Deaf), Some(ForeignOrders)];
+    let controls = [
+        None,
+        Some(Unknown),
+        Some(TakenOver(5)),
+        Some(Disobeyed('L')),
+        Some(Deaf),
+        Some(ForeignOrders),
+    ];
     let mut all = Vec::new();
     for bits in 0..1024_u16 {
         let is = |bit: u16| bits & (1 << bit) != 0;
@@ -64,11 +71,25 @@ fn all_conditions() -> Vec<Conditions> {
 }
 
 fn all_requests() -> Vec<Option<OperatorRequest>> {
-    let heading = BoatMode::Heading { heading_deg: 90.0, thrust_pct: 20.0 };
-    let tasks = [Task::StationKeep, Task::GoToErp, Task::Mission, Task::Mode(heading), Task::Mode(BoatMode::RiverNav)];
+    let heading = BoatMode::Heading {
+        heading_deg: 90.0,
+        thrust_pct: 20.0,
+    };
+    let tasks = [
+        Task::StationKeep,
+        Task::GoToErp,
+        Task::Mission,
+        Task::Mode(heading),
+        Task::Mode(BoatMode::RiverNav),
+    ];
     let tasks = tasks.map(OperatorRequest::Delegate);
     let scopes = [Scope::Boat, Scope::Fleet];
-    let stops = scopes.into_iter().flat_map(|scope| [OperatorRequest::EStop(scope), OperatorRequest::Release(scope)]);
+    let stops = scopes.into_iter().flat_map(|scope| {
+        [
+            OperatorRequest::EStop(scope),
+            OperatorRequest::Release(scope),
+        ]
+    });
     [OperatorRequest::Arm, OperatorRequest::Disarm]
         .into_iter()
         .chain(tasks)
@@ -80,15 +101,24 @@ fn all_requests() -> Vec<Option<OperatorRequest>> {
 
 /// Calls `check` with every step from every reachable supervisor. Arguments: supervisor before,
 /// conditions, request, supervisor after, step.
-fn explore(mut check: impl FnMut(&Supervisor, &Conditions, Option<OperatorRequest>, &Supervisor, &Step)) -> usize {
+fn explore(
+    mut check: impl FnMut(&Supervisor, &Conditions, Option<OperatorRequest>, &Supervisor, &Step),
+) -> usize {
     let conditions = all_conditions();
     let requests = all_requests();
-    let starts = all_actions().into_iter().flat_map(|actions| [true, false].map(|by_itself| (by_itself, actions)));
-    let mut known: Vec<Supervisor> = starts.map(|(by_itself, actions)| Supervisor::new(by_itself, actions)).collect();
+    let starts = all_actions()
+        .into_iter()
+        .flat_map(|actions| [true, false].map(|by_itself| (by_itself, actions)));
+    let mut known: Vec<Supervisor> = starts
+        .map(|(by_itself, actions)| Supervisor::new(by_itself, actions))
+        .collect();
     let mut next = 0;
     while next < known.len() {
         let before = known[next].clone();
-        for (now, request) in conditions.iter().flat_map(|now| requests.iter().map(move |request| (now, *request))) {
+        for (now, request) in conditions
+            .iter()
+            .flat_map(|now| requests.iter().map(move |request| (now, *request)))
+        {
             let mut after = before.clone();
             let step = after.step(now, request);
             check(&before, now, request, &after, &step);
@@ -113,8 +143,20 @@ fn no_path_leads_to_thrust_without_link_control_navigation_and_a_fresh_order() {
     let reached = explore(|before, now, request, after, step| {
         let case = format!("{before:?}, {now:?}, {request:?} -> {step:?}");
         if step.action == Action::Follow {
-            assert_eq!(Conditions { recovery_point: true, may_rearm: false, ..*now }, GOOD, "{case}");
-            assert_eq!((after.state, after.stops), (State::Armed, [false; 2]), "{case}");
+            assert_eq!(
+                Conditions {
+                    recovery_point: true,
+                    may_rearm: false,
+                    ..*now
+                },
+                GOOD,
+                "{case}"
+            );
+            assert_eq!(
+                (after.state, after.stops),
+                (State::Armed, [false; 2]),
+                "{case}"
+            );
         }
         assert_eq!(
             after.state == State::Armed,
@@ -133,29 +175,55 @@ fn is_held(after: &Supervisor, now: &Conditions, step: &Step) -> bool {
 fn only_an_explicit_command_arms_but_once_at_first_and_after_stale_orders() {
     explore(|before, now, request, after, step| {
         if after.state == State::Armed && before.state != State::Armed {
-            let by_itself = before.arms_itself && before.state == State::Disarmed && !before.is_stopped();
-            let again = now.may_rearm && matches!(before.state, State::Failsafe { cause: Cause::OrderStale, .. });
+            let by_itself =
+                before.arms_itself && before.state == State::Disarmed && !before.is_stopped();
+            let again = now.may_rearm
+                && matches!(
+                    before.state,
+                    State::Failsafe {
+                        cause: Cause::OrderStale,
+                        ..
+                    }
+                );
             let case = format!("{before:?}, {now:?}, {request:?} -> {step:?}");
-            assert!(request == Some(OperatorRequest::Arm) || by_itself || again, "{case}");
+            assert!(
+                request == Some(OperatorRequest::Arm) || by_itself || again,
+                "{case}"
+            );
         }
         let used_up = before.state != State::Disarmed
             || !before.arms_itself
             || request.is_some()
             || after.state != State::Disarmed;
-        assert_eq!(after.arms_itself, !used_up, "{before:?}, {now:?}, {request:?}");
+        assert_eq!(
+            after.arms_itself, !used_up,
+            "{before:?}, {now:?}, {request:?}"
+        );
     });
 }
 
 #[test]
 fn a_boat_is_delegated_only_by_request_and_while_it_is_fit() {
     explore(|before, now, request, after, step| {
-        let State::Delegated(task) = after.state else { return };
+        let State::Delegated(task) = after.state else {
+            return;
+        };
         let case = format!("{before:?}, {now:?}, {request:?} -> {step:?}");
         assert_eq!(step.action, Action::Task(task), "{case}");
-        let disobeys = matches!(now.control, Some(ControlFault::Disobeyed(_) | ControlFault::Deaf));
+        let disobeys = matches!(
+            now.control,
+            Some(ControlFault::Disobeyed(_) | ControlFault::Deaf)
+        );
         let is_fit = can_do(now, task) || (disobeys && step.before.is_some());
-        assert!(is_fit && now.hung_s.is_none() && now.inside && !now.battery_low, "{case}");
-        assert!(request == Some(OperatorRequest::Delegate(task)) || before.state == State::Delegated(task), "{case}");
+        assert!(
+            is_fit && now.hung_s.is_none() && now.inside && !now.battery_low,
+            "{case}"
+        );
+        assert!(
+            request == Some(OperatorRequest::Delegate(task))
+                || before.state == State::Delegated(task),
+            "{case}"
+        );
     });
 }
 
@@ -164,7 +232,9 @@ fn after_a_failsafe_a_task_is_what_the_file_says_for_its_cause_and_needs_nothing
     let mut tasks = 0;
     explore(|before, now, request, after, step| {
         let case = format!("{before:?}, {now:?}, {request:?} -> {step:?}");
-        let State::Failsafe { cause, task } = after.state else { return };
+        let State::Failsafe { cause, task } = after.state else {
+            return;
+        };
         let wanted = match cause {
             Cause::OrderStale => after.actions.order_stale,
             Cause::Geofence => after.actions.geofence,
@@ -182,20 +252,34 @@ fn after_a_failsafe_a_task_is_what_the_file_says_for_its_cause_and_needs_nothing
             // A requested task that lacks a condition stops only if the boat cannot do it now or
             // could not before.
             let stays = before.state == after.state;
-            assert!(stays || wanted.is_none_or(|task| !can_do(now, task)), "{case}");
+            assert!(
+                stays || wanted.is_none_or(|task| !can_do(now, task)),
+                "{case}"
+            );
             return;
         };
         tasks += 1;
-        assert_eq!((step.action, wanted), (Action::Task(task), Some(task)), "{case}");
+        assert_eq!(
+            (step.action, wanted),
+            (Action::Task(task), Some(task)),
+            "{case}"
+        );
         assert!(can_do(now, task) && !after.is_stopped(), "{case}");
         // A task after a failsafe starts only from a boat that was driven or delegated.
-        let was_driven =
-            matches!(before.state, State::Armed | State::Delegated(_) | State::Failsafe { task: Some(_), .. });
-        let asked = matches!(request, Some(OperatorRequest::Arm | OperatorRequest::Delegate(_)));
+        let was_driven = matches!(
+            before.state,
+            State::Armed | State::Delegated(_) | State::Failsafe { task: Some(_), .. }
+        );
+        let asked = matches!(
+            request,
+            Some(OperatorRequest::Arm | OperatorRequest::Delegate(_))
+        );
         assert!(was_driven || asked || before.arms_itself, "{case}");
         // Outside the geofence, that is the cause.
         assert!(
-            now.inside || cause == Cause::Geofence || step.before.is_none_or(|_| matches!(cause, Cause::Hung(_))),
+            now.inside
+                || cause == Cause::Geofence
+                || step.before.is_none_or(|_| matches!(cause, Cause::Hung(_))),
             "{case}"
         );
     });
@@ -212,7 +296,11 @@ fn an_e_stop_beats_everything_until_each_is_released_and_leaves_the_boat_disarme
             assert_eq!(step.action, Action::Standby, "{case}");
         }
         if before.state == State::EStopped && !stopped {
-            assert!(matches!(request, Some(OperatorRequest::Release(_))) && after.state == State::Disarmed, "{case}");
+            assert!(
+                matches!(request, Some(OperatorRequest::Release(_)))
+                    && after.state == State::Disarmed,
+                "{case}"
+            );
         }
         for scope in [Scope::Boat, Scope::Fleet] {
             let now_on = after.stops[scope as usize];
@@ -230,7 +318,11 @@ fn an_e_stop_beats_everything_until_each_is_released_and_leaves_the_boat_disarme
 fn every_failsafe_is_reported_with_its_true_cause_and_brings_standby_or_a_task() {
     explore(|before, now, request, after, step| {
         let case = format!("{before:?}, {now:?}, {request:?} -> {step:?}");
-        assert_eq!(step.before, (before.state != after.state).then_some(before.state), "{case}");
+        assert_eq!(
+            step.before,
+            (before.state != after.state).then_some(before.state),
+            "{case}"
+        );
         if let State::Failsafe { cause, .. } = after.state
             && before.state != after.state
         {
@@ -247,7 +339,10 @@ fn every_failsafe_is_reported_with_its_true_cause_and_brings_standby_or_a_task()
             };
             assert!(is_true, "{case}");
         }
-        let at_rest = matches!(after.state, State::Disarmed | State::Failsafe { task: None, .. });
+        let at_rest = matches!(
+            after.state,
+            State::Disarmed | State::Failsafe { task: None, .. }
+        );
         if at_rest {
             assert_eq!(step.action, Action::Standby, "{case}");
         }
@@ -280,7 +375,11 @@ fn from_every_state_the_boat_can_be_armed_again() {
         supervisor.step(&GOOD, Some(OperatorRequest::Release(Scope::Boat)));
         supervisor.step(&GOOD, Some(OperatorRequest::Release(Scope::Fleet)));
         let step = supervisor.step(&GOOD, Some(OperatorRequest::Arm));
-        assert_eq!((step.action, step.refusal), (Action::Follow, None), "{before:?}");
+        assert_eq!(
+            (step.action, step.refusal),
+            (Action::Follow, None),
+            "{before:?}"
+        );
     });
 }
 
@@ -288,8 +387,22 @@ fn from_every_state_the_boat_can_be_armed_again() {
 fn the_gravest_cause_is_the_one_that_is_reported() {
     let mut supervisor = Supervisor::new(false, all_actions()[0]);
     supervisor.step(&GOOD, Some(OperatorRequest::Arm));
-    let bad = Conditions { link: false, control: Some(ControlFault::TakenOver(1)), order_fresh: false, ..GOOD };
+    let bad = Conditions {
+        link: false,
+        control: Some(ControlFault::TakenOver(1)),
+        order_fresh: false,
+        ..GOOD
+    };
     supervisor.step(&bad, None);
-    assert_eq!(supervisor.state(), State::Failsafe { cause: Cause::LinkLost, task: None });
-    assert_eq!(Cause::Control(ControlFault::TakenOver(5)).to_string(), "the remote control has taken over");
+    assert_eq!(
+        supervisor.state(),
+        State::Failsafe {
+            cause: Cause::LinkLost,
+            task: None
+        }
+    );
+    assert_eq!(
+        Cause::Control(ControlFault::TakenOver(5)).to_string(),
+        "the remote control has taken over"
+    );
 }

@@ -25,8 +25,13 @@ impl Boat {
     pub(crate) fn step(&mut self, order: Order) {
         let (speed_m_s, turn_rad_s) = match order {
             Order::Hold => (0.0, 0.0),
-            Order::Thrust { port, starboard } => (1.6 * (port + starboard), 1.5 * (port - starboard)),
-            Order::Steer { heading_rad, speed_m_s } => {
+            Order::Thrust { port, starboard } => {
+                (1.6 * (port + starboard), 1.5 * (port - starboard))
+            }
+            Order::Steer {
+                heading_rad,
+                speed_m_s,
+            } => {
                 let error_rad = primitives::angle::wrap_pi(heading_rad - self.psi_rad);
                 (speed_m_s, error_rad.clamp(-0.5, 0.5))
             }
@@ -35,7 +40,10 @@ impl Boat {
         self.speed_m_s += (speed_m_s - self.speed_m_s) * STEP_S / 2.0;
         self.turn_rad_s += (turn_rad_s - self.turn_rad_s) * STEP_S / 0.5;
         self.psi_rad = primitives::angle::wrap_pi(self.psi_rad + self.turn_rad_s * STEP_S);
-        self.at = self.at + Rotation::from_heading(self.psi_rad).ahead().scaled(self.speed_m_s * STEP_S);
+        self.at = self.at
+            + Rotation::from_heading(self.psi_rad)
+                .ahead()
+                .scaled(self.speed_m_s * STEP_S);
     }
 
     /// Its sensor readings if its receiver reports `place`.
@@ -48,8 +56,15 @@ impl Boat {
             sway_m_s: 0.0,
             yaw_rate_rad_s: self.turn_rad_s,
         };
-        let imu = Imu { down_m_s2: -9.8, ..Imu::default() };
-        OwnBoat { fix_ns: now, imu, ..OwnBoat::new(VehicleId(0), nav) }
+        let imu = Imu {
+            down_m_s2: -9.8,
+            ..Imu::default()
+        };
+        OwnBoat {
+            fix_ns: now,
+            imu,
+            ..OwnBoat::new(VehicleId(0), nav)
+        }
     }
 }
 
@@ -61,7 +76,14 @@ pub(crate) fn emulated(datum: LatLon, declination_rad: f64) -> emulator::Plan {
         watchdog_s: None,
         integers: false,
         extra: vec![],
-        began: (Date { year: 2026, month: 11, day: 20 }, TimeOfDay(54_302_000)),
+        began: (
+            Date {
+                year: 2026,
+                month: 11,
+                day: 20,
+            },
+            TimeOfDay(54_302_000),
+        ),
         charge: Some(1.0),
     }
 }

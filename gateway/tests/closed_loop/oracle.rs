@@ -57,7 +57,13 @@ impl Oracle {
             let line = line.to_owned();
             let rest = rest.to_owned();
             self.partial = rest;
-            let Some((body, sum)) = line.rsplit('$').next().and_then(|line| line.split_once('*')) else { continue };
+            let Some((body, sum)) = line
+                .rsplit('$')
+                .next()
+                .and_then(|line| line.split_once('*'))
+            else {
+                continue;
+            };
             if u8::from_str_radix(sum, 16) == Ok(body.bytes().fold(0, |a, b| a ^ b)) {
                 self.note_sentence(now, body);
             }
@@ -66,10 +72,14 @@ impl Oracle {
 
     fn note_sentence(&mut self, now: SimTime, body: &str) {
         match Sentence::parse(body) {
-            Ok(Sentence::Gga(gga)) if FixQuality::from_gga(gga.quality).is_fix() && gga.at.is_some() => {
+            Ok(Sentence::Gga(gga))
+                if FixQuality::from_gga(gga.quality).is_fix() && gga.at.is_some() =>
+            {
                 self.fixed = Some(now)
             }
-            Ok(Sentence::Attitude(attitude)) if attitude.heading_deg.is_some() => self.headed = Some(now),
+            Ok(Sentence::Attitude(attitude)) if attitude.heading_deg.is_some() => {
+                self.headed = Some(now)
+            }
             Ok(Sentence::ControlState(state)) => {
                 self.other_operator = state.operator != Some(Operator::Secondary);
                 if !self.other_operator {
@@ -84,7 +94,10 @@ impl Oracle {
     pub(crate) fn judge(&mut self, now: SimTime, bytes: &[u8]) {
         let text = std::str::from_utf8(bytes).expect("what is sent is text");
         for line in text.split_inclusive("\r\n") {
-            assert!(line.len() <= 82 && line.starts_with('$') && line.ends_with("\r\n"), "{line:?}");
+            assert!(
+                line.len() <= 82 && line.starts_with('$') && line.ends_with("\r\n"),
+                "{line:?}"
+            );
             self.judge_line(now, line);
         }
     }
@@ -116,8 +129,14 @@ impl Oracle {
         self.driving += 1;
         self.is_fit(now, line);
         let age_s = age_s(now, self.ordered);
-        assert!(age_s <= TTL_S + self.waited_s + 1e-6, "at {now}: {line:?} by an order {age_s} s old");
-        assert!(self.armed, "at {now}: {line:?} from a gateway that nobody armed");
+        assert!(
+            age_s <= TTL_S + self.waited_s + 1e-6,
+            "at {now}: {line:?} by an order {age_s} s old"
+        );
+        assert!(
+            self.armed,
+            "at {now}: {line:?} from a gateway that nobody armed"
+        );
         assert!(number(4).abs() + number(5).abs() <= 100.0, "{line:?}");
     }
 
@@ -128,9 +147,18 @@ impl Oracle {
             ("control state", self.granted, CONTROL_AGE_MAX_S),
         ] {
             let age_s = age_s(now, since);
-            assert!(age_s <= most_s + self.waited_s + 1e-6, "at {now}: {line:?} with a {what} {age_s} s old");
+            assert!(
+                age_s <= most_s + self.waited_s + 1e-6,
+                "at {now}: {line:?} with a {what} {age_s} s old"
+            );
         }
-        assert!(!self.other_operator, "at {now}: {line:?} while somebody else has the boat");
-        assert!(self.stops == [false; 2], "at {now}: {line:?} under an E-stop");
+        assert!(
+            !self.other_operator,
+            "at {now}: {line:?} while somebody else has the boat"
+        );
+        assert!(
+            self.stops == [false; 2],
+            "at {now}: {line:?} under an E-stop"
+        );
     }
 }

@@ -5,12 +5,34 @@ use proptest::prelude::*;
 use proptest::sample::select;
 
 fn lines() -> impl Strategy<Value = Vec<String>> {
-    let of = |lines: &[&str]| select(lines.iter().map(|line| (*line).to_owned()).collect::<Vec<_>>());
-    let orders =
-        ["none", "hold", "steer NaN 1", "thrust -0.5 0.7", "steer 200 2"].map(|order| format!("order {order}"));
+    let of = |lines: &[&str]| {
+        select(
+            lines
+                .iter()
+                .map(|line| (*line).to_owned())
+                .collect::<Vec<_>>(),
+        )
+    };
+    let orders = [
+        "none",
+        "hold",
+        "steer NaN 1",
+        "thrust -0.5 0.7",
+        "steer 200 2",
+    ]
+    .map(|order| format!("order {order}"));
     let heading = "mode {\"heading\":{\"heading_deg\":200,\"thrust_pct\":30}}";
-    let commands =
-        ["disarm", "e_stop", "release", "station_keep", "go_to_erp", heading, "mode \"river_nav\"", "arm", "arm"];
+    let commands = [
+        "disarm",
+        "e_stop",
+        "release",
+        "station_keep",
+        "go_to_erp",
+        heading,
+        "mode \"river_nav\"",
+        "arm",
+        "arm",
+    ];
     let one = prop_oneof![
         4 => (1..40_u8).prop_map(|tenths| format!("run {}", 0.1 * f64::from(tenths))),
         2 => select([&orders[..], &["agent-hangs".to_owned()]].concat()),

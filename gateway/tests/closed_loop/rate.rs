@@ -6,7 +6,10 @@ use messages::Order;
 use primitives::SimTime;
 
 fn steer(heading_deg: f64, speed_m_s: f64) -> Order {
-    Order::Steer { heading_rad: heading_deg.to_radians(), speed_m_s }
+    Order::Steer {
+        heading_rad: heading_deg.to_radians(),
+        speed_m_s,
+    }
 }
 
 #[test]
@@ -24,7 +27,10 @@ fn ten_thousand_orders_a_second_become_twenty_sentences() {
         rig.run(0.01);
     }
     let a_second = (rig.oracle.all - before) as f64 / 3.0;
-    assert!((15.0..=25.0).contains(&a_second), "{a_second} with the last at {last_deg}");
+    assert!(
+        (15.0..=25.0).contains(&a_second),
+        "{a_second} with the last at {last_deg}"
+    );
     assert_eq!(rig.bridge.state().to_string(), "armed");
 }
 
@@ -38,7 +44,11 @@ fn a_new_order_does_not_wait_for_the_period_of_repetitions() {
         let given = rig.now + SimTime(1);
         let before = rig.sent.len();
         rig.give(&Input::Order(order, given));
-        assert_eq!(rig.sent.len(), before + 1, "{i}: sent in the very same step");
+        assert_eq!(
+            rig.sent.len(),
+            before + 1,
+            "{i}: sent in the very same step"
+        );
     }
 }
 
@@ -50,8 +60,16 @@ fn navigation_reports_agree_with_the_boat() {
     // Minutes have five decimals: 18.5 mm in latitude.
     assert!(apart_m < 0.05 && report.valid, "{apart_m} m, {report:?}");
     // The compass is magnetic, the sim's heading is true.
-    assert!((report.nav.psi_rad - rig.boat.psi_rad).abs() < 0.002, "{report:?} {:?}", rig.boat);
-    assert!((report.nav.surge_m_s - rig.boat.speed_m_s).abs() < 0.02, "{report:?} {:?}", rig.boat);
+    assert!(
+        (report.nav.psi_rad - rig.boat.psi_rad).abs() < 0.002,
+        "{report:?} {:?}",
+        rig.boat
+    );
+    assert!(
+        (report.nav.surge_m_s - rig.boat.speed_m_s).abs() < 0.02,
+        "{report:?} {:?}",
+        rig.boat
+    );
     let reports_per_s = rig.navs.len() as f64 / rig.now.as_s();
     assert!((9.0..=11.0).contains(&reports_per_s), "{reports_per_s}");
 }

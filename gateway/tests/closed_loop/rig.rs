@@ -55,27 +55,48 @@ pub(crate) struct Rig {
 /// The plan of a gateway with the settings of this file, on the field of the first game.
 pub(crate) fn plan(file: &str) -> Plan {
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios");
-    let game = scenario::load(&scenarios.join("games/pav01_vs_pav01.toml")).unwrap_or_else(|e| panic!("{e}"));
-    let gateway = scenario::load_file(&scenarios.join("gateways").join(file)).unwrap_or_else(|e| panic!("{e}"));
+    let game = scenario::load(&scenarios.join("games/pav01_vs_pav01.toml"))
+        .unwrap_or_else(|e| panic!("{e}"));
+    let gateway = scenario::load_file(&scenarios.join("gateways").join(file))
+        .unwrap_or_else(|e| panic!("{e}"));
     let declination_rad = (-12.5_f64).to_radians();
-    let site = Some(Site { length_m: 1.83, field: game.field, declination_rad, coasting: None });
-    Plan { site, ..Plan::new("blue_one", gateway) }
+    let site = Some(Site {
+        length_m: 1.83,
+        field: game.field,
+        declination_rad,
+        coasting: None,
+    });
+    Plan {
+        site,
+        ..Plan::new("blue_one", gateway)
+    }
 }
 
 impl Rig {
     /// A rig with this plan, whose emulated front seat is modified by `change`.
     pub(crate) fn of(plan: Plan, change: impl FnOnce(&mut emulator::Plan)) -> Rig {
-        let Site { field, declination_rad, .. } = plan.site.as_ref().expect("the rig has one");
+        let Site {
+            field,
+            declination_rad,
+            ..
+        } = plan.site.as_ref().expect("the rig has one");
         let mut emulator = emulated(field.plan.datum, *declination_rad);
         change(&mut emulator);
         let rearm_within_s = plan.gateway.failsafe.rearm_within_s;
         let mut rig = Rig {
             now: SimTime::ZERO,
             steps: 0,
-            boat: Boat { at: Ned::from_xy(60.0, 40.0), ..Boat::default() },
+            boat: Boat {
+                at: Ned::from_xy(60.0, 40.0),
+                ..Boat::default()
+            },
             emulator: Emulator::new(emulator),
             boat_order: Order::Hold,
-            oracle: Oracle { armed: plan.arms_itself, rearm_within_s, ..Oracle::default() },
+            oracle: Oracle {
+                armed: plan.arms_itself,
+                rearm_within_s,
+                ..Oracle::default()
+            },
             bridge: Bridge::new(plan),
             open: (true, true),
             tamper: None,
@@ -125,7 +146,8 @@ impl Rig {
             if let Event::State { from, to } = &event {
                 let may_rearm = age_s(self.now, self.oracle.starved) <= self.oracle.rearm_within_s;
                 self.oracle.armed &= from != "armed";
-                self.oracle.armed |= to == "armed" && from == "failsafe: no fresh order" && may_rearm;
+                self.oracle.armed |=
+                    to == "armed" && from == "failsafe: no fresh order" && may_rearm;
                 let is_starved = from == "armed" && to == "failsafe: no fresh order";
                 self.oracle.starved = is_starved.then_some(self.now);
             }
@@ -192,7 +214,10 @@ impl Rig {
             }
         }
         self.give(&Input::Tick);
-        self.remark = self.emulator.take_remark().unwrap_or_else(|| std::mem::take(&mut self.remark));
+        self.remark = self
+            .emulator
+            .take_remark()
+            .unwrap_or_else(|| std::mem::take(&mut self.remark));
     }
 
     /// Measures the boat and sends telemetry.
@@ -227,15 +252,24 @@ impl Rig {
 
     /// Sends a sentence with this body from a back seat or an operator.
     pub(crate) fn send(&mut self, port: Port, body: &str) {
-        self.emulator.receive(self.now, port, with_checksum(body).as_bytes());
+        self.emulator
+            .receive(self.now, port, with_checksum(body).as_bytes());
         self.boat_order = self.emulator.order(self.now);
     }
 
     /// The gateway's counters, and how many commands the boat followed and ignored.
     pub(crate) fn counts(&self) -> Vec<(String, u64)> {
         let (followed, ignored) = self.emulator.counters();
-        let boat = [("followed".to_owned(), followed), ("ignored".to_owned(), ignored)];
-        self.bridge.status(self.now).counts.into_iter().chain(boat).collect()
+        let boat = [
+            ("followed".to_owned(), followed),
+            ("ignored".to_owned(), ignored),
+        ];
+        self.bridge
+            .status(self.now)
+            .counts
+            .into_iter()
+            .chain(boat)
+            .collect()
     }
 
     /// Restarts the counts of positions, sentences, reports and events.

@@ -44,17 +44,36 @@ pub(crate) fn tamper(words: &[&str]) -> Option<Tamper> {
 
 /// Replaces the first of each pair of words by the second.
 fn replacing(pairs: &[&str]) -> impl Fn(&str) -> String + use<> {
-    let pairs: Vec<[String; 2]> = pairs.chunks(2).map(|two| [two[0].to_owned(), two[1].to_owned()]).collect();
-    move |text| pairs.iter().fold(text.to_owned(), |text, [from, to]| text.replace(from, to))
+    let pairs: Vec<[String; 2]> = pairs
+        .chunks(2)
+        .map(|two| [two[0].to_owned(), two[1].to_owned()])
+        .collect();
+    move |text| {
+        pairs
+            .iter()
+            .fold(text.to_owned(), |text, [from, to]| text.replace(from, to))
+    }
 }
 
 /// Changes the body of each sentence, with valid checksums.
 fn rewritten(mut change: impl FnMut(&str) -> String + 'static) -> Tamper {
     let mut line = move |line: &str| {
-        let body = line.trim_start_matches('$').split('*').next().unwrap_or_default();
+        let body = line
+            .trim_start_matches('$')
+            .split('*')
+            .next()
+            .unwrap_or_default();
         with_checksum(&change(body))
     };
-    Box::new(move |bytes| vec![String::from_utf8_lossy(&bytes).lines().map(&mut line).collect::<String>().into_bytes()])
+    Box::new(move |bytes| {
+        vec![
+            String::from_utf8_lossy(&bytes)
+                .lines()
+                .map(&mut line)
+                .collect::<String>()
+                .into_bytes(),
+        ]
+    })
 }
 
 /// Changes the fields of the sentences with this name.
@@ -71,9 +90,18 @@ fn changed(name: &str, mut change: impl FnMut(&mut Vec<String>) + 'static) -> Ta
 
 /// Replaces fields of the sentences with this name, given by number.
 fn replaced_fields(name: &str, pairs: &[&str]) -> Tamper {
-    let said = |two: &[&str]| (two[0].parse::<usize>().expect("a field's number"), two[1].to_owned());
+    let said = |two: &[&str]| {
+        (
+            two[0].parse::<usize>().expect("a field's number"),
+            two[1].to_owned(),
+        )
+    };
     let pairs: Vec<_> = pairs.chunks(2).map(said).collect();
-    changed(name, move |fields| pairs.iter().for_each(|(field, text)| fields[*field].clone_from(text)))
+    changed(name, move |fields| {
+        pairs
+            .iter()
+            .for_each(|(field, text)| fields[*field].clone_from(text))
+    })
 }
 
 /// A receiver that repeats its first fix with its time, and still reports it as good.
@@ -114,6 +142,15 @@ fn noise() -> Tamper {
                 count
             })
             .collect();
-        vec![[&noise, &b"\r\n"[..], &bytes, b"\x00\xff$PGRMCE*0E\x8e$PSRF100,", b"\r\n"].concat()]
+        vec![
+            [
+                &noise,
+                &b"\r\n"[..],
+                &bytes,
+                b"\x00\xff$PGRMCE*0E\x8e$PSRF100,",
+                b"\r\n",
+            ]
+            .concat(),
+        ]
     })
 }

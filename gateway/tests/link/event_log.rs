@@ -22,7 +22,11 @@ pub(crate) fn patient() -> LinkSettings {
 
 /// Settings with these waits between attempts and no silence limit.
 pub(crate) fn retrying(retry_first: Duration, retry_max: Duration) -> LinkSettings {
-    LinkSettings { silence: None, retry_first, retry_max }
+    LinkSettings {
+        silence: None,
+        retry_first,
+        retry_max,
+    }
 }
 
 pub(crate) fn connect(text: &str, settings: LinkSettings) -> (Link, Arc<EventLog>) {
@@ -44,7 +48,11 @@ pub(crate) fn open(address: &LinkAddress, settings: LinkSettings) -> (Link, Arc<
 pub(crate) fn close(link: Link) {
     let start = Instant::now();
     drop(link);
-    assert!(start.elapsed() < Duration::from_millis(200), "{:?}", start.elapsed());
+    assert!(
+        start.elapsed() < Duration::from_millis(200),
+        "{:?}",
+        start.elapsed()
+    );
 }
 
 pub(crate) fn read(from: &mut impl Read, count: usize) -> Vec<u8> {
@@ -65,7 +73,11 @@ impl EventLog {
     }
 
     /// Waits until `find` returns a result from all events.
-    pub(crate) fn until<T>(&self, what: &str, mut find: impl FnMut(&[(Instant, LinkEvent)]) -> Option<T>) -> T {
+    pub(crate) fn until<T>(
+        &self,
+        what: &str,
+        mut find: impl FnMut(&[(Instant, LinkEvent)]) -> Option<T>,
+    ) -> T {
         let start = Instant::now();
         let mut events = self.events.lock().unwrap();
         loop {
@@ -73,7 +85,12 @@ impl EventLog {
                 return found;
             }
             let left = LIMIT.saturating_sub(start.elapsed());
-            assert!(!left.is_zero(), "no {what} within {LIMIT:?}; the last of {}: {:?}", events.len(), tail(&events));
+            assert!(
+                !left.is_zero(),
+                "no {what} within {LIMIT:?}; the last of {}: {:?}",
+                events.len(),
+                tail(&events)
+            );
             events = self.news.wait_timeout(events, left).unwrap().0;
         }
     }
@@ -89,7 +106,9 @@ impl EventLog {
             LinkEvent::Down { reason, .. } => Some((reason.clone(), *at)),
             _ => None,
         };
-        self.until("peer down", |events| events.iter().filter_map(down).nth(nth))
+        self.until("peer down", |events| {
+            events.iter().filter_map(down).nth(nth)
+        })
     }
 
     /// Waits for a failed attempt; returns the wait after it.
@@ -99,33 +118,57 @@ impl EventLog {
 
     /// Waits until the data with this tag are written.
     pub(crate) fn written(&self, wanted: u64) {
-        let is_it = |event: &LinkEvent| matches!(event, LinkEvent::Written { tag, .. } if *tag == wanted);
-        self.until("tag written", |events| events.iter().any(|(_, event)| is_it(event)).then_some(()));
+        let is_it =
+            |event: &LinkEvent| matches!(event, LinkEvent::Written { tag, .. } if *tag == wanted);
+        self.until("tag written", |events| {
+            events.iter().any(|(_, event)| is_it(event)).then_some(())
+        });
     }
 
     /// Waits until the bytes from all peers together equal `wanted`.
     pub(crate) fn received(&self, wanted: &[u8]) {
         self.until("the bytes", |events| {
             let received: Vec<u8> = events.iter().flat_map(bytes).collect();
-            assert!(wanted.starts_with(&received), "received {received:?}, not {wanted:?}");
+            assert!(
+                wanted.starts_with(&received),
+                "received {received:?}, not {wanted:?}"
+            );
             (received.len() == wanted.len()).then_some(())
         });
     }
 }
 
 pub(crate) fn up((at, event): &(Instant, LinkEvent)) -> Option<(u32, Instant)> {
-    if let LinkEvent::Up { peer, .. } = event { Some((*peer, *at)) } else { None }
+    if let LinkEvent::Up { peer, .. } = event {
+        Some((*peer, *at))
+    } else {
+        None
+    }
 }
 
 /// The wait after a failed attempt.
 pub(crate) fn wait((_, event): &(Instant, LinkEvent)) -> Option<Duration> {
-    if let LinkEvent::Failed { retry_in, .. } = event { Some(*retry_in) } else { None }
+    if let LinkEvent::Failed { retry_in, .. } = event {
+        Some(*retry_in)
+    } else {
+        None
+    }
 }
 
 fn bytes((_, event): &(Instant, LinkEvent)) -> Vec<u8> {
-    if let LinkEvent::Bytes { bytes, .. } = event { bytes.clone() } else { Vec::new() }
+    if let LinkEvent::Bytes { bytes, .. } = event {
+        bytes.clone()
+    } else {
+        Vec::new()
+    }
 }
 
 fn tail(events: &[(Instant, LinkEvent)]) -> Vec<&LinkEvent> {
-    events.iter().rev().take(5).rev().map(|(_, event)| event).collect()
+    events
+        .iter()
+        .rev()
+        .take(5)
+        .rev()
+        .map(|(_, event)| event)
+        .collect()
 }

@@ -1,7 +1,13 @@
 //! Tests links with real sockets and terminals of this machine.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests too may stop at what cannot be")]
-#![allow(clippy::disallowed_methods, reason = "a link's promises are in milliseconds of real time")]
+#![allow(
+    clippy::unwrap_used,
+    reason = "helpers of tests too may stop at what cannot be"
+)]
+#![allow(
+    clippy::disallowed_methods,
+    reason = "a link's promises are in milliseconds of real time"
+)]
 
 mod address;
 mod event_log;

@@ -47,9 +47,17 @@ fn who_comes_late_gets_what_is_new() {
     }
     let mut reader = attach(link.reach());
     let attached = Instant::now();
-    let first: usize = String::from_utf8(read(&mut reader, 7)).unwrap().trim().parse().unwrap();
+    let first: usize = String::from_utf8(read(&mut reader, 7))
+        .unwrap()
+        .trim()
+        .parse()
+        .unwrap();
     let age = attached - sent_at[first];
-    assert!(age < Duration::from_millis(700), "{age:?} old: {first} of {}", sent_at.len());
+    assert!(
+        age < Duration::from_millis(700),
+        "{age:?} old: {first} of {}",
+        sent_at.len()
+    );
 }
 
 #[test]
@@ -75,7 +83,11 @@ fn nobody_on_it_blocks_nothing() {
     while start.elapsed() < Duration::from_millis(1500) {
         let sent_at = Instant::now();
         link.send(vec![b'x'; 20_000], tag);
-        assert!(sent_at.elapsed() < Duration::from_millis(200), "{:?}", sent_at.elapsed());
+        assert!(
+            sent_at.elapsed() < Duration::from_millis(200),
+            "{:?}",
+            sent_at.elapsed()
+        );
         tag += 1;
         pause(Duration::from_millis(5));
     }
@@ -88,7 +100,11 @@ fn nobody_on_it_blocks_nothing() {
         let count = reader.read(&mut some).unwrap();
         got.extend_from_slice(&some[..count]);
     }
-    assert_eq!(log.all().iter().filter_map(crate::event_log::up).count(), 1, "nothing is lost for it");
+    assert_eq!(
+        log.all().iter().filter_map(crate::event_log::up).count(),
+        1,
+        "nothing is lost for it"
+    );
     close(link);
 }
 
@@ -135,11 +151,22 @@ fn nothing_but_an_old_symlink_is_overwritten() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("letter");
     fs::write(&file, "dear").unwrap();
-    for path in [file.clone(), folder.path().to_owned(), folder.path().join("no/such/folder")] {
-        let address = LinkAddress::Pty { link: Some(path.clone()) };
-        let refused = Link::open(&address, patient(), drop).err().expect("it is in the way");
+    for path in [
+        file.clone(),
+        folder.path().to_owned(),
+        folder.path().join("no/such/folder"),
+    ] {
+        let address = LinkAddress::Pty {
+            link: Some(path.clone()),
+        };
+        let refused = Link::open(&address, patient(), drop)
+            .err()
+            .expect("it is in the way");
         assert!(matches!(refused, LinkError::Symlink { .. }), "{refused}");
-        assert!(refused.to_string().contains(&path.display().to_string()), "{refused}");
+        assert!(
+            refused.to_string().contains(&path.display().to_string()),
+            "{refused}"
+        );
     }
     assert_eq!(fs::read_to_string(&file).unwrap(), "dear");
 }

@@ -13,7 +13,10 @@ fn bytes_go_both_ways_and_a_hang_up_is_survived() {
     let device = folder.path().join("ttyBOAT");
     let pty = format!("pty://{}", device.display());
     let (boat, boat_log) = listen(&pty);
-    let (link, log) = connect(&format!("serial://{}?baud=4800", device.display()), patient());
+    let (link, log) = connect(
+        &format!("serial://{}?baud=4800", device.display()),
+        patient(),
+    );
     log.up(0);
     let all: Vec<u8> = (0..=255).collect();
     link.send(all.clone(), 3);
@@ -31,7 +34,10 @@ fn bytes_go_both_ways_and_a_hang_up_is_survived() {
             _ => None,
         })
     });
-    assert!(reason.contains("ttyBOAT") && reason.contains("No such file"), "{reason}");
+    assert!(
+        reason.contains("ttyBOAT") && reason.contains("No such file"),
+        "{reason}"
+    );
 
     let (_boat, boat_log) = listen(&pty);
     assert_eq!(log.up(1).0, 1);
@@ -45,7 +51,9 @@ fn what_is_no_serial_line_is_tried_again() {
     let file = folder.path().join("letter");
     std::fs::write(&file, "dear").unwrap();
     let (_link, log) = connect(&format!("serial://{}", file.display()), patient());
-    log.until("second failure", |events| events.iter().filter_map(wait).nth(1));
+    log.until("second failure", |events| {
+        events.iter().filter_map(wait).nth(1)
+    });
     assert_eq!(std::fs::read_to_string(&file).unwrap(), "dear");
 }
 
@@ -71,12 +79,19 @@ fn a_line_that_takes_nothing_for_two_seconds_is_opened_anew() {
     let (silent, _slave) = SerialPort::pair().unwrap();
     let name = rustix::pty::ptsname(&silent, Vec::new()).unwrap();
     let path = std::path::Path::new(OsStr::from_bytes(name.as_bytes()));
-    let (link, log) = connect(&format!("serial://{}?baud=115200", path.display()), patient());
+    let (link, log) = connect(
+        &format!("serial://{}?baud=115200", path.display()),
+        patient(),
+    );
     log.up(0);
     let start = Instant::now();
     link.send(vec![b'x'; 1 << 20], 0);
     let (reason, down) = log.down(0);
     assert!(reason.contains("no data accepted for 2s"), "{reason}");
-    assert!(down - start > Duration::from_secs(2) && down - start < Duration::from_secs(4), "{:?}", down - start);
+    assert!(
+        down - start > Duration::from_secs(2) && down - start < Duration::from_secs(4),
+        "{:?}",
+        down - start
+    );
     log.up(1);
 }

@@ -31,7 +31,11 @@ fn a_guard_sends_it_while_its_thread_panics() {
     let mut got = Vec::new();
     boat.read_to_end(&mut got).unwrap();
     assert!(died.join().is_err());
-    assert!(got.ends_with(STANDBY), "{:?}", String::from_utf8_lossy(&got));
+    assert!(
+        got.ends_with(STANDBY),
+        "{:?}",
+        String::from_utf8_lossy(&got)
+    );
 }
 
 #[test]
@@ -39,7 +43,11 @@ fn without_a_peer_it_fails_at_once() {
     let (link, _) = listen("tcp://127.0.0.1:0");
     let start = Instant::now();
     assert!(!link.send_and_wait(STANDBY, LIMIT));
-    assert!(start.elapsed() < Duration::from_millis(200), "{:?}", start.elapsed());
+    assert!(
+        start.elapsed() < Duration::from_millis(200),
+        "{:?}",
+        start.elapsed()
+    );
 }
 
 #[test]
@@ -50,7 +58,10 @@ fn a_peer_that_does_not_read_delays_it_up_to_the_limit_only() {
     let start = Instant::now();
     assert!(!link.send_and_wait(STANDBY, limit));
     let took = start.elapsed();
-    assert!(took >= limit && took < limit + Duration::from_millis(200), "{took:?}");
+    assert!(
+        took >= limit && took < limit + Duration::from_millis(200),
+        "{took:?}"
+    );
     assert!(read_until(&mut boat, STANDBY), "late, but sent");
 }
 
@@ -65,11 +76,18 @@ fn it_displaces_what_is_queued_and_nothing_displaces_it() {
     let sent = thread::spawn(move || sender.send_and_wait(STANDBY, Duration::from_millis(1500)));
     let start = Instant::now();
     while link.displaced() == before {
-        assert!(start.elapsed() < LIMIT, "the shutdown message displaced nothing");
+        assert!(
+            start.elapsed() < LIMIT,
+            "the shutdown message displaced nothing"
+        );
         thread::yield_now();
     }
     link.send(b"$PSEAC,T,0,99,0,*00\r\n".to_vec(), 2);
-    assert_eq!(link.displaced(), before + 2, "a set-point that was there, and one that came too late");
+    assert_eq!(
+        link.displaced(),
+        before + 2,
+        "a set-point that was there, and one that came too late"
+    );
     assert!(read_until(&mut boat, STANDBY));
     assert!(sent.join().unwrap());
     link.send(b"after".to_vec(), 3);
@@ -88,7 +106,11 @@ fn read_until(boat: &mut TcpStream, end: &[u8]) -> bool {
     let mut buffer = vec![0; 65536];
     while !got.ends_with(end) {
         let count = boat.read(&mut buffer).unwrap();
-        assert!(count > 0, "closed before {:?}", String::from_utf8_lossy(end));
+        assert!(
+            count > 0,
+            "closed before {:?}",
+            String::from_utf8_lossy(end)
+        );
         got.extend_from_slice(&buffer[..count]);
     }
     !got.windows(8).any(|eight| eight == b"$PSEAC,T")

@@ -64,7 +64,10 @@ fn sixty_four_kib_in_one_write_arrive_whole() {
     let (link, log, mut boat, _listener) = joined(patient());
     let bulk: Vec<u8> = (0..65536_u32).map(|i| (i % 251) as u8).collect();
     link.send(bulk.clone(), 7);
-    assert!(read(&mut boat, bulk.len()) == bulk, "what arrived is not what was sent");
+    assert!(
+        read(&mut boat, bulk.len()) == bulk,
+        "what arrived is not what was sent"
+    );
     log.written(7);
     boat.write_all(&bulk).unwrap();
     log.received(&bulk);
@@ -72,15 +75,25 @@ fn sixty_four_kib_in_one_write_arrive_whole() {
 
 #[test]
 fn a_server_that_is_gone_is_tried_with_growing_waits_and_found_when_it_returns() {
-    let (link, log, boat, listener) = joined(retrying(Duration::from_millis(10), Duration::from_millis(80)));
+    let (link, log, boat, listener) = joined(retrying(
+        Duration::from_millis(10),
+        Duration::from_millis(80),
+    ));
     let address = listener.local_addr().unwrap();
     drop((boat, listener));
     log.down(0);
     let waits = log.until("five failures", |events| {
-        let waits: Vec<u128> = events.iter().filter_map(wait).map(|wait| wait.as_millis()).collect();
+        let waits: Vec<u128> = events
+            .iter()
+            .filter_map(wait)
+            .map(|wait| wait.as_millis())
+            .collect();
         (waits.len() >= 5).then_some(waits)
     });
-    assert!(waits.windows(2).all(|two| two[1] == (two[0] * 2).min(80)), "{waits:?}");
+    assert!(
+        waits.windows(2).all(|two| two[1] == (two[0] * 2).min(80)),
+        "{waits:?}"
+    );
     assert_eq!(waits.last(), Some(&80), "{waits:?}");
 
     let listener = TcpListener::bind(address).unwrap();
@@ -105,15 +118,26 @@ fn nobody_there_is_no_error() {
 fn a_peer_that_closes_at_once_or_after_one_line_is_not_stormed() {
     for line in [&b""[..], b"$full*00\r\n"] {
         let (listener, address) = listener();
-        let slam = thread::spawn(move || (0..6).for_each(|_| accept(&listener).write_all(line).unwrap()));
-        let (_link, log) = connect(&address, retrying(Duration::from_millis(100), Duration::from_secs(5)));
+        let slam =
+            thread::spawn(move || (0..6).for_each(|_| accept(&listener).write_all(line).unwrap()));
+        let (_link, log) = connect(
+            &address,
+            retrying(Duration::from_millis(100), Duration::from_secs(5)),
+        );
         // Attempts after 0, 100, 300, 700, 1500 and 3100 ms.
         let (_, sixth) = log.up(5);
         let first = log.up(0).1;
-        assert!(sixth - first >= Duration::from_millis(3000), "six attempts in {:?}", sixth - first);
+        assert!(
+            sixth - first >= Duration::from_millis(3000),
+            "six attempts in {:?}",
+            sixth - first
+        );
         let is_soon = |(_, at): &(u32, Instant)| *at - first < Duration::from_secs(1);
         let in_a_second = log.all().iter().filter_map(up).filter(is_soon).count();
-        assert!((3..=4).contains(&in_a_second), "{in_a_second} attempts in a second");
+        assert!(
+            (3..=4).contains(&in_a_second),
+            "{in_a_second} attempts in a second"
+        );
         slam.join().unwrap();
     }
 }
@@ -121,7 +145,10 @@ fn a_peer_that_closes_at_once_or_after_one_line_is_not_stormed() {
 #[test]
 fn a_link_that_was_good_for_some_time_is_tried_again_quickly() {
     let (listener, address) = listener();
-    let (_link, log) = connect(&address, retrying(Duration::from_millis(20), Duration::from_secs(60)));
+    let (_link, log) = connect(
+        &address,
+        retrying(Duration::from_millis(20), Duration::from_secs(60)),
+    );
     (0..5).for_each(|_| drop(accept(&listener)));
     // The next wait would be 640 ms.
     let mut boat = accept(&listener);
@@ -137,7 +164,9 @@ fn a_link_that_was_good_for_some_time_is_tried_again_quickly() {
 
 /// Sends until `end`; checks in the pauses that there is no second connection.
 fn chatter(end: Instant, listener: &TcpListener, mut talk: impl FnMut()) {
-    SockRef::from(listener).set_read_timeout(Some(Duration::from_millis(50))).unwrap();
+    SockRef::from(listener)
+        .set_read_timeout(Some(Duration::from_millis(50)))
+        .unwrap();
     while Instant::now() < end {
         talk();
         assert!(listener.accept().is_err(), "a second connection");
@@ -148,13 +177,26 @@ fn chatter(end: Instant, listener: &TcpListener, mut talk: impl FnMut()) {
 #[test]
 fn a_peer_that_falls_silent_counts_as_gone() {
     let silence = Duration::from_millis(300);
-    let (_link, log, mut boat, listener) = joined(LinkSettings { silence: Some(silence), ..patient() });
+    let (_link, log, mut boat, listener) = joined(LinkSettings {
+        silence: Some(silence),
+        ..patient()
+    });
     let (_, up) = log.up(0);
-    chatter(up + 2 * silence, &listener, || boat.write_all(b"here\n").unwrap());
+    chatter(up + 2 * silence, &listener, || {
+        boat.write_all(b"here\n").unwrap()
+    });
     let (reason, down) = log.down(0);
     assert!(reason.contains("no bytes for 300ms"), "{reason}");
-    assert!(down - up >= 3 * silence - Duration::from_millis(60), "chatter was not received: {:?}", down - up);
-    assert!(down - up < 3 * silence + Duration::from_millis(500), "{:?}", down - up);
+    assert!(
+        down - up >= 3 * silence - Duration::from_millis(60),
+        "chatter was not received: {:?}",
+        down - up
+    );
+    assert!(
+        down - up < 3 * silence + Duration::from_millis(500),
+        "{:?}",
+        down - up
+    );
     // The link retries, though this peer still holds the old connection.
     let _second = accept(&listener);
     assert_eq!(log.up(1).0, 1);
@@ -168,22 +210,46 @@ fn a_peer_that_does_not_read_gets_the_newest_late_instead_of_all_in_order() {
     let mut slowest = Duration::ZERO;
     for tag in 0..SENT {
         let start = Instant::now();
-        link.send(format!("{tag:0width$}\n", width = SIZE - 1).into_bytes(), tag);
+        link.send(
+            format!("{tag:0width$}\n", width = SIZE - 1).into_bytes(),
+            tag,
+        );
         slowest = slowest.max(start.elapsed());
     }
-    assert!(slowest < Duration::from_millis(200), "a send took {slowest:?}");
-    assert!(link.displaced() > SENT / 2, "{} displaced", link.displaced());
+    assert!(
+        slowest < Duration::from_millis(200),
+        "a send took {slowest:?}"
+    );
+    assert!(
+        link.displaced() > SENT / 2,
+        "{} displaced",
+        link.displaced()
+    );
 
     let mut got: Vec<u64> = Vec::new();
     while got.last() != Some(&(SENT - 1)) {
-        got.push(String::from_utf8(read(&mut boat, SIZE)).unwrap().trim().parse().unwrap());
+        got.push(
+            String::from_utf8(read(&mut boat, SIZE))
+                .unwrap()
+                .trim()
+                .parse()
+                .unwrap(),
+        );
     }
     assert!(got.is_sorted(), "{got:?}");
-    assert_eq!(got.len() as u64 + link.displaced(), SENT, "each is written whole or not at all");
+    assert_eq!(
+        got.len() as u64 + link.displaced(),
+        SENT,
+        "each is written whole or not at all"
+    );
     assert!(got.len() < 200, "{} KiB were held for it", got.len());
     log.written(SENT - 1);
     let tags = log.all().len();
-    assert!(tags <= got.len() + 1, "{tags} events for {} writes", got.len());
+    assert!(
+        tags <= got.len() + 1,
+        "{tags} events for {} writes",
+        got.len()
+    );
 }
 
 #[test]
@@ -192,12 +258,28 @@ fn a_peer_that_reads_nothing_for_two_seconds_is_dropped_with_its_unread_data() {
     let start = Instant::now();
     link.send(vec![b'x'; 16 << 20], 0);
     let (reason, down) = log.down(0);
-    assert!(down - start >= Duration::from_millis(1900), "{:?}: {reason}", down - start);
-    assert!(down - start < Duration::from_millis(4500), "{:?}: {reason}", down - start);
+    assert!(
+        down - start >= Duration::from_millis(1900),
+        "{:?}: {reason}",
+        down - start
+    );
+    assert!(
+        down - start < Duration::from_millis(4500),
+        "{:?}: {reason}",
+        down - start
+    );
     // A reset rather than a close: data in flight are void.
     let mut waste = Vec::new();
-    assert!(boat.read_to_end(&mut waste).is_err(), "{} bytes and a graceful close", waste.len());
-    assert!(!log.all().iter().any(|(_, event)| matches!(event, gateway::link::LinkEvent::Written { .. })));
+    assert!(
+        boat.read_to_end(&mut waste).is_err(),
+        "{} bytes and a graceful close",
+        waste.len()
+    );
+    assert!(
+        !log.all()
+            .iter()
+            .any(|(_, event)| matches!(event, gateway::link::LinkEvent::Written { .. }))
+    );
 }
 
 #[test]
@@ -212,7 +294,9 @@ fn a_dropped_link_closes_gracefully_within_200_ms() {
     boat.read_to_end(&mut got).unwrap();
     assert_eq!(got, b"last");
     assert_eq!(log.down(0).0, "closed here");
-    SockRef::from(&listener).set_read_timeout(Some(Duration::from_millis(200))).unwrap();
+    SockRef::from(&listener)
+        .set_read_timeout(Some(Duration::from_millis(200)))
+        .unwrap();
     assert!(listener.accept().is_err(), "a dropped link connected again");
 }
 
@@ -227,21 +311,34 @@ fn a_boat_that_keeps_sending_receives_everything_before_the_close() {
     // A boat takes a moment to notice. It must not be reset meanwhile, because a reset could
     // discard data that it has not read yet.
     for _ in 0..10 {
-        boat.write_all(b"$GPGGA").expect("the link listens on for a moment");
+        boat.write_all(b"$GPGGA")
+            .expect("the link listens on for a moment");
         thread::sleep(Duration::from_millis(1));
     }
     drop(boat);
     closer.join().unwrap();
 }
 
-/// A full listener, which does not answer the next connection, as a radio out of range does not; also
-/// returns the connection that fills it.
+/// A full listener, which does not answer the next connection, as a radio out of range does not;
+/// also returns the connection that fills it.
 fn full() -> (String, socket2::Socket, TcpStream) {
-    let listener = socket2::Socket::new(socket2::Domain::IPV4, socket2::Type::STREAM, None).unwrap();
-    listener.bind(&"127.0.0.1:0".parse::<std::net::SocketAddr>().unwrap().into()).unwrap();
+    let listener =
+        socket2::Socket::new(socket2::Domain::IPV4, socket2::Type::STREAM, None).unwrap();
+    listener
+        .bind(
+            &"127.0.0.1:0"
+                .parse::<std::net::SocketAddr>()
+                .unwrap()
+                .into(),
+        )
+        .unwrap();
     listener.listen(0).unwrap();
     let address = listener.local_addr().unwrap().as_socket().unwrap();
-    (format!("tcp://{address}"), listener, TcpStream::connect(address).unwrap())
+    (
+        format!("tcp://{address}"),
+        listener,
+        TcpStream::connect(address).unwrap(),
+    )
 }
 
 #[test]
@@ -256,11 +353,25 @@ fn a_link_that_cannot_reach_anybody_is_dropped_as_quickly() {
 fn a_peer_that_never_answers_is_given_up_and_tried_again_after_a_second() {
     let (address, _listener, _first) = full();
     let start = Instant::now();
-    let (_link, log) = connect(&address, LinkSettings { silence: None, ..LinkSettings::default() });
+    let (_link, log) = connect(
+        &address,
+        LinkSettings {
+            silence: None,
+            ..LinkSettings::default()
+        },
+    );
     log.failure();
     let took = start.elapsed();
-    assert!(took > Duration::from_millis(900) && took < Duration::from_millis(1500), "{took:?}");
-    log.until("the fourth failure", |events| events.iter().filter_map(wait).nth(3));
+    assert!(
+        took > Duration::from_millis(900) && took < Duration::from_millis(1500),
+        "{took:?}"
+    );
+    log.until("the fourth failure", |events| {
+        events.iter().filter_map(wait).nth(3)
+    });
     let took = start.elapsed();
-    assert!(took < Duration::from_millis(4900), "four attempts took {took:?}");
+    assert!(
+        took < Duration::from_millis(4900),
+        "four attempts took {took:?}"
+    );
 }

@@ -1,7 +1,9 @@
 //! Links that listen on a TCP port.
 
 use crate::event_log::{EventLog, LIMIT, close, listen, open, patient, read};
-use gateway::link::{BoatLink, HostPort, Link, LinkAddress, LinkError, LinkEvent, LinkSettings, Side};
+use gateway::link::{
+    BoatLink, HostPort, Link, LinkAddress, LinkError, LinkEvent, LinkSettings, Side,
+};
 use std::io::{Read, Write};
 use std::net::{TcpListener, TcpStream};
 use std::time::{Duration, Instant};
@@ -70,7 +72,11 @@ fn a_peer_that_does_not_read_holds_up_nobody_and_is_dropped() {
     let mut slowest = Duration::ZERO;
     let mut tag = 0;
     // 64 KiB each, so that the slow peer's buffers soon fill up.
-    while log.all().iter().all(|(_, event)| !matches!(event, LinkEvent::Down { .. })) {
+    while log
+        .all()
+        .iter()
+        .all(|(_, event)| !matches!(event, LinkEvent::Down { .. }))
+    {
         assert!(start.elapsed() < LIMIT, "the slow one is never dropped");
         let sent_at = Instant::now();
         link.send(vec![b'x'; 65536], tag);
@@ -81,7 +87,9 @@ fn a_peer_that_does_not_read_holds_up_nobody_and_is_dropped() {
     assert!(slowest < Duration::from_millis(500), "{slowest:?}");
     assert!(link.displaced() > 0);
     let (_, down) = log.down(0);
-    assert!(down - start > Duration::from_millis(1900) && down - start < Duration::from_millis(5000));
+    assert!(
+        down - start > Duration::from_millis(1900) && down - start < Duration::from_millis(5000)
+    );
     link.send(b"on".to_vec(), tag);
     assert_eq!(read(&mut quick, 2), b"on");
     log.written(tag);
@@ -90,7 +98,13 @@ fn a_peer_that_does_not_read_holds_up_nobody_and_is_dropped() {
 #[test]
 fn a_silent_peer_stays_unless_the_settings_say_otherwise() {
     let address = LinkAddress::to_listen(ANY).unwrap();
-    let (link, log) = open(&address, LinkSettings { silence: Some(Duration::from_millis(200)), ..patient() });
+    let (link, log) = open(
+        &address,
+        LinkSettings {
+            silence: Some(Duration::from_millis(200)),
+            ..patient()
+        },
+    );
     let (patient_link, patient_log) = listen(ANY);
     let _one = join(&link);
     let _other = join(&patient_link);
@@ -117,8 +131,16 @@ fn a_dropped_link_frees_its_port_within_200_ms() {
 fn an_address_in_use_is_refused() {
     let taken = TcpListener::bind("127.0.0.1:0").unwrap();
     let port = taken.local_addr().unwrap().port();
-    let address = LinkAddress::Tcp(Side::Listens, HostPort { host: "127.0.0.1".to_owned(), port });
-    let refused = Link::open(&address, patient(), drop).err().expect("the port is taken");
+    let address = LinkAddress::Tcp(
+        Side::Listens,
+        HostPort {
+            host: "127.0.0.1".to_owned(),
+            port,
+        },
+    );
+    let refused = Link::open(&address, patient(), drop)
+        .err()
+        .expect("the port is taken");
     assert!(matches!(refused, LinkError::Listen { .. }), "{refused}");
     assert!(refused.to_string().contains(&port.to_string()), "{refused}");
 }

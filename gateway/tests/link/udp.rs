@@ -47,12 +47,22 @@ fn an_empty_datagram_brings_a_peer_up_without_bytes() {
 fn eight_are_served_and_a_ninth_only_when_one_is_forgotten() {
     let address = LinkAddress::to_listen(ANY).unwrap();
     let silence = Duration::from_millis(400);
-    let (server, log) = open(&address, LinkSettings { silence: Some(silence), ..patient() });
+    let (server, log) = open(
+        &address,
+        LinkSettings {
+            silence: Some(silence),
+            ..patient()
+        },
+    );
     let peers: Vec<UdpSocket> = (0..9).map(|_| speak(&server.reach(), b"x")).collect();
     let (_, start) = log.up(7);
     let (reason, down) = log.down(7);
     assert!(reason.contains("no bytes for 400ms"), "{reason}");
-    assert!(down - start >= silence - Duration::from_millis(50), "{:?}", down - start);
+    assert!(
+        down - start >= silence - Duration::from_millis(50),
+        "{:?}",
+        down - start
+    );
     let ups = log.all().iter().filter_map(up).count();
     assert_eq!(ups, 8);
     peers[8].send(b"x").unwrap();
@@ -75,7 +85,11 @@ fn nobody_there_is_no_error_and_somebody_who_comes_is_found() {
     let start = Instant::now();
     let mut tag = 1;
     while server_log.all().is_empty() {
-        assert!(start.elapsed() < LIMIT, "never found again: {:?}", log.all());
+        assert!(
+            start.elapsed() < LIMIT,
+            "never found again: {:?}",
+            log.all()
+        );
         client.send(b"x".to_vec(), tag);
         tag += 1;
         std::thread::yield_now();
@@ -87,13 +101,23 @@ fn nobody_there_is_no_error_and_somebody_who_comes_is_found() {
 
 #[test]
 fn a_port_that_is_listened_on_is_linked_to_its_first_sender_and_to_the_next_after_silence() {
-    let free = UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
+    let free = UdpSocket::bind("127.0.0.1:0")
+        .unwrap()
+        .local_addr()
+        .unwrap();
     let address = LinkAddress::to_connect(&format!("udp-listen://{free}")).unwrap();
-    let (link, log) = open(&address, LinkSettings { silence: Some(Duration::from_millis(400)), ..patient() });
+    let (link, log) = open(
+        &address,
+        LinkSettings {
+            silence: Some(Duration::from_millis(400)),
+            ..patient()
+        },
+    );
     let mut got = [0; 9];
     for round in 0..2_u32 {
         let boat = UdpSocket::bind("127.0.0.1:0").unwrap();
-        boat.set_read_timeout(Some(Duration::from_millis(20))).unwrap();
+        boat.set_read_timeout(Some(Duration::from_millis(20)))
+            .unwrap();
         let start = Instant::now();
         // As a boat that does not know whether anybody listens.
         let count = loop {
@@ -101,15 +125,24 @@ fn a_port_that_is_listened_on_is_linked_to_its_first_sender_and_to_the_next_afte
             let _ = boat.send_to(&[b'a' + round as u8; 3], free);
             link.send(b"aye".to_vec(), u64::from(round));
             if let Ok((count, from)) = boat.recv_from(&mut got) {
-                assert_eq!(from, free, "the answer comes from the port that was sent to");
+                assert_eq!(
+                    from, free,
+                    "the answer comes from the port that was sent to"
+                );
                 break count;
             }
         };
         assert!(got[..count].starts_with(b"aye"), "{got:?}");
         assert_eq!(log.up(round as usize).0, round);
         let is_its = |event: &LinkEvent| matches!(event, LinkEvent::Bytes { peer, bytes, .. } if *peer == round && bytes[0] == b'a' + round as u8);
-        log.until("its bytes", |events| events.iter().any(|(_, event)| is_its(event)).then_some(()));
-        assert!(log.down(round as usize).0.contains("no bytes"), "{:?}", log.all());
+        log.until("its bytes", |events| {
+            events.iter().any(|(_, event)| is_its(event)).then_some(())
+        });
+        assert!(
+            log.down(round as usize).0.contains("no bytes"),
+            "{:?}",
+            log.all()
+        );
     }
     drop(link);
 }

@@ -4,8 +4,8 @@ use crate::rig::{Rig, plan};
 use gateway::bridge::{Bridge, Input};
 use gateway::geodesy::LocalFrame;
 use gateway::mavlink::dialect::{
-    HEARTBEAT_DATA, MavFrame, MavMessage, MavType, PositionTargetTypemask, SET_POSITION_TARGET_GLOBAL_INT_DATA,
-    SET_POSITION_TARGET_LOCAL_NED_DATA,
+    HEARTBEAT_DATA, MavFrame, MavMessage, MavType, PositionTargetTypemask,
+    SET_POSITION_TARGET_GLOBAL_INT_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA,
 };
 use gateway::mavlink::{RoverMode, Writer};
 use messages::Order;
@@ -16,18 +16,21 @@ use primitives::frame::Ned;
 const LIMIT_S: f64 = 15.0;
 
 fn steer(heading_deg: f64) -> Order {
-    Order::Steer { heading_rad: heading_deg.to_radians(), speed_m_s: 1.5 }
+    Order::Steer {
+        heading_rad: heading_deg.to_radians(),
+        speed_m_s: 1.5,
+    }
 }
 
 /// The message of a boat before version 4.7.
 fn without_bearing(message: MavMessage) -> Option<MavMessage> {
     Some(match message {
-        MavMessage::NAV_CONTROLLER_OUTPUT(shown) => {
-            MavMessage::NAV_CONTROLLER_OUTPUT(gateway::mavlink::dialect::NAV_CONTROLLER_OUTPUT_DATA {
+        MavMessage::NAV_CONTROLLER_OUTPUT(shown) => MavMessage::NAV_CONTROLLER_OUTPUT(
+            gateway::mavlink::dialect::NAV_CONTROLLER_OUTPUT_DATA {
                 nav_bearing: 0,
                 ..shown
-            })
-        }
+            },
+        ),
         other => other,
     })
 }
@@ -45,7 +48,11 @@ fn two_gateways(headings_deg: [f64; 2], alter: fn(MavMessage) -> Option<MavMessa
     let start = rig.now;
     let is_armed = |bridge: &Bridge| bridge.state() == gateway::supervisor::State::Armed;
     while is_armed(&rig.bridge) || rig.second.as_ref().is_some_and(is_armed) {
-        assert!((rig.now - start).as_s() < LIMIT_S, "{headings_deg:?}: {:?}", rig.events);
+        assert!(
+            (rig.now - start).as_s() < LIMIT_S,
+            "{headings_deg:?}: {:?}",
+            rig.events
+        );
         rig.put_second(&Input::Order(steer(headings_deg[1]), rig.now));
         rig.run(0.1);
     }
@@ -54,10 +61,25 @@ fn two_gateways(headings_deg: [f64; 2], alter: fn(MavMessage) -> Option<MavMessa
 
 #[test]
 fn two_gateways_at_one_boat_find_each_other_and_both_stop() {
-    for headings_deg in [[90.0, 0.0], [0.0, 90.0], [90.0, 95.0], [90.0, 270.0], [180.0, 225.0]] {
+    for headings_deg in [
+        [90.0, 0.0],
+        [0.0, 90.0],
+        [90.0, 95.0],
+        [90.0, 270.0],
+        [180.0, 225.0],
+    ] {
         let mut rig = two_gateways(headings_deg, Some);
-        let both = [rig.state(), rig.second.as_ref().map(|second| second.state().to_string()).unwrap_or_default()];
-        assert!(both.iter().all(|state| state.starts_with("failsafe")), "{headings_deg:?}: {both:?}");
+        let both = [
+            rig.state(),
+            rig.second
+                .as_ref()
+                .map(|second| second.state().to_string())
+                .unwrap_or_default(),
+        ];
+        assert!(
+            both.iter().all(|state| state.starts_with("failsafe")),
+            "{headings_deg:?}: {both:?}"
+        );
         rig.run(10.0);
         assert_eq!(rig.mode(), (RoverMode::Hold, false));
         assert!(rig.boat.speed_m_s.abs() < 0.05, "{:?}", rig.boat);
@@ -71,7 +93,12 @@ fn steered_by_another(mut rig: Rig, message: &MavMessage, rate_hz: f64) -> (f64,
     Writer::new(250, 190).write(message, &mut bytes);
     let start = rig.now;
     while rig.state() == "armed" {
-        assert!((rig.now - start).as_s() < LIMIT_S, "{message:?}: {:?} {:?}", rig.boat, rig.events);
+        assert!(
+            (rig.now - start).as_s() < LIMIT_S,
+            "{message:?}: {:?} {:?}",
+            rig.boat,
+            rig.events
+        );
         rig.ardupilot.receive(rig.now, &bytes);
         rig.run(1.0 / rate_hz);
     }
@@ -92,7 +119,8 @@ fn velocity(heading_deg: f64, speed_m_s: f64) -> MavMessage {
 }
 
 fn position() -> MavMessage {
-    let at = LocalFrame::new(plan().site.expect("the rig has one").field.plan.datum).lat_lon(Ned::from_xy(60.0, 10.0));
+    let at = LocalFrame::new(plan().site.expect("the rig has one").field.plan.datum)
+        .lat_lon(Ned::from_xy(60.0, 10.0));
     MavMessage::SET_POSITION_TARGET_GLOBAL_INT(SET_POSITION_TARGET_GLOBAL_INT_DATA {
         lat_int: (1e7 * at.lat_deg).round() as i32,
         lon_int: (1e7 * at.lon_deg).round() as i32,
@@ -108,10 +136,17 @@ fn a_ground_station_that_steers_in_guided_is_detected_by_the_orders_shown() {
     for (message, limit_s, words) in [
         (velocity(0.0, 1.5), 1.0, "orders that are not ours"),
         (velocity(180.0, 1.0), 1.0, "orders that are not ours"),
-        (position(), 4.0, "does not follow its commands: it is in mode W"),
+        (
+            position(),
+            4.0,
+            "does not follow its commands: it is in mode W",
+        ),
     ] {
         let (after_s, state) = steered_by_another(Rig::under_way(), &message, 10.0);
-        assert!(after_s < limit_s && state.contains(words), "{message:?}: {after_s} s, {state}");
+        assert!(
+            after_s < limit_s && state.contains(words),
+            "{message:?}: {after_s} s, {state}"
+        );
     }
 }
 
@@ -138,9 +173,20 @@ fn set_points_and_heartbeats_of_others_on_the_link_are_told() {
         (0..3).for_each(|_| rig.give(&Input::Bytes(bytes.clone())));
         rig
     };
-    assert!(on_the_link(&velocity(90.0, 1.5)).state().contains("orders that are not ours"));
+    assert!(
+        on_the_link(&velocity(90.0, 1.5))
+            .state()
+            .contains("orders that are not ours")
+    );
     let mavtype = MavType::MAV_TYPE_GCS;
-    let rig = on_the_link(&MavMessage::HEARTBEAT(HEARTBEAT_DATA { mavtype, ..HEARTBEAT_DATA::default() }));
-    let told = rig.events.iter().filter(|event| format!("{event:?}").contains("another ground station")).count();
+    let rig = on_the_link(&MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+        mavtype,
+        ..HEARTBEAT_DATA::default()
+    }));
+    let told = rig
+        .events
+        .iter()
+        .filter(|event| format!("{event:?}").contains("another ground station"))
+        .count();
     assert_eq!((rig.state().as_str(), told), ("armed", 1));
 }

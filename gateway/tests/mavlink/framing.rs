@@ -1,17 +1,26 @@
 //! The MAVLink framer: frames of another program, any split, damage, and frames that must be
 //! rejected.
 
-use gateway::mavlink::dialect::{GpsFixType, HEARTBEAT_DATA, MavMessage, MavModeFlag, MavType, PARAM_VALUE_DATA};
+use gateway::mavlink::dialect::{
+    GpsFixType, HEARTBEAT_DATA, MavMessage, MavModeFlag, MavType, PARAM_VALUE_DATA,
+};
 use gateway::mavlink::{FRAME_MAX, Framer, Received, Writer};
 use proptest::prelude::*;
 use std::collections::BTreeMap;
 
 fn golden() -> BTreeMap<&'static str, Vec<u8>> {
-    let lines = include_str!("golden.txt").lines().filter(|line| !line.starts_with('#'));
+    let lines = include_str!("golden.txt")
+        .lines()
+        .filter(|line| !line.starts_with('#'));
     let bytes = |hex: &str| {
-        (0..hex.len() / 2).map(|i| u8::from_str_radix(&hex[2 * i..2 * i + 2], 16).expect("two digits")).collect()
+        (0..hex.len() / 2)
+            .map(|i| u8::from_str_radix(&hex[2 * i..2 * i + 2], 16).expect("two digits"))
+            .collect()
     };
-    lines.map(|line| line.split_once(' ').expect("name and frame")).map(|(name, hex)| (name, bytes(hex))).collect()
+    lines
+        .map(|line| line.split_once(' ').expect("name and frame"))
+        .map(|(name, hex)| (name, bytes(hex)))
+        .collect()
 }
 
 fn read(framer: &mut Framer, bytes: &[u8]) -> Vec<Received> {
@@ -25,18 +34,40 @@ fn frames_of_pymavlink_are_read_with_every_field() {
     for (name, frame) in golden() {
         let mut framer = Framer::new();
         let received = read(&mut framer, &frame);
-        let [Received { system: 1, component: 1, message }] = &received[..] else { panic!("{name}: {received:?}") };
+        let [
+            Received {
+                system: 1,
+                component: 1,
+                message,
+            },
+        ] = &received[..]
+        else {
+            panic!("{name}: {received:?}")
+        };
         match (name.trim_end_matches("_v1"), message) {
             ("heartbeat", MavMessage::HEARTBEAT(heartbeat)) => {
-                assert_eq!((heartbeat.custom_mode, heartbeat.mavtype), (15, MavType::MAV_TYPE_SURFACE_BOAT));
-                assert!(heartbeat.base_mode.contains(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED));
+                assert_eq!(
+                    (heartbeat.custom_mode, heartbeat.mavtype),
+                    (15, MavType::MAV_TYPE_SURFACE_BOAT)
+                );
+                assert!(
+                    heartbeat
+                        .base_mode
+                        .contains(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED)
+                );
             }
             ("global_position_int", MavMessage::GLOBAL_POSITION_INT(position)) => {
-                assert_eq!((position.lat, position.lon, position.time_boot_ms), (423_584_360, -710_874_480, 123_456));
+                assert_eq!(
+                    (position.lat, position.lon, position.time_boot_ms),
+                    (423_584_360, -710_874_480, 123_456)
+                );
                 assert_eq!((position.vx, position.vy, position.hdg), (123, -45, 9000));
             }
             ("gps_raw_int", MavMessage::GPS_RAW_INT(gps)) => {
-                assert_eq!((gps.fix_type, gps.eph), (GpsFixType::GPS_FIX_TYPE_RTK_FIXED, 98));
+                assert_eq!(
+                    (gps.fix_type, gps.eph),
+                    (GpsFixType::GPS_FIX_TYPE_RTK_FIXED, 98)
+                );
                 assert_eq!(gps.satellites_visible, 11);
             }
             ("attitude", MavMessage::ATTITUDE(attitude)) => {
@@ -55,7 +86,9 @@ fn what_is_written_is_pymavlinks_frame() {
     let mut writer = Writer::new(1, 1);
     let (golden, heartbeat) = (golden(), {
         let mut framer = Framer::new();
-        read(&mut framer, &self::golden()["heartbeat"]).remove(0).message
+        read(&mut framer, &self::golden()["heartbeat"])
+            .remove(0)
+            .message
     });
     let mut out = Vec::new();
     for _ in 0..8 {
@@ -71,10 +104,19 @@ fn a_frame_that_a_wrong_length_covers_is_found() {
     let mut damaged = golden["attitude"].clone();
     damaged[1] = 200;
     let mut framer = Framer::new();
-    let stream = [&damaged[..], &golden["heartbeat"], &golden["gps_raw_int"], &[0; FRAME_MAX]].concat();
+    let stream = [
+        &damaged[..],
+        &golden["heartbeat"],
+        &golden["gps_raw_int"],
+        &[0; FRAME_MAX],
+    ]
+    .concat();
     let received = read(&mut framer, &stream);
     assert_eq!(received.len(), 2, "{received:?}");
-    assert_eq!((framer.counts().messages, framer.counts().bad_checksum), (2, 1));
+    assert_eq!(
+        (framer.counts().messages, framer.counts().bad_checksum),
+        (2, 1)
+    );
 }
 
 #[test]
@@ -83,13 +125,19 @@ fn unknown_messages_and_values_are_counted_and_left() {
     let mut unknown = golden["attitude"].clone();
     unknown[7] = 163;
     let mut framer = Framer::new();
-    assert_eq!(read(&mut framer, &[&unknown[..], &golden["heartbeat"]].concat()).len(), 1);
+    assert_eq!(
+        read(&mut framer, &[&unknown[..], &golden["heartbeat"]].concat()).len(),
+        1
+    );
     assert_eq!(framer.counts().unknown, [(163, 1)].into());
     // An unknown flag may change the frame's layout, so the frame is rejected.
     let mut flagged = golden["heartbeat"].clone();
     flagged[2] = 2;
     let mut framer = Framer::new();
-    assert_eq!(read(&mut framer, &[&flagged[..], &golden["heartbeat"]].concat()).len(), 1);
+    assert_eq!(
+        read(&mut framer, &[&flagged[..], &golden["heartbeat"]].concat()).len(),
+        1
+    );
     assert_eq!(framer.counts().bad_checksum, 0);
 }
 
@@ -105,15 +153,27 @@ fn noise_like_the_header_of_an_unknown_message_swallows_and_delays_no_frame() {
         let stream = [&FALSE_START[..], &vec![0xAA; noise], &heartbeat, &heartbeat].concat();
         for piece in [1, stream.len()] {
             let mut framer = Framer::new();
-            let count: usize = stream.chunks(piece).map(|piece| read(&mut framer, piece).len()).sum();
-            assert_eq!(count, 2, "{noise} bytes of noise in pieces of {piece}: {:?}", framer.counts());
+            let count: usize = stream
+                .chunks(piece)
+                .map(|piece| read(&mut framer, piece).len())
+                .sum();
+            assert_eq!(
+                count,
+                2,
+                "{noise} bytes of noise in pieces of {piece}: {:?}",
+                framer.counts()
+            );
             // What ends where the next frame begins passes for an unknown message.
             if FALSE_START.len() + noise != 267 {
                 assert_eq!(framer.counts().garbage, (FALSE_START.len() + noise) as u64);
             }
         }
         let first = [&FALSE_START[..], &vec![0xAA; noise], &heartbeat].concat();
-        assert_eq!(read(&mut Framer::new(), &first).len(), 1, "at once, after {noise} bytes of noise");
+        assert_eq!(
+            read(&mut Framer::new(), &first).len(),
+            1,
+            "at once, after {noise} bytes of noise"
+        );
     }
 }
 

@@ -1,4 +1,5 @@
-//! An emulated ArduPilot boat and ground stations other than ours: every request is answered as Rover does.
+//! An emulated ArduPilot boat and ground stations other than ours: every request is answered as
+//! Rover does.
 
 #![expect(deprecated, reason = "ground stations send the older messages, too")]
 
@@ -6,23 +7,43 @@ use crate::station::Station;
 use gateway::mavlink::dialect::{
     COMMAND_LONG_DATA, FILE_TRANSFER_PROTOCOL_DATA, LOG_REQUEST_DATA_DATA, LOG_REQUEST_LIST_DATA,
     MISSION_CLEAR_ALL_DATA, MISSION_COUNT_DATA, MISSION_ITEM_INT_DATA, MISSION_REQUEST_INT_DATA,
-    MISSION_REQUEST_LIST_DATA, MISSION_SET_CURRENT_DATA, MavCmd, MavFrame, MavMessage, MavMissionResult,
-    MavMissionType, PARAM_REQUEST_READ_DATA, PARAM_SET_DATA, PARAM_VALUE_DATA, PING_DATA, PLAY_TUNE_DATA,
-    TIMESYNC_DATA,
+    MISSION_REQUEST_LIST_DATA, MISSION_SET_CURRENT_DATA, MavCmd, MavFrame, MavMessage,
+    MavMissionResult, MavMissionType, PARAM_REQUEST_READ_DATA, PARAM_SET_DATA, PARAM_VALUE_DATA,
+    PING_DATA, PLAY_TUNE_DATA, TIMESYNC_DATA,
 };
 use messages::Order;
 
-const TYPES: [MavMissionType; 2] = [MavMissionType::MAV_MISSION_TYPE_FENCE, MavMissionType::MAV_MISSION_TYPE_RALLY];
+const TYPES: [MavMissionType; 2] = [
+    MavMissionType::MAV_MISSION_TYPE_FENCE,
+    MavMissionType::MAV_MISSION_TYPE_RALLY,
+];
 
 #[test]
 fn fences_and_rally_points_are_refused_and_leave_the_mission_as_it_is() {
     let mut station = Station::new();
-    assert_eq!(station.upload(4, MavMissionType::MAV_MISSION_TYPE_MISSION), MavMissionResult::MAV_MISSION_ACCEPTED);
+    assert_eq!(
+        station.upload(4, MavMissionType::MAV_MISSION_TYPE_MISSION),
+        MavMissionResult::MAV_MISSION_ACCEPTED
+    );
     for mission_type in TYPES {
-        assert_eq!(station.upload(3, mission_type), MavMissionResult::MAV_MISSION_UNSUPPORTED);
-        let clear = MISSION_CLEAR_ALL_DATA { target_system: 1, target_component: 1, mission_type };
-        let list = MISSION_REQUEST_LIST_DATA { target_system: 1, target_component: 1, mission_type };
-        for message in [MavMessage::MISSION_CLEAR_ALL(clear), MavMessage::MISSION_REQUEST_LIST(list)] {
+        assert_eq!(
+            station.upload(3, mission_type),
+            MavMissionResult::MAV_MISSION_UNSUPPORTED
+        );
+        let clear = MISSION_CLEAR_ALL_DATA {
+            target_system: 1,
+            target_component: 1,
+            mission_type,
+        };
+        let list = MISSION_REQUEST_LIST_DATA {
+            target_system: 1,
+            target_component: 1,
+            mission_type,
+        };
+        for message in [
+            MavMessage::MISSION_CLEAR_ALL(clear),
+            MavMessage::MISSION_REQUEST_LIST(list),
+        ] {
             let heard = station.reply(&message);
             let is_refused = |heard: &MavMessage| {
                 matches!(heard, MavMessage::MISSION_ACK(ack)
@@ -37,8 +58,18 @@ fn fences_and_rally_points_are_refused_and_leave_the_mission_as_it_is() {
 #[test]
 fn a_lost_mission_item_is_asked_for_again_and_the_upload_is_given_up_in_the_end() {
     let mut station = Station::new();
-    let count = MISSION_COUNT_DATA { count: 2, target_system: 1, target_component: 1, ..Default::default() };
-    let asked = |heard: &[MavMessage]| heard.iter().filter(|message| Station::requested(message) == Some(0)).count();
+    let count = MISSION_COUNT_DATA {
+        count: 2,
+        target_system: 1,
+        target_component: 1,
+        ..Default::default()
+    };
+    let asked = |heard: &[MavMessage]| {
+        heard
+            .iter()
+            .filter(|message| Station::requested(message) == Some(0))
+            .count()
+    };
     assert_eq!(asked(&station.reply(&MavMessage::MISSION_COUNT(count))), 1);
     let heard = station.run(6.0);
     assert!((4..=6).contains(&asked(&heard)), "once a second: {heard:?}");
@@ -56,26 +87,67 @@ fn requests() -> Vec<Request> {
     let target_system = 1;
     let target_component = 1;
     let mission_type = MavMissionType::MAV_MISSION_TYPE_MISSION;
-    let read =
-        PARAM_REQUEST_READ_DATA { target_system, target_component, param_id: "ARMING_CHECK".into(), param_index: -1 };
-    let set = PARAM_SET_DATA { target_system, target_component, param_id: "NO_SUCH".into(), ..Default::default() };
-    let item = MISSION_REQUEST_INT_DATA { seq: 9, target_system, target_component, mission_type };
-    let current = MISSION_SET_CURRENT_DATA { seq: 9, target_system, target_component };
+    let read = PARAM_REQUEST_READ_DATA {
+        target_system,
+        target_component,
+        param_id: "ARMING_CHECK".into(),
+        param_index: -1,
+    };
+    let set = PARAM_SET_DATA {
+        target_system,
+        target_component,
+        param_id: "NO_SUCH".into(),
+        ..Default::default()
+    };
+    let item = MISSION_REQUEST_INT_DATA {
+        seq: 9,
+        target_system,
+        target_component,
+        mission_type,
+    };
+    let current = MISSION_SET_CURRENT_DATA {
+        seq: 9,
+        target_system,
+        target_component,
+    };
     let list = LOG_REQUEST_LIST_DATA::default();
     let data = LOG_REQUEST_DATA_DATA::default();
-    let list = LOG_REQUEST_LIST_DATA { target_system, target_component, ..list };
-    let data = LOG_REQUEST_DATA_DATA { target_system, target_component, ..data };
-    let mut ftp = FILE_TRANSFER_PROTOCOL_DATA { target_system, target_component, ..Default::default() };
+    let list = LOG_REQUEST_LIST_DATA {
+        target_system,
+        target_component,
+        ..list
+    };
+    let data = LOG_REQUEST_DATA_DATA {
+        target_system,
+        target_component,
+        ..data
+    };
+    let mut ftp = FILE_TRANSFER_PROTOCOL_DATA {
+        target_system,
+        target_component,
+        ..Default::default()
+    };
     ftp.payload[..4].copy_from_slice(&[7, 0, 1, 4]);
-    let tune = PLAY_TUNE_DATA { target_system, target_component, ..Default::default() };
-    let no_parameter = |reply: &M| matches!(reply, M::PARAM_ERROR(error) if error.param_id.to_str() != Ok(""));
+    let tune = PLAY_TUNE_DATA {
+        target_system,
+        target_component,
+        ..Default::default()
+    };
+    let no_parameter =
+        |reply: &M| matches!(reply, M::PARAM_ERROR(error) if error.param_id.to_str() != Ok(""));
     vec![
         (
-            M::TIMESYNC(TIMESYNC_DATA { ts1: 7, ..Default::default() }),
+            M::TIMESYNC(TIMESYNC_DATA {
+                ts1: 7,
+                ..Default::default()
+            }),
             |reply| matches!(reply, M::TIMESYNC(sync) if sync.ts1 == 7 && sync.tc1 > 0),
         ),
         (
-            M::PING(PING_DATA { seq: 5, ..Default::default() }),
+            M::PING(PING_DATA {
+                seq: 5,
+                ..Default::default()
+            }),
             |reply| matches!(reply, M::PING(ping) if (ping.seq, ping.target_system) == (5, 255)),
         ),
         (M::PARAM_REQUEST_READ(read), no_parameter),
@@ -84,9 +156,17 @@ fn requests() -> Vec<Request> {
             M::MISSION_REQUEST_INT(item),
             |reply| matches!(reply, M::MISSION_ACK(ack) if ack.mavtype != MavMissionResult::MAV_MISSION_ACCEPTED),
         ),
-        (M::MISSION_SET_CURRENT(current), |reply| matches!(reply, M::MISSION_CURRENT(_))),
-        (M::LOG_REQUEST_LIST(list), |reply| matches!(reply, M::LOG_ENTRY(entry) if entry.num_logs == 0)),
-        (M::LOG_REQUEST_DATA(data), |reply| matches!(reply, M::LOG_DATA(data) if data.count == 0)),
+        (M::MISSION_SET_CURRENT(current), |reply| {
+            matches!(reply, M::MISSION_CURRENT(_))
+        }),
+        (
+            M::LOG_REQUEST_LIST(list),
+            |reply| matches!(reply, M::LOG_ENTRY(entry) if entry.num_logs == 0),
+        ),
+        (
+            M::LOG_REQUEST_DATA(data),
+            |reply| matches!(reply, M::LOG_DATA(data) if data.count == 0),
+        ),
         // A negative reply to the request with the number 7, opcode 4.
         (
             M::FILE_TRANSFER_PROTOCOL(ftp),
@@ -115,10 +195,18 @@ const RESULTS: [(u16, [f32; 2], u8); 12] = [
     (42_424, [0.0; 2], 3),
     (42_428, [0.0; 2], 0),
     (MavCmd::MAV_CMD_NAV_TAKEOFF as u16, [0.0; 2], 3),
-    (MavCmd::MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES as u16, [1.0, 0.0], 0),
+    (
+        MavCmd::MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES as u16,
+        [1.0, 0.0],
+        0,
+    ),
     (MavCmd::MAV_CMD_GET_HOME_POSITION as u16, [0.0; 2], 4),
     (MavCmd::MAV_CMD_GET_MESSAGE_INTERVAL as u16, [33.0, 0.0], 0),
-    (MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL as u16, [60_000.0, 1e6], 4),
+    (
+        MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL as u16,
+        [60_000.0, 1e6],
+        4,
+    ),
     (MavCmd::MAV_CMD_RUN_PREARM_CHECKS as u16, [0.0; 2], 0),
     (MavCmd::MAV_CMD_DO_CHANGE_SPEED as u16, [1.0, 1.0], 4),
     (MavCmd::MAV_CMD_MISSION_START as u16, [0.0; 2], 4),
@@ -130,20 +218,39 @@ fn every_command_is_acknowledged_even_if_the_dialect_lacks_it() {
     for (command, params, result) in RESULTS {
         for is_long in [true, false] {
             let mut station = Station::new();
-            assert_eq!(station.command(is_long, command, params), Some(result), "{command} {is_long}");
+            assert_eq!(
+                station.command(is_long, command, params),
+                Some(result),
+                "{command} {is_long}"
+            );
         }
     }
     let mut station = Station::new();
     let command = MavCmd::MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES;
-    let ask = COMMAND_LONG_DATA { command, param1: 1.0, target_system: 1, ..Default::default() };
+    let ask = COMMAND_LONG_DATA {
+        command,
+        param1: 1.0,
+        target_system: 1,
+        ..Default::default()
+    };
     let heard = station.reply(&MavMessage::COMMAND_LONG(ask));
-    assert!(heard.iter().any(|message| matches!(message, MavMessage::AUTOPILOT_VERSION(_))), "{heard:?}");
+    assert!(
+        heard
+            .iter()
+            .any(|message| matches!(message, MavMessage::AUTOPILOT_VERSION(_))),
+        "{heard:?}"
+    );
 }
 
 #[test]
 fn a_mission_item_that_the_boat_would_not_carry_out_is_refused() {
     for (command, frame, x, result) in [
-        (MavCmd::MAV_CMD_NAV_LOITER_TURNS, MavFrame::MAV_FRAME_GLOBAL, 0, MavMissionResult::MAV_MISSION_UNSUPPORTED),
+        (
+            MavCmd::MAV_CMD_NAV_LOITER_TURNS,
+            MavFrame::MAV_FRAME_GLOBAL,
+            0,
+            MavMissionResult::MAV_MISSION_UNSUPPORTED,
+        ),
         (
             MavCmd::MAV_CMD_NAV_WAYPOINT,
             MavFrame::MAV_FRAME_LOCAL_NED,
@@ -158,13 +265,26 @@ fn a_mission_item_that_the_boat_would_not_carry_out_is_refused() {
         ),
     ] {
         let mut station = Station::new();
-        let count = MISSION_COUNT_DATA { count: 1, target_system: 1, target_component: 1, ..Default::default() };
+        let count = MISSION_COUNT_DATA {
+            count: 1,
+            target_system: 1,
+            target_component: 1,
+            ..Default::default()
+        };
         station.reply(&MavMessage::MISSION_COUNT(count));
-        let item =
-            MISSION_ITEM_INT_DATA { command, frame, x, target_system: 1, target_component: 1, ..Default::default() };
+        let item = MISSION_ITEM_INT_DATA {
+            command,
+            frame,
+            x,
+            target_system: 1,
+            target_component: 1,
+            ..Default::default()
+        };
         let heard = station.reply(&MavMessage::MISSION_ITEM_INT(item));
         assert!(
-            heard.iter().any(|reply| matches!(reply, MavMessage::MISSION_ACK(ack) if ack.mavtype == result)),
+            heard.iter().any(
+                |reply| matches!(reply, MavMessage::MISSION_ACK(ack) if ack.mavtype == result)
+            ),
             "{heard:?}"
         );
     }
@@ -175,12 +295,26 @@ fn a_mission_begins_at_the_item_that_was_set_and_continues_after_an_interruption
     let mut station = Station::new();
     station.upload(4, MavMissionType::MAV_MISSION_TYPE_MISSION);
     station.command(true, MavCmd::MAV_CMD_DO_SET_HOME as u16, [1.0, 0.0]);
-    assert_eq!(station.command(true, MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT as u16, [2.0, 0.0]), Some(0));
+    assert_eq!(
+        station.command(
+            true,
+            MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT as u16,
+            [2.0, 0.0]
+        ),
+        Some(0)
+    );
     for mode in [10.0, 5.0, 10.0] {
-        assert_eq!(station.command(true, MavCmd::MAV_CMD_DO_SET_MODE as u16, [1.0, mode]), Some(0));
+        assert_eq!(
+            station.command(true, MavCmd::MAV_CMD_DO_SET_MODE as u16, [1.0, mode]),
+            Some(0)
+        );
         let heard = station.run(2.0);
         let current = |message: &MavMessage| {
-            if let MavMessage::MISSION_CURRENT(current) = message { Some((current.seq, current.total)) } else { None }
+            if let MavMessage::MISSION_CURRENT(current) = message {
+                Some((current.seq, current.total))
+            } else {
+                None
+            }
         };
         assert_eq!(heard.iter().find_map(current), Some((2, 3)), "mode {mode}");
     }
@@ -197,17 +331,34 @@ fn a_new_system_number_takes_effect_after_the_reply_to_it() {
         ..Default::default()
     };
     let heard = station.reply(&MavMessage::PARAM_SET(set));
-    let is_set =
-        |message: &MavMessage| matches!(message, MavMessage::PARAM_VALUE(PARAM_VALUE_DATA { param_value: 9.0, .. }));
+    let is_set = |message: &MavMessage| {
+        matches!(
+            message,
+            MavMessage::PARAM_VALUE(PARAM_VALUE_DATA {
+                param_value: 9.0,
+                ..
+            })
+        )
+    };
     assert!(heard.iter().any(is_set), "{heard:?}");
     station.run(1.0);
     station.systems.clear();
     station.run(2.0);
-    assert!(!station.systems.is_empty() && station.systems.iter().all(|system| *system == 9), "{:?}", station.systems);
+    assert!(
+        !station.systems.is_empty() && station.systems.iter().all(|system| *system == 9),
+        "{:?}",
+        station.systems
+    );
     // Orders to the old number are for another boat.
-    assert_eq!(station.command(true, MavCmd::MAV_CMD_RUN_PREARM_CHECKS as u16, [0.0; 2]), None);
+    assert_eq!(
+        station.command(true, MavCmd::MAV_CMD_RUN_PREARM_CHECKS as u16, [0.0; 2]),
+        None
+    );
     station.target = 9;
-    assert_eq!(station.command(true, MavCmd::MAV_CMD_RUN_PREARM_CHECKS as u16, [0.0; 2]), Some(0));
+    assert_eq!(
+        station.command(true, MavCmd::MAV_CMD_RUN_PREARM_CHECKS as u16, [0.0; 2]),
+        Some(0)
+    );
 }
 
 #[test]

@@ -1,19 +1,25 @@
-//! An emulated ArduPilot boat in GUIDED: it follows what ground stations send as Rover does, or says that it does not.
+//! An emulated ArduPilot boat in GUIDED: it follows what ground stations send as Rover does, or
+//! says that it does not.
 
-#![expect(deprecated, reason = "ground stations send the older messages and frames, and Rover takes them")]
+#![expect(
+    deprecated,
+    reason = "ground stations send the older messages and frames, and Rover takes them"
+)]
 
 use crate::station::{Station, datum};
 use gateway::geodesy::LocalFrame;
 use gateway::mavlink::RoverMode;
 use gateway::mavlink::dialect::{
-    HEARTBEAT_DATA, MISSION_ITEM_DATA, MISSION_ITEM_INT_DATA, MavCmd, MavFrame, MavMessage, PARAM_SET_DATA,
-    PositionTargetTypemask, SET_POSITION_TARGET_GLOBAL_INT_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA,
+    HEARTBEAT_DATA, MISSION_ITEM_DATA, MISSION_ITEM_INT_DATA, MavCmd, MavFrame, MavMessage,
+    PARAM_SET_DATA, PositionTargetTypemask, SET_POSITION_TARGET_GLOBAL_INT_DATA,
+    SET_POSITION_TARGET_LOCAL_NED_DATA,
 };
 use primitives::angle::wrap_pi;
 use primitives::frame::Ned;
 use std::f64::consts::FRAC_PI_2;
 
-/// The part of a set-point that ground stations fill in: a position, a velocity, a heading, a rate of turn.
+/// The part of a set-point that ground stations fill in: a position, a velocity, a heading, a rate
+/// of turn.
 const POSITION: u16 = 0b1101_1111_1000;
 const VELOCITY: u16 = 0b1101_1100_0111;
 const HEADING: u16 = 0b1001_1111_1111;
@@ -25,25 +31,47 @@ fn start() -> Ned {
 }
 
 fn goal() -> Ned {
-    start() + Ned { north: 20.0, east: 10.0 }
+    start()
+        + Ned {
+            north: 20.0,
+            east: 10.0,
+        }
 }
 
 /// A boat in GUIDED, armed, which points east.
 fn guided() -> Station {
     let mut station = Station::new();
     station.boat.psi_rad = FRAC_PI_2;
-    assert_eq!(station.command(true, MavCmd::MAV_CMD_DO_SET_MODE as u16, [1.0, 15.0]), Some(0));
-    assert_eq!(station.command(true, MavCmd::MAV_CMD_COMPONENT_ARM_DISARM as u16, [1.0, 0.0]), Some(0));
+    assert_eq!(
+        station.command(true, MavCmd::MAV_CMD_DO_SET_MODE as u16, [1.0, 15.0]),
+        Some(0)
+    );
+    assert_eq!(
+        station.command(
+            true,
+            MavCmd::MAV_CMD_COMPONENT_ARM_DISARM as u16,
+            [1.0, 0.0]
+        ),
+        Some(0)
+    );
     assert_eq!(station.ardupilot.mode(), (RoverMode::Guided, true));
     station
 }
 
 fn e7(place: Ned) -> (i32, i32) {
     let at = LocalFrame::new(datum()).lat_lon(place);
-    ((1e7 * at.lat_deg).round() as i32, (1e7 * at.lon_deg).round() as i32)
+    (
+        (1e7 * at.lat_deg).round() as i32,
+        (1e7 * at.lon_deg).round() as i32,
+    )
 }
 
-fn local(frame: MavFrame, mask: u16, [x, y]: [f32; 2], yaw: f32) -> SET_POSITION_TARGET_LOCAL_NED_DATA {
+fn local(
+    frame: MavFrame,
+    mask: u16,
+    [x, y]: [f32; 2],
+    yaw: f32,
+) -> SET_POSITION_TARGET_LOCAL_NED_DATA {
     let type_mask = PositionTargetTypemask::from_bits_retain(mask);
     SET_POSITION_TARGET_LOCAL_NED_DATA {
         x: 10.0 * x,
@@ -89,25 +117,48 @@ fn positions_in_every_frame_that_rover_takes_are_reached_and_kept() {
         MavFrame::MAV_FRAME_GLOBAL_TERRAIN_ALT_INT,
     ] {
         let type_mask = PositionTargetTypemask::from_bits_retain(POSITION);
-        let target =
-            SET_POSITION_TARGET_GLOBAL_INT_DATA { lat_int, lon_int, type_mask, coordinate_frame, ..Default::default() };
+        let target = SET_POSITION_TARGET_GLOBAL_INT_DATA {
+            lat_int,
+            lon_int,
+            type_mask,
+            coordinate_frame,
+            ..Default::default()
+        };
         messages.push(MavMessage::SET_POSITION_TARGET_GLOBAL_INT(target));
     }
     // What MAVProxy's `guided` and dronekit's `simple_goto` send.
     let command = MavCmd::MAV_CMD_NAV_WAYPOINT;
     let current = 2;
     let frame = MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT;
-    let item = MISSION_ITEM_INT_DATA { x: lat_int, y: lon_int, command, current, frame, ..Default::default() };
+    let item = MISSION_ITEM_INT_DATA {
+        x: lat_int,
+        y: lon_int,
+        command,
+        current,
+        frame,
+        ..Default::default()
+    };
     messages.push(MavMessage::MISSION_ITEM_INT(item));
     let x = 1e-7 * lat_int as f32;
     let y = 1e-7 * lon_int as f32;
-    messages.push(MavMessage::MISSION_ITEM(MISSION_ITEM_DATA { x, y, command, current, frame, ..Default::default() }));
+    messages.push(MavMessage::MISSION_ITEM(MISSION_ITEM_DATA {
+        x,
+        y,
+        command,
+        current,
+        frame,
+        ..Default::default()
+    }));
     for message in &messages {
         // Once is enough, and it is shown.
         let mut station = guided();
         station.send(message);
         let heard = station.run(60.0);
-        assert!(station.boat.at.distance(goal()) < 5.0, "{message:?}: {:?}", station.boat);
+        assert!(
+            station.boat.at.distance(goal()) < 5.0,
+            "{message:?}: {:?}",
+            station.boat
+        );
         let is_shown = |message: &MavMessage| {
             matches!(message, MavMessage::POSITION_TARGET_GLOBAL_INT(shown)
             if shown.lat_int.abs_diff(lat_int) < 200 && shown.lon_int.abs_diff(lon_int) < 200)
@@ -119,24 +170,75 @@ fn positions_in_every_frame_that_rover_takes_are_reached_and_kept() {
 #[test]
 fn velocities_headings_and_rates_of_turn_are_followed_in_every_frame_that_rover_takes() {
     for (frame, mask, velocity, yaw, heading_rad, speed_m_s) in [
-        (MavFrame::MAV_FRAME_LOCAL_NED, VELOCITY, [-1.0, 0.0], 0.0, std::f64::consts::PI, 1.0),
-        (MavFrame::MAV_FRAME_LOCAL_OFFSET_NED, VELOCITY, [0.0, -1.0], 0.0, -FRAC_PI_2, 1.0),
-        (MavFrame::MAV_FRAME_LOCAL_NED, VELOCITY, [0.0, 9.0], 0.0, FRAC_PI_2, 2.0),
-        (MavFrame::MAV_FRAME_LOCAL_NED, HEADING, [0.0, 1.0], -0.5, -0.5, 0.0),
+        (
+            MavFrame::MAV_FRAME_LOCAL_NED,
+            VELOCITY,
+            [-1.0, 0.0],
+            0.0,
+            std::f64::consts::PI,
+            1.0,
+        ),
+        (
+            MavFrame::MAV_FRAME_LOCAL_OFFSET_NED,
+            VELOCITY,
+            [0.0, -1.0],
+            0.0,
+            -FRAC_PI_2,
+            1.0,
+        ),
+        (
+            MavFrame::MAV_FRAME_LOCAL_NED,
+            VELOCITY,
+            [0.0, 9.0],
+            0.0,
+            FRAC_PI_2,
+            2.0,
+        ),
+        (
+            MavFrame::MAV_FRAME_LOCAL_NED,
+            HEADING,
+            [0.0, 1.0],
+            -0.5,
+            -0.5,
+            0.0,
+        ),
     ] {
         let message = MavMessage::SET_POSITION_TARGET_LOCAL_NED(local(frame, mask, velocity, yaw));
         let station = after(guided(), &message, 20);
         let off_rad = wrap_pi(station.boat.psi_rad - heading_rad).abs();
-        assert!(off_rad < 0.1 && (station.boat.speed_m_s - speed_m_s).abs() < 0.1, "{message:?}: {:?}", station.boat);
+        assert!(
+            off_rad < 0.1 && (station.boat.speed_m_s - speed_m_s).abs() < 0.1,
+            "{message:?}: {:?}",
+            station.boat
+        );
     }
-    for frame in [MavFrame::MAV_FRAME_BODY_NED, MavFrame::MAV_FRAME_BODY_OFFSET_NED] {
-        let message = MavMessage::SET_POSITION_TARGET_LOCAL_NED(local(frame, VELOCITY, [1.0, 0.0], 0.0));
-        let moved = after(guided(), &message, 10).boat.at.distance(start() + Ned { north: 0.0, east: 8.0 });
+    for frame in [
+        MavFrame::MAV_FRAME_BODY_NED,
+        MavFrame::MAV_FRAME_BODY_OFFSET_NED,
+    ] {
+        let message =
+            MavMessage::SET_POSITION_TARGET_LOCAL_NED(local(frame, VELOCITY, [1.0, 0.0], 0.0));
+        let moved = after(guided(), &message, 10).boat.at.distance(
+            start()
+                + Ned {
+                    north: 0.0,
+                    east: 8.0,
+                },
+        );
         assert!(moved < 2.0, "{frame:?}: {moved} m off");
     }
-    let message = MavMessage::SET_POSITION_TARGET_LOCAL_NED(local(MavFrame::MAV_FRAME_LOCAL_NED, TURN, [0.0; 2], 0.2));
+    let message = MavMessage::SET_POSITION_TARGET_LOCAL_NED(local(
+        MavFrame::MAV_FRAME_LOCAL_NED,
+        TURN,
+        [0.0; 2],
+        0.2,
+    ));
     let station = after(guided(), &message, 5);
-    assert!((station.boat.turn_rad_s - 0.2).abs() < 0.02 && station.boat.speed_m_s.abs() < 0.01, "{:?}", station.boat);
+    assert!(
+        (station.boat.turn_rad_s - 0.2).abs() < 0.02 && station.boat.speed_m_s.abs() < 0.01,
+        "{:?}",
+        station.boat
+    );
 }
 
 #[test]
@@ -145,12 +247,26 @@ fn a_set_point_that_rover_ignores_is_reported_and_moves_nothing() {
     for (frame, mask, words) in [
         (MavFrame::MAV_FRAME_BODY_FRD, VELOCITY, "its frame"),
         (MavFrame::MAV_FRAME_GLOBAL, VELOCITY, "its frame"),
-        (MavFrame::MAV_FRAME_LOCAL_NED, VELOCITY & !0b1_1100_0000, "ACC_IGNORE"),
-        (MavFrame::MAV_FRAME_LOCAL_NED, VELOCITY & !0b1100_0000_0000, "yaw and yaw rate"),
-        (MavFrame::MAV_FRAME_LOCAL_NED, VELOCITY | POSITION, "its mask"),
+        (
+            MavFrame::MAV_FRAME_LOCAL_NED,
+            VELOCITY & !0b1_1100_0000,
+            "ACC_IGNORE",
+        ),
+        (
+            MavFrame::MAV_FRAME_LOCAL_NED,
+            VELOCITY & !0b1100_0000_0000,
+            "yaw and yaw rate",
+        ),
+        (
+            MavFrame::MAV_FRAME_LOCAL_NED,
+            VELOCITY | POSITION,
+            "its mask",
+        ),
     ] {
         let mut station = guided();
-        let heard = station.reply(&MavMessage::SET_POSITION_TARGET_LOCAL_NED(local(frame, mask, north, 0.0)));
+        let heard = station.reply(&MavMessage::SET_POSITION_TARGET_LOCAL_NED(local(
+            frame, mask, north, 0.0,
+        )));
         let is_said = |message: &MavMessage| matches!(message, MavMessage::STATUSTEXT(text) if text.text.to_str().is_ok_and(|text| text.contains(words)));
         assert!(heard.iter().any(is_said), "{frame:?} {mask:b}: {heard:?}");
         assert!(station.boat.speed_m_s == 0.0);
@@ -159,18 +275,38 @@ fn a_set_point_that_rover_ignores_is_reported_and_moves_nothing() {
 
 #[test]
 fn a_boat_whose_set_points_stop_says_so_and_keeps_its_station() {
-    let message =
-        MavMessage::SET_POSITION_TARGET_LOCAL_NED(local(MavFrame::MAV_FRAME_LOCAL_NED, VELOCITY, [1.0, 0.0], 0.0));
+    let message = MavMessage::SET_POSITION_TARGET_LOCAL_NED(local(
+        MavFrame::MAV_FRAME_LOCAL_NED,
+        VELOCITY,
+        [1.0, 0.0],
+        0.0,
+    ));
     let mut station = after(guided(), &message, 10);
     let heard = station.run(4.0);
     let is_said = |message: &MavMessage| matches!(message, MavMessage::STATUSTEXT(text) if text.text.to_str() == Ok("target not received last 3.0 secs, stopping"));
-    assert_eq!(heard.iter().filter(|message| is_said(message)).count(), 1, "{heard:?}");
+    assert_eq!(
+        heard.iter().filter(|message| is_said(message)).count(),
+        1,
+        "{heard:?}"
+    );
     let shown = station.run(20.0);
-    assert!(shown.iter().any(|message| matches!(message, MavMessage::POSITION_TARGET_GLOBAL_INT(_))));
+    assert!(
+        shown
+            .iter()
+            .any(|message| matches!(message, MavMessage::POSITION_TARGET_GLOBAL_INT(_)))
+    );
     let place = station.boat.at;
-    station.boat.at = place + Ned { north: 10.0, east: 0.0 };
+    station.boat.at = place
+        + Ned {
+            north: 10.0,
+            east: 0.0,
+        };
     station.run(60.0);
-    assert!(station.boat.at.distance(place) < 6.0, "{place:?} {:?}", station.boat);
+    assert!(
+        station.boat.at.distance(place) < 6.0,
+        "{place:?} {:?}",
+        station.boat
+    );
 }
 
 #[test]
@@ -178,33 +314,86 @@ fn commands_of_ground_stations_send_the_boat_to_a_place_or_on_a_heading_at_a_spe
     let reposition = MavCmd::MAV_CMD_DO_REPOSITION as u16;
     for is_long in [true, false] {
         let mut station = guided();
-        assert_eq!(station.command(true, MavCmd::MAV_CMD_DO_CHANGE_SPEED as u16, [1.0, 0.5]), Some(4), "on no way");
-        assert_eq!(station.command_at(is_long, reposition, [-1.0, 0.0, 0.0, 0.0], (0, 0)), Some(2));
-        assert_eq!(station.command_at(is_long, reposition, [-1.0, 0.0, 0.0, 0.0], e7(goal())), Some(0));
-        assert_eq!(station.command(true, MavCmd::MAV_CMD_DO_CHANGE_SPEED as u16, [1.0, 0.5]), Some(0));
-        assert_eq!(station.command(true, MavCmd::MAV_CMD_DO_CHANGE_SPEED as u16, [2.0, 0.5]), Some(2), "a climb");
+        assert_eq!(
+            station.command(true, MavCmd::MAV_CMD_DO_CHANGE_SPEED as u16, [1.0, 0.5]),
+            Some(4),
+            "on no way"
+        );
+        assert_eq!(
+            station.command_at(is_long, reposition, [-1.0, 0.0, 0.0, 0.0], (0, 0)),
+            Some(2)
+        );
+        assert_eq!(
+            station.command_at(is_long, reposition, [-1.0, 0.0, 0.0, 0.0], e7(goal())),
+            Some(0)
+        );
+        assert_eq!(
+            station.command(true, MavCmd::MAV_CMD_DO_CHANGE_SPEED as u16, [1.0, 0.5]),
+            Some(0)
+        );
+        assert_eq!(
+            station.command(true, MavCmd::MAV_CMD_DO_CHANGE_SPEED as u16, [2.0, 0.5]),
+            Some(2),
+            "a climb"
+        );
         station.run(12.0);
-        assert!((station.boat.speed_m_s - 0.5).abs() < 0.1, "{:?}", station.boat);
+        assert!(
+            (station.boat.speed_m_s - 0.5).abs() < 0.1,
+            "{:?}",
+            station.boat
+        );
         station.run(60.0);
         assert!(station.boat.at.distance(goal()) < 5.0, "{:?}", station.boat);
-        assert_eq!(station.command(true, MavCmd::MAV_CMD_DO_SET_MODE as u16, [1.0, 5.0]), Some(0));
-        assert_eq!(station.command_at(is_long, reposition, [-1.0, 0.0, 0.0, 0.0], e7(start())), Some(2));
-        assert_eq!(station.command_at(is_long, reposition, [-1.0, 1.0, 0.0, 0.0], e7(start())), Some(0));
-        assert_eq!(station.ardupilot.mode(), (RoverMode::Guided, true), "with the flag to change the mode");
+        assert_eq!(
+            station.command(true, MavCmd::MAV_CMD_DO_SET_MODE as u16, [1.0, 5.0]),
+            Some(0)
+        );
+        assert_eq!(
+            station.command_at(is_long, reposition, [-1.0, 0.0, 0.0, 0.0], e7(start())),
+            Some(2)
+        );
+        assert_eq!(
+            station.command_at(is_long, reposition, [-1.0, 1.0, 0.0, 0.0], e7(start())),
+            Some(0)
+        );
+        assert_eq!(
+            station.ardupilot.mode(),
+            (RoverMode::Guided, true),
+            "with the flag to change the mode"
+        );
     }
     let yaw_speed = MavCmd::MAV_CMD_NAV_SET_YAW_SPEED as u16;
-    for (params, heading_rad) in [([180.0, 1.0, 0.0, 0.0], -std::f64::consts::PI), ([-90.0, 1.0, 1.0, 0.0], 0.0)] {
+    for (params, heading_rad) in [
+        ([180.0, 1.0, 0.0, 0.0], -std::f64::consts::PI),
+        ([-90.0, 1.0, 1.0, 0.0], 0.0),
+    ] {
         let mut station = guided();
-        assert_eq!(station.command_at(false, yaw_speed, params, (0, 0)), Some(0));
+        assert_eq!(
+            station.command_at(false, yaw_speed, params, (0, 0)),
+            Some(0)
+        );
         station.run(2.0);
         let turned = wrap_pi(station.boat.psi_rad - FRAC_PI_2);
-        assert!(turned * wrap_pi(heading_rad - FRAC_PI_2) > 0.0 && station.boat.speed_m_s > 0.5, "{:?}", station.boat);
+        assert!(
+            turned * wrap_pi(heading_rad - FRAC_PI_2) > 0.0 && station.boat.speed_m_s > 0.5,
+            "{:?}",
+            station.boat
+        );
     }
-    assert_eq!(Station::new().command_at(false, yaw_speed, [0.0; 4], (0, 0)), Some(4), "in HOLD");
+    assert_eq!(
+        Station::new().command_at(false, yaw_speed, [0.0; 4], (0, 0)),
+        Some(4),
+        "in HOLD"
+    );
 }
 
 fn set(station: &mut Station, name: &str, param_value: f32) {
-    let set = PARAM_SET_DATA { param_value, target_system: 1, param_id: name.into(), ..Default::default() };
+    let set = PARAM_SET_DATA {
+        param_value,
+        target_system: 1,
+        param_id: name.into(),
+        ..Default::default()
+    };
     station.send(&MavMessage::PARAM_SET(set));
 }
 
@@ -222,12 +411,18 @@ fn a_lost_ground_station_stops_the_boat_after_the_time_that_rover_takes() {
         let mut station = guided();
         set(&mut station, "FS_GCS_ENABLE", 1.0);
         set(&mut station, "FS_ACTION", action);
-        gcs_timeout_s.into_iter().for_each(|value| set(&mut station, "FS_GCS_TIMEOUT", value));
+        gcs_timeout_s
+            .into_iter()
+            .for_each(|value| set(&mut station, "FS_GCS_TIMEOUT", value));
         let beat = MavMessage::HEARTBEAT(HEARTBEAT_DATA::default());
         (0..5).for_each(|_| drop(station.reply(&beat)));
         station.send(&beat);
         station.run(after_s - 0.2);
-        assert_eq!(station.ardupilot.mode(), (RoverMode::Guided, true), "{action}");
+        assert_eq!(
+            station.ardupilot.mode(),
+            (RoverMode::Guided, true),
+            "{action}"
+        );
         station.run(0.4);
         assert_eq!(station.ardupilot.mode(), mode, "{action}");
         // Who takes the boat then keeps it, although the station is still lost.

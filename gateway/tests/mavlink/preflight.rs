@@ -4,7 +4,9 @@ use crate::boat::Boat;
 use crate::rig::plan;
 use gateway::emulator::{ArduPilot, FrontSeat, SYSTEM};
 use gateway::geofence::GeofenceArea;
-use gateway::mavlink::dialect::{GLOBAL_POSITION_INT_DATA, HEARTBEAT_DATA, MavAutopilot, MavCmd, MavMessage, MavType};
+use gateway::mavlink::dialect::{
+    GLOBAL_POSITION_INT_DATA, HEARTBEAT_DATA, MavAutopilot, MavCmd, MavMessage, MavType,
+};
 use gateway::mavlink::{AUTOPILOT, Framer, RoverMode, Writer};
 use gateway::preflight::{Check, Verdict, Water, boat_checks};
 use gateway::sensor_check::{HostTime, SensorCheck};
@@ -28,14 +30,29 @@ fn checked(place: Ned, change: impl Fn(&mut ArduPilot)) -> (SensorCheck, Vec<Che
         let mut from_boat = vec![];
         seen.write_questions(now, &mut to_boat);
         ardupilot.receive(now, &to_boat);
-        let boat = Boat { at: place, psi_rad: 1.0, ..Boat::default() };
+        let boat = Boat {
+            at: place,
+            psi_rad: 1.0,
+            ..Boat::default()
+        };
         ardupilot.observe(now, &boat.measured(now, boat.at));
         ardupilot.telemetry(now, &mut from_boat);
         seen.receive(now, &from_boat);
     }
-    let host = HostTime { now, utc_ns: BEGAN_UTC_NS + 29_900_000_000 };
+    let host = HostTime {
+        now,
+        utc_ns: BEGAN_UTC_NS + 29_900_000_000,
+    };
     let area = GeofenceArea::new(&site.field, &plan.gateway.geofence);
-    let checks = boat_checks(&seen, host, &plan.gateway, Some(&Water { field: site.field.clone(), area }));
+    let checks = boat_checks(
+        &seen,
+        host,
+        &plan.gateway,
+        Some(&Water {
+            field: site.field.clone(),
+            area,
+        }),
+    );
     (seen, checks)
 }
 
@@ -54,9 +71,12 @@ fn a_sound_boat_passes_and_each_thing_that_is_wrong_fails_its_own_check() {
     let (seen, checks) = checked(inside, |_| {});
     assert_eq!(wrong(&checks), [pumps], "{checks:?}");
     assert!(
-        seen.findings(HostTime { now: SimTime::from_s(29.9), utc_ns: BEGAN_UTC_NS })
-            .iter()
-            .any(|line| line == "heading: 57.3 true")
+        seen.findings(HostTime {
+            now: SimTime::from_s(29.9),
+            utc_ns: BEGAN_UTC_NS
+        })
+        .iter()
+        .any(|line| line == "heading: 57.3 true")
     );
     let failed = |name| vec![(name, Verdict::Failed), pumps];
     let (_, checks) = checked(Ned::from_xy(80.0, 400.0), |_| {});
@@ -64,9 +84,18 @@ fn a_sound_boat_passes_and_each_thing_that_is_wrong_fails_its_own_check() {
     let (_, checks) = checked(inside, |boat| boat.set_volts(12.0));
     assert_eq!(wrong(&checks), failed("battery"), "{checks:?}");
     let (seen, checks) = checked(inside, |boat| boat.set_mode(RoverMode::Manual));
-    let control = checks.iter().find(|check| check.name == "control").expect("it is checked");
-    assert!(control.verdict == Verdict::Failed && control.found.contains("commanded by Rc"), "{control:?}");
-    assert_eq!(seen.missing(), ["control: Rc has control, and the mode is neither GUIDED nor HOLD"]);
+    let control = checks
+        .iter()
+        .find(|check| check.name == "control")
+        .expect("it is checked");
+    assert!(
+        control.verdict == Verdict::Failed && control.found.contains("commanded by Rc"),
+        "{control:?}"
+    );
+    assert_eq!(
+        seen.missing(),
+        ["control: Rc has control, and the mode is neither GUIDED nor HOLD"]
+    );
 }
 
 #[test]
@@ -93,13 +122,24 @@ fn it_asks_for_what_it_needs_and_says_what_does_not_come() {
     let is_request = |message: &MavMessage| match message {
         MavMessage::HEARTBEAT(_) => true,
         MavMessage::COMMAND_LONG(command) => {
-            matches!(command.command, MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL | MavCmd::MAV_CMD_REQUEST_MESSAGE)
+            matches!(
+                command.command,
+                MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL | MavCmd::MAV_CMD_REQUEST_MESSAGE
+            )
         }
         _ => false,
     };
-    assert!(wanted.len() > 30 && wanted.iter().all(is_request), "{wanted:?}");
+    assert!(
+        wanted.len() > 30 && wanted.iter().all(is_request),
+        "{wanted:?}"
+    );
     let missing = seen.missing().join("\n");
-    for name in ["GLOBAL_POSITION_INT", "GPS_RAW_INT", "ATTITUDE", "SYS_STATUS"] {
+    for name in [
+        "GLOBAL_POSITION_INT",
+        "GPS_RAW_INT",
+        "ATTITUDE",
+        "SYS_STATUS",
+    ] {
         assert!(missing.contains(name), "{missing}");
     }
     assert!(!missing.contains("HEARTBEAT"), "{missing}");
@@ -114,18 +154,32 @@ fn a_vehicle_that_is_no_boat_is_named_and_a_heading_that_is_unknown_is_missing()
         autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
         ..HEARTBEAT_DATA::default()
     };
-    let boat = HEARTBEAT_DATA { mavtype: MavType::MAV_TYPE_SURFACE_BOAT, ..copter.clone() };
+    let boat = HEARTBEAT_DATA {
+        mavtype: MavType::MAV_TYPE_SURFACE_BOAT,
+        ..copter.clone()
+    };
     let mut send = |seen: &mut SensorCheck, heartbeat, s: u32| {
         let mut bytes = vec![];
         writer.write(&MavMessage::HEARTBEAT(heartbeat), &mut bytes);
-        let position =
-            GLOBAL_POSITION_INT_DATA { time_boot_ms: s, lat: 1, lon: 1, hdg: u16::MAX, ..Default::default() };
+        let position = GLOBAL_POSITION_INT_DATA {
+            time_boot_ms: s,
+            lat: 1,
+            lon: 1,
+            hdg: u16::MAX,
+            ..Default::default()
+        };
         writer.write(&MavMessage::GLOBAL_POSITION_INT(position), &mut bytes);
         seen.receive(SimTime::from_s(f64::from(s)), &bytes);
     };
     (0..9).for_each(|s| send(&mut seen, copter.clone(), s));
-    assert_eq!(seen.missing(), ["a boat: all messages are from other systems (a QUADROTOR is system 1)"]);
+    assert_eq!(
+        seen.missing(),
+        ["a boat: all messages are from other systems (a QUADROTOR is system 1)"]
+    );
     (10..20).for_each(|s| send(&mut seen, boat.clone(), s));
     let missing = seen.missing().join("\n");
-    assert!(missing.contains("a heading: GLOBAL_POSITION_INT comes without it"), "{missing}");
+    assert!(
+        missing.contains("a heading: GLOBAL_POSITION_INT comes without it"),
+        "{missing}"
+    );
 }

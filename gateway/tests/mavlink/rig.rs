@@ -38,8 +38,10 @@ pub(crate) struct Rig {
 
 pub(crate) fn plan() -> Plan {
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios");
-    let game = scenario::load(&scenarios.join("games/pav01_vs_pav01.toml")).unwrap_or_else(|e| panic!("{e}"));
-    let gateway = scenario::load_file::<gateway::config::Gateway>(&scenarios.join("gateways/blueboat.toml"));
+    let game = scenario::load(&scenarios.join("games/pav01_vs_pav01.toml"))
+        .unwrap_or_else(|e| panic!("{e}"));
+    let gateway =
+        scenario::load_file::<gateway::config::Gateway>(&scenarios.join("gateways/blueboat.toml"));
     Plan {
         vehicle: "blue_one".to_owned(),
         gateway: gateway.unwrap_or_else(|e| panic!("{e}")),
@@ -58,11 +60,20 @@ pub(crate) fn plan() -> Plan {
 
 impl Rig {
     pub(crate) fn of(plan: Plan) -> Rig {
-        let datum = plan.site.as_ref().expect("the rig has one").field.plan.datum;
+        let datum = plan
+            .site
+            .as_ref()
+            .expect("the rig has one")
+            .field
+            .plan
+            .datum;
         let mut rig = Rig {
             now: SimTime::ZERO,
             steps: 0,
-            boat: Boat { at: Ned::from_xy(60.0, 40.0), ..Boat::default() },
+            boat: Boat {
+                at: Ned::from_xy(60.0, 40.0),
+                ..Boat::default()
+            },
             ardupilot: ArduPilot::new(datum, Some(1.0)),
             bridge: Bridge::new(plan),
             order: None,
@@ -75,7 +86,8 @@ impl Rig {
             refused: None,
             remarks: vec![],
         };
-        rig.ardupilot.set_clock(SimTime::ZERO, 1_795_000_000_000_000_000);
+        rig.ardupilot
+            .set_clock(SimTime::ZERO, 1_795_000_000_000_000_000);
         rig.give(&Input::LinkUp);
         rig
     }
@@ -90,12 +102,23 @@ impl Rig {
     }
 
     pub(crate) fn gets_under_way(mut self) -> Rig {
-        self.order = Some(Order::Steer { heading_rad: std::f64::consts::FRAC_PI_2, speed_m_s: 1.5 });
+        self.order = Some(Order::Steer {
+            heading_rad: std::f64::consts::FRAC_PI_2,
+            speed_m_s: 1.5,
+        });
         self.run(2.0);
         self.operator(OperatorCommand::Arm);
-        assert_eq!((self.refused.take(), self.state().as_str()), (None, "armed"));
+        assert_eq!(
+            (self.refused.take(), self.state().as_str()),
+            (None, "armed")
+        );
         self.run(9.0);
-        assert!(self.boat.speed_m_s > 1.2 && self.state() == "armed", "{:?} {:?}", self.boat, self.events);
+        assert!(
+            self.boat.speed_m_s > 1.2 && self.state() == "armed",
+            "{:?} {:?}",
+            self.boat,
+            self.events
+        );
         self
     }
 
@@ -118,7 +141,9 @@ impl Rig {
         self.refused = out.refused.or(self.refused.take());
         let now = self.now;
         let sent = &mut self.sent;
-        self.sent_framer.push(&out.bytes, &mut |received| sent.push((now, received.message)));
+        self.sent_framer.push(&out.bytes, &mut |received| {
+            sent.push((now, received.message))
+        });
         if self.open.0 && !out.bytes.is_empty() {
             self.ardupilot.receive(self.now, &self.altered(&out.bytes));
             let mut answers = Vec::new();
@@ -131,7 +156,9 @@ impl Rig {
 
     /// Gives an input to the second gateway, which the boat hears too.
     pub(crate) fn put_second(&mut self, input: &Input) {
-        let Some(second) = &mut self.second else { return };
+        let Some(second) = &mut self.second else {
+            return;
+        };
         let mut out = Output::default();
         second.process(self.now, input, &mut out);
         assert_eq!(out.refused, None);
@@ -142,7 +169,9 @@ impl Rig {
         let mut altered = Vec::new();
         Framer::new().push(bytes, &mut |received| {
             let mut writer = Writer::new(received.system, received.component);
-            (self.alter)(received.message).iter().for_each(|message| writer.write(message, &mut altered));
+            (self.alter)(received.message)
+                .iter()
+                .for_each(|message| writer.write(message, &mut altered));
         });
         altered
     }
@@ -156,7 +185,13 @@ impl Rig {
         let start = self.now;
         while !is_so(self) {
             let passed_s = (self.now - start).as_s();
-            assert!(passed_s < limit_s, "not so: {}, {:?}, {:?}", self.state(), self.mode(), self.events);
+            assert!(
+                passed_s < limit_s,
+                "not so: {}, {:?}, {:?}",
+                self.state(),
+                self.mode(),
+                self.events
+            );
             self.step();
         }
         (self.now - start).as_s()
@@ -168,7 +203,8 @@ impl Rig {
         let order = self.ardupilot.order(self.now);
         self.boat.step(order);
         if self.steps.is_multiple_of(TELEMETRY_STEPS) {
-            self.ardupilot.observe(self.now, &self.boat.measured(self.now, self.boat.at));
+            self.ardupilot
+                .observe(self.now, &self.boat.measured(self.now, self.boat.at));
             let mut bytes = Vec::new();
             self.ardupilot.telemetry(self.now, &mut bytes);
             if self.open.1 && !bytes.is_empty() {

@@ -4,8 +4,8 @@ use crate::boat::{Boat, STEP_S};
 use crate::rig::plan;
 use gateway::emulator::{ArduPilot, FrontSeat};
 use gateway::mavlink::dialect::{
-    COMMAND_ACK_DATA, MISSION_COUNT_DATA, MISSION_ITEM_INT_DATA, MISSION_REQUEST_LIST_DATA, MavCmd, MavFrame,
-    MavMessage, MavMissionResult, MavMissionType,
+    COMMAND_ACK_DATA, MISSION_COUNT_DATA, MISSION_ITEM_INT_DATA, MISSION_REQUEST_LIST_DATA, MavCmd,
+    MavFrame, MavMessage, MavMissionResult, MavMissionType,
 };
 use gateway::mavlink::{Frame, Framer, Writer};
 use mavlink::MessageData;
@@ -41,7 +41,10 @@ impl Station {
         let mut station = Station {
             now: SimTime::ZERO,
             steps: 0,
-            boat: Boat { at: Ned::from_xy(60.0, 40.0), ..Boat::default() },
+            boat: Boat {
+                at: Ned::from_xy(60.0, 40.0),
+                ..Boat::default()
+            },
             ardupilot: ArduPilot::new(datum(), None),
             order: Order::Hold,
             writer: Writer::new(255, 190),
@@ -50,7 +53,9 @@ impl Station {
             systems: vec![],
             acks: vec![],
         };
-        station.ardupilot.set_clock(SimTime::ZERO, 1_795_000_000_000_000_000);
+        station
+            .ardupilot
+            .set_clock(SimTime::ZERO, 1_795_000_000_000_000_000);
         station.run(0.5);
         station
     }
@@ -76,7 +81,8 @@ impl Station {
             self.order = self.ardupilot.order(self.now);
             self.boat.step(self.order);
             if self.steps.is_multiple_of(TELEMETRY_STEPS) {
-                self.ardupilot.observe(self.now, &self.boat.measured(self.now, self.boat.at));
+                self.ardupilot
+                    .observe(self.now, &self.boat.measured(self.now, self.boat.at));
                 let mut bytes = vec![];
                 self.ardupilot.telemetry(self.now, &mut bytes);
                 self.hear(&bytes, &mut heard);
@@ -98,7 +104,10 @@ impl Station {
             }
             // Of a command that the dialect does not know.
             Frame::Unreadable(unreadable) if unreadable.id == COMMAND_ACK_DATA::ID => {
-                acks.push((u16::from_le_bytes([unreadable.byte(0), unreadable.byte(1)]), unreadable.byte(2)));
+                acks.push((
+                    u16::from_le_bytes([unreadable.byte(0), unreadable.byte(1)]),
+                    unreadable.byte(2),
+                ));
             }
             Frame::Unreadable(unreadable) => panic!("{unreadable:?}"),
         });
@@ -115,11 +124,22 @@ impl Station {
     }
 
     /// The same with a position, 1e-7 degrees.
-    pub(crate) fn command_at(&mut self, is_long: bool, command: u16, params: [f32; 4], at: (i32, i32)) -> Option<u8> {
-        let mut payload: Vec<u8> = params.iter().flat_map(|param| param.to_le_bytes()).collect();
+    pub(crate) fn command_at(
+        &mut self,
+        is_long: bool,
+        command: u16,
+        params: [f32; 4],
+        at: (i32, i32),
+    ) -> Option<u8> {
+        let mut payload: Vec<u8> = params
+            .iter()
+            .flat_map(|param| param.to_le_bytes())
+            .collect();
         if is_long {
             payload.extend(
-                [1e-7 * f64::from(at.0), 1e-7 * f64::from(at.1)].iter().flat_map(|deg| (*deg as f32).to_le_bytes()),
+                [1e-7 * f64::from(at.0), 1e-7 * f64::from(at.1)]
+                    .iter()
+                    .flat_map(|deg| (*deg as f32).to_le_bytes()),
             );
         } else {
             payload.extend([at.0, at.1].iter().flat_map(|e7| e7.to_le_bytes()));
@@ -133,7 +153,10 @@ impl Station {
         self.acks.clear();
         self.ardupilot.receive(self.now, &bytes);
         self.run(0.9);
-        self.acks.iter().find(|(known, _)| *known == command).map(|(_, result)| *result)
+        self.acks
+            .iter()
+            .find(|(known, _)| *known == command)
+            .map(|(_, result)| *result)
     }
 
     /// The item that a boat asks for.
@@ -150,17 +173,28 @@ impl Station {
     pub(crate) fn upload(&mut self, count: u16, mission_type: MavMissionType) -> MavMissionResult {
         let target_system = 1;
         let target_component = 1;
-        let count = MISSION_COUNT_DATA { count, target_system, target_component, mission_type, ..Default::default() };
+        let count = MISSION_COUNT_DATA {
+            count,
+            target_system,
+            target_component,
+            mission_type,
+            ..Default::default()
+        };
         let mut heard = self.reply(&MavMessage::MISSION_COUNT(count));
         loop {
             let ack = heard.iter().find_map(|message| match message {
-                MavMessage::MISSION_ACK(ack) if ack.mission_type == mission_type => Some(ack.mavtype),
+                MavMessage::MISSION_ACK(ack) if ack.mission_type == mission_type => {
+                    Some(ack.mavtype)
+                }
                 _ => None,
             });
             if let Some(result) = ack {
                 return result;
             }
-            let seq = heard.iter().find_map(Station::requested).expect("it asks for an item");
+            let seq = heard
+                .iter()
+                .find_map(Station::requested)
+                .expect("it asks for an item");
             let at = datum();
             let item = MISSION_ITEM_INT_DATA {
                 seq,
@@ -179,7 +213,11 @@ impl Station {
 
     /// How many items the boat's mission has.
     pub(crate) fn mission_count(&mut self) -> u16 {
-        let list = MISSION_REQUEST_LIST_DATA { target_system: 1, target_component: 1, ..Default::default() };
+        let list = MISSION_REQUEST_LIST_DATA {
+            target_system: 1,
+            target_component: 1,
+            ..Default::default()
+        };
         let heard = self.reply(&MavMessage::MISSION_REQUEST_LIST(list));
         let count = |message: &MavMessage| match message {
             MavMessage::MISSION_COUNT(count) => Some(count.count),

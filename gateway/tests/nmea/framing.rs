@@ -21,7 +21,10 @@ fn model(bytes: &[u8]) -> (Vec<String>, Counts) {
             kept.extend((*byte != 0 || !is_whole(&kept)).then_some(*byte));
             kept
         });
-        let end = part.iter().position(|byte| !(b' '..=b'~').contains(byte)).unwrap_or(part.len());
+        let end = part
+            .iter()
+            .position(|byte| !(b' '..=b'~').contains(byte))
+            .unwrap_or(part.len());
         let (content, rest) = part.split_at(end.min(ACCEPTED_MAX - 3));
         counts.garbage += noise(rest);
         match rest.first() {
@@ -38,7 +41,8 @@ fn model(bytes: &[u8]) -> (Vec<String>, Counts) {
 /// Whether text ends with a checksum.
 fn is_whole(content: &[u8]) -> bool {
     let mut counts = Counts::default();
-    if content.iter().all(|byte| (b' '..=b'~').contains(byte)) && content.len() <= ACCEPTED_MAX - 3 {
+    if content.iter().all(|byte| (b' '..=b'~').contains(byte)) && content.len() <= ACCEPTED_MAX - 3
+    {
         judge(content, &mut vec![], &mut counts);
     }
     counts.sentences + counts.bad_checksum > 0
@@ -47,7 +51,9 @@ fn is_whole(content: &[u8]) -> bool {
 fn judge(content: &[u8], found: &mut Vec<String>, counts: &mut Counts) {
     let text = String::from_utf8(content.to_vec()).expect("only ASCII is left");
     let text = text.trim_end_matches(' ');
-    let stated = text.split_once('*').filter(|(_, digits)| digits.len() == 2 && !digits.contains('+'));
+    let stated = text
+        .split_once('*')
+        .filter(|(_, digits)| digits.len() == 2 && !digits.contains('+'));
     match stated.and_then(|(body, digits)| Some((body, u8::from_str_radix(digits, 16).ok()?))) {
         None => counts.broken += 1,
         Some((body, sum)) if sum != checksum(body.as_bytes()) => counts.bad_checksum += 1,
@@ -145,11 +151,30 @@ proptest! {
 fn lines_end_with_cr_or_lf_or_both() {
     for end in ["\r\n", "\n", "\r", "\n\r", "\r\n\r\n"] {
         let stream = format!("$PSEAG,N*22{end}$PSEAG,N*22{end}");
-        assert_eq!(framed([&stream]).1, Counts { sentences: 2, ..Counts::default() }, "{end:?}");
+        assert_eq!(
+            framed([&stream]).1,
+            Counts {
+                sentences: 2,
+                ..Counts::default()
+            },
+            "{end:?}"
+        );
     }
-    assert_eq!(framed(["$PSEAG,N*22"]).1, Counts::default(), "a line without its end is still under way");
-    assert_eq!(bodies(b"$PSEAC,T,0,20,-10,THR_ON*5f\r\n").len(), 0, "a wrong checksum in small letters");
-    assert_eq!(bodies(b"$HCHDG,58.7,,,,*78\r\n"), ["HCHDG,58.7,,,,"], "a right one");
+    assert_eq!(
+        framed(["$PSEAG,N*22"]).1,
+        Counts::default(),
+        "a line without its end is still under way"
+    );
+    assert_eq!(
+        bodies(b"$PSEAC,T,0,20,-10,THR_ON*5f\r\n").len(),
+        0,
+        "a wrong checksum in small letters"
+    );
+    assert_eq!(
+        bodies(b"$HCHDG,58.7,,,,*78\r\n"),
+        ["HCHDG,58.7,,,,"],
+        "a right one"
+    );
 }
 
 #[test]
@@ -161,22 +186,119 @@ fn each_fault_has_its_count() {
         b"$PGRMCE*0E\r\n$PSRF100,0,4800,8,1,0*0F\r\n\xb5\x62\x06\x8e\x00\x00\xff\xb5\x62\x0a\x04\x00\x00\x0e\x34";
     let probes = [probes.as_slice(), COMMAND.as_bytes()].concat();
     let cases: [(&[u8], Counts); 16] = [
-        (b"$PSEAG,N*23\r\n", Counts { bad_checksum: 1, ..nothing }),
-        (b"$PSEAG,N\r\n", Counts { broken: 1, ..nothing }),
-        (b"$PSEAG,N*2\r\n", Counts { broken: 1, ..nothing }),
-        (b"$PSEAG,N*222\r\n", Counts { broken: 1, ..nothing }),
-        (b"$PSEAG,N*2G\r\n", Counts { broken: 1, ..nothing }),
-        (b"$PSEAG,N*+2\r\n", Counts { broken: 1, ..nothing }),
-        (b"$PSEAG*N*22\r\n", Counts { broken: 1, ..nothing }),
-        (b"$PSEAG,N*22\x00x\r\n", Counts { broken: 1, ..nothing }),
-        (b"$\r\n", Counts { broken: 1, ..nothing }),
-        (b"$PSE$PSEAG,N*22\r\n", Counts { sentences: 1, broken: 1, ..nothing }),
-        (b"$PSE\x00AG,N*22\r\n", Counts { broken: 1, garbage: 8, ..nothing }),
-        (b"$PSEAG,\xc3\x9c*22\r\n", Counts { broken: 1, garbage: 5, ..nothing }),
+        (
+            b"$PSEAG,N*23\r\n",
+            Counts {
+                bad_checksum: 1,
+                ..nothing
+            },
+        ),
+        (
+            b"$PSEAG,N\r\n",
+            Counts {
+                broken: 1,
+                ..nothing
+            },
+        ),
+        (
+            b"$PSEAG,N*2\r\n",
+            Counts {
+                broken: 1,
+                ..nothing
+            },
+        ),
+        (
+            b"$PSEAG,N*222\r\n",
+            Counts {
+                broken: 1,
+                ..nothing
+            },
+        ),
+        (
+            b"$PSEAG,N*2G\r\n",
+            Counts {
+                broken: 1,
+                ..nothing
+            },
+        ),
+        (
+            b"$PSEAG,N*+2\r\n",
+            Counts {
+                broken: 1,
+                ..nothing
+            },
+        ),
+        (
+            b"$PSEAG*N*22\r\n",
+            Counts {
+                broken: 1,
+                ..nothing
+            },
+        ),
+        (
+            b"$PSEAG,N*22\x00x\r\n",
+            Counts {
+                broken: 1,
+                ..nothing
+            },
+        ),
+        (
+            b"$\r\n",
+            Counts {
+                broken: 1,
+                ..nothing
+            },
+        ),
+        (
+            b"$PSE$PSEAG,N*22\r\n",
+            Counts {
+                sentences: 1,
+                broken: 1,
+                ..nothing
+            },
+        ),
+        (
+            b"$PSE\x00AG,N*22\r\n",
+            Counts {
+                broken: 1,
+                garbage: 8,
+                ..nothing
+            },
+        ),
+        (
+            b"$PSEAG,\xc3\x9c*22\r\n",
+            Counts {
+                broken: 1,
+                garbage: 5,
+                ..nothing
+            },
+        ),
         (b"\r\n\n\r", nothing),
-        (b"!AIVDM,1\r\n$PSEAG,N*22\r\n\x8e", Counts { sentences: 1, garbage: 9, ..nothing }),
-        (&probes, Counts { sentences: 3, garbage: 14, ..nothing }),
-        (overlong.as_bytes(), Counts { sentences: 1, overlong: 1, garbage: 1000 - 253, ..nothing }),
+        (
+            b"!AIVDM,1\r\n$PSEAG,N*22\r\n\x8e",
+            Counts {
+                sentences: 1,
+                garbage: 9,
+                ..nothing
+            },
+        ),
+        (
+            &probes,
+            Counts {
+                sentences: 3,
+                garbage: 14,
+                ..nothing
+            },
+        ),
+        (
+            overlong.as_bytes(),
+            Counts {
+                sentences: 1,
+                overlong: 1,
+                garbage: 1000 - 253,
+                ..nothing
+            },
+        ),
     ];
     for (bytes, want) in cases {
         let (found, counts) = framed([bytes]);
@@ -189,7 +311,11 @@ fn each_fault_has_its_count() {
 fn padding_after_the_checksum_and_a_missing_line_end_do_no_harm() {
     for end in [" \r\n", "\0\r\n", " \0\0 \n", "", " ", "\0"] {
         let stream = format!("$PSEAG,N*22{end}$PSEAG,N*22{end}$");
-        assert_eq!(framed([&stream]), framed(["$PSEAG,N*22\r\n$PSEAG,N*22\r\n$"]), "{end:?}");
+        assert_eq!(
+            framed([&stream]),
+            framed(["$PSEAG,N*22\r\n$PSEAG,N*22\r\n$"]),
+            "{end:?}"
+        );
         assert_eq!(framed([&stream]).1.sentences, 2, "{end:?}");
     }
 }
@@ -200,7 +326,11 @@ fn the_last_rejected_line_is_kept_with_the_reason() {
         ("$PSEAG,N\r\n$PSEAG,N*22\r\n", "$PSEAG,N", "has no checksum"),
         ("$PSEAG,N*2$", "$PSEAG,N*2", "has no checksum"),
         ("$PSEAG,N*23\r\n", "$PSEAG,N*23", "has a wrong checksum"),
-        ("$PSE\0AG,N*22\r\n", "$PSE", "is interrupted by a non-text byte"),
+        (
+            "$PSE\0AG,N*22\r\n",
+            "$PSE",
+            "is interrupted by a non-text byte",
+        ),
     ] {
         let mut framer = Framer::new();
         framer.push(stream.as_bytes(), &mut |_| {});
@@ -211,7 +341,11 @@ fn the_last_rejected_line_is_kept_with_the_reason() {
 
 #[test]
 fn a_sentence_of_256_bytes_is_read_and_one_of_257_is_not() {
-    for (length, want) in [(ACCEPTED_MAX, (1, 0)), (ACCEPTED_MAX + 1, (0, 1)), (100_000, (0, 1))] {
+    for (length, want) in [
+        (ACCEPTED_MAX, (1, 0)),
+        (ACCEPTED_MAX + 1, (0, 1)),
+        (100_000, (0, 1)),
+    ] {
         let (found, counts) = framed([&long(length)]);
         assert_eq!((counts.sentences, counts.overlong), want, "{length} bytes");
         assert_eq!(found.len() as u64, counts.sentences);

@@ -33,15 +33,23 @@ fn tolerance(sentence: &Sentence, field: &str) -> Option<(f64, bool)> {
         ("heading_deg", Sentence::Command(_)) if mode == Some(Mode::FileDownload) => (WHOLE, false),
         ("heading_deg", Sentence::Command(_)) if mode == Some(Mode::Thruster) => (WHOLE, true),
         ("heading_deg" | "heading_true_deg" | "heading_magnetic_deg", _) => (TENTH, true),
-        ("course_deg" | "course_true_deg" | "course_magnetic_deg" | "angle_deg", _) => (TENTH, true),
+        ("course_deg" | "course_true_deg" | "course_magnetic_deg" | "angle_deg", _) => {
+            (TENTH, true)
+        }
         ("thrust", _) if mode == Some(Mode::Speed) => (THOUSANDTH, false),
-        ("thrust" | "difference" | "charge" | "charge_used" | "hours" | "throttle_pct", _) => (WHOLE, false),
-        ("accel_ahead_g" | "accel_starboard_g" | "accel_down_g" | "yaw_rate_deg_s", _) => (HUNDREDTH, false),
+        ("thrust" | "difference" | "charge" | "charge_used" | "hours" | "throttle_pct", _) => {
+            (WHOLE, false)
+        }
+        ("accel_ahead_g" | "accel_starboard_g" | "accel_down_g" | "yaw_rate_deg_s", _) => {
+            (HUNDREDTH, false)
+        }
         ("hdop" | "speed_kn" | "speed_km_h", _) => (HUNDREDTH, false),
         ("speed_m_s", Sentence::Mwv(wind)) => (TENTH * wind.unit.m_s(), false),
-        ("pitch_deg" | "roll_deg" | "box_c" | "altitude_m" | "geoid_m" | "deviation_deg" | "variation_deg", _) => {
-            (TENTH, false)
-        }
+        (
+            "pitch_deg" | "roll_deg" | "box_c" | "altitude_m" | "geoid_m" | "deviation_deg"
+            | "variation_deg",
+            _,
+        ) => (TENTH, false),
         (volts_or_amps, Sentence::Battery(_)) if volts_or_amps.ends_with("volts") => (TENTH, false),
         (volts_or_amps, Sentence::Battery(_)) if volts_or_amps.ends_with("amps") => (TENTH, false),
         ("celsius", _) => (TENTH, false),
@@ -52,9 +60,19 @@ fn tolerance(sentence: &Sentence, field: &str) -> Option<(f64, bool)> {
 /// Whether a sentence came back unchanged, within half of its last digits.
 fn same(sentence: &Sentence, back: &Sentence) -> bool {
     let mut sentence = sentence.clone();
-    if let Sentence::Command(command @ Command { mode: Mode::FileDownload, .. }) = &mut sentence {
+    if let Sentence::Command(
+        command @ Command {
+            mode: Mode::FileDownload,
+            ..
+        },
+    ) = &mut sentence
+    {
         // An empty field means no lines.
-        for number in [&mut command.heading_deg, &mut command.thrust, &mut command.difference] {
+        for number in [
+            &mut command.heading_deg,
+            &mut command.thrust,
+            &mut command.difference,
+        ] {
             number.get_or_insert(0.0);
         }
     }
@@ -64,12 +82,20 @@ fn same(sentence: &Sentence, back: &Sentence) -> bool {
         Some((most, is_angle)) if want != "None" && want != "Some" => {
             let want = want.parse::<f64>().unwrap_or(f64::NAN);
             let got = got.parse::<f64>().unwrap_or(f64::NAN);
-            let off = if is_angle { (want - got + 180.0).rem_euclid(360.0) - 180.0 } else { want - got };
+            let off = if is_angle {
+                (want - got + 180.0).rem_euclid(360.0) - 180.0
+            } else {
+                want - got
+            };
             off.abs() <= most
         }
         _ => want == got,
     };
-    want.len() == got.len() && want.iter().zip(&got).all(|(want, (field, got))| want.0 == *field && close(want, got))
+    want.len() == got.len()
+        && want
+            .iter()
+            .zip(&got)
+            .all(|(want, (field, got))| want.0 == *field && close(want, got))
 }
 
 /// A domain with the same numbers in all fields, and every valid date and time.
@@ -90,18 +116,29 @@ fn domain(numbers: impl Strategy<Value = f64> + 'static, texts: BoxedStrategy<St
 fn tame() -> BoxedStrategy<Sentence> {
     let texts = "[A-Z_]{0,6}".boxed();
     let wide = sentences(&domain(-359.0..359.0, texts.clone()));
-    let wide = wide.prop_filter("a battery with such numbers is too long", |s| !matches!(s, Sentence::Battery(_)));
+    let wide = wide.prop_filter("a battery with such numbers is too long", |s| {
+        !matches!(s, Sentence::Battery(_))
+    });
     prop_oneof![3 => wide, 1 => boat_sentences(&domain(0.0..9.9, texts))].boxed()
 }
 
 /// Sentences with arbitrary values.
 fn wild() -> BoxedStrategy<Sentence> {
-    let number = prop_oneof![proptest::num::f64::ANY, -1e9..1e9, select(vec![1e300, -1e300, 1e17, f64::NAN])];
+    let number = prop_oneof![
+        proptest::num::f64::ANY,
+        -1e9..1e9,
+        select(vec![1e300, -1e300, 1e17, f64::NAN])
+    ];
     let number = number.boxed();
     let texts = prop_oneof!["\\PC{0,100}", "[ -~\\x00-\\x1f]{0,100}", "[A-Z]{60,90}"].boxed();
-    let place = (number.clone(), number.clone()).prop_map(|(lat_deg, lon_deg)| LatLon { lat_deg, lon_deg });
+    let place =
+        (number.clone(), number.clone()).prop_map(|(lat_deg, lon_deg)| LatLon { lat_deg, lon_deg });
     let places = prop_oneof![place, on_the_globe()].boxed();
-    sentences(&Domain { places, day_ms: 0..u32::MAX, ..domain(number, texts) })
+    sentences(&Domain {
+        places,
+        day_ms: 0..u32::MAX,
+        ..domain(number, texts)
+    })
 }
 
 proptest! {
@@ -164,5 +201,11 @@ proptest! {
 }
 
 fn is_text(sentence: &Sentence) -> bool {
-    matches!(sentence, Sentence::BoatError(_) | Sentence::Command(_) | Sentence::ControlState(_) | Sentence::Battery(_))
+    matches!(
+        sentence,
+        Sentence::BoatError(_)
+            | Sentence::Command(_)
+            | Sentence::ControlState(_)
+            | Sentence::Battery(_)
+    )
 }

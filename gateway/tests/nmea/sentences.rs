@@ -1,8 +1,9 @@
 //! Random sentences of every kind, for the tests here and for comparisons with other codecs.
 
 use gateway::nmea::{
-    Attitude, Battery, BoatError, Command, ControlState, Date, Gga, Gll, Hdg, Hdt, MissionSettings, Mode, Mwv,
-    Operator, Rmc, Sentence, SpeedUnit, Talker, TimeOfDay, Vhw, Vtg, Waypoint, WindReference, Zda,
+    Attitude, Battery, BoatError, Command, ControlState, Date, Gga, Gll, Hdg, Hdt, MissionSettings,
+    Mode, Mwv, Operator, Rmc, Sentence, SpeedUnit, Talker, TimeOfDay, Vhw, Vtg, Waypoint,
+    WindReference, Zda,
 };
 use primitives::LatLon;
 use proptest::option;
@@ -31,7 +32,10 @@ pub(crate) fn values(sentence: &Sentence) -> Vec<(String, String)> {
     let text = format!("{sentence:?}");
     let mut field = "";
     let mut values = Vec::new();
-    for token in text.split([' ', ',', '(', ')', '{', '}', '[', ']']).filter(|token| !token.is_empty()) {
+    for token in text
+        .split([' ', ',', '(', ')', '{', '}', '[', ']'])
+        .filter(|token| !token.is_empty())
+    {
         match token.strip_suffix(':') {
             Some(name) => field = name,
             None => values.push((field.to_owned(), token.to_owned())),
@@ -41,7 +45,9 @@ pub(crate) fn values(sentence: &Sentence) -> Vec<(String, String)> {
 }
 
 pub(crate) fn on_the_globe() -> BoxedStrategy<LatLon> {
-    (-90.0..=90.0, -180.0..=180.0).prop_map(|(lat_deg, lon_deg)| LatLon { lat_deg, lon_deg }).boxed()
+    (-90.0..=90.0, -180.0..=180.0)
+        .prop_map(|(lat_deg, lon_deg)| LatLon { lat_deg, lon_deg })
+        .boxed()
 }
 
 /// Sentences of every kind.
@@ -54,23 +60,32 @@ pub(crate) fn boat_sentences(domain: &Domain) -> BoxedStrategy<Sentence> {
     let signed = || option::of(domain.signed.clone());
     let text = || domain.texts.clone();
     let mode = || select(Mode::all().to_vec());
-    let command =
-        (mode(), angle(), signed(), signed(), text()).prop_map(|(mode, heading_deg, thrust, difference, words)| {
-            Sentence::Command(Command { mode, heading_deg, thrust, difference, words })
-        });
-    let attitude = (angle(), prop::array::uniform7(signed())).prop_map(|(heading_deg, [a, b, c, d, e, f, g])| {
-        Sentence::Attitude(Attitude {
-            pitch_deg: a,
-            roll_deg: b,
-            heading_deg,
-            heave_m: None,
-            box_c: c,
-            accel_ahead_g: d,
-            accel_starboard_g: e,
-            accel_down_g: f,
-            yaw_rate_deg_s: g,
-        })
-    });
+    let command = (mode(), angle(), signed(), signed(), text()).prop_map(
+        |(mode, heading_deg, thrust, difference, words)| {
+            Sentence::Command(Command {
+                mode,
+                heading_deg,
+                thrust,
+                difference,
+                words,
+            })
+        },
+    );
+    let attitude = (angle(), prop::array::uniform7(signed())).prop_map(
+        |(heading_deg, [a, b, c, d, e, f, g])| {
+            Sentence::Attitude(Attitude {
+                pitch_deg: a,
+                roll_deg: b,
+                heading_deg,
+                heave_m: None,
+                box_c: c,
+                accel_ahead_g: d,
+                accel_starboard_g: e,
+                accel_down_g: f,
+                yaw_rate_deg_s: g,
+            })
+        },
+    );
     let sizes = prop::array::uniform13(option::of(domain.sizes.clone()));
     let battery = (sizes, text(), text()).prop_map(|(n, reset_time, reset_date)| {
         Sentence::Battery(Battery {
@@ -93,28 +108,42 @@ pub(crate) fn boat_sentences(domain: &Domain) -> BoxedStrategy<Sentence> {
     });
     let letters = option::of(select(vec!['T', 'F', 'R', 'N', '!', '9']));
     let operators = option::of(any::<u8>().prop_map(Operator::from_number));
-    let state = (mode(), angle(), signed(), signed(), text(), letters, option::of(any::<u8>()), operators).prop_map(
-        |(mode, heading_deg, thrust, difference, words, transmission, sent_to, operator)| {
-            Sentence::ControlState(ControlState {
-                mode,
-                heading_deg,
-                thrust,
-                difference,
-                words,
-                transmission,
-                sent_to,
-                operator,
-            })
-        },
-    );
+    let state = (
+        mode(),
+        angle(),
+        signed(),
+        signed(),
+        text(),
+        letters,
+        option::of(any::<u8>()),
+        operators,
+    )
+        .prop_map(
+            |(mode, heading_deg, thrust, difference, words, transmission, sent_to, operator)| {
+                Sentence::ControlState(ControlState {
+                    mode,
+                    heading_deg,
+                    thrust,
+                    difference,
+                    words,
+                    transmission,
+                    sent_to,
+                    operator,
+                })
+            },
+        );
     prop_oneof![
         command,
         attitude,
         battery,
         state,
         text().prop_map(|code| Sentence::BoatError(BoatError { code })),
-        domain.sizes.clone().prop_map(|throttle_pct| Sentence::MissionSettings(MissionSettings { throttle_pct })),
-        (domain.places.clone(), any::<u16>()).prop_map(|(at, index)| Sentence::Waypoint(Waypoint { at, index })),
+        domain
+            .sizes
+            .clone()
+            .prop_map(|throttle_pct| Sentence::MissionSettings(MissionSettings { throttle_pct })),
+        (domain.places.clone(), any::<u16>())
+            .prop_map(|(at, index)| Sentence::Waypoint(Waypoint { at, index })),
     ]
     .boxed()
 }
@@ -131,37 +160,107 @@ pub(crate) fn standard_sentences(domain: &Domain) -> BoxedStrategy<Sentence> {
         let dates = dates.prop_map(|(year, month, day)| Date { year, month, day });
         option::of(dates.prop_filter("a date of the calendar", |date| date.is_valid()))
     };
-    let gga = (talker(), time(), at(), 0..9_u8, option::of(0..99_u8), size(), signed(), signed()).prop_map(
-        |(talker, time, at, quality, satellites, hdop, altitude_m, geoid_m)| {
-            Sentence::Gga(Gga { talker, time, at, quality, satellites, hdop, altitude_m, geoid_m })
-        },
-    );
-    let rmc = (talker(), time(), any::<bool>(), at(), size(), angle(), date()).prop_map(
-        |(talker, time, valid, at, speed_kn, course_deg, date)| {
-            Sentence::Rmc(Rmc { talker, time, valid, at, speed_kn, course_deg, date })
-        },
-    );
+    let gga = (
+        talker(),
+        time(),
+        at(),
+        0..9_u8,
+        option::of(0..99_u8),
+        size(),
+        signed(),
+        signed(),
+    )
+        .prop_map(
+            |(talker, time, at, quality, satellites, hdop, altitude_m, geoid_m)| {
+                Sentence::Gga(Gga {
+                    talker,
+                    time,
+                    at,
+                    quality,
+                    satellites,
+                    hdop,
+                    altitude_m,
+                    geoid_m,
+                })
+            },
+        );
+    let rmc = (
+        talker(),
+        time(),
+        any::<bool>(),
+        at(),
+        size(),
+        angle(),
+        date(),
+    )
+        .prop_map(|(talker, time, valid, at, speed_kn, course_deg, date)| {
+            Sentence::Rmc(Rmc {
+                talker,
+                time,
+                valid,
+                at,
+                speed_kn,
+                course_deg,
+                date,
+            })
+        });
     let vtg = (talker(), angle(), angle(), size(), size(), any::<bool>()).prop_map(
         |(talker, course_true_deg, course_magnetic_deg, speed_kn, speed_km_h, with_mode)| {
-            Sentence::Vtg(Vtg { talker, course_true_deg, course_magnetic_deg, speed_kn, speed_km_h, with_mode })
+            Sentence::Vtg(Vtg {
+                talker,
+                course_true_deg,
+                course_magnetic_deg,
+                speed_kn,
+                speed_km_h,
+                with_mode,
+            })
         },
     );
-    let units =
-        vec![SpeedUnit::MetresPerSecond, SpeedUnit::KilometresPerHour, SpeedUnit::Knots, SpeedUnit::MilesPerHour];
+    let units = vec![
+        SpeedUnit::MetresPerSecond,
+        SpeedUnit::KilometresPerHour,
+        SpeedUnit::Knots,
+        SpeedUnit::MilesPerHour,
+    ];
     let references = select(vec![WindReference::Relative, WindReference::Theoretical]);
-    let mwv = (talker(), angle(), references, size(), select(units), any::<bool>()).prop_map(
-        |(talker, angle_deg, reference, speed_m_s, unit, valid)| {
-            Sentence::Mwv(Mwv { talker, angle_deg, reference, speed_m_s, unit, valid })
+    let mwv = (
+        talker(),
+        angle(),
+        references,
+        size(),
+        select(units),
+        any::<bool>(),
+    )
+        .prop_map(|(talker, angle_deg, reference, speed_m_s, unit, valid)| {
+            Sentence::Mwv(Mwv {
+                talker,
+                angle_deg,
+                reference,
+                speed_m_s,
+                unit,
+                valid,
+            })
+        });
+    let hdg = (talker(), angle(), signed(), signed()).prop_map(
+        |(talker, heading_deg, deviation_deg, variation_deg)| {
+            Sentence::Hdg(Hdg {
+                talker,
+                heading_deg,
+                deviation_deg,
+                variation_deg,
+            })
         },
     );
-    let hdg =
-        (talker(), angle(), signed(), signed()).prop_map(|(talker, heading_deg, deviation_deg, variation_deg)| {
-            Sentence::Hdg(Hdg { talker, heading_deg, deviation_deg, variation_deg })
-        });
-    let vhw =
-        (talker(), angle(), angle(), size()).prop_map(|(talker, heading_true_deg, heading_magnetic_deg, speed_kn)| {
-            Sentence::Vhw(Vhw { talker, heading_true_deg, heading_magnetic_deg, speed_kn })
-        });
+    let vhw = (talker(), angle(), angle(), size()).prop_map(
+        |(talker, heading_true_deg, heading_magnetic_deg, speed_kn)| {
+            Sentence::Vhw(Vhw {
+                talker,
+                heading_true_deg,
+                heading_magnetic_deg,
+                speed_kn,
+            })
+        },
+    );
     prop_oneof![
         gga,
         rmc,
@@ -169,14 +268,23 @@ pub(crate) fn standard_sentences(domain: &Domain) -> BoxedStrategy<Sentence> {
         mwv,
         hdg,
         vhw,
-        (talker(), angle()).prop_map(|(talker, heading_deg)| Sentence::Hdt(Hdt { talker, heading_deg })),
-        (talker(), time(), date()).prop_map(|(talker, time, date)| Sentence::Zda(Zda { talker, time, date })),
-        (talker(), at(), time(), any::<bool>()).prop_map(|(talker, at, time, valid)| Sentence::Gll(Gll {
+        (talker(), angle()).prop_map(|(talker, heading_deg)| Sentence::Hdt(Hdt {
             talker,
-            at,
-            time,
-            valid
+            heading_deg
         })),
+        (talker(), time(), date()).prop_map(|(talker, time, date)| Sentence::Zda(Zda {
+            talker,
+            time,
+            date
+        })),
+        (talker(), at(), time(), any::<bool>()).prop_map(
+            |(talker, at, time, valid)| Sentence::Gll(Gll {
+                talker,
+                at,
+                time,
+                valid
+            })
+        ),
     ]
     .boxed()
 }

@@ -17,10 +17,24 @@ pub(super) fn asks_of<'a>(
     picture.own.iter().map(move |boat| {
         let at = boat.nav.at();
         let is_near = |other: Ned, reach_m: f64| at.distance_squared(other) < reach_m * reach_m;
-        let opponents = picture.contacts.iter().filter(|contact| contact.team.0 != picture.team && !contact.tagged);
-        let mut flags = field.flags.iter().filter(|flag| flag.team.0 != picture.team);
+        let opponents = picture
+            .contacts
+            .iter()
+            .filter(|contact| contact.team.0 != picture.team && !contact.tagged);
+        let mut flags = field
+            .flags
+            .iter()
+            .filter(|flag| flag.team.0 != picture.team);
         let asks = Asks {
-            tag: opponents.into_iter().any(|other| is_near(Ned { north: other.north_m, east: other.east_m }, tag_m)),
+            tag: opponents.into_iter().any(|other| {
+                is_near(
+                    Ned {
+                        north: other.north_m,
+                        east: other.east_m,
+                    },
+                    tag_m,
+                )
+            }),
             grab: flags.any(|flag| is_near(flag.home, grab_m)),
         };
         (boat.vehicle, asks)

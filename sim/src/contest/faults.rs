@@ -8,10 +8,18 @@ use scenario::fault::{FaultKind, FaultSpan, fault_spans};
 
 pub(super) fn of(scenario: &Scenario, vehicle: VehicleId) -> Vec<FaultSpan> {
     let name = &scenario.vehicles[vehicle.index()].name;
-    let spans = fault_spans(&scenario.faults, (vehicle, name), &scenario.seeds(), scenario.rules.time_limit);
+    let spans = fault_spans(
+        &scenario.faults,
+        (vehicle, name),
+        &scenario.seeds(),
+        scenario.rules.time_limit,
+    );
     // Faults of sensors and thrusters belong to the world. The spans follow from the seed before
     // the game, so a snapshot contains none and processes agree.
-    spans.into_iter().filter(|span| matches!(span.kind, FaultKind::AgentLost | FaultKind::LinkLost)).collect()
+    spans
+        .into_iter()
+        .filter(|span| matches!(span.kind, FaultKind::AgentLost | FaultKind::LinkLost))
+        .collect()
 }
 
 /// Whether a fault silences a vehicle's agent or link at `now`.
@@ -34,8 +42,11 @@ impl Contest {
             if self.faults[i].is_empty() {
                 continue;
             }
-            let is_on =
-                |at: SimTime| self.faults[i].iter().any(|span| span.kind == FaultKind::AgentLost && span.is_on(at));
+            let is_on = |at: SimTime| {
+                self.faults[i]
+                    .iter()
+                    .any(|span| span.kind == FaultKind::AgentLost && span.is_on(at))
+            };
             // Derived from the previous tick instead of stored: a restored game must log the same
             // events.
             let was = now.0 >= tick.0 && is_on(now - tick);
@@ -45,7 +56,11 @@ impl Contest {
             }
             if was != is {
                 let vehicle = VehicleId::at(i);
-                self.log(if is { Event::AgentLost(vehicle) } else { Event::AgentBack(vehicle) });
+                self.log(if is {
+                    Event::AgentLost(vehicle)
+                } else {
+                    Event::AgentBack(vehicle)
+                });
             }
         }
     }

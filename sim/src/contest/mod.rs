@@ -74,13 +74,29 @@ impl Contest {
     pub fn new(scenario: &Scenario, seed: u64) -> Result<Contest, NoStart> {
         let scenario = scenario.of_seed(seed)?;
         let world = World::of_game(&scenario, seed)?;
-        let team_of = scenario.vehicles.iter().map(|vehicle| vehicle.team).collect();
-        let referee = Referee { rules: scenario.rules.clone(), field: scenario.field.clone(), team_of };
+        let team_of = scenario
+            .vehicles
+            .iter()
+            .map(|vehicle| vehicle.team)
+            .collect();
+        let referee = Referee {
+            rules: scenario.rules.clone(),
+            field: scenario.field.clone(),
+            team_of,
+        };
         let standing = referee.start(&mut Stream::new(seed, "power_play"));
         let count = scenario.vehicles.len();
-        let scene = Scene { scenario: &scenario, world: &world, standing: &standing, decision: 0 };
+        let scene = Scene {
+            scenario: &scenario,
+            world: &world,
+            standing: &standing,
+            decision: 0,
+        };
         let known = (0..count).map(|i| scene.own_boat(i)).collect();
-        let pictures = (0..scenario.teams.len()).map(|team| Picture { team: team as u8, ..Picture::default() });
+        let pictures = (0..scenario.teams.len()).map(|team| Picture {
+            team: team as u8,
+            ..Picture::default()
+        });
         let is_external = |source| source == Source::External;
         let state = ContestState {
             decision: 0,
@@ -90,7 +106,11 @@ impl Contest {
             agent_lost: vec![false; count],
             e_stopped: false,
             halted: false,
-            tracks: scenario.vehicles.iter().map(|v| is_external(v.source).then(Track::default)).collect(),
+            tracks: scenario
+                .vehicles
+                .iter()
+                .map(|v| is_external(v.source).then(Track::default))
+                .collect(),
             known,
             events: Vec::new(),
             pictured: EventCursor::default(),
@@ -99,9 +119,13 @@ impl Contest {
         };
         Ok(Contest {
             radio: Radio::new(&scenario),
-            faults: (0..count).map(|i| faults::of(&scenario, VehicleId::at(i))).collect(),
+            faults: (0..count)
+                .map(|i| faults::of(&scenario, VehicleId::at(i)))
+                .collect(),
             sightings: Sightings::new(&scenario),
-            watchdogs: (0..count).map(|i| watchdog(&scenario, VehicleId::at(i))).collect(),
+            watchdogs: (0..count)
+                .map(|i| watchdog(&scenario, VehicleId::at(i)))
+                .collect(),
             referee,
             world,
             state,
@@ -156,9 +180,28 @@ impl Contest {
             self.state.pictured_for = Some(self.state.decision);
             self.note(Input::Pictured);
             self.gather();
-            let Contest { scenario, world, sightings, state, .. } = self;
-            let ContestState { standing, decision, known, events, pictured, pictures, .. } = state;
-            let scene = Scene { scenario, world, standing, decision: *decision };
+            let Contest {
+                scenario,
+                world,
+                sightings,
+                state,
+                ..
+            } = self;
+            let ContestState {
+                standing,
+                decision,
+                known,
+                events,
+                pictured,
+                pictures,
+                ..
+            } = state;
+            let scene = Scene {
+                scenario,
+                world,
+                standing,
+                decision: *decision,
+            };
             let new = pictured.read(events);
             for picture in pictures {
                 scene.picture(known, sightings.as_ref(), new, picture);
@@ -179,12 +222,24 @@ impl Contest {
 
     /// The true state, with the events since `cursor`.
     pub fn frame(&self, cursor: &mut EventCursor) -> Frame {
-        let ContestState { standing, decision, events, .. } = &self.state;
-        let scene = Scene { scenario: &self.scenario, world: &self.world, standing, decision: *decision };
+        let ContestState {
+            standing,
+            decision,
+            events,
+            ..
+        } = &self.state;
+        let scene = Scene {
+            scenario: &self.scenario,
+            world: &self.world,
+            standing,
+            decision: *decision,
+        };
         let mut frame = scene.frame(cursor.read(events));
         for (i, truth) in frame.vehicles.iter_mut().enumerate() {
             truth.agent_lost = self.state.agent_lost[i];
-            truth.nav_lost = self.state.tracks[i].as_ref().is_some_and(|track| track.is_lost(self.now()));
+            truth.nav_lost = self.state.tracks[i]
+                .as_ref()
+                .is_some_and(|track| track.is_lost(self.now()));
         }
         frame.stopped = self.state.e_stopped || self.state.halted;
         frame
@@ -210,11 +265,20 @@ impl Contest {
     pub fn give(&mut self, input: Input) {
         match input {
             Input::Pictured => drop(self.pictures()),
-            Input::Ordered { vehicle, order, given_at } => drop(self.order(vehicle, order, given_at)),
+            Input::Ordered {
+                vehicle,
+                order,
+                given_at,
+            } => drop(self.order(vehicle, order, given_at)),
             Input::Held(vehicle) => self.hold(vehicle),
             Input::AgentLost(vehicle) => self.lose_agent(vehicle),
             Input::AgentBack(vehicle) => self.regain_agent(vehicle),
-            Input::Reported { vehicle, nav, fix_at, valid } => drop(self.report(vehicle, nav, fix_at, valid)),
+            Input::Reported {
+                vehicle,
+                nav,
+                fix_at,
+                valid,
+            } => drop(self.report(vehicle, nav, fix_at, valid)),
             Input::EStopped(stopped) => self.e_stop(stopped),
             Input::Halted(halted) => self.halt(halted),
             // In recorded order with all other inputs: in a replay, the order of inputs and ticks
@@ -228,31 +292,50 @@ impl Contest {
     ///
     /// # Errors
     /// [`BadReport`] for implausible numbers and simulated boats; nothing changes then.
-    pub fn report(&mut self, vehicle: VehicleId, nav: Nav, fix_at: SimTime, valid: bool) -> Result<(), BadReport> {
+    pub fn report(
+        &mut self,
+        vehicle: VehicleId,
+        nav: Nav,
+        fix_at: SimTime,
+        valid: bool,
+    ) -> Result<(), BadReport> {
         let now = self.now();
-        let track = self.state.tracks[vehicle.index()].as_mut().ok_or(BadReport::Simulated)?;
+        let track = self.state.tracks[vehicle.index()]
+            .as_mut()
+            .ok_or(BadReport::Simulated)?;
         let nav = external::sound(nav)?;
         // An invalid report is recorded too: it shows that the gateway is present.
         if valid {
             track.update(nav, fix_at.min(now + self.scenario.decision()));
             let estimate = track.estimate(now);
-            estimate.into_iter().for_each(|(pose, nu)| self.world.set_under_way(vehicle, pose, nu));
+            estimate
+                .into_iter()
+                .for_each(|(pose, nu)| self.world.set_under_way(vehicle, pose, nu));
         }
-        self.note(Input::Reported { vehicle, nav, fix_at, valid });
+        self.note(Input::Reported {
+            vehicle,
+            nav,
+            fix_at,
+            valid,
+        });
         Ok(())
     }
 
     /// Whether a boat's position has ever been known: for a real boat from a report, for a
     /// simulated one always.
     pub fn has_position(&self, vehicle: VehicleId) -> bool {
-        self.state.tracks[vehicle.index()].as_ref().is_none_or(Track::has_fix)
+        self.state.tracks[vehicle.index()]
+            .as_ref()
+            .is_none_or(Track::has_fix)
     }
 
     /// Marks real boats without a recent fix as lost; they stay at rest.
     fn watch_real_boats(&mut self) {
         let now = self.now();
         for i in 0..self.state.tracks.len() {
-            let (vehicle, Some(track)) = (VehicleId::at(i), &mut self.state.tracks[i]) else { continue };
+            let (vehicle, Some(track)) = (VehicleId::at(i), &mut self.state.tracks[i]) else {
+                continue;
+            };
             let estimate = track.estimate(now);
             let event = track.event(vehicle, now);
             if let Some((pose, nu)) = estimate.filter(|(_, nu)| *nu == Planar::default())
@@ -266,14 +349,37 @@ impl Contest {
 
     /// Updates what is known ashore from the boats' reports and sightings.
     fn gather(&mut self) {
-        let Contest { scenario, world, radio, sightings, state, faults, .. } = self;
-        let ContestState { standing, decision, known, tracks, .. } = state;
+        let Contest {
+            scenario,
+            world,
+            radio,
+            sightings,
+            state,
+            faults,
+            ..
+        } = self;
+        let ContestState {
+            standing,
+            decision,
+            known,
+            tracks,
+            ..
+        } = state;
         let decision = *decision;
         let now = world.state().now;
-        let scene = Scene { scenario, world, standing, decision };
+        let scene = Scene {
+            scenario,
+            world,
+            standing,
+            decision,
+        };
         if let Some(sightings) = sightings {
             let oldest = radio.as_ref().map_or(decision, Radio::oldest_report);
-            sightings.record_truth(decision, oldest, (0..tracks.len()).map(|i| scene.contact(i)));
+            sightings.record_truth(
+                decision,
+                oldest,
+                (0..tracks.len()).map(|i| scene.contact(i)),
+            );
         }
         for (i, (known, track)) in known.iter_mut().zip(tracks).enumerate() {
             // Until a real boat reports, its data stay unknown.
@@ -328,7 +434,11 @@ impl Contest {
     pub fn e_stop(&mut self, stopped: bool) {
         if std::mem::replace(&mut self.state.e_stopped, stopped) != stopped {
             self.note(Input::EStopped(stopped));
-            self.log(if stopped { Event::EStopped } else { Event::Released });
+            self.log(if stopped {
+                Event::EStopped
+            } else {
+                Event::Released
+            });
         }
     }
 
@@ -370,14 +480,20 @@ impl Contest {
     /// Collects the boats' requests to the referee for this decision, by their teams' last
     /// pictures.
     fn hear_requests(&mut self) {
-        let Contest { scenario, state, work: Work { asks, .. }, .. } = self;
+        let Contest {
+            scenario,
+            state,
+            work: Work { asks, .. },
+            ..
+        } = self;
         if scenario.rules.tags_and_grabs == Acting::Automatic {
             return;
         }
         asks.clear();
         asks.resize(scenario.vehicles.len(), Asks::default());
         for picture in &state.pictures {
-            asks_of(&scenario.rules, &scenario.field, picture).for_each(|(vehicle, ask)| asks[vehicle.index()] = ask);
+            asks_of(&scenario.rules, &scenario.field, picture)
+                .for_each(|(vehicle, ask)| asks[vehicle.index()] = ask);
         }
     }
 
@@ -387,8 +503,23 @@ impl Contest {
         self.update_stations();
         let mut commands = std::mem::take(&mut self.work.commands);
         commands.clear();
-        commands.extend((0..self.state.orders.len()).map(|i| self.effective_command(VehicleId::at(i))));
-        let Contest { scenario, referee, world, state, work: Work { notes, events, legs, asks, .. }, .. } = self;
+        commands
+            .extend((0..self.state.orders.len()).map(|i| self.effective_command(VehicleId::at(i))));
+        let Contest {
+            scenario,
+            referee,
+            world,
+            state,
+            work:
+                Work {
+                    notes,
+                    events,
+                    legs,
+                    asks,
+                    ..
+                },
+            ..
+        } = self;
         let standing = &mut state.standing;
         events.clear();
         // A boat with a non-finite state is taken out of play here, in the tick of the failure; all
@@ -400,7 +531,17 @@ impl Contest {
         let now = world.state().now;
         legs.clear();
         legs.extend((0..commands.len()).map(|i| world.leg(VehicleId::at(i))));
-        referee.advance(standing, notes, &Look { legs, asks, near: world.pairs(), now }, events);
+        referee.advance(
+            standing,
+            notes,
+            &Look {
+                legs,
+                asks,
+                near: world.pairs(),
+                now,
+            },
+            events,
+        );
         // After the referee, which would otherwise never see a boat enter the circle.
         world.set_back(|vehicle, at| referee.keepout(standing, vehicle, at));
         let tick = world.state().tick;
@@ -408,7 +549,11 @@ impl Contest {
         if tick.is_multiple_of(u64::from(scenario.ticks_per_decision)) {
             world.read_sensors();
         }
-        state.events.extend(events.iter().map(|event| Logged { tick, at: now, event: *event }));
+        state.events.extend(events.iter().map(|event| Logged {
+            tick,
+            at: now,
+            event: *event,
+        }));
         self.work.commands = commands;
     }
 
@@ -418,12 +563,22 @@ impl Contest {
     /// If the score differs from the sum over the events.
     pub fn outcome(&self) -> Outcome {
         self.assert_score();
-        Outcome::new(&self.scenario, self.digest(), self.world.state().tick, self.score(), &self.state.events)
+        Outcome::new(
+            &self.scenario,
+            self.digest(),
+            self.world.state().tick,
+            self.score(),
+            &self.state.events,
+        )
     }
 
     fn log(&mut self, event: Event) {
         let state = self.world.state();
-        self.state.events.push(Logged { tick: state.tick, at: state.now, event });
+        self.state.events.push(Logged {
+            tick: state.tick,
+            at: state.now,
+            event,
+        });
     }
 }
 

@@ -23,7 +23,12 @@ impl Contest {
     ///
     /// # Errors
     /// [`BadOrder`] for invalid numbers; the vehicle then holds.
-    pub fn order(&mut self, vehicle: VehicleId, order: Order, given_at: SimTime) -> Result<(), BadOrder> {
+    pub fn order(
+        &mut self,
+        vehicle: VehicleId,
+        order: Order,
+        given_at: SimTime,
+    ) -> Result<(), BadOrder> {
         let checked = order.check();
         let order = checked.unwrap_or_default();
         let i = vehicle.index();
@@ -31,7 +36,11 @@ impl Contest {
         // Otherwise an agent could claim to answer a future picture, and its order would never
         // expire.
         let given_at = given_at.min(now);
-        self.note(Input::Ordered { vehicle, order, given_at });
+        self.note(Input::Ordered {
+            vehicle,
+            order,
+            given_at,
+        });
         // The input is already recorded: a replay applies the fault again.
         if self.is_cut_off(vehicle) {
             return checked.map(drop);
@@ -79,9 +88,14 @@ impl Contest {
     fn is_stopped(&self, i: usize) -> bool {
         // A real boat moves only under supervision.
         let is_unsupervised = |track: &Track| {
-            track.is_lost(self.now()) || self.state.agent_lost[i] || self.is_over() || self.is_expired(i)
+            track.is_lost(self.now())
+                || self.state.agent_lost[i]
+                || self.is_over()
+                || self.is_expired(i)
         };
-        self.state.e_stopped || self.state.halted || self.state.tracks[i].as_ref().is_some_and(is_unsupervised)
+        self.state.e_stopped
+            || self.state.halted
+            || self.state.tracks[i].as_ref().is_some_and(is_unsupervised)
     }
 
     /// A vehicle's order in force, as modified by the rules.
@@ -91,20 +105,27 @@ impl Contest {
         let speed_max_m_s = self.scenario.boat_of(vehicle).speed_max_m_s();
         match self.referee.directive(&self.state.standing, vehicle, at) {
             Directive::Hold => Order::Hold,
-            Directive::DrivenHome { to, speed_factor } => {
-                Order::Steer { heading_rad: at.bearing_rad(to), speed_m_s: speed_factor * speed_max_m_s }
-            }
+            Directive::DrivenHome { to, speed_factor } => Order::Steer {
+                heading_rad: at.bearing_rad(to),
+                speed_m_s: speed_factor * speed_max_m_s,
+            },
             Directive::Free { speed_factor } => match self.state.orders[i].order {
                 Order::Hold => Order::Hold,
-                Order::Steer { heading_rad, speed_m_s } => {
-                    Order::Steer { heading_rad, speed_m_s: speed_m_s.min(speed_factor * speed_max_m_s) }
-                }
-                Order::Turn { by_rad, speed_m_s } => {
-                    Order::Turn { by_rad, speed_m_s: speed_m_s.min(speed_factor * speed_max_m_s) }
-                }
-                Order::Thrust { port, starboard } => {
-                    Order::Thrust { port: speed_factor * port, starboard: speed_factor * starboard }
-                }
+                Order::Steer {
+                    heading_rad,
+                    speed_m_s,
+                } => Order::Steer {
+                    heading_rad,
+                    speed_m_s: speed_m_s.min(speed_factor * speed_max_m_s),
+                },
+                Order::Turn { by_rad, speed_m_s } => Order::Turn {
+                    by_rad,
+                    speed_m_s: speed_m_s.min(speed_factor * speed_max_m_s),
+                },
+                Order::Thrust { port, starboard } => Order::Thrust {
+                    port: speed_factor * port,
+                    starboard: speed_factor * starboard,
+                },
             },
         }
     }
@@ -114,7 +135,10 @@ impl Contest {
         for i in 0..self.state.stations.len() {
             let vehicle = VehicleId::at(i);
             let keeps = self.scenario.boat_of(vehicle).hold == Hold::KeepsStation;
-            if keeps && self.state.tracks[i].is_none() && self.wanted_command(vehicle) == Order::Hold {
+            if keeps
+                && self.state.tracks[i].is_none()
+                && self.wanted_command(vehicle) == Order::Hold
+            {
                 self.state.stations[i].get_or_insert(self.world.state().boats[i].pose.at);
             } else {
                 self.state.stations[i] = None;
@@ -161,7 +185,11 @@ impl Contest {
             if let Some(order) = self.radio.as_mut().and_then(|radio| radio.order(i, now))
                 && !self.state.agent_lost[i]
             {
-                *in_force = OrderInForce { order, arrived_at: now, ..*in_force };
+                *in_force = OrderInForce {
+                    order,
+                    arrived_at: now,
+                    ..*in_force
+                };
             }
             // Like firmware, the boat's watchdog counts from the last order that arrived; the time
             // to live counts from the picture.
@@ -179,5 +207,8 @@ fn keeping_station(at: Ned, station: Ned, speed_max_m_s: f64) -> Order {
         return Order::Hold;
     }
     let speed_m_s = (STATION_RETURN_PER_S * off_m).min(speed_max_m_s);
-    Order::Steer { heading_rad: at.bearing_rad(station), speed_m_s }
+    Order::Steer {
+        heading_rad: at.bearing_rad(station),
+        speed_m_s,
+    }
 }

@@ -13,7 +13,12 @@ use xxhash_rust::xxh3;
 const MAGIC: [u8; 5] = *b"SQLC\x01";
 
 /// All changing state: boats and sea, game, messages in transit, sightings.
-type Parts = (State, ContestState, Option<RadioState>, Option<SightingState>);
+type Parts = (
+    State,
+    ContestState,
+    Option<RadioState>,
+    Option<SightingState>,
+);
 
 /// Why bytes are not a snapshot of this contest.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -47,7 +52,10 @@ impl Contest {
 
     /// The messages in transit, and the sightings.
     fn messages(&self) -> (Option<&RadioState>, Option<&SightingState>) {
-        (self.radio.as_ref().map(|radio| &radio.state), self.sightings.as_ref().map(|sightings| &sightings.state))
+        (
+            self.radio.as_ref().map(|radio| &radio.state),
+            self.sightings.as_ref().map(|sightings| &sightings.state),
+        )
     }
 
     /// Restores the state from a snapshot of the same game, earlier or later.
@@ -55,7 +63,9 @@ impl Contest {
     /// # Errors
     /// [`RestoreError`]; the contest then stays as it was.
     pub fn restore(&mut self, snapshot: &[u8]) -> Result<(), RestoreError> {
-        let rest = snapshot.strip_prefix(&MAGIC).ok_or(RestoreError::NotASnapshot)?;
+        let rest = snapshot
+            .strip_prefix(&MAGIC)
+            .ok_or(RestoreError::NotASnapshot)?;
         let (mark, rest) = rest.split_at_checked(8).ok_or(RestoreError::Damaged)?;
         let (check, body) = rest.split_at_checked(8).ok_or(RestoreError::Damaged)?;
         // A state of another scenario could have the right length and be meaningless.
@@ -65,11 +75,18 @@ impl Contest {
         if check != xxh3::xxh3_64(body).to_le_bytes() {
             return Err(RestoreError::Damaged);
         }
-        let (world, state, radio, sightings): Parts = postcard::from_bytes(body).map_err(|_| RestoreError::Damaged)?;
+        let (world, state, radio, sightings): Parts =
+            postcard::from_bytes(body).map_err(|_| RestoreError::Damaged)?;
         self.world.set_state(world);
         self.state = state;
-        self.radio.iter_mut().zip(radio).for_each(|(radio, state)| radio.state = state);
-        self.sightings.iter_mut().zip(sightings).for_each(|(sightings, state)| sightings.state = state);
+        self.radio
+            .iter_mut()
+            .zip(radio)
+            .for_each(|(radio, state)| radio.state = state);
+        self.sightings
+            .iter_mut()
+            .zip(sightings)
+            .for_each(|(sightings, state)| sightings.state = state);
         Ok(())
     }
 
@@ -77,7 +94,14 @@ impl Contest {
     /// sharing or command watchdogs it also covers orders in force, messages in transit and
     /// contacts; with real boats, their fixes.
     pub fn digest(&self) -> u128 {
-        let ContestState { standing, orders, tracks, events, known, .. } = &self.state;
+        let ContestState {
+            standing,
+            orders,
+            tracks,
+            events,
+            known,
+            ..
+        } = &self.state;
         let mut hash = xxh3::Xxh3::new();
         hash.update(&xxh3::xxh3_128(&bytes(&(self.world.state(), standing))).to_le_bytes());
         for logged in events {
@@ -91,7 +115,10 @@ impl Contest {
         }
         // Only if present, so that digests of games without them stayed the same when radios were
         // added.
-        if self.radio.is_some() || self.sightings.is_some() || self.watchdogs.iter().any(Option::is_some) {
+        if self.radio.is_some()
+            || self.sightings.is_some()
+            || self.watchdogs.iter().any(Option::is_some)
+        {
             let in_force: Vec<_> = orders.iter().map(|held| held.order).collect();
             let arrived_at: Vec<_> = orders.iter().map(|held| held.arrived_at).collect();
             hash.update(&bytes(&(in_force, arrived_at, known, self.messages())));

@@ -53,24 +53,42 @@ impl Contest {
     pub(super) fn assert_sound(&self) {
         let world = self.world.state();
         let standing = &self.state.standing;
-        assert_eq!(world.now, self.scenario.tick * world.tick as i64, "time is the number of ticks");
+        assert_eq!(
+            world.now,
+            self.scenario.tick * world.tick as i64,
+            "time is the number of ticks"
+        );
         // The world quarantines boats with a non-finite state. One that gets past that is our bug,
         // and the game's result would be worthless.
-        assert!(world.boats.iter().all(|boat| boat.pose.at.is_finite()), "positions are finite");
+        assert!(
+            world.boats.iter().all(|boat| boat.pose.at.is_finite()),
+            "positions are finite"
+        );
         for (i, boat) in standing.vehicles.iter().enumerate() {
             let Some(flag) = boat.carrying else { continue };
             // Three rules interact here, and each could break it.
-            assert!(boat.in_play && !boat.tagged && !boat.outside, "vehicle {i} carries a flag out of play");
+            assert!(
+                boat.in_play && !boat.tagged && !boat.outside,
+                "vehicle {i} carries a flag out of play"
+            );
             assert_eq!(
                 standing.flags[flag.index()].carrier,
                 Some(VehicleId::at(i)),
                 "the flag that vehicle {i} carries"
             );
         }
-        let carried = standing.flags.iter().filter(|flag| flag.carrier.is_some()).count();
+        let carried = standing
+            .flags
+            .iter()
+            .filter(|flag| flag.carrier.is_some())
+            .count();
         assert_eq!(
             carried,
-            standing.vehicles.iter().filter(|boat| boat.carrying.is_some()).count(),
+            standing
+                .vehicles
+                .iter()
+                .filter(|boat| boat.carrying.is_some())
+                .count(),
             "each flag has one carrier"
         );
     }
@@ -79,7 +97,10 @@ impl Contest {
     pub(super) fn assert_score(&self) {
         // Counted from the events, so that referee and log cannot diverge.
         let mut tally = Tally::new(self.scenario.vehicles.len());
-        self.state.events.iter().for_each(|logged| tally.add(logged.event));
+        self.state
+            .events
+            .iter()
+            .for_each(|logged| tally.add(logged.event));
         let mut score = vec![0_u32; self.score().len()];
         for (vehicle, counts) in self.scenario.vehicles.iter().zip(&tally.vehicles) {
             let team = &mut score[vehicle.team.index()];

@@ -15,8 +15,8 @@ pub struct Accepted {
     pub back: Vec<VehicleId>,
 }
 
-/// Handles an agent's orders while `tick` is open. Lockstep accepts those for the open decision; real
-/// time also those for an earlier one, if none newer has arrived.
+/// Handles an agent's orders while `tick` is open. Lockstep accepts those for the open decision;
+/// real time also those for an earlier one, if none newer has arrived.
 pub fn accept(
     agents: &mut Membership,
     message: &Orders,
@@ -43,13 +43,18 @@ pub fn accept(
         refusals.count(Refusal::WrongTick);
         return accepted;
     }
-    own.iter().for_each(|vehicle| agents.note_taken(*vehicle, seq));
+    own.iter()
+        .for_each(|vehicle| agents.note_taken(*vehicle, seq));
     accepted.orders = orders_for(&own, message, refusals);
     accepted
 }
 
 /// One order for each vehicle of the agent; hold if there is no valid one.
-fn orders_for(own: &[VehicleId], message: &Orders, refusals: &mut Refusals) -> Vec<(VehicleId, Order)> {
+fn orders_for(
+    own: &[VehicleId],
+    message: &Orders,
+    refusals: &mut Refusals,
+) -> Vec<(VehicleId, Order)> {
     let mut orders = Vec::with_capacity(own.len());
     for item in &message.orders {
         if !own.contains(&item.vehicle) {
@@ -78,21 +83,36 @@ mod tests {
     use messages::{Message, Role, Stamp, VehicleOrder};
 
     const REALTIME: Pace = Pace::Realtime { factor: 1.0 };
-    const PUSH: Order = Order::Thrust { port: 1.0, starboard: 1.0 };
+    const PUSH: Order = Order::Thrust {
+        port: 1.0,
+        starboard: 1.0,
+    };
 
     /// Agents of a game with their vehicles, and tickets from 1 on.
     fn agents(all: &[&[&str]]) -> Membership {
         let mut agents = membership(Role::Agent, false);
         for (i, vehicles) in all.iter().enumerate() {
-            agents.join(&request(Role::Agent, &format!("agent {i}"), vehicles), i as u64 + 1, NOW);
+            agents.join(
+                &request(Role::Agent, &format!("agent {i}"), vehicles),
+                i as u64 + 1,
+                NOW,
+            );
         }
         agents
     }
 
     fn orders(ticket: u64, seq: u64, vehicles: &[u16]) -> Orders {
         let order = |v: &u16| VehicleOrder::new(VehicleId(*v), PUSH);
-        let stamp = Stamp { seq, version: Orders::VERSION, ..Stamp::default() };
-        Orders { stamp, ticket, orders: vehicles.iter().map(order).collect() }
+        let stamp = Stamp {
+            seq,
+            version: Orders::VERSION,
+            ..Stamp::default()
+        };
+        Orders {
+            stamp,
+            ticket,
+            orders: vehicles.iter().map(order).collect(),
+        }
     }
 
     #[test]
@@ -100,14 +120,20 @@ mod tests {
         let mut agents = agents(&[&["blue_one", "blue_two"], &["red_one"]]);
         let mut refusals = Refusals::default();
         let mut take = |agents: &mut Membership, message: &Orders| {
-            accept(agents, message, (0, Pace::Lockstep), &mut refusals).orders.len()
+            accept(agents, message, (0, Pace::Lockstep), &mut refusals)
+                .orders
+                .len()
         };
         assert!(!agents.all_answered(0));
         assert_eq!(take(&mut agents, &orders(1, 0, &[0, 1])), 2);
         assert!(!agents.all_answered(0));
         take(&mut agents, &orders(2, 0, &[2]));
         assert!(agents.all_answered(0) && !agents.all_answered(1));
-        assert_eq!(take(&mut agents, &orders(2, 0, &[2])), 0, "a duplicate counts once");
+        assert_eq!(
+            take(&mut agents, &orders(2, 0, &[2])),
+            0,
+            "a duplicate counts once"
+        );
         assert_eq!(refusals.total(), 0, "a duplicate is not refused");
     }
 
@@ -124,17 +150,31 @@ mod tests {
             let mut refusals = Refusals::default();
             let taken = accept(&mut agents, &orders(1, seq, &[0]), (5, pace), &mut refusals);
             assert_eq!(taken.orders.len(), accepted, "{pace} {seq}");
-            assert_eq!(refusals, Refusals::from([(Refusal::WrongTick, refused)]), "{pace} {seq}");
+            assert_eq!(
+                refusals,
+                Refusals::from([(Refusal::WrongTick, refused)]),
+                "{pace} {seq}"
+            );
         }
     }
 
     #[test]
     fn what_an_agent_gets_wrong_is_counted_and_its_boat_holds() {
         // Invalid numbers are refused by the contest; an unknown kind is refused before that.
-        let unknown = VehicleOrder { kind: 9, ..VehicleOrder::new(VehicleId(0), PUSH) };
+        let unknown = VehicleOrder {
+            kind: 9,
+            ..VehicleOrder::new(VehicleId(0), PUSH)
+        };
         for (message, refusal, order) in [
             (orders(1, 0, &[0]), None, PUSH),
-            (Orders { orders: vec![unknown], ..orders(1, 0, &[]) }, Some(Refusal::BadNumber), Order::Hold),
+            (
+                Orders {
+                    orders: vec![unknown],
+                    ..orders(1, 0, &[])
+                },
+                Some(Refusal::BadNumber),
+                Order::Hold,
+            ),
             (orders(1, 0, &[]), Some(Refusal::Missing), Order::Hold),
             (orders(1, 0, &[0, 1]), Some(Refusal::NotYours), PUSH),
             (orders(1, 0, &[999, 0]), Some(Refusal::NotYours), PUSH),
@@ -143,8 +183,14 @@ mod tests {
             let mut refusals = Refusals::default();
             let taken = accept(&mut agents, &message, (0, Pace::Lockstep), &mut refusals);
             assert_eq!(taken.orders, [(VehicleId(0), order)], "{message:?}");
-            let want: Vec<(Refusal, u64)> = refusal.map(|refusal| (refusal, 1)).into_iter().collect();
-            assert_eq!(refusals, want.into_iter().collect::<std::collections::BTreeMap<_, _>>().into());
+            let want: Vec<(Refusal, u64)> =
+                refusal.map(|refusal| (refusal, 1)).into_iter().collect();
+            assert_eq!(
+                refusals,
+                want.into_iter()
+                    .collect::<std::collections::BTreeMap<_, _>>()
+                    .into()
+            );
         }
     }
 
@@ -161,11 +207,21 @@ mod tests {
         assert_eq!((late.back, late.orders.len()), (vec![VehicleId(0)], 0));
         assert!(!agents.all_answered(9), "the agent is awaited again");
         agents.give_up(9);
-        assert_eq!(agents.join(&request(Role::Agent, "b", &["blue_one"]), 2, NOW), granted(2, &[0]));
-        assert_eq!(take(&mut agents, &orders(1, 9, &[0]), 9), Accepted::default(), "the vehicle belongs to b");
+        assert_eq!(
+            agents.join(&request(Role::Agent, "b", &["blue_one"]), 2, NOW),
+            granted(2, &[0])
+        );
+        assert_eq!(
+            take(&mut agents, &orders(1, 9, &[0]), 9),
+            Accepted::default(),
+            "the vehicle belongs to b"
+        );
         assert!(!agents.all_answered(9), "only b is awaited");
         take(&mut agents, &orders(2, 9, &[0]), 9);
         assert!(agents.all_answered(9));
-        assert_eq!(refusals, Refusals::from([(Refusal::WrongTick, 1), (Refusal::Ticket, 1)]));
+        assert_eq!(
+            refusals,
+            Refusals::from([(Refusal::WrongTick, 1), (Refusal::Ticket, 1)])
+        );
     }
 }

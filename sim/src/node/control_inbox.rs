@@ -26,7 +26,10 @@ struct Waiting<Q> {
 
 impl<Q> Default for ControlInbox<Q> {
     fn default() -> ControlInbox<Q> {
-        ControlInbox(Watched::new(Waiting { commands: VecDeque::new(), refusals: Refusals::default() }))
+        ControlInbox(Watched::new(Waiting {
+            commands: VecDeque::new(),
+            refusals: Refusals::default(),
+        }))
     }
 }
 
@@ -87,12 +90,15 @@ impl<Q> Waiting<Q> {
         }
         if self.commands.len() >= WAITING_MAX {
             let stops = [Control::EStop, Control::Halt];
-            let waiting = stops.map(|stop| self.commands.iter().any(|command| is_stop(command, stop)));
+            let waiting =
+                stops.map(|stop| self.commands.iter().any(|command| is_stop(command, stop)));
             let before = self.commands.len();
             self.commands.clear();
             let kept = stops.into_iter().zip(waiting).filter(|(_, waits)| *waits);
-            self.commands.extend(kept.map(|(stop, _)| Command::Stop(stop)));
-            self.refusals.add(Refusal::Flood, (before - self.commands.len()) as u64);
+            self.commands
+                .extend(kept.map(|(stop, _)| Command::Stop(stop)));
+            self.refusals
+                .add(Refusal::Flood, (before - self.commands.len()) as u64);
         }
         self.commands.push_back(Command::Stop(stop));
     }
@@ -115,11 +121,26 @@ mod tests {
         let inbox = ControlInbox::default();
         assert!(send(&inbox, Control::EStop) && send(&inbox, Control::EStop) && inbox.put_query(1));
         assert!(send(&inbox, Control::EStop) && send(&inbox, Control::Halt) && inbox.put_query(1));
-        assert!(!send(&inbox, Control::Release) && !send(&inbox, Control::Stop), "they must be queries");
+        assert!(
+            !send(&inbox, Control::Release) && !send(&inbox, Control::Stop),
+            "they must be queries"
+        );
         assert!(!inbox.put_stop(b"ahoy") && !inbox.put_stop(b"\"e_stop"));
         let [e_stop, halt] = [Control::EStop, Control::Halt].map(Command::Stop);
-        assert_eq!(all(&inbox), [Command::Stop(Control::EStop), Command::Ask(1), e_stop, halt, Command::Ask(1)]);
-        assert_eq!(inbox.refusals(), Refusals::from([(Refusal::Garbage, 2), (Refusal::OutOfPlace, 2)]));
+        assert_eq!(
+            all(&inbox),
+            [
+                Command::Stop(Control::EStop),
+                Command::Ask(1),
+                e_stop,
+                halt,
+                Command::Ask(1)
+            ]
+        );
+        assert_eq!(
+            inbox.refusals(),
+            Refusals::from([(Refusal::Garbage, 2), (Refusal::OutOfPlace, 2)])
+        );
     }
 
     #[test]
@@ -128,18 +149,30 @@ mod tests {
         assert!(send(&inbox, Control::Halt));
         (1..1000).for_each(|i| assert_eq!(inbox.put_query(i), (i as usize) < WAITING_MAX));
         assert!(send(&inbox, Control::EStop));
-        assert_eq!(all(&inbox), [Command::Stop(Control::Halt), Command::Stop(Control::EStop)]);
+        assert_eq!(
+            all(&inbox),
+            [Command::Stop(Control::Halt), Command::Stop(Control::EStop)]
+        );
         assert_eq!(inbox.refusals(), Refusals::from([(Refusal::Flood, 999)]));
         // Alternating stops and queries do not fill it either: no release stays behind the stop
         // that it ends.
         for i in 0..1000 {
-            send(&inbox, if i % 2 == 0 { Control::EStop } else { Control::Halt });
+            send(
+                &inbox,
+                if i % 2 == 0 {
+                    Control::EStop
+                } else {
+                    Control::Halt
+                },
+            );
             inbox.put_query(i);
         }
         let left = all(&inbox);
         assert!(left.len() <= WAITING_MAX && left.contains(&Command::Stop(Control::EStop)));
         assert_eq!(
-            left.iter().rev().find(|command| matches!(command, Command::Stop(_))),
+            left.iter()
+                .rev()
+                .find(|command| matches!(command, Command::Stop(_))),
             Some(&Command::Stop(Control::Halt))
         );
     }

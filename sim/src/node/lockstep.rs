@@ -11,7 +11,10 @@ use std::time::{Duration, Instant};
 const SEND_AGAIN: Duration = Duration::from_millis(250);
 
 /// Plays until the game is over or stopped.
-pub(super) fn play(server: &mut GameServer<'_>, tell: &mut dyn FnMut(ProgressMessage)) -> Result<(), NodeError> {
+pub(super) fn play(
+    server: &mut GameServer<'_>,
+    tell: &mut dyn FnMut(ProgressMessage),
+) -> Result<(), NodeError> {
     let mut due = clock::now();
     while !server.contest.is_over() && !server.is_stopped() {
         // Before the pictures are sent: the recording of a decision is then complete even if the
@@ -45,14 +48,23 @@ fn keep_speed(
     due: Instant,
     tell: &mut dyn FnMut(ProgressMessage),
 ) -> Result<Instant, NodeError> {
-    let Some(speed) = server.pacing.speed else { return Ok(due) };
+    let Some(speed) = server.pacing.speed else {
+        return Ok(due);
+    };
     let decision_s = server.contest.scenario().decision().as_s();
     let now = clock::now();
     // Lost time is not made up.
     let due = (due + Duration::from_secs_f64(decision_s / speed)).max(now);
     // The speed may change, and the game may be paused, during the wait.
-    while clock::now() < due && server.pacing.speed == Some(speed) && !server.pacing.is_held() && !server.is_stopped() {
-        server.listen(due.saturating_duration_since(clock::now()).min(Duration::from_millis(50)));
+    while clock::now() < due
+        && server.pacing.speed == Some(speed)
+        && !server.pacing.is_held()
+        && !server.is_stopped()
+    {
+        server.listen(
+            due.saturating_duration_since(clock::now())
+                .min(Duration::from_millis(50)),
+        );
         server.report_progress(tell)?;
     }
     Ok(due.min(clock::now()))
@@ -60,7 +72,10 @@ fn keep_speed(
 
 /// Waits until all agents have answered the open decision. Those that exceed the scenario's
 /// patience are lost.
-fn gather(server: &mut GameServer<'_>, tell: &mut dyn FnMut(ProgressMessage)) -> Result<(), NodeError> {
+fn gather(
+    server: &mut GameServer<'_>,
+    tell: &mut dyn FnMut(ProgressMessage),
+) -> Result<(), NodeError> {
     let tick = server.contest.decision();
     let patience = Duration::from_secs_f64(server.contest.scenario().patience_s);
     // Patience is measured in working time.

@@ -50,7 +50,10 @@ impl Membership {
             is_open: role == Role::Agent || vehicle.source == Source::External,
             holder: None,
         });
-        Membership { role, places: places.collect() }
+        Membership {
+            role,
+            places: places.collect(),
+        }
     }
 
     /// Handles a join request at this time of the game. `ticket` is the node's ticket if it joins.
@@ -65,7 +68,9 @@ impl Membership {
         if request.version != primitives::VERSION {
             let theirs = &request.version;
             let ours = primitives::VERSION;
-            return refused(format!("the {role} is Squall {theirs}, the sim is Squall {ours}: use the same version"));
+            return refused(format!(
+                "the {role} is Squall {theirs}, the sim is Squall {ours}: use the same version"
+            ));
         }
         // A node must join for at least one vehicle: lockstep would wait for a node without any.
         if request.vehicles.is_empty() {
@@ -78,10 +83,18 @@ impl Membership {
             };
             let place = &self.places[i];
             if !place.is_open {
-                return refused(format!("{name} is simulated in this game; {}", self.on_offer()));
+                return refused(format!(
+                    "{name} is simulated in this game; {}",
+                    self.on_offer()
+                ));
             }
-            if place.present().is_some_and(|holder| holder.node != request.node) {
-                return JoinReply::Busy { vehicle: name.clone() };
+            if place
+                .present()
+                .is_some_and(|holder| holder.node != request.node)
+            {
+                return JoinReply::Busy {
+                    vehicle: name.clone(),
+                };
             }
             // A repeated name is a typing error and would make the count of boats wrong.
             if vehicles.contains(&VehicleId::at(i)) {
@@ -92,10 +105,19 @@ impl Membership {
         for vehicle in &vehicles {
             // A new ticket voids the old one, so that an agent presumed dead cannot steer beside
             // its successor.
-            let holder = Holder { node: request.node.clone(), ticket, is_present: true, newest: None };
+            let holder = Holder {
+                node: request.node.clone(),
+                ticket,
+                is_present: true,
+                newest: None,
+            };
             self.places[vehicle.index()].holder = Some(holder);
         }
-        JoinReply::Granted { ticket, vehicles, now_ns: now }
+        JoinReply::Granted {
+            ticket,
+            vehicles,
+            now_ns: now,
+        }
     }
 
     fn on_offer(&self) -> String {
@@ -103,12 +125,18 @@ impl Membership {
         match (self.role, names.is_empty()) {
             (Role::Agent, _) => format!("there are {}", names.join(", ")),
             (Role::Gateway, false) => format!("the external vehicles are {}", names.join(", ")),
-            (Role::Gateway, true) => "no vehicle is external: the game has none or is a rehearsal".to_owned(),
+            (Role::Gateway, true) => {
+                "no vehicle is external: the game has none or is a rehearsal".to_owned()
+            }
         }
     }
 
     fn open(&self) -> impl Iterator<Item = (VehicleId, &Place)> {
-        self.places.iter().enumerate().filter(|(_, place)| place.is_open).map(|(i, place)| (VehicleId::at(i), place))
+        self.places
+            .iter()
+            .enumerate()
+            .filter(|(_, place)| place.is_open)
+            .map(|(i, place)| (VehicleId::at(i), place))
     }
 
     fn holders(&mut self) -> impl Iterator<Item = (VehicleId, &mut Holder)> {
@@ -118,19 +146,30 @@ impl Membership {
 
     /// The vehicles of the node with this ticket. None if the ticket is unknown or void.
     pub(super) fn vehicles_of(&self, ticket: u64) -> impl Iterator<Item = VehicleId> {
-        let holds = move |place: &Place| place.holder.as_ref().is_some_and(|holder| holder.ticket == ticket);
-        self.open().filter(move |(_, place)| holds(place)).map(|(vehicle, _)| vehicle)
+        let holds = move |place: &Place| {
+            place
+                .holder
+                .as_ref()
+                .is_some_and(|holder| holder.ticket == ticket)
+        };
+        self.open()
+            .filter(move |(_, place)| holds(place))
+            .map(|(vehicle, _)| vehicle)
     }
 
     /// The tickets of all nodes that hold a vehicle or may return to it.
     pub(super) fn tickets(&self) -> impl Iterator<Item = u64> {
-        self.places.iter().filter_map(|place| Some(place.holder.as_ref()?.ticket))
+        self.places
+            .iter()
+            .filter_map(|place| Some(place.holder.as_ref()?.ticket))
     }
 
     /// Marks the node with this ticket as present. Returns its vehicles that were lost and are
     /// back.
     pub(super) fn welcome_back(&mut self, ticket: u64) -> Vec<VehicleId> {
-        let back = self.holders().filter(|(_, holder)| holder.ticket == ticket && !holder.is_present);
+        let back = self
+            .holders()
+            .filter(|(_, holder)| holder.ticket == ticket && !holder.is_present);
         let back = back.map(|(vehicle, holder)| {
             holder.is_present = true;
             vehicle
@@ -141,7 +180,9 @@ impl Membership {
     /// Whether a message with this or a later number was accepted for a vehicle.
     pub(super) fn has_taken(&self, vehicle: VehicleId, seq: u64) -> bool {
         let holder = self.places[vehicle.index()].holder.as_ref();
-        holder.and_then(|holder| holder.newest).is_some_and(|newest| newest >= seq)
+        holder
+            .and_then(|holder| holder.newest)
+            .is_some_and(|newest| newest >= seq)
     }
 
     /// Records that a message with this number was accepted for a vehicle.
@@ -166,12 +207,16 @@ impl Membership {
 
     /// Drops the node that has this vehicle. Returns all its abandoned vehicles.
     pub fn lose_holder_of(&mut self, vehicle: VehicleId) -> Vec<VehicleId> {
-        let ticket = self.places[vehicle.index()].present().map(|holder| holder.ticket);
+        let ticket = self.places[vehicle.index()]
+            .present()
+            .map(|holder| holder.ticket);
         self.lose(|holder| Some(holder.ticket) == ticket)
     }
 
     fn lose(&mut self, is_lost: impl Fn(&Holder) -> bool) -> Vec<VehicleId> {
-        let lost = self.holders().filter(|(_, holder)| holder.is_present && is_lost(holder));
+        let lost = self
+            .holders()
+            .filter(|(_, holder)| holder.is_present && is_lost(holder));
         let lost = lost.map(|(vehicle, holder)| {
             holder.is_present = false;
             vehicle
@@ -187,7 +232,9 @@ impl Membership {
 
     /// The open vehicles without a present node.
     pub fn vacant(&self) -> impl Iterator<Item = VehicleId> {
-        self.open().filter(|(_, place)| place.present().is_none()).map(|(vehicle, _)| vehicle)
+        self.open()
+            .filter(|(_, place)| place.present().is_none())
+            .map(|(vehicle, _)| vehicle)
     }
 
     /// Whether no node is present.
@@ -207,18 +254,35 @@ pub(super) mod tests {
     /// A game of blue one, blue two, red one and red two. With `is_mixed`, blue one and red one are
     /// real boats.
     pub(in super::super) fn membership(role: Role, is_mixed: bool) -> Membership {
-        let name = if is_mixed { "mixed_2v2" } else { "pav01_vs_pav01" };
-        let game = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../scenarios/games/{name}.toml"));
-        Membership::new(&scenario::load(&game).unwrap_or_else(|e| panic!("{e}")), role)
+        let name = if is_mixed {
+            "mixed_2v2"
+        } else {
+            "pav01_vs_pav01"
+        };
+        let game =
+            Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../scenarios/games/{name}.toml"));
+        Membership::new(
+            &scenario::load(&game).unwrap_or_else(|e| panic!("{e}")),
+            role,
+        )
     }
 
     pub(in super::super) fn request(role: Role, node: &str, vehicles: &[&str]) -> JoinRequest {
         let vehicles = vehicles.iter().map(|name| (*name).to_owned()).collect();
-        JoinRequest { version: primitives::VERSION.to_owned(), role, node: node.to_owned(), vehicles }
+        JoinRequest {
+            version: primitives::VERSION.to_owned(),
+            role,
+            node: node.to_owned(),
+            vehicles,
+        }
     }
 
     pub(in super::super) fn granted(ticket: u64, vehicles: &[u16]) -> JoinReply {
-        JoinReply::Granted { ticket, vehicles: vehicles.iter().map(|v| VehicleId(*v)).collect(), now_ns: NOW }
+        JoinReply::Granted {
+            ticket,
+            vehicles: vehicles.iter().map(|v| VehicleId(*v)).collect(),
+            now_ns: NOW,
+        }
     }
 
     const ROLES: [Role; 2] = [Role::Agent, Role::Gateway];
@@ -227,10 +291,23 @@ pub(super) mod tests {
     fn who_joins_gets_what_it_names_in_its_order() {
         for role in ROLES {
             let mut all = membership(role, true);
-            assert_eq!(all.join(&request(role, "a", &["red_one", "blue_one"]), 7, NOW), granted(7, &[2, 0]));
+            assert_eq!(
+                all.join(&request(role, "a", &["red_one", "blue_one"]), 7, NOW),
+                granted(7, &[2, 0])
+            );
             let vacant: Vec<VehicleId> = all.vacant().collect();
-            assert_eq!(vacant, if role == Role::Agent { vec![VehicleId(1), VehicleId(3)] } else { vec![] });
-            assert!(all.vehicles_of(7).eq([VehicleId(0), VehicleId(2)]) && all.vehicles_of(8).next().is_none());
+            assert_eq!(
+                vacant,
+                if role == Role::Agent {
+                    vec![VehicleId(1), VehicleId(3)]
+                } else {
+                    vec![]
+                }
+            );
+            assert!(
+                all.vehicles_of(7).eq([VehicleId(0), VehicleId(2)])
+                    && all.vehicles_of(8).next().is_none()
+            );
         }
     }
 
@@ -239,12 +316,17 @@ pub(super) mod tests {
         for role in ROLES {
             let mut all = membership(role, true);
             all.join(&request(role, "a", &["blue_one"]), 1, NOW);
-            let busy = JoinReply::Busy { vehicle: "blue_one".to_owned() };
+            let busy = JoinReply::Busy {
+                vehicle: "blue_one".to_owned(),
+            };
             assert_eq!(all.join(&request(role, "b", &["blue_one"]), 2, NOW), busy);
             assert!(!all.is_empty() && all.gone("b").is_empty());
             assert_eq!(all.gone("a"), [VehicleId(0)]);
             assert!(all.is_empty() && all.gone("a").is_empty(), "once");
-            assert_eq!(all.join(&request(role, "b", &["blue_one"]), 2, NOW), granted(2, &[0]));
+            assert_eq!(
+                all.join(&request(role, "b", &["blue_one"]), 2, NOW),
+                granted(2, &[0])
+            );
             assert!(all.vehicles_of(1).next().is_none() && all.welcome_back(1).is_empty());
         }
     }
@@ -255,14 +337,30 @@ pub(super) mod tests {
             let mut all = membership(role, true);
             all.join(&request(role, "a", &["blue_one"]), 1, NOW);
             all.gone("a");
-            assert_eq!(all.welcome_back(1), [VehicleId(0)], "no other node has taken it");
-            let busy = JoinReply::Busy { vehicle: "blue_one".to_owned() };
+            assert_eq!(
+                all.welcome_back(1),
+                [VehicleId(0)],
+                "no other node has taken it"
+            );
+            let busy = JoinReply::Busy {
+                vehicle: "blue_one".to_owned(),
+            };
             assert_eq!(all.join(&request(role, "b", &["blue_one"]), 2, NOW), busy);
             all.note_taken(VehicleId(0), 5);
             assert!(all.has_taken(VehicleId(0), 5) && !all.has_taken(VehicleId(0), 6));
-            assert_eq!(all.join(&request(role, "a", &["blue_one"]), 3, NOW), granted(3, &[0]), "the reply was lost");
-            assert!(all.vehicles_of(1).next().is_none(), "the newer ticket counts");
-            assert!(!all.has_taken(VehicleId(0), 0), "its messages are counted from zero");
+            assert_eq!(
+                all.join(&request(role, "a", &["blue_one"]), 3, NOW),
+                granted(3, &[0]),
+                "the reply was lost"
+            );
+            assert!(
+                all.vehicles_of(1).next().is_none(),
+                "the newer ticket counts"
+            );
+            assert!(
+                !all.has_taken(VehicleId(0), 0),
+                "its messages are counted from zero"
+            );
         }
     }
 
@@ -274,17 +372,34 @@ pub(super) mod tests {
         assert!(!all.all_answered(0));
         all.note_taken(VehicleId(2), 0);
         assert_eq!(all.give_up(0), [VehicleId(0), VehicleId(3)]);
-        assert!(all.all_answered(0) && !all.all_answered(1), "a lost node is not awaited");
+        assert!(
+            all.all_answered(0) && !all.all_answered(1),
+            "a lost node is not awaited"
+        );
         all.welcome_back(1);
-        assert_eq!(all.lose_holder_of(VehicleId(3)), [VehicleId(0), VehicleId(3)]);
-        assert_eq!((all.lose_holder_of(VehicleId(3)), all.lose_holder_of(VehicleId(1))), (vec![], vec![]));
+        assert_eq!(
+            all.lose_holder_of(VehicleId(3)),
+            [VehicleId(0), VehicleId(3)]
+        );
+        assert_eq!(
+            (
+                all.lose_holder_of(VehicleId(3)),
+                all.lose_holder_of(VehicleId(1))
+            ),
+            (vec![], vec![])
+        );
     }
 
     #[test]
     fn a_refusal_says_why() {
         for (role, is_mixed, vehicles, why) in [
             (Role::Agent, true, &[][..], "the agent names no vehicle"),
-            (Role::Agent, true, &["green_one"], "there are blue_one, blue_two, red_one, red_two"),
+            (
+                Role::Agent,
+                true,
+                &["green_one"],
+                "there are blue_one, blue_two, red_one, red_two",
+            ),
             (Role::Agent, true, &["blue_one", "blue_one"], "twice"),
             (Role::Gateway, true, &[], "the gateway names no vehicle"),
             (
@@ -304,11 +419,19 @@ pub(super) mod tests {
         ] {
             let mut all = membership(role, is_mixed);
             let reply = all.join(&request(role, "a", vehicles), 1, NOW);
-            let JoinReply::Refused { reason } = reply else { panic!("{role} {vehicles:?} may join") };
+            let JoinReply::Refused { reason } = reply else {
+                panic!("{role} {vehicles:?} may join")
+            };
             assert!(reason.contains(why), "{reason}");
-            let other = JoinRequest { version: "0.0.1".to_owned(), ..request(role, "a", &["blue_one"]) };
+            let other = JoinRequest {
+                version: "0.0.1".to_owned(),
+                ..request(role, "a", &["blue_one"])
+            };
             let reply = all.join(&other, 1, NOW);
-            assert!(matches!(&reply, JoinReply::Refused { reason } if reason.contains("0.0.1")), "{reply:?}");
+            assert!(
+                matches!(&reply, JoinReply::Refused { reason } if reason.contains("0.0.1")),
+                "{reply:?}"
+            );
             assert!(all.is_empty());
         }
     }

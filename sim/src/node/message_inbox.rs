@@ -141,7 +141,8 @@ impl MessageInbox {
     }
 
     pub(super) fn next_within(&self, limit: Duration) -> Option<Incoming> {
-        self.waiting.wait(limit, |waiting| !waiting.messages.is_empty());
+        self.waiting
+            .wait(limit, |waiting| !waiting.messages.is_empty());
         self.take_now()
     }
 
@@ -176,12 +177,17 @@ mod tests {
     }
 
     fn orders(ticket: u64) -> Incoming {
-        Incoming::Orders(Orders { ticket, ..Orders::default() })
+        Incoming::Orders(Orders {
+            ticket,
+            ..Orders::default()
+        })
     }
 
     /// The senders of the waiting messages, in order.
     fn senders(inbox: &MessageInbox) -> Vec<Sender> {
-        std::iter::from_fn(|| inbox.take_now()).map(|message| message.sender()).collect()
+        std::iter::from_fn(|| inbox.take_now())
+            .map(|message| message.sender())
+            .collect()
     }
 
     #[test]
@@ -197,11 +203,27 @@ mod tests {
         inbox.push(Incoming::Gone("a".to_owned()));
         let share = Sender::Member(7).share();
         let flood = 200_000 - share - Sender::Recorded(0).share();
-        assert_eq!(inbox.refusals(), Refusals::from([(Refusal::Flood, flood as u64)]));
+        assert_eq!(
+            inbox.refusals(),
+            Refusals::from([(Refusal::Flood, flood as u64)])
+        );
         let got = senders(&inbox);
-        assert_eq!(got.iter().filter(|sender| **sender == Sender::Member(7)).count(), share);
-        assert_eq!(got.iter().filter(|sender| **sender == Sender::Inboxes).count(), 1);
-        assert!(got.ends_with(&[Sender::Member(8), Sender::Recorded(1), Sender::Network]), "{got:?}");
+        assert_eq!(
+            got.iter()
+                .filter(|sender| **sender == Sender::Member(7))
+                .count(),
+            share
+        );
+        assert_eq!(
+            got.iter()
+                .filter(|sender| **sender == Sender::Inboxes)
+                .count(),
+            1
+        );
+        assert!(
+            got.ends_with(&[Sender::Member(8), Sender::Recorded(1), Sender::Network]),
+            "{got:?}"
+        );
         // Reading frees space.
         inbox.push(orders(7));
         assert_eq!(senders(&inbox), [Sender::Member(7)]);
@@ -213,10 +235,15 @@ mod tests {
         (0..100_000).for_each(|ticket| inbox.push(orders(ticket)));
         assert!(inbox.decode::<Orders>(b"ahoy").is_none());
         assert_eq!(senders(&inbox), [Sender::Member(7)]);
-        assert_eq!(inbox.refusals(), Refusals::from([(Refusal::Ticket, 99_999), (Refusal::Garbage, 1)]));
+        assert_eq!(
+            inbox.refusals(),
+            Refusals::from([(Refusal::Ticket, 99_999), (Refusal::Garbage, 1)])
+        );
         // A node that rejoins has a new ticket, and the old one is void.
         inbox.accept_tickets([9].into());
-        [orders(7), orders(9)].into_iter().for_each(|message| inbox.push(message));
+        [orders(7), orders(9)]
+            .into_iter()
+            .for_each(|message| inbox.push(message));
         assert_eq!(senders(&inbox), [Sender::Member(9)]);
     }
 }

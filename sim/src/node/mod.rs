@@ -31,8 +31,8 @@ use server::GameServer;
 /// Serves the game of `scenario` with this seed to its end. `recorder` records it.
 ///
 /// # Errors
-/// [`NodeError`] if the boats do not fit on the field, the network fails, or a lockstep game has real
-/// boats, which cannot wait.
+/// [`NodeError`] if the boats do not fit on the field, the network fails, or a lockstep game has
+/// real boats, which cannot wait.
 pub fn serve(
     scenario: &Scenario,
     seed: u64,

@@ -20,7 +20,9 @@ const EVENTS_MAX: usize = 5000;
 pub(super) fn events_json(contest: &Contest) -> Vec<u8> {
     let scenario = contest.scenario();
     let all = contest.events();
-    let events = all[all.len().saturating_sub(EVENTS_MAX)..].iter().map(|logged| EventOutcome::new(scenario, logged));
+    let events = all[all.len().saturating_sub(EVENTS_MAX)..]
+        .iter()
+        .map(|logged| EventOutcome::new(scenario, logged));
     serde_json::to_vec(&events.collect::<Vec<_>>()).expect("events are JSON")
 }
 
@@ -35,14 +37,21 @@ pub(super) struct RecordedTopic {
 impl RecordedTopic {
     fn of<M: Message + DeserializeOwned>(topic: String) -> RecordedTopic {
         // Checked before recording: a reader must not fail on a stranger's message.
-        RecordedTopic { topic, schema: M::SCHEMA, is_sound: |bytes| codec::decode::<M>(bytes).is_ok() }
+        RecordedTopic {
+            topic,
+            schema: M::SCHEMA,
+            is_sound: |bytes| codec::decode::<M>(bytes).is_ok(),
+        }
     }
 }
 
 /// The topics of team messages and proposals.
 pub(super) fn recorded_topics(scenario: &Scenario) -> Vec<RecordedTopic> {
     let boats = scenario.vehicles.iter().map(|vehicle| &vehicle.name);
-    let says = scenario.teams.iter().map(|team| RecordedTopic::of::<Say>(format!("say/{}", team.name)));
+    let says = scenario
+        .teams
+        .iter()
+        .map(|team| RecordedTopic::of::<Say>(format!("say/{}", team.name)));
     let proposals = boats.map(|name| RecordedTopic::of::<PolicyProposal>(format!("policy/{name}")));
     says.chain(proposals).collect()
 }

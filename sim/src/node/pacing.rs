@@ -18,7 +18,13 @@ pub(super) struct Pacing {
 impl Pacing {
     /// The initial pacing of a game.
     pub(super) fn new(speed: Option<f64>, is_lockstep: bool, is_real: bool) -> Pacing {
-        Pacing { is_paused: false, steps: 0, speed, is_lockstep, is_real }
+        Pacing {
+            is_paused: false,
+            steps: 0,
+            speed,
+            is_lockstep,
+            is_real,
+        }
     }
 
     /// Whether the game must not advance now.
@@ -56,9 +62,17 @@ mod tests {
     #[test]
     fn a_paused_game_plays_the_steps_that_it_is_asked_for() {
         let mut pacing = Pacing::new(None, true, false);
-        assert!(!pacing.is_held() && !pacing.change(Control::Step), "a running game needs no step");
+        assert!(
+            !pacing.is_held() && !pacing.change(Control::Step),
+            "a running game needs no step"
+        );
         assert!(pacing.change(Control::Pause) && pacing.is_held());
-        assert!(pacing.change(Control::Step) && pacing.change(Control::Step) && !pacing.is_held() && pacing.is_paused);
+        assert!(
+            pacing.change(Control::Step)
+                && pacing.change(Control::Step)
+                && !pacing.is_held()
+                && pacing.is_paused
+        );
         pacing.played();
         assert!(!pacing.is_held());
         pacing.played();

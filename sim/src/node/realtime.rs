@@ -7,7 +7,10 @@ use bus::clock;
 use std::time::Duration;
 
 /// Plays until the game is over or stopped. Counts the decisions that began late.
-pub(super) fn play(server: &mut GameServer<'_>, tell: &mut dyn FnMut(ProgressMessage)) -> Result<(), NodeError> {
+pub(super) fn play(
+    server: &mut GameServer<'_>,
+    tell: &mut dyn FnMut(ProgressMessage),
+) -> Result<(), NodeError> {
     let mut due = clock::now() + period(server);
     while !server.contest.is_over() && !server.is_stopped() {
         server.record();

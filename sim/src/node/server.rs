@@ -108,27 +108,47 @@ impl<'w> GameServer<'w> {
         let controls = Arc::new(ControlInbox::default());
         let messages = Arc::new(MessageInbox::default());
         let others = Arc::clone(&messages);
-        let inboxes = Inboxes { controls: Arc::clone(&controls), questions: questions_sender, others };
+        let inboxes = Inboxes {
+            controls: Arc::clone(&controls),
+            questions: questions_sender,
+            others,
+        };
         let game = &settings.game;
         // A game's inputs use memory, and only the recorder takes them.
         if recorder.is_some() {
             contest.keep_inputs();
         }
         let scenario = contest.scenario();
-        let recorded_topics = if recorder.is_some() { observers::recorded_topics(scenario) } else { vec![] };
+        let recorded_topics = if recorder.is_some() {
+            observers::recorded_topics(scenario)
+        } else {
+            vec![]
+        };
         let declarations = subscriptions::open(&bus, game, scenario, &inboxes, &recorded_topics)?;
         let is_lockstep = settings.pace == Pace::Lockstep;
-        let speed = if let Pace::Realtime { factor } = settings.pace { Some(factor) } else { settings.speed };
+        let speed = if let Pace::Realtime { factor } = settings.pace {
+            Some(factor)
+        } else {
+            settings.speed
+        };
         let delivery = Delivery::per_decision(is_lockstep);
-        let teams = (0..scenario.teams.len()).map(|team| topic::picture(game, scenario, TeamId(team as u8)));
-        let pictures =
-            teams.map(|key| bus.publisher_with(key, Priority::Normal, delivery)).collect::<Result<_, _>>()?;
+        let teams = (0..scenario.teams.len())
+            .map(|team| topic::picture(game, scenario, TeamId(team as u8)));
+        let pictures = teams
+            .map(|key| bus.publisher_with(key, Priority::Normal, delivery))
+            .collect::<Result<_, _>>()?;
         // Commands to boats are urgent: they overtake everything that waits on a link.
         let urgent = |key| bus.publisher_with(key, Priority::Urgent, Delivery::Newest);
         let to_boat = |v| Ok((v, urgent(topic::external_order(game, scenario, v))?));
-        let external_orders: Vec<_> = scenario.externals().map(to_boat).collect::<Result<_, NodeError>>()?;
+        let external_orders: Vec<_> = scenario
+            .externals()
+            .map(to_boat)
+            .collect::<Result<_, NodeError>>()?;
         let reports = subscriptions::report_publishers(&bus, game, scenario)?;
-        let real: Vec<String> = scenario.externals().map(|v| scenario.vehicles[v.index()].name.clone()).collect();
+        let real: Vec<String> = scenario
+            .externals()
+            .map(|v| scenario.vehicles[v.index()].name.clone())
+            .collect();
         let stop_port = HubStopPort::open(&bus, &settings.net, game, &real)?;
         let game_info = GameInfo {
             version: primitives::VERSION.to_owned(),
@@ -144,7 +164,12 @@ impl<'w> GameServer<'w> {
             time: WorkingTime::new(clock::now()),
             pictures,
             link_reports: BTreeMap::new(),
-            throttles: scenario.teams.iter().filter(|_| !is_lockstep).map(|_| Throttle::new(clock::now())).collect(),
+            throttles: scenario
+                .teams
+                .iter()
+                .filter(|_| !is_lockstep)
+                .map(|_| Throttle::new(clock::now()))
+                .collect(),
             asked: None,
             external_orders,
             reports,
@@ -190,7 +215,8 @@ impl<'w> GameServer<'w> {
             let silent: Vec<VehicleId> = self.silent_boats().collect();
             if (vacant.len(), silent.len()) != told {
                 told = (vacant.len(), silent.len());
-                let [agents, gateways] = [&vacant, &silent].map(|vehicles| self.names_of(vehicles.iter().copied()));
+                let [agents, gateways] =
+                    [&vacant, &silent].map(|vehicles| self.names_of(vehicles.iter().copied()));
                 tell(ProgressMessage::Waiting { agents, gateways });
                 self.is_news = true;
             }
@@ -222,13 +248,18 @@ impl<'w> GameServer<'w> {
     }
 
     fn names_of(&self, vehicles: impl Iterator<Item = VehicleId>) -> Vec<String> {
-        vehicles.map(|vehicle| self.name_of(vehicle).to_owned()).collect()
+        vehicles
+            .map(|vehicle| self.name_of(vehicle).to_owned())
+            .collect()
     }
 
     /// The frame of the open decision, built once for recording and observers.
     fn frame(&mut self) -> Arc<Frame> {
         let decision = self.contest.decision();
-        let frame = self.frame.take().filter(|frame| frame.stamp.seq == decision);
+        let frame = self
+            .frame
+            .take()
+            .filter(|frame| frame.stamp.seq == decision);
         let frame = frame.unwrap_or_else(|| Arc::new(self.contest.frame(&mut self.shown)));
         self.frame = Some(Arc::clone(&frame));
         frame
@@ -238,7 +269,9 @@ impl<'w> GameServer<'w> {
     pub(super) fn record(&mut self) {
         if self.recorder.is_some() {
             let frame = self.frame();
-            self.recorder.iter_mut().for_each(|recorder| recorder.decision(&mut self.contest, Arc::clone(&frame)));
+            self.recorder
+                .iter_mut()
+                .for_each(|recorder| recorder.decision(&mut self.contest, Arc::clone(&frame)));
         }
     }
 
@@ -266,7 +299,11 @@ impl<'w> GameServer<'w> {
                 let topic = format!("picture/{}", self.contest.scenario().teams[i].name);
                 self.record_message(topic, Some(Picture::SCHEMA), bytes.clone());
             }
-            if self.throttles.get_mut(i).is_none_or(|throttle| throttle.admits(clock::now())) {
+            if self
+                .throttles
+                .get_mut(i)
+                .is_none_or(|throttle| throttle.admits(clock::now()))
+            {
                 self.pictures[i].send_encoded::<Picture>(bytes)?;
             }
         }
@@ -276,10 +313,23 @@ impl<'w> GameServer<'w> {
     /// Sends a real boat its effective command, or hold while the game is paused. No effect for
     /// simulated boats.
     fn pass_on(&mut self, vehicle: VehicleId) -> Result<(), NodeError> {
-        let Some(boat) = self.external_orders.iter().position(|(boat, _)| *boat == vehicle) else { return Ok(()) };
+        let Some(boat) = self
+            .external_orders
+            .iter()
+            .position(|(boat, _)| *boat == vehicle)
+        else {
+            return Ok(());
+        };
         // A paused game must not leave a real boat moving on its last order.
         let is_held = self.pacing.is_held();
-        self.send_order(boat, if is_held { Order::Hold } else { self.contest.effective_command(vehicle) })
+        self.send_order(
+            boat,
+            if is_held {
+                Order::Hold
+            } else {
+                self.contest.effective_command(vehicle)
+            },
+        )
     }
 
     fn send_order(&mut self, boat: usize, order: Order) -> Result<(), NodeError> {
@@ -290,11 +340,19 @@ impl<'w> GameServer<'w> {
         }
         let valid_ns = self.contest.now();
         let seq = self.contest.decision();
-        let stamp = Stamp { valid_ns, seq, version: ExternalOrder::VERSION };
+        let stamp = Stamp {
+            valid_ns,
+            seq,
+            version: ExternalOrder::VERSION,
+        };
         // The time of the answered picture, by which the gateway judges an order's age, however
         // often the order is repeated.
         let given_ns = self.contest.given_at(vehicle);
-        let order = ExternalOrder { stamp, given_ns, order: VehicleOrder::new(vehicle, order) };
+        let order = ExternalOrder {
+            stamp,
+            given_ns,
+            order: VehicleOrder::new(vehicle, order),
+        };
         let bytes = codec::encode(&order);
         publisher.send_encoded::<ExternalOrder>(bytes.clone())?;
         if self.recorder.is_some() {
@@ -342,7 +400,10 @@ impl<'w> GameServer<'w> {
         self.refusals + self.inbox.refusals() + self.controls.refusals() + dropped
     }
 
-    pub(super) fn report_progress(&mut self, tell: &mut dyn FnMut(ProgressMessage)) -> Result<(), NodeError> {
+    pub(super) fn report_progress(
+        &mut self,
+        tell: &mut dyn FnMut(ProgressMessage),
+    ) -> Result<(), NodeError> {
         let (then, then_sim) = self.last_report;
         let passed = clock::since(then);
         if passed < REPORT_EVERY && !self.is_news {
@@ -351,8 +412,16 @@ impl<'w> GameServer<'w> {
         // Over zero time the rate would be infinite, and the page could not draw it.
         let rate = (self.contest.now() - then_sim).as_s() / passed.as_secs_f64().max(1e-3);
         self.last_report = (clock::now(), self.contest.now());
-        self.reporter.progress(&self.contest, (rate, self.refusals().total()), tell);
-        self.send_run(if self.pacing.is_paused { Phase::Paused } else { Phase::Playing }, rate)
+        self.reporter
+            .progress(&self.contest, (rate, self.refusals().total()), tell);
+        self.send_run(
+            if self.pacing.is_paused {
+                Phase::Paused
+            } else {
+                Phase::Playing
+            },
+            rate,
+        )
     }
 
     /// Subscribes to the bytes of a boat's link while they are recorded or observed. A gateway
@@ -367,7 +436,8 @@ impl<'w> GameServer<'w> {
             } else if !self.link_reports.contains_key(&vehicle) {
                 let what = (vehicle, Reported::Link);
                 let inbox = Arc::clone(&self.inbox);
-                let subscription = subscriptions::subscribe_report(&self.bus, &self.game, scenario, what, inbox)?;
+                let subscription =
+                    subscriptions::subscribe_report(&self.bus, &self.game, scenario, what, inbox)?;
                 self.link_reports.insert(vehicle, subscription);
             }
         }
@@ -378,7 +448,8 @@ impl<'w> GameServer<'w> {
     fn send_run(&mut self, phase: Phase, rate: f64) -> Result<(), NodeError> {
         self.follow_links()?;
         let is_news = std::mem::take(&mut self.is_news);
-        let is_due = self.recorder.is_some() && (is_news || clock::since(self.run_recorded) >= RECORD_EVERY);
+        let is_due =
+            self.recorder.is_some() && (is_news || clock::since(self.run_recorded) >= RECORD_EVERY);
         if !self.run.is_heard() && !is_due {
             return Ok(());
         }
@@ -405,16 +476,29 @@ impl<'w> GameServer<'w> {
     }
 
     /// Passes a network message to the recorder.
-    fn record_message(&mut self, topic: impl Into<String>, schema: Option<&'static str>, bytes: Vec<u8>) {
+    fn record_message(
+        &mut self,
+        topic: impl Into<String>,
+        schema: Option<&'static str>,
+        bytes: Vec<u8>,
+    ) {
         if let Some(recorder) = &self.recorder {
-            recorder.message(Entry::Message { topic: topic.into(), schema, bytes, at: self.contest.now() });
+            recorder.message(Entry::Message {
+                topic: topic.into(),
+                schema,
+                bytes,
+                at: self.contest.now(),
+            });
         }
     }
 
     /// Sends the end of the game to all nodes and waits briefly for agents to leave.
     pub(super) fn shut_down(&mut self) -> Result<(), NodeError> {
         self.send_end()?;
-        let frame = Frame { over: true, ..Frame::clone(&self.frame()) };
+        let frame = Frame {
+            over: true,
+            ..Frame::clone(&self.frame())
+        };
         self.frames.send(&frame)?;
         // Real boats hold from now on, even if the game ends early.
         (0..self.external_orders.len()).try_for_each(|boat| self.send_order(boat, Order::Hold))?;
@@ -422,8 +506,8 @@ impl<'w> GameServer<'w> {
         self.send_run(Phase::Over, 0.0)?;
         let start = clock::now();
         let mut sent = start;
-        // Any message may get lost, and an agent without this one reports a lost sim; one that leaves
-        // has received it. The wait is limited, because an agent may hang.
+        // Any message may get lost, and an agent without this one reports a lost sim; one that
+        // leaves has received it. The wait is limited, because an agent may hang.
         while !self.agents.is_empty() && clock::since(start) < SHUTDOWN {
             self.listen(Duration::from_millis(20));
             if clock::since(sent) >= SEND_END_AGAIN {
@@ -438,9 +522,17 @@ impl<'w> GameServer<'w> {
 
     /// Sends all agents the last pictures.
     fn send_end(&mut self) -> Result<(), NodeError> {
-        let pictures = self.contest.pictures().to_vec().into_iter().zip(&self.pictures);
+        let pictures = self
+            .contest
+            .pictures()
+            .to_vec()
+            .into_iter()
+            .zip(&self.pictures);
         for (picture, publisher) in pictures {
-            publisher.send(&messages::Picture { over: true, ..picture })?;
+            publisher.send(&messages::Picture {
+                over: true,
+                ..picture
+            })?;
         }
         Ok(())
     }
@@ -452,7 +544,10 @@ impl<'w> GameServer<'w> {
     }
 
     /// Waits while the game is paused: keeps agents and boats, and reads messages.
-    pub(super) fn stay_paused(&mut self, tell: &mut dyn FnMut(ProgressMessage)) -> Result<(), NodeError> {
+    pub(super) fn stay_paused(
+        &mut self,
+        tell: &mut dyn FnMut(ProgressMessage),
+    ) -> Result<(), NodeError> {
         /// Agents that receive nothing for too long leave.
         const SEND_AGAIN: Duration = Duration::from_secs(1);
         let mut sent = clock::now();

@@ -61,14 +61,24 @@ impl std::fmt::Display for Pace {
 impl std::str::FromStr for Pace {
     type Err = String;
     fn from_str(text: &str) -> Result<Pace, String> {
-        let wrong =
-            || format!("pace is {text:?}, expected lockstep, realtime, or a factor from 0.01x to 1000x such as 4x");
+        let wrong = || {
+            format!(
+                "pace is {text:?}, expected lockstep, realtime, or a factor from 0.01x to 1000x such as 4x"
+            )
+        };
         match text {
             "lockstep" => Ok(Pace::Lockstep),
             "realtime" => Ok(Pace::Realtime { factor: 1.0 }),
             _ => {
-                let factor: f64 = text.strip_suffix('x').and_then(|n| n.parse().ok()).ok_or_else(wrong)?;
-                if (0.01..=1000.0).contains(&factor) { Ok(Pace::Realtime { factor }) } else { Err(wrong()) }
+                let factor: f64 = text
+                    .strip_suffix('x')
+                    .and_then(|n| n.parse().ok())
+                    .ok_or_else(wrong)?;
+                if (0.01..=1000.0).contains(&factor) {
+                    Ok(Pace::Realtime { factor })
+                } else {
+                    Err(wrong())
+                }
             }
         }
     }

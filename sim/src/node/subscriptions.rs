@@ -42,7 +42,10 @@ impl Inboxes {
         }
     }
 
-    fn question_callback(&self, question: fn() -> Question) -> impl Fn(Query) + Send + Sync + use<> {
+    fn question_callback(
+        &self,
+        question: fn() -> Question,
+    ) -> impl Fn(Query) + Send + Sync + use<> {
         let questions = self.questions.clone();
         let others = Arc::clone(&self.others);
         move |query| {
@@ -61,10 +64,17 @@ pub(super) fn subscribe_report(
     others: Arc<MessageInbox>,
 ) -> Result<Declaration, BusError> {
     let key = topic::report(game, what, &scenario.vehicles[vehicle.index()].name);
-    bus.subscribe(key, move |bytes: &[u8]| match Reported::split_ticket(bytes) {
-        Some((ticket, message)) => others.push(Incoming::Report { ticket, vehicle, what, message: message.to_vec() }),
-        // Counted with all other refusals, which the result and the page show.
-        None => others.refuse(Refusal::Garbage),
+    bus.subscribe(key, move |bytes: &[u8]| {
+        match Reported::split_ticket(bytes) {
+            Some((ticket, message)) => others.push(Incoming::Report {
+                ticket,
+                vehicle,
+                what,
+                message: message.to_vec(),
+            }),
+            // Counted with all other refusals, which the result and the page show.
+            None => others.refuse(Refusal::Garbage),
+        }
     })
 }
 
@@ -77,7 +87,10 @@ pub(super) fn report_publishers(
     let mut publishers = BTreeMap::new();
     for vehicle in scenario.externals() {
         let name = &scenario.vehicles[vehicle.index()].name;
-        for (what, key) in [(Reported::Status, topic::status(game, name)), (Reported::Link, topic::link(game, name))] {
+        for (what, key) in [
+            (Reported::Status, topic::status(game, name)),
+            (Reported::Link, topic::link(game, name)),
+        ] {
             publishers.insert((vehicle, what), bus.publisher(key, Priority::Normal)?);
         }
     }
@@ -113,7 +126,10 @@ pub(super) fn open(
     let mut declarations = vec![
         // One subscription for all agents: the key has their names for access control, and the
         // ticket identifies the sender.
-        bus.subscribe(topic::all_orders(game), inboxes.message_callback(|orders, _| Incoming::Orders(orders)))?,
+        bus.subscribe(
+            topic::all_orders(game),
+            inboxes.message_callback(|orders, _| Incoming::Orders(orders)),
+        )?,
         bus.subscribe(topic::control(game), stop)?,
         bus.answer(topic::control(game), control)?,
         bus.subscribe(
@@ -121,14 +137,31 @@ pub(super) fn open(
             inboxes.message_callback(|report, bytes| Incoming::Nav(report, bytes.to_vec())),
         )?,
         bus.watch_links(move |node| gone.push(Incoming::Gone(node)))?,
-        bus.answer(topic::scenario(game), inboxes.question_callback(|| Question::Scenario))?,
-        bus.answer(topic::events(game), inboxes.question_callback(|| Question::Events))?,
-        bus.answer(topic::water(game), inboxes.question_callback(|| Question::Water))?,
-        bus.answer(topic::all_join(game), move |query| joins.push(Incoming::Join(query)))?,
+        bus.answer(
+            topic::scenario(game),
+            inboxes.question_callback(|| Question::Scenario),
+        )?,
+        bus.answer(
+            topic::events(game),
+            inboxes.question_callback(|| Question::Events),
+        )?,
+        bus.answer(
+            topic::water(game),
+            inboxes.question_callback(|| Question::Water),
+        )?,
+        bus.answer(topic::all_join(game), move |query| {
+            joins.push(Incoming::Join(query))
+        })?,
         bus.show_alive(topic::alive(game, &bus.id()))?,
     ];
     for vehicle in scenario.externals() {
-        declarations.push(subscribe_report(bus, game, scenario, (vehicle, Reported::Status), others())?);
+        declarations.push(subscribe_report(
+            bus,
+            game,
+            scenario,
+            (vehicle, Reported::Status),
+            others(),
+        )?);
     }
     for (i, RecordedTopic { topic, .. }) in recorded.iter().enumerate() {
         let others = others();

@@ -27,7 +27,12 @@ pub(super) struct Throttle {
 
 impl Throttle {
     pub(super) fn new(now: Instant) -> Throttle {
-        Throttle { shortest: [Duration::MAX; 2], opened: now, last: (now, Duration::ZERO), skipped: 0 }
+        Throttle {
+            shortest: [Duration::MAX; 2],
+            opened: now,
+            last: (now, Duration::ZERO),
+            skipped: 0,
+        }
     }
 
     /// Records an answer with its round trip.
@@ -66,7 +71,9 @@ mod tests {
         let mut last = Duration::ZERO;
         for tick in 0..600 {
             let now = start + tick * PERIOD;
-            while let Some((at, asked)) = answers.pop_front_if(|(at, _): &mut (Instant, Instant)| *at <= now) {
+            while let Some((at, asked)) =
+                answers.pop_front_if(|(at, _): &mut (Instant, Instant)| *at <= now)
+            {
                 last = at - asked;
                 throttle.note(at, last);
             }
@@ -84,12 +91,18 @@ mod tests {
         let ms = Duration::from_millis;
         for delay in [ms(1), ms(150), ms(300)] {
             let (share, round_trip) = play(delay, ms(10));
-            assert!(share > 0.999 && round_trip <= 2 * delay + ms(10), "{delay:?}: {share}, {round_trip:?}");
+            assert!(
+                share > 0.999 && round_trip <= 2 * delay + ms(10),
+                "{delay:?}: {share}, {round_trip:?}"
+            );
             let (share, round_trip) = play(delay, ms(200));
             assert!((0.4..0.6).contains(&share), "{delay:?}: {share}");
             // What is sent before an answer shows the queue is queued as well. Without skipping,
             // the last round trip would take a minute.
-            assert!(round_trip < 4 * delay + ms(1100), "{delay:?}: {round_trip:?}");
+            assert!(
+                round_trip < 4 * delay + ms(1100),
+                "{delay:?}: {round_trip:?}"
+            );
         }
     }
 

@@ -20,7 +20,11 @@ pub(super) struct WorkingTime {
 
 impl WorkingTime {
     pub(super) fn new(now: Instant) -> WorkingTime {
-        WorkingTime { looked: now, worked: Duration::ZERO, recovery: Duration::ZERO }
+        WorkingTime {
+            looked: now,
+            worked: Duration::ZERO,
+            recovery: Duration::ZERO,
+        }
     }
 
     /// Accounts for the time since the last call: the sim's own turn, after a wait of up to
@@ -57,16 +61,34 @@ mod tests {
         for (at_s, waited_s, worked_s, is_recovering, what) in [
             (0.5, 0.0, 0.5, false, "its own work"),
             (5.5, 5.0, 5.5, false, "it waited for another node"),
-            (6.4, 0.05, 6.4, false, "it waited a little longer than requested"),
-            (21.4, 0.05, 6.4, true, "it was suspended for fifteen seconds"),
+            (
+                6.4,
+                0.05,
+                6.4,
+                false,
+                "it waited a little longer than requested",
+            ),
+            (
+                21.4,
+                0.05,
+                6.4,
+                true,
+                "it was suspended for fifteen seconds",
+            ),
             (22.0, 0.6, 6.4, true, "it recovers"),
             (40.0, 0.05, 6.4, true, "it was suspended again"),
             (49.0, 9.0, 6.4, true, "it recovers from that too"),
             (52.0, 3.0, 8.4, false, "it is back"),
         ] {
-            time.pass(start + Duration::from_secs_f64(at_s), Duration::from_secs_f64(waited_s));
+            time.pass(
+                start + Duration::from_secs_f64(at_s),
+                Duration::from_secs_f64(waited_s),
+            );
             let worked = time.worked.as_secs_f64();
-            assert!((worked - worked_s).abs() < 1e-6, "{at_s} s, {what}: {worked}");
+            assert!(
+                (worked - worked_s).abs() < 1e-6,
+                "{at_s} s, {what}: {worked}"
+            );
             assert_eq!(time.is_recovering(), is_recovering, "{at_s} s, {what}");
         }
     }

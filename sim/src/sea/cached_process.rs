@@ -26,14 +26,24 @@ impl CachedProcess {
         let length = (points.ceil() as i64).saturating_add(3).clamp(1, HELD_MAX) as u64;
         // A power of two, so that a slot is a mask rather than a division.
         let ring = vec![(0.0, 0.0); length.next_power_of_two() as usize];
-        CachedProcess { process, correlation, trail: Trail::default(), ring, held: (0, 0) }
+        CachedProcess {
+            process,
+            correlation,
+            trail: Trail::default(),
+            ring,
+            held: (0, 0),
+        }
     }
 
     /// Caches the points between two places.
     pub(super) fn hold(&mut self, from: f64, to: f64) {
         let first = from.floor() as i64;
         let end = (to.floor() as i64 + 2).min(first + self.ring.len() as i64);
-        let known = if (self.held.0..=self.held.1).contains(&first) { self.held.1 } else { first };
+        let known = if (self.held.0..=self.held.1).contains(&first) {
+            self.held.1
+        } else {
+            first
+        };
         for index in known..end {
             let slot = self.slot(index);
             self.ring[slot] = self.process.at(index, &mut self.trail);
@@ -67,7 +77,10 @@ impl CachedProcess {
         }
         // The path to the second point is mostly that to the first.
         let mut trail = Trail::default();
-        (self.process.at(index, &mut trail), self.process.at(index + 1, &mut trail))
+        (
+            self.process.at(index, &mut trail),
+            self.process.at(index + 1, &mut trail),
+        )
     }
 
     #[inline]
@@ -89,10 +102,24 @@ mod tests {
         let bare = CachedProcess::new(process(), 0.0);
         let mut cached = CachedProcess::new(process(), 40.0);
         // Ahead by little and by a lot, back, beyond the ring, and below zero.
-        for from in [0.0, 0.4, 1.7, 30.2, 31.0, 200.5, 5.5, 6.5, -70.2, -1030.0, 1e6] {
+        for from in [
+            0.0, 0.4, 1.7, 30.2, 31.0, 200.5, 5.5, 6.5, -70.2, -1030.0, 1e6,
+        ] {
             cached.hold(from, from + 40.0);
-            for place in [from - 90.0, from - 0.1, from, from + 0.3, from + 17.5, from + 40.0, from + 99.9] {
-                assert_eq!(cached.at(place), bare.at(place), "holding {from}, at {place}");
+            for place in [
+                from - 90.0,
+                from - 0.1,
+                from,
+                from + 0.3,
+                from + 17.5,
+                from + 40.0,
+                from + 99.9,
+            ] {
+                assert_eq!(
+                    cached.at(place),
+                    bare.at(place),
+                    "holding {from}, at {place}"
+                );
             }
         }
     }

@@ -1,7 +1,7 @@
 //! The current at a place and time: the sum of mean, wander, tide, shear and eddies.
 //!
-//! [`CurrentField::at_time`] computes the uniform part (mean, wander, tide) once per tick; the local
-//! part (shear, eddies) is computed per boat.
+//! [`CurrentField::at_time`] computes the uniform part (mean, wander, tide) once per tick; the
+//! local part (shear, eddies) is computed per boat.
 
 use super::cached_process::CachedProcess;
 use super::eddy::{self, Vortex};
@@ -35,7 +35,10 @@ pub struct CurrentNow<'a> {
 impl CurrentField {
     /// The current over `field`.
     pub fn new(current: &Current, field: &Field, seeds: &Seeds) -> CurrentField {
-        let drawn = current.random_eddies.map(|random| eddy::draw(&random, field, seeds.first())).unwrap_or_default();
+        let drawn = current
+            .random_eddies
+            .map(|random| eddy::draw(&random, field, seeds.first()))
+            .unwrap_or_default();
         let process = |wander: &Wander| {
             let process = GaussMarkov::new(seeds, "current", |now| wander_place(wander, now));
             CachedProcess::new(process, 0.0)
@@ -45,7 +48,12 @@ impl CurrentField {
             wander: current.wander.map(|wander| (wander, process(&wander))),
             tide: current.tide,
             shear: current.shear,
-            eddies: current.eddies.iter().chain(&drawn).map(Vortex::new).collect(),
+            eddies: current
+                .eddies
+                .iter()
+                .chain(&drawn)
+                .map(Vortex::new)
+                .collect(),
         }
     }
 
@@ -70,10 +78,13 @@ impl CurrentField {
         let mut uniform_m_s = self.mean_m_s;
         if let Some((wander, process)) = &self.wander {
             let mean_m_s = self.mean_m_s.dot(wander.toward);
-            let wandering_m_s = mean_m_s + wander.sigma_m_s * process.at(wander_place(wander, now)).0;
+            let wandering_m_s =
+                mean_m_s + wander.sigma_m_s * process.at(wander_place(wander, now)).0;
             // Clipped, not reflected: the process itself continues unbounded and stays a function
             // of time.
-            let speed_m_s = wandering_m_s.max(wander.speed_m_s.0).min(wander.speed_m_s.1);
+            let speed_m_s = wandering_m_s
+                .max(wander.speed_m_s.0)
+                .min(wander.speed_m_s.1);
             uniform_m_s = uniform_m_s + wander.toward.scaled(speed_m_s - mean_m_s);
         }
         if let Some(tide) = self.tide {
@@ -82,7 +93,11 @@ impl CurrentField {
             let (sin, _) = math::sin_cos(TAU * (turns - turns.floor()));
             uniform_m_s = uniform_m_s + tide.flood_m_s.scaled(sin);
         }
-        CurrentNow { uniform_m_s, shear: self.shear, eddies: &self.eddies }
+        CurrentNow {
+            uniform_m_s,
+            shear: self.shear,
+            eddies: &self.eddies,
+        }
     }
 }
 

@@ -44,14 +44,25 @@ impl Vortex {
         let from_centre = place - self.centre;
         let squared = from_centre.dot(from_centre);
         let s = squared * self.per_radius_squared;
-        // The share of the circulation inside this radius. `expm1` instead of `1 - exp`: in the core
-        // all digits would cancel.
+        // The share of the circulation inside this radius. `expm1` instead of `1 - exp`: in the
+        // core all digits would cancel.
         let share = if s > FAR { 1.0 } else { -libm::expm1(-s) };
         // The water's angular rate around the centre, rad/s.
-        let rate = if s == 0.0 { self.core_rad_s } else { self.core_rad_s * share / s };
+        let rate = if s == 0.0 {
+            self.core_rad_s
+        } else {
+            self.core_rad_s * share / s
+        };
         let along = from_centre.dot(ahead);
-        let fade = if squared == 0.0 { 0.0 } else { 2.0 * (self.core_rad_s * (1.0 - share) - rate) / squared };
-        let velocity = Ned { north: -rate * from_centre.east, east: rate * from_centre.north };
+        let fade = if squared == 0.0 {
+            0.0
+        } else {
+            2.0 * (self.core_rad_s * (1.0 - share) - rate) / squared
+        };
+        let velocity = Ned {
+            north: -rate * from_centre.east,
+            east: rate * from_centre.north,
+        };
         (velocity, rate + fade * along * along)
     }
 }
@@ -68,7 +79,11 @@ pub fn draw(random: &RandomEddies, field: &Field, seed: u64) -> Vec<Eddy> {
         // All numbers of an eddy are drawn, even from a range with a single value, so that fixing a
         // value does not move the next eddy.
         let sense = if stream.bits() & 1 == 0 { 1.0 } else { -1.0 };
-        Eddy { centre: field.at(along_m, across_m), radius_m, peak_m_s: sense * peak_m_s }
+        Eddy {
+            centre: field.at(along_m, across_m),
+            radius_m,
+            peak_m_s: sense * peak_m_s,
+        }
     };
     (0..random.count).map(draw_one).collect()
 }

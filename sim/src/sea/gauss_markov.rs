@@ -66,7 +66,10 @@ pub(super) struct Trail {
 
 impl Default for Trail {
     fn default() -> Trail {
-        Trail { of: 0, points: [(i64::MIN, (0.0, 0.0)); LEVELS + 2] }
+        Trail {
+            of: 0,
+            points: [(i64::MIN, (0.0, 0.0)); LEVELS + 2],
+        }
     }
 }
 
@@ -88,16 +91,27 @@ impl GaussMarkov {
             // Once per level, so that a look-up needs no transcendental function except the noise's
             // logarithm.
             let rho = libm::exp(-apart);
-            (rho / (1.0 + rho * rho), (-libm::expm1(-2.0 * apart) / (1.0 + rho * rho)).sqrt())
+            (
+                rho / (1.0 + rho * rho),
+                (-libm::expm1(-2.0 * apart) / (1.0 + rho * rho)).sqrt(),
+            )
         });
-        let mut process = GaussMarkov { noise: Noise::new(seeds.first(), name), later: vec![], halving };
+        let mut process = GaussMarkov {
+            noise: Noise::new(seeds.first(), name),
+            later: vec![],
+            halving,
+        };
         for (time, seed) in seeds.later() {
             // A place between two points depends on both.
             let after = place(*time).floor() as i64 + 1;
             let noise = Noise::new(*seed, name);
             let before = process.at(after, &mut Trail::default());
             let own = process.of_noise(noise, after, &mut Trail::default());
-            process.later.push(Later { after, noise, above: (before.0 - own.0, before.1 - own.1) });
+            process.later.push(Later {
+                after,
+                noise,
+                above: (before.0 - own.0, before.1 - own.1),
+            });
         }
         process
     }
@@ -108,11 +122,23 @@ impl GaussMarkov {
 
     /// The two processes at a grid point.
     pub(super) fn at(&self, index: i64, trail: &mut Trail) -> Pair {
-        let of = self.later.iter().rposition(|later| later.after < index).map_or(0, |place| place + 1);
+        let of = self
+            .later
+            .iter()
+            .rposition(|later| later.after < index)
+            .map_or(0, |place| place + 1);
         if trail.of != of {
-            *trail = Trail { of, ..Trail::default() };
+            *trail = Trail {
+                of,
+                ..Trail::default()
+            };
         }
-        let Some(Later { after, noise, above }) = of.checked_sub(1).map(|place| self.later[place]) else {
+        let Some(Later {
+            after,
+            noise,
+            above,
+        }) = of.checked_sub(1).map(|place| self.later[place])
+        else {
             return self.of_noise(self.noise, index, trail);
         };
         let own = self.of_noise(noise, index, trail);
@@ -132,13 +158,18 @@ impl GaussMarkov {
         if index == block * BLOCK {
             return low;
         }
-        let mut high = trail.known(end(block + 1), (block + 1) * BLOCK, || draw((block + 1) * BLOCK));
+        let mut high = trail.known(end(block + 1), (block + 1) * BLOCK, || {
+            draw((block + 1) * BLOCK)
+        });
         let mut low_index = block * BLOCK;
         for (level, (pull, sigma)) in self.halving.into_iter().enumerate() {
             let middle_index = low_index + (BLOCK >> (level + 1));
             let middle = trail.known(level, middle_index, || {
                 let fresh = draw(middle_index);
-                (pull * (low.0 + high.0) + sigma * fresh.0, pull * (low.1 + high.1) + sigma * fresh.1)
+                (
+                    pull * (low.0 + high.0) + sigma * fresh.0,
+                    pull * (low.1 + high.1) + sigma * fresh.1,
+                )
             });
             match index.cmp(&middle_index) {
                 std::cmp::Ordering::Equal => return middle,
@@ -157,7 +188,10 @@ mod tests {
 
     /// A seed replaced at point 500, and again at 900.
     fn reseeded(seed: u64) -> Seeds {
-        Seeds::new(seed, &[(500.0, seed + 1), (900.0, seed + 2)].map(|(after_s, seed)| Reseed { after_s, seed }))
+        Seeds::new(
+            seed,
+            &[(500.0, seed + 1), (900.0, seed + 2)].map(|(after_s, seed)| Reseed { after_s, seed }),
+        )
     }
 
     #[test]
@@ -171,7 +205,13 @@ mod tests {
         let known = at(&first, AFTER + 1).0;
         let mut sums = [[0.0; 3]; 3];
         for seed in 0..GAMES {
-            let seeds = Seeds::new(9, &[Reseed { after_s: AFTER as f64, seed: 100 + seed }]);
+            let seeds = Seeds::new(
+                9,
+                &[Reseed {
+                    after_s: AFTER as f64,
+                    seed: 100 + seed,
+                }],
+            );
             let process = GaussMarkov::new(&seeds, "test", |now| now.as_s());
             assert_eq!(at(&process, AFTER - 3), at(&first, AFTER - 3));
             assert_eq!(at(&process, AFTER + 1), at(&first, AFTER + 1));
@@ -187,25 +227,44 @@ mod tests {
             let mean = sum / games;
             let variance = squares / games - (sum / games) * (sum / games);
             let want = 1.0 - rho * rho;
-            assert!((mean - known * rho).abs() < 5.0 * (want / games).sqrt(), "lag {lag}: mean {mean}");
-            assert!((variance - want).abs() < 5.0 * want * (2.0 / games).sqrt(), "lag {lag}: variance {variance}");
+            assert!(
+                (mean - known * rho).abs() < 5.0 * (want / games).sqrt(),
+                "lag {lag}: mean {mean}"
+            );
+            assert!(
+                (variance - want).abs() < 5.0 * want * (2.0 / games).sqrt(),
+                "lag {lag}: variance {variance}"
+            );
         }
         let rho = |steps: f64| libm::exp(-steps / STEPS_PER_LENGTH);
         let covariance = sums[1][2] / games - sums[1][0] / games * sums[2][0] / games;
         let want = rho(20.0) * (1.0 - rho(80.0));
-        assert!((covariance - want).abs() < 5.0 / games.sqrt(), "covariance {covariance}, want {want}");
+        assert!(
+            (covariance - want).abs() < 5.0 / games.sqrt(),
+            "covariance {covariance}, want {want}"
+        );
     }
 
     #[test]
     fn a_point_is_the_same_however_one_comes_to_it() {
         let process = GaussMarkov::new(&reseeded(3), "test", |now| now.as_s());
         let mut trail = Trail::default();
-        let in_order: Vec<Pair> = (-2100..2100).map(|index| process.at(index, &mut trail)).collect();
+        let in_order: Vec<Pair> = (-2100..2100)
+            .map(|index| process.at(index, &mut trail))
+            .collect();
         let stride = 1777; // coprime to 4200: every point once, in a wild order
         for i in 0..4200 {
             let i = i * stride % 4200;
-            assert_eq!(process.at(i as i64 - 2100, &mut trail), in_order[i], "point {i} by the trail");
-            assert_eq!(process.at(i as i64 - 2100, &mut Trail::default()), in_order[i], "point {i} alone");
+            assert_eq!(
+                process.at(i as i64 - 2100, &mut trail),
+                in_order[i],
+                "point {i} by the trail"
+            );
+            assert_eq!(
+                process.at(i as i64 - 2100, &mut Trail::default()),
+                in_order[i],
+                "point {i} alone"
+            );
         }
     }
 
@@ -214,28 +273,49 @@ mod tests {
         const POINTS: i64 = 4_000_000;
         let process = GaussMarkov::new(&5.into(), "test", |now| now.as_s());
         let mut trail = Trail::default();
-        let x: Vec<Pair> = (0..POINTS).map(|index| process.at(index, &mut trail)).collect();
+        let x: Vec<Pair> = (0..POINTS)
+            .map(|index| process.at(index, &mut trail))
+            .collect();
         // Five standard errors; 125 000 correlation lengths count as half as many independent
         // draws.
         let within = 5.0 * (2.0 / (POINTS as f64 / STEPS_PER_LENGTH)).sqrt();
-        let mean =
-            |f: &dyn Fn(usize) -> f64, lag: usize| (0..x.len() - lag).map(f).sum::<f64>() / (x.len() - lag) as f64;
-        assert!(mean(&|i| x[i].0, 0).abs() < within, "mean {}", mean(&|i| x[i].0, 0));
-        assert!(mean(&|i| x[i].0 * x[i].1, 0).abs() < within, "correlation of the two");
+        let mean = |f: &dyn Fn(usize) -> f64, lag: usize| {
+            (0..x.len() - lag).map(f).sum::<f64>() / (x.len() - lag) as f64
+        };
+        assert!(
+            mean(&|i| x[i].0, 0).abs() < within,
+            "mean {}",
+            mean(&|i| x[i].0, 0)
+        );
+        assert!(
+            mean(&|i| x[i].0 * x[i].1, 0).abs() < within,
+            "correlation of the two"
+        );
         for lag in [0, 1, 5, 16, 32, 64, 96] {
             let want = libm::exp(-(lag as f64) / STEPS_PER_LENGTH);
-            for (which, got) in
-                [mean(&|i| x[i].0 * x[i + lag].0, lag), mean(&|i| x[i].1 * x[i + lag].1, lag)].into_iter().enumerate()
+            for (which, got) in [
+                mean(&|i| x[i].0 * x[i + lag].0, lag),
+                mean(&|i| x[i].1 * x[i + lag].1, lag),
+            ]
+            .into_iter()
+            .enumerate()
             {
-                assert!((got - want).abs() < within, "process {which}, lag {lag}: {got}, want {want} within {within}");
+                assert!(
+                    (got - want).abs() < within,
+                    "process {which}, lag {lag}: {got}, want {want} within {within}"
+                );
             }
         }
         // The same only at the seams between blocks: 3900 seams.
         let seams = || (1..POINTS as usize / BLOCK as usize).map(|block| block * BLOCK as usize);
         for lag in [1, 8, 32] {
-            let got = seams().map(|i| x[i - lag].0 * x[i + lag].0).sum::<f64>() / seams().count() as f64;
+            let got =
+                seams().map(|i| x[i - lag].0 * x[i + lag].0).sum::<f64>() / seams().count() as f64;
             let want = libm::exp(-2.0 * lag as f64 / STEPS_PER_LENGTH);
-            assert!((got - want).abs() < 5.0 * (2.0 / 3900.0_f64).sqrt(), "lag {lag} over a seam: {got}, want {want}");
+            assert!(
+                (got - want).abs() < 5.0 * (2.0 / 3900.0_f64).sqrt(),
+                "lag {lag} over a seam: {got}, want {want}"
+            );
         }
     }
 }

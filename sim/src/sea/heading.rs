@@ -19,7 +19,10 @@ fn place(heading_rad: f64) -> (usize, f64) {
     let bins = heading_rad * (BINS as f64 / TAU);
     let below = bins.floor();
     // A NaN heading finds bin 0 and gives NaN.
-    ((below as i64).rem_euclid(BINS as i64) as usize, bins - below)
+    (
+        (below as i64).rem_euclid(BINS as i64) as usize,
+        bins - below,
+    )
 }
 
 /// Four numbers for each of four components, between one bin and the next.
@@ -58,19 +61,31 @@ impl HeadingTable {
         let number = |i: usize| {
             let bin = i / rows;
             let row = i % rows;
-            let parts: [[f64; FOLD]; ROW] = std::array::from_fn(|lane| numbers(bin, row * ROW + lane));
-            Lanes::of_row(std::array::from_fn(|part| parts.map(|parts| parts[part] as f32)))
+            let parts: [[f64; FOLD]; ROW] =
+                std::array::from_fn(|lane| numbers(bin, row * ROW + lane));
+            Lanes::of_row(std::array::from_fn(|part| {
+                parts.map(|parts| parts[part] as f32)
+            }))
         };
         let at: Vec<Lanes<f32>> = (0..BINS * rows).map(number).collect();
-        let line = |i: usize| Segment { from: at[i], gain: at[(i + rows) % at.len()] - at[i] };
-        HeadingTable { rows, lines: (0..at.len()).map(line).collect() }
+        let line = |i: usize| Segment {
+            from: at[i],
+            gain: at[(i + rows) % at.len()] - at[i],
+        };
+        HeadingTable {
+            rows,
+            lines: (0..at.len()).map(line).collect(),
+        }
     }
 
     /// The rows for a heading, and its fraction from their bin to the next.
     #[inline(always)]
     pub(super) fn at(&self, heading_rad: f64) -> (&[Segment], Lanes<f32>) {
         let (bin, fraction) = place(heading_rad);
-        (&self.lines[bin * self.rows..(bin + 1) * self.rows], Lanes::splat(fraction as f32))
+        (
+            &self.lines[bin * self.rows..(bin + 1) * self.rows],
+            Lanes::splat(fraction as f32),
+        )
     }
 }
 

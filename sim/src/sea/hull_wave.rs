@@ -80,27 +80,54 @@ impl HullWaves {
     }
 
     /// The same, with averaged waves that are already known.
-    pub(super) fn of(field: &WaveField, boat: &Boat, water_density_kg_m3: f64, patches: &Patches) -> HullWaves {
-        let speeds_m_s: Vec<f64> = field.waves.iter().map(|wave| orbital_speed_m_s(wave, boat)).collect();
+    pub(super) fn of(
+        field: &WaveField,
+        boat: &Boat,
+        water_density_kg_m3: f64,
+        patches: &Patches,
+    ) -> HullWaves {
+        let speeds_m_s: Vec<f64> = field
+            .waves
+            .iter()
+            .map(|wave| orbital_speed_m_s(wave, boat))
+            .collect();
         let reflected_m = field.reflected_m(boat);
         let lines = HeadingTable::new(row_count(&field.waves), |bin, wave| {
-            let Some(patch) = patches.of_bin(bin).get(wave) else { return [0.0; FOLD] };
+            let Some(patch) = patches.of_bin(bin).get(wave) else {
+                return [0.0; FOLD];
+            };
             let Planar { surge, sway, yaw } = orbital_velocity(speeds_m_s[wave], patch);
             [surge, sway, yaw, reflected_m[wave]]
         });
         let reflected_m2: f64 = reflected_m.iter().map(|c| c * c).sum();
         // The time average of the squares is the closed-form mean drift.
-        let per_m2 = if reflected_m2 > 0.0 { 1.0 / reflected_m2 } else { 0.0 };
+        let per_m2 = if reflected_m2 > 0.0 {
+            1.0 / reflected_m2
+        } else {
+            0.0
+        };
         let drift = HeadingTable::new(1, |bin, number| {
             if number > 0 {
                 return [0.0; FOLD];
             }
-            let travels = patches.of_bin(bin).iter().map(|patch| (patch.ahead, patch.starboard));
-            let mean = field.drift_of(boat, water_density_kg_m3, reflected_m.iter().copied().zip(travels));
+            let travels = patches
+                .of_bin(bin)
+                .iter()
+                .map(|patch| (patch.ahead, patch.starboard));
+            let mean = field.drift_of(
+                boat,
+                water_density_kg_m3,
+                reflected_m.iter().copied().zip(travels),
+            );
             [per_m2 * mean.surge, per_m2 * mean.sway, 0.0, 0.0]
         });
         let blocks = blocks(&field.waves, Row::new);
-        HullWaves { instructions: field.instructions, blocks, lines, drift }
+        HullWaves {
+            instructions: field.instructions,
+            blocks,
+            lines,
+            drift,
+        }
     }
 
     pub(super) fn set_instructions(&mut self, instructions: Instructions) {
@@ -109,22 +136,50 @@ impl HullWaves {
 
     /// The waves at a boat.
     pub fn at(&self, pose: Pose, time_s: f64) -> WaveSample {
-        self.sample(&self.instructions.run(At { waves: self, pose, time_s }), pose.psi_rad)
+        self.sample(
+            &self.instructions.run(At {
+                waves: self,
+                pose,
+                time_s,
+            }),
+            pose.psi_rad,
+        )
     }
 
     /// The waves at a boat, and the depth of its propellers minus that in calm water, m.
-    pub fn at_with(&self, submergence: &Submergence, pose: Pose, time_s: f64) -> (WaveSample, [f64; 2]) {
-        let (sums, change_m) = self.instructions.run(AtWith { waves: self, submergence, pose, time_s });
-        (self.sample(&sums, pose.psi_rad), [change_m.sum(0), change_m.sum(1)])
+    pub fn at_with(
+        &self,
+        submergence: &Submergence,
+        pose: Pose,
+        time_s: f64,
+    ) -> (WaveSample, [f64; 2]) {
+        let (sums, change_m) = self.instructions.run(AtWith {
+            waves: self,
+            submergence,
+            pose,
+            time_s,
+        });
+        (
+            self.sample(&sums, pose.psi_rad),
+            [change_m.sum(0), change_m.sum(1)],
+        )
     }
 
     /// Sums over the components, with those of the submergence if its lines are given.
     #[inline(always)]
     fn sums(&self, submergence: Option<&[Segment]>, pose: Pose, time_s: f64) -> (Sums, Lanes<f32>) {
-        let mut sums = Sums { of_cos: Lanes::splat(0.0), of_sin: Lanes::splat(0.0) };
+        let mut sums = Sums {
+            of_cos: Lanes::splat(0.0),
+            of_sin: Lanes::splat(0.0),
+        };
         let mut change_m = Lanes::splat(0.0);
         let (lines, fraction) = self.lines.at(pose.psi_rad);
-        for (n, (block, lines)) in self.blocks.iter().zip(lines.as_chunks::<FOLD>().0).enumerate() {
+        for (n, (block, lines)) in self
+            .blocks
+            .iter()
+            .zip(lines.as_chunks::<FOLD>().0)
+            .enumerate()
+        {
             // At the boat's position, which produces the frequency of encounter. Adding that
             // explicitly would combine it with a wrong wave number.
             let (sin, cos) = block.phases.sin_cos(pose.at, time_s);
@@ -135,7 +190,12 @@ impl HullWaves {
                 sums.of_cos += line * (row.of_cos * cos);
                 sums.of_sin += line * (row.of_sin * sin);
                 if let Some(lines) = submergence {
-                    submergence::add(&mut change_m, lines[FOLD * n + i].at_fraction(fraction), sin, cos);
+                    submergence::add(
+                        &mut change_m,
+                        lines[FOLD * n + i].at_fraction(fraction),
+                        sin,
+                        cos,
+                    );
                 }
             }
         }
@@ -151,9 +211,21 @@ impl HullWaves {
         let mean = drift[0].at_fraction(fraction);
         let [surge, sway] = [mean.0[0], mean.0[ROW]].map(|mean| f64::from(mean) * groups_m2);
         WaveSample {
-            velocity: Planar { surge: of_cos.sum(0), sway: of_cos.sum(1), yaw: of_sin.sum(2) },
-            acceleration: Planar { surge: of_sin.sum(0), sway: of_sin.sum(1), yaw: -of_cos.sum(2) },
-            drift_newton: Planar { surge, sway, yaw: 0.0 },
+            velocity: Planar {
+                surge: of_cos.sum(0),
+                sway: of_cos.sum(1),
+                yaw: of_sin.sum(2),
+            },
+            acceleration: Planar {
+                surge: of_sin.sum(0),
+                sway: of_sin.sum(1),
+                yaw: -of_cos.sum(2),
+            },
+            drift_newton: Planar {
+                surge,
+                sway,
+                yaw: 0.0,
+            },
         }
     }
 }
@@ -164,7 +236,8 @@ struct Sums {
     of_sin: Lanes<f32>,
 }
 
-/// [`HullWaves::at`] without the use of the sums, which would affect their register allocation here.
+/// [`HullWaves::at`] without the use of the sums, which would affect their register allocation
+/// here.
 struct At<'a> {
     waves: &'a HullWaves,
     pose: Pose,
@@ -193,7 +266,11 @@ impl Kernel for AtWith<'_> {
 
     #[inline(always)]
     fn run(self) -> (Sums, Lanes<f32>) {
-        self.waves.sums(Some(self.submergence.lines(self.pose.psi_rad)), self.pose, self.time_s)
+        self.waves.sums(
+            Some(self.submergence.lines(self.pose.psi_rad)),
+            self.pose,
+            self.time_s,
+        )
     }
 }
 

@@ -116,10 +116,16 @@ impl SeaModel {
     /// This sea over this field, for these kinds of boat and ticks of this length, with the
     /// randomness of `seeds`.
     pub fn new(sea: &Sea, boats: &[Boat], field: &Field, tick: SimTime, seeds: &Seeds) -> SeaModel {
-        let waves = sea.waves.as_ref().map(|waves| WaveField::new(waves, sea.depth_m, seeds.first()));
+        let waves = sea
+            .waves
+            .as_ref()
+            .map(|waves| WaveField::new(waves, sea.depth_m, seeds.first()));
         // At least half a metre: the wind profile is a power of the height and has no meaning at
         // the water itself.
-        let highest = boats.iter().map(|boat| boat.windage.height_m).fold(0.5, f64::max);
+        let highest = boats
+            .iter()
+            .map(|boat| boat.windage.height_m)
+            .fold(0.5, f64::max);
         // Zero wind means no wind force, even on a moving boat.
         let wind = sea.wind.as_ref().filter(|wind| wind.speed_10m_m_s > 0.0);
         let wind = wind.map(|wind| WindField::new(wind, highest, field, seeds));
@@ -140,7 +146,10 @@ impl SeaModel {
                 length_m: boat.length_m,
                 shape: model.shape_of(boat, sea.water_density_kg_m3, &mut patches),
                 windage: boat.windage.clone(),
-                wind_mean_m_s: model.wind.as_ref().map_or(0.0, |wind| wind.mean_m_s(boat.windage.height_m)),
+                wind_mean_m_s: model
+                    .wind
+                    .as_ref()
+                    .map_or(0.0, |wind| wind.mean_m_s(boat.windage.height_m)),
             };
             model.kinds.push(kind);
         }
@@ -150,7 +159,9 @@ impl SeaModel {
     /// The index of the boat's propeller submergence, created on first use; `None` if the
     /// propellers cannot ventilate.
     fn submergence_of(&mut self, boat: &Boat, patches: &mut Made<2, Patches>) -> Option<usize> {
-        let (Drive::Thrusters { thruster, .. }, Some(field)) = (&boat.drive, &self.waves) else { return None };
+        let (Drive::Thrusters { thruster, .. }, Some(field)) = (&boat.drive, &self.waves) else {
+            return None;
+        };
         // Boats whose propellers never draw air do not pay for this.
         thruster.flaws.ventilation?;
         // By size, not by name: tables dominate the time to create a game, and strategies often
@@ -158,27 +169,42 @@ impl SeaModel {
         let size = [boat.length_m, boat.beam_m, boat.draught_m, thruster.arm_m];
         Some(index_of(&mut self.submergences, size, || {
             let ahead = -PROPELLER_ASTERN * boat.length_m;
-            let places = [-1.0, 1.0].map(|side| Body { ahead, starboard: side * thruster.arm_m });
+            let places = [-1.0, 1.0].map(|side| Body {
+                ahead,
+                starboard: side * thruster.arm_m,
+            });
             Submergence::of(field, boat, places, patches_of(patches, field, boat))
         }))
     }
 
     /// The index of the boat's shape; created on first use.
-    fn shape_of(&mut self, boat: &Boat, water_density_kg_m3: f64, patches: &mut Made<2, Patches>) -> usize {
+    fn shape_of(
+        &mut self,
+        boat: &Boat,
+        water_density_kg_m3: f64,
+        patches: &mut Made<2, Patches>,
+    ) -> usize {
         let Some(field) = &self.waves else { return 0 };
-        index_of(&mut self.shapes, [boat.length_m, boat.beam_m, boat.draught_m], || {
-            let patches = patches_of(patches, field, boat);
-            Shape {
-                waves: HullWaves::of(field, boat, water_density_kg_m3, patches),
-                response: WaveResponse::of(field, boat, patches),
-                rise_drift_m_s: field.rise_drift_m_s(boat.draught_m),
-            }
-        })
+        index_of(
+            &mut self.shapes,
+            [boat.length_m, boat.beam_m, boat.draught_m],
+            || {
+                let patches = patches_of(patches, field, boat);
+                Shape {
+                    waves: HullWaves::of(field, boat, water_density_kg_m3, patches),
+                    response: WaveResponse::of(field, boat, patches),
+                    rise_drift_m_s: field.rise_drift_m_s(boat.draught_m),
+                }
+            },
+        )
     }
 
     /// Computes waves with these instructions. The choice affects only the speed.
     pub(crate) fn set_instructions(&mut self, instructions: Instructions) {
-        self.waves = self.waves.take().map(|waves| waves.with_instructions(instructions));
+        self.waves = self
+            .waves
+            .take()
+            .map(|waves| waves.with_instructions(instructions));
         for (_, shape) in &mut self.shapes {
             let shape = Arc::make_mut(shape);
             shape.waves.set_instructions(instructions);
@@ -206,7 +232,12 @@ impl SeaModel {
         // In whole nanoseconds, so that wave times have the same bits in a played and in a restored
         // game.
         let middle_s = (now + self.half_tick).as_s();
-        SeaNow { model: self, current: self.current.at_time(now), now, middle_s }
+        SeaNow {
+            model: self,
+            current: self.current.at_time(now),
+            now,
+            middle_s,
+        }
     }
 }
 
@@ -214,12 +245,22 @@ impl SeaNow<'_> {
     /// The sea's effect on a boat of this kind with this hull, in the tick that starts now. `nu` is
     /// its velocity over the ground in body axes.
     #[inline]
-    pub fn forcing(&self, kind: usize, hull: &HullModel, pose: Pose, rotation: Rotation, nu: Planar) -> SeaForcing {
+    pub fn forcing(
+        &self,
+        kind: usize,
+        hull: &HullModel,
+        pose: Pose,
+        rotation: Rotation,
+        nu: Planar,
+    ) -> SeaForcing {
         let boat = &self.model.kinds[kind];
         let (current_m_s, turning_rad_s) = self.current.over_hull(pose.at, rotation);
         let mut forcing = SeaForcing {
             current_m_s,
-            water: Planar { yaw: turning_rad_s, ..Planar::default() },
+            water: Planar {
+                yaw: turning_rad_s,
+                ..Planar::default()
+            },
             ..SeaForcing::default()
         };
         if let Some(wind) = &self.model.wind {
@@ -250,8 +291,14 @@ impl SeaNow<'_> {
         let velocity_m_s = nu.in_ned(rotation);
         // Once, in the middle of the tick: the rate of change is known there too, and three
         // evaluations would triple the largest part of a tick.
-        let middle = Pose { at: pose.at + velocity_m_s.scaled(half_s), psi_rad: pose.psi_rad + half_s * nu.yaw };
-        let (waves, submergence_change_m) = match boat.submergence.map(|index| &self.model.submergences[index].1) {
+        let middle = Pose {
+            at: pose.at + velocity_m_s.scaled(half_s),
+            psi_rad: pose.psi_rad + half_s * nu.yaw,
+        };
+        let (waves, submergence_change_m) = match boat
+            .submergence
+            .map(|index| &self.model.submergences[index].1)
+        {
             None => (shape.waves.at(middle, self.middle_s), [0.0; 2]),
             Some(submergence) => shape.waves.at_with(submergence, middle, self.middle_s),
         };
@@ -263,7 +310,10 @@ impl SeaNow<'_> {
         forcing.water_rate = waves.acceleration;
         // Long waves accelerate the displaced water and the added mass as they accelerate water
         // (Froude-Krylov and diffraction; Newman 1977, ch. 6).
-        forcing.force = forcing.force.plus(1.0, hull.force_of(waves.acceleration)).plus(1.0, waves.drift_newton);
+        forcing.force = forcing
+            .force
+            .plus(1.0, hull.force_of(waves.acceleration))
+            .plus(1.0, waves.drift_newton);
     }
 
     /// The waves, if there are any.
@@ -273,7 +323,9 @@ impl SeaNow<'_> {
 
     /// The waves for observers; none in calm water.
     pub fn water(&self) -> Water {
-        Water { waves: self.waves().map(WaveField::plane_waves).unwrap_or_default() }
+        Water {
+            waves: self.waves().map(WaveField::plane_waves).unwrap_or_default(),
+        }
     }
 
     /// The current at a place, m/s, which carries a point boat along.
@@ -283,14 +335,19 @@ impl SeaNow<'_> {
 
     /// Height of the water at a place above calm level, m.
     pub fn elevation_m(&self, at: Ned) -> f64 {
-        self.model.waves.as_ref().map_or(0.0, |waves| waves.surface(at, self.now.as_s()).elevation_m)
+        self.model
+            .waves
+            .as_ref()
+            .map_or(0.0, |waves| waves.surface(at, self.now.as_s()).elevation_m)
     }
 
     /// The velocity of the air 10 m above the water, m/s.
     pub fn wind_at(&self, at: Ned) -> Ned {
         // Ten metres is the reference height of wind reports and Beaufort numbers, not a boat's
         // height.
-        self.model.wind.as_ref().map_or_else(Ned::default, |wind| wind.at(at, wind.mean_m_s(10.0), self.now))
+        self.model.wind.as_ref().map_or_else(Ned::default, |wind| {
+            wind.at(at, wind.mean_m_s(10.0), self.now)
+        })
     }
 
     /// The present attitude of a boat of this kind in the waves.
@@ -299,27 +356,46 @@ impl SeaNow<'_> {
             return Attitude::default();
         }
         let velocity_m_s = nu.in_ned(rotation);
-        self.model.shapes[self.model.kinds[kind].shape].1.response.at(pose, velocity_m_s, nu.yaw, self.now.as_s())
+        self.model.shapes[self.model.kinds[kind].shape]
+            .1
+            .response
+            .at(pose, velocity_m_s, nu.yaw, self.now.as_s())
     }
 }
 
 /// The averaged waves under a hull of this length and beam.
 fn patches_of<'a>(made: &'a mut Made<2, Patches>, field: &WaveField, boat: &Boat) -> &'a Patches {
-    let index = index_of(made, [boat.length_m, boat.beam_m], || Patches::new(field, boat));
+    let index = index_of(made, [boat.length_m, boat.beam_m], || {
+        Patches::new(field, boat)
+    });
     &made[index].1
 }
 
 /// The index of the entry for this size, created on first use.
-fn index_of<const N: usize, T>(made: &mut Made<N, T>, size: [f64; N], make: impl FnOnce() -> T) -> usize {
-    made.iter().position(|(other, _)| *other == size).unwrap_or_else(|| {
-        made.push((size, Arc::new(make())));
-        made.len() - 1
-    })
+fn index_of<const N: usize, T>(
+    made: &mut Made<N, T>,
+    size: [f64; N],
+    make: impl FnOnce() -> T,
+) -> usize {
+    made.iter()
+        .position(|(other, _)| *other == size)
+        .unwrap_or_else(|| {
+            made.push((size, Arc::new(make())));
+            made.len() - 1
+        })
 }
 
 /// A short-crested sea for tests.
 #[cfg(test)]
 fn waves_from(from_rad: f64, hs_m: f64, tp_s: f64, components: u32) -> scenario::sea::Waves {
     let spreading = scenario::sea::Spreading::CosineSquared;
-    scenario::sea::Waves { hs_m, tp_s, gamma: 3.3, from_rad, spreading, components, drift_factor: 1.0 }
+    scenario::sea::Waves {
+        hs_m,
+        tp_s,
+        gamma: 3.3,
+        from_rad,
+        spreading,
+        components,
+        drift_factor: 1.0,
+    }
 }

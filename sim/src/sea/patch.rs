@@ -29,12 +29,25 @@ impl Patch {
         let k_y = wave.wavenumber_rad_m * starboard;
         let (mean_x, tilt_x) = fit(0.5 * k_x * boat.length_m);
         let (mean_y, tilt_y) = fit(0.5 * k_y * boat.beam_m);
-        Patch { ahead, starboard, mean_x, mean_y, tilt_x: k_x * tilt_x, tilt_y: k_y * tilt_y }
+        Patch {
+            ahead,
+            starboard,
+            mean_x,
+            mean_y,
+            tilt_x: k_x * tilt_x,
+            tilt_y: k_y * tilt_y,
+        }
     }
 
     /// The same wave for the opposite heading.
     fn turned(&self) -> Patch {
-        Patch { ahead: -self.ahead, starboard: -self.starboard, tilt_x: -self.tilt_x, tilt_y: -self.tilt_y, ..*self }
+        Patch {
+            ahead: -self.ahead,
+            starboard: -self.starboard,
+            tilt_x: -self.tilt_x,
+            tilt_y: -self.tilt_y,
+            ..*self
+        }
     }
 }
 
@@ -47,7 +60,11 @@ fn fit(half_rad: f64) -> (f64, f64) {
         return (1.0 - u * u / 6.0, 1.0 - u * u / 10.0);
     }
     let (sin, cos) = libm::sincos(u);
-    let tilt = if u.abs() < 0.01 { 1.0 - u * u / 10.0 } else { 3.0 * (sin - u * cos) / (u * u * u) };
+    let tilt = if u.abs() < 0.01 {
+        1.0 - u * u / 10.0
+    } else {
+        3.0 * (sin - u * cos) / (u * u * u)
+    };
     (sin / u, tilt)
 }
 
@@ -60,14 +77,24 @@ pub(super) struct Patches {
 
 impl Patches {
     pub(super) fn new(field: &WaveField, boat: &Boat) -> Patches {
-        let of_bin = |bin| field.waves.iter().map(move |wave| Patch::new(wave, boat, heading::of_bin(bin)));
+        let of_bin = |bin| {
+            field
+                .waves
+                .iter()
+                .map(move |wave| Patch::new(wave, boat, heading::of_bin(bin)))
+        };
         let mut patches: Vec<Patch> = (0..BINS / 2).flat_map(of_bin).collect();
         // After half a turn, the same wave comes from the other end, which saves half of the sines
         // at the start of a game.
         patches.extend_from_within(..);
         let half = patches.len() / 2;
-        patches[half..].iter_mut().for_each(|patch| *patch = patch.turned());
-        Patches { waves: field.waves.len(), patches }
+        patches[half..]
+            .iter_mut()
+            .for_each(|patch| *patch = patch.turned());
+        Patches {
+            waves: field.waves.len(),
+            patches,
+        }
     }
 
     /// The waves, one by one, for a heading of the table.
@@ -83,14 +110,19 @@ mod tests {
 
     #[test]
     fn those_of_a_table_are_the_waves_on_its_headings() {
-        let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/boats/surveyor_m1_8.toml");
+        let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("../scenarios/boats/surveyor_m1_8.toml");
         let boat = scenario::load_file::<scenario::Boat>(&file).unwrap_or_else(|e| panic!("{e}"));
         let field = WaveField::new(&waves_from(0.7, 0.3, 2.5, 20), None, 3);
         let patches = Patches::new(&field, &boat);
         for bin in 0..BINS {
-            let want = field.waves.iter().map(|wave| Patch::new(wave, &boat, heading::of_bin(bin)));
+            let want = field
+                .waves
+                .iter()
+                .map(|wave| Patch::new(wave, &boat, heading::of_bin(bin)));
             for (want, got) in want.zip(patches.of_bin(bin)) {
-                let numbers = |p: &Patch| [p.ahead, p.starboard, p.mean_x, p.mean_y, p.tilt_x, p.tilt_y];
+                let numbers =
+                    |p: &Patch| [p.ahead, p.starboard, p.mean_x, p.mean_y, p.tilt_x, p.tilt_y];
                 for (want, got) in numbers(&want).into_iter().zip(numbers(got)) {
                     assert!((want - got).abs() < 1e-12, "{bin}: got {got}, want {want}");
                 }

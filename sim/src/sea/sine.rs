@@ -17,10 +17,22 @@ const ROUNDER: f64 = 6_755_399_441_055_744.0;
 /// sin π r = r (S0 + S1 r² + ...), minimax for |r| ≤ 1/2 by the Remez exchange: error at most
 /// 3.4e-9, before rounding.
 #[expect(clippy::approx_constant, reason = "close to π, but not π")]
-const SIN: [f32; 5] = [3.141_592_6, -5.167_707, 2.550_031_4, -0.598_045_2, 0.077_220_13];
+const SIN: [f32; 5] = [
+    3.141_592_6,
+    -5.167_707,
+    2.550_031_4,
+    -0.598_045_2,
+    0.077_220_13,
+];
 
 /// cos π r = C0 + C1 r² + ..., likewise: error at most 4.7e-8.
-const COS: [f32; 5] = [0.999_999_95, -4.934_793, 4.058_412, -1.331_880_2, 0.219_696_8];
+const COS: [f32; 5] = [
+    0.999_999_95,
+    -4.934_793,
+    4.058_412,
+    -1.331_880_2,
+    0.219_696_8,
+];
 
 /// The largest error of [`sin_cos_turns`], apart from rounding of the angle itself.
 #[cfg(test)]
@@ -40,7 +52,10 @@ pub(super) fn sin_cos_turns(turns: Lanes<f64>) -> (Lanes<f32>, Lanes<f32>) {
     let sin_half = quartic(SIN, x) * r;
     let cos_half = quartic(COS, x);
     let sin_twice = sin_half + sin_half;
-    (sin_twice * cos_half, Lanes::<f32>::splat(1.0) - sin_twice * sin_half)
+    (
+        sin_twice * cos_half,
+        Lanes::<f32>::splat(1.0) - sin_twice * sin_half,
+    )
 }
 
 /// c0 + c1 x + ... + c4 x⁴ (Estrin): a shorter dependency chain than Horner's.
@@ -81,7 +96,10 @@ mod tests {
                 worst = worst.max(error);
             }
         }
-        assert!(worst > 0.1 * ERROR, "{worst}: the stated error is far from the real one");
+        assert!(
+            worst > 0.1 * ERROR,
+            "{worst}: the stated error is far from the real one"
+        );
     }
 
     #[test]
@@ -92,7 +110,10 @@ mod tests {
                     let turns = whole + 0.25 * quarter + nudge;
                     let (sin, cos) = one(turns);
                     let (want_sin, want_cos) = truth(turns);
-                    assert!((sin - want_sin).abs() < ERROR && (cos - want_cos).abs() < ERROR, "{turns} turns");
+                    assert!(
+                        (sin - want_sin).abs() < ERROR && (cos - want_cos).abs() < ERROR,
+                        "{turns} turns"
+                    );
                 }
             }
         }

@@ -39,13 +39,21 @@ impl Jonswap {
     fn new(waves: &Waves) -> Jonswap {
         let log_gamma = libm::log(waves.gamma);
         let scale_m2 = (1.0 - 0.287 * log_gamma) * 0.3125 * waves.hs_m * waves.hs_m;
-        Jonswap { peak_rad_s: TAU / waves.tp_s, log_gamma, scale_m2 }
+        Jonswap {
+            peak_rad_s: TAU / waves.tp_s,
+            log_gamma,
+            scale_m2,
+        }
     }
 
     fn density_m2_s(&self, omega_rad_s: f64) -> f64 {
         let ratio = self.peak_rad_s / omega_rad_s;
         let ratio_4 = ratio * ratio * ratio * ratio;
-        let width = if omega_rad_s <= self.peak_rad_s { 0.07 } else { 0.09 };
+        let width = if omega_rad_s <= self.peak_rad_s {
+            0.07
+        } else {
+            0.09
+        };
         let off = (omega_rad_s / self.peak_rad_s - 1.0) / width;
         let shape = libm::exp(self.log_gamma * libm::exp(-0.5 * off * off) - 1.25 * ratio_4);
         self.scale_m2 * ratio_4 / omega_rad_s * shape
@@ -71,14 +79,29 @@ pub(super) fn components(waves: &Waves, seed: u64) -> Vec<Component> {
     let count = waves.components as usize;
     let peak_rad_s = TAU / waves.tp_s;
     // The shape does not depend on the height, and exists even for zero height.
-    let shape = Waves { hs_m: 1.0, ..waves.clone() };
+    let shape = Waves {
+        hs_m: 1.0,
+        ..waves.clone()
+    };
     let jonswap = Jonswap::new(&shape);
-    let densities: Vec<f64> = points(BAND).map(|x| jonswap.density_m2_s(x * peak_rad_s)).collect();
+    let densities: Vec<f64> = points(BAND)
+        .map(|x| jonswap.density_m2_s(x * peak_rad_s))
+        .collect();
     let energy = Curve::new(BAND, densities.iter().copied());
-    let second = Curve::new(BAND, points(BAND).zip(&densities).map(|(x, density)| x * x * density));
+    let second = Curve::new(
+        BAND,
+        points(BAND)
+            .zip(&densities)
+            .map(|(x, density)| x * x * density),
+    );
     // By energy alone, only a handful of strata would represent the short waves, which make the
     // slopes.
-    let both = Curve { x: energy.x, up_to: (0..=PIECES).map(|i| 0.5 * (energy.up_to[i] + second.up_to[i])).collect() };
+    let both = Curve {
+        x: energy.x,
+        up_to: (0..=PIECES)
+            .map(|i| 0.5 * (energy.up_to[i] + second.up_to[i]))
+            .collect(),
+    };
     let spread = spread(waves.spreading);
     let first_quantile = stream.unit();
 
@@ -88,7 +111,11 @@ pub(super) fn components(waves: &Waves, seed: u64) -> Vec<Component> {
     let mut below = 0.0;
     (0..count)
         .map(|i| {
-            let above = if i + 1 == count { 1.0 } else { energy.share_at(both.at((i + 1) as f64 / count as f64)) };
+            let above = if i + 1 == count {
+                1.0
+            } else {
+                energy.share_at(both.at((i + 1) as f64 / count as f64))
+            };
             let share = above - below;
             let x = energy.at(below + stream.unit() * share);
             below = above;
@@ -98,7 +125,11 @@ pub(super) fn components(waves: &Waves, seed: u64) -> Vec<Component> {
             Component {
                 amplitude_m: (2.0 * variance_m2 * share).sqrt(),
                 omega_rad_s: x * peak_rad_s,
-                toward_rad: waves.from_rad + PI + spread.as_ref().map_or(0.0, |s| s.at(quantile - quantile.floor())),
+                toward_rad: waves.from_rad
+                    + PI
+                    + spread
+                        .as_ref()
+                        .map_or(0.0, |s| s.at(quantile - quantile.floor())),
                 phase_rad: TAU * stream.unit(),
             }
         })
@@ -153,10 +184,17 @@ impl Curve {
 
     /// The quantile of `share`.
     fn at(&self, share: f64) -> f64 {
-        let i = self.up_to.partition_point(|up_to| *up_to <= share).clamp(1, PIECES);
+        let i = self
+            .up_to
+            .partition_point(|up_to| *up_to <= share)
+            .clamp(1, PIECES);
         let low = self.up_to[i - 1];
         let high = self.up_to[i];
-        let part = if high > low { (share - low) / (high - low) } else { 0.0 };
+        let part = if high > low {
+            (share - low) / (high - low)
+        } else {
+            0.0
+        };
         self.x.0 + (self.x.1 - self.x.0) * (((i - 1) as f64 + part) / PIECES as f64)
     }
 

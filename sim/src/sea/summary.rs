@@ -64,9 +64,17 @@ impl Summary {
         Summary {
             waves: sea.waves.as_ref().map(|waves| {
                 let waves_seen = WaveField::new(waves, sea.depth_m, seed);
-                wave_summary(&waves_seen, (waves.tp_s, waves.from_rad), boat, sea.water_density_kg_m3)
+                wave_summary(
+                    &waves_seen,
+                    (waves.tp_s, waves.from_rad),
+                    boat,
+                    sea.water_density_kg_m3,
+                )
             }),
-            wind: sea.wind.as_ref().map(|wind| wind_summary(wind, boat, &hull)),
+            wind: sea
+                .wind
+                .as_ref()
+                .map(|wind| wind_summary(wind, boat, &hull)),
             current_m_s: CurrentField::new(&sea.current, field, &seed.into())
                 .at_time(primitives::SimTime::ZERO)
                 .at(field.middle()),
@@ -74,15 +82,25 @@ impl Summary {
     }
 }
 
-fn wave_summary(field: &WaveField, (tp_s, from_rad): (f64, f64), boat: &Boat, density_kg_m3: f64) -> WaveSummary {
+fn wave_summary(
+    field: &WaveField,
+    (tp_s, from_rad): (f64, f64),
+    boat: &Boat,
+    density_kg_m3: f64,
+) -> WaveSummary {
     // From ahead and from abeam, the extremes for a hull longer than wide.
     let headings_rad = [from_rad, from_rad + std::f64::consts::FRAC_PI_2];
     let on_hull = |heading_rad: f64| {
-        let velocities = field
-            .waves
-            .iter()
-            .map(|wave| orbital_velocity(orbital_speed_m_s(wave, boat), &Patch::new(wave, boat, heading_rad)));
-        velocities.map(|v| 0.5 * (v.surge * v.surge + v.sway * v.sway)).sum::<f64>().sqrt()
+        let velocities = field.waves.iter().map(|wave| {
+            orbital_velocity(
+                orbital_speed_m_s(wave, boat),
+                &Patch::new(wave, boat, heading_rad),
+            )
+        });
+        velocities
+            .map(|v| 0.5 * (v.surge * v.surge + v.sway * v.sway))
+            .sum::<f64>()
+            .sqrt()
     };
     let drift = |heading_rad: f64| {
         let force = field.mean_drift_newton(boat, density_kg_m3, heading_rad);
@@ -101,19 +119,35 @@ fn wave_summary(field: &WaveField, (tp_s, from_rad): (f64, f64), boat: &Boat, de
 }
 
 fn wind_summary(wind: &Wind, boat: &Boat, hull: &HullModel) -> WindSummary {
-    let mean_at = |height_m: f64| wind.speed_10m_m_s * libm::pow(height_m / 10.0, wind.profile_exponent);
+    let mean_at =
+        |height_m: f64| wind.speed_10m_m_s * libm::pow(height_m / 10.0, wind.profile_exponent);
     let mean_m_s = mean_at(boat.windage.height_m);
     let intensity = match wind.gusts {
         Gusts::None => 0.0,
         Gusts::OrnsteinUhlenbeck { intensity, .. } => intensity,
     };
     let force = |past: Body| wind_force(&boat.windage, boat.length_m, past);
-    let abeam = |past_m_s: f64| force(Body { ahead: 0.0, starboard: past_m_s }).sway;
+    let abeam = |past_m_s: f64| {
+        force(Body {
+            ahead: 0.0,
+            starboard: past_m_s,
+        })
+        .sway
+    };
     WindSummary {
         mean_m_s: [wind.speed_10m_m_s, mean_m_s],
         gust_m_s: intensity * mean_m_s,
-        force_newton: [-force(Body { ahead: -mean_m_s, starboard: 0.0 }).surge, abeam(mean_m_s)],
-        drift_m_s: equilibrium(mean_m_s, |v| abeam(mean_m_s - v) - cross_flow_newton(hull, v)),
+        force_newton: [
+            -force(Body {
+                ahead: -mean_m_s,
+                starboard: 0.0,
+            })
+            .surge,
+            abeam(mean_m_s),
+        ],
+        drift_m_s: equilibrium(mean_m_s, |v| {
+            abeam(mean_m_s - v) - cross_flow_newton(hull, v)
+        }),
     }
 }
 
@@ -143,23 +177,43 @@ mod tests {
         let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios");
         let boat = scenario::load_file::<scenario::Boat>(&root.join("boats/surveyor_m1_8.toml"))
             .unwrap_or_else(|e| panic!("{e}"));
-        let game = scenario::load(&root.join("games/attack_1v1.toml")).unwrap_or_else(|e| panic!("{e}"));
+        let game =
+            scenario::load(&root.join("games/attack_1v1.toml")).unwrap_or_else(|e| panic!("{e}"));
         let mut sea = Sea::at_rest();
         // 0.128 m/s at 5 and 0.340 m/s at 10 m/s of wind at the boat; the estimate had a little
         // more windage.
         for (wind_m_s, want_m_s) in [(5.0, 0.128), (10.0, 0.340)] {
-            sea.wind = Some(Wind { speed_10m_m_s: wind_m_s, from_rad: 0.3, profile_exponent: 0.0, gusts: Gusts::None });
+            sea.wind = Some(Wind {
+                speed_10m_m_s: wind_m_s,
+                from_rad: 0.3,
+                profile_exponent: 0.0,
+                gusts: Gusts::None,
+            });
             let summary = Summary::new(&sea, &boat, &game.field, 1);
             let got_m_s = summary.wind.map_or(0.0, |wind| wind.drift_m_s);
-            assert!((got_m_s / want_m_s - 1.0).abs() < 0.08, "{wind_m_s}: {got_m_s}");
+            assert!(
+                (got_m_s / want_m_s - 1.0).abs() < 0.08,
+                "{wind_m_s}: {got_m_s}"
+            );
         }
         // Known values for a sea of 0.5 m and 3 s: 14 m long, 0.32 m/s and 0.27 m/s on the hull,
         // 0.066 m/s at the surface, 10.7 and 5.3 N, over a slightly narrower frequency band.
         sea.waves = Some(waves_from(1.0, 0.5, 3.0, 512));
-        let waves = Summary::new(&sea, &boat, &game.field, 1).waves.unwrap_or_else(|| panic!("the sea has waves"));
-        assert!((waves.hs_m - 0.5).abs() < 1e-9 && (waves.wavelength_m - 14.05).abs() < 0.1, "{waves:?}");
+        let waves = Summary::new(&sea, &boat, &game.field, 1)
+            .waves
+            .unwrap_or_else(|| panic!("the sea has waves"));
+        assert!(
+            (waves.hs_m - 0.5).abs() < 1e-9 && (waves.wavelength_m - 14.05).abs() < 0.1,
+            "{waves:?}"
+        );
         assert!((waves.orbital_rms_m_s - 0.32).abs() < 0.03, "{waves:?}");
-        assert!((waves.orbital_on_hull_m_s[0] - 0.27).abs() < 0.03, "{waves:?}");
-        assert!((waves.drift_newton[1] / 10.7 - 1.0).abs() < 0.25, "{waves:?}");
+        assert!(
+            (waves.orbital_on_hull_m_s[0] - 0.27).abs() < 0.03,
+            "{waves:?}"
+        );
+        assert!(
+            (waves.drift_newton[1] / 10.7 - 1.0).abs() < 0.25,
+            "{waves:?}"
+        );
     }
 }

@@ -41,7 +41,12 @@ impl PlaneWave {
     fn new(component: Component, depth_m: f64) -> PlaneWave {
         let (east, north) = libm::sincos(component.toward_rad);
         let wavenumber_rad_m = wavenumber_rad_m(component.omega_rad_s, depth_m);
-        PlaneWave { component, toward: Ned { north, east }, wavenumber_rad_m, depth_m }
+        PlaneWave {
+            component,
+            toward: Ned { north, east },
+            wavenumber_rad_m,
+            depth_m,
+        }
     }
 
     /// k h; infinite in deep water.
@@ -74,7 +79,11 @@ impl PlaneWave {
         let twice = 2.0 * self.depth_rad();
         // Beyond this the quotient is 0 to the last bit, and soon afterwards the hyperbolic sine
         // overflows.
-        if twice > 40.0 { 1.0 } else { 1.0 + twice / libm::sinh(twice) }
+        if twice > 40.0 {
+            1.0
+        } else {
+            1.0 + twice / libm::sinh(twice)
+        }
     }
 
     /// Stokes drift, averaged over a draught, m/s.
@@ -86,7 +95,8 @@ impl PlaneWave {
         let at_keel = libm::exp(-2.0 * k * draught_m);
         let layer = (1.0 - at_keel) * (1.0 + bottom * bottom / at_keel);
         let a = self.component.amplitude_m;
-        0.5 * a * a * self.component.omega_rad_s * layer / (draught_m * (1.0 - bottom) * (1.0 - bottom))
+        0.5 * a * a * self.component.omega_rad_s * layer
+            / (draught_m * (1.0 - bottom) * (1.0 - bottom))
     }
 
     /// The square root of the part of a hull's drift force that depends on neither its size nor the
@@ -137,8 +147,12 @@ impl Phases {
         Phases {
             start: Lanes(side_by_side(waves, |w| w.component.phase_rad / TAU)),
             per_s: Lanes(side_by_side(waves, |w| w.component.omega_rad_s / TAU)),
-            per_north_m: Lanes(side_by_side(waves, |w| w.wavenumber_rad_m * w.toward.north / TAU)),
-            per_east_m: Lanes(side_by_side(waves, |w| w.wavenumber_rad_m * w.toward.east / TAU)),
+            per_north_m: Lanes(side_by_side(waves, |w| {
+                w.wavenumber_rad_m * w.toward.north / TAU
+            })),
+            per_east_m: Lanes(side_by_side(waves, |w| {
+                w.wavenumber_rad_m * w.toward.east / TAU
+            })),
         }
     }
 
@@ -157,12 +171,16 @@ impl Phases {
     /// The increase of the phases along a displacement.
     #[inline(always)]
     fn along(&self, way: Ned) -> Lanes<f64> {
-        self.per_north_m * Lanes::<f64>::splat(way.north) + self.per_east_m * Lanes::<f64>::splat(way.east)
+        self.per_north_m * Lanes::<f64>::splat(way.north)
+            + self.per_east_m * Lanes::<f64>::splat(way.east)
     }
 }
 
 /// `part` of each wave, up to the number of lanes. Lanes without a wave are 0.
-pub(super) fn side_by_side<T: Default, const N: usize>(waves: &[PlaneWave], part: impl Fn(&PlaneWave) -> T) -> [T; N] {
+pub(super) fn side_by_side<T: Default, const N: usize>(
+    waves: &[PlaneWave],
+    part: impl Fn(&PlaneWave) -> T,
+) -> [T; N] {
     std::array::from_fn(|lane| waves.get(lane).map_or_else(T::default, &part))
 }
 
@@ -202,11 +220,24 @@ struct SurfaceRow {
 impl SurfaceRow {
     fn new(waves: &[PlaneWave]) -> SurfaceRow {
         let nothing = [0.0; ROW];
-        let slope =
-            |part: fn(Ned) -> f64| row_of(waves, |w| -w.component.amplitude_m * w.wavenumber_rad_m * part(w.toward));
+        let slope = |part: fn(Ned) -> f64| {
+            row_of(waves, |w| {
+                -w.component.amplitude_m * w.wavenumber_rad_m * part(w.toward)
+            })
+        };
         SurfaceRow {
-            per_cos: Lanes::of_row([row_of(waves, |w| w.component.amplitude_m), nothing, nothing, nothing]),
-            per_sin: Lanes::of_row([nothing, slope(|toward| toward.north), slope(|toward| toward.east), nothing]),
+            per_cos: Lanes::of_row([
+                row_of(waves, |w| w.component.amplitude_m),
+                nothing,
+                nothing,
+                nothing,
+            ]),
+            per_sin: Lanes::of_row([
+                nothing,
+                slope(|toward| toward.north),
+                slope(|toward| toward.east),
+                nothing,
+            ]),
         }
     }
 }
@@ -233,7 +264,11 @@ impl WaveField {
     /// The field drawn from this spectrum by the seed's stream `waves`, in water of this depth
     /// (`None` is deep).
     pub fn new(waves: &Waves, depth_m: Option<f64>, seed: u64) -> WaveField {
-        WaveField::of(&spectrum::components(waves, seed), depth_m, waves.drift_factor)
+        WaveField::of(
+            &spectrum::components(waves, seed),
+            depth_m,
+            waves.drift_factor,
+        )
     }
 
     /// The field of these components: a regular wave, or a sea measured elsewhere.
@@ -241,15 +276,26 @@ impl WaveField {
         // Infinite rather than merely large: every formula above has its limit there and needs no
         // special case.
         let depth_m = depth_m.unwrap_or(f64::INFINITY);
-        let waves: Vec<PlaneWave> = components.iter().map(|c| PlaneWave::new(*c, depth_m)).collect();
+        let waves: Vec<PlaneWave> = components
+            .iter()
+            .map(|c| PlaneWave::new(*c, depth_m))
+            .collect();
         let blocks = blocks(&waves, SurfaceRow::new);
-        WaveField { waves, drift_factor, instructions: Instructions::best(), blocks }
+        WaveField {
+            waves,
+            drift_factor,
+            instructions: Instructions::best(),
+            blocks,
+        }
     }
 
     /// The same field, computed with these instructions, as is everything built from it. The choice
     /// affects only the speed.
     pub fn with_instructions(self, instructions: Instructions) -> WaveField {
-        WaveField { instructions, ..self }
+        WaveField {
+            instructions,
+            ..self
+        }
     }
 
     /// The components.
@@ -271,8 +317,18 @@ impl WaveField {
 
     /// The surface at a place and time.
     pub fn surface(&self, at: Ned, time_s: f64) -> Surface {
-        let sums = self.instructions.run(SurfaceAt { blocks: &self.blocks, at, time_s });
-        Surface { elevation_m: sums.sum(0), slope: Ned { north: sums.sum(1), east: sums.sum(2) } }
+        let sums = self.instructions.run(SurfaceAt {
+            blocks: &self.blocks,
+            at,
+            time_s,
+        });
+        Surface {
+            elevation_m: sums.sum(0),
+            slope: Ned {
+                north: sums.sum(1),
+                east: sums.sum(2),
+            },
+        }
     }
 
     /// Significant wave height, m: four standard deviations of the elevation.
@@ -298,7 +354,10 @@ impl WaveField {
 
     /// Standard deviation of the steepest slope, as an angle, rad.
     pub fn slope_rms_rad(&self) -> f64 {
-        libm::atan(self.mean(|w| w.wavenumber_rad_m * w.wavenumber_rad_m).sqrt())
+        libm::atan(
+            self.mean(|w| w.wavenumber_rad_m * w.wavenumber_rad_m)
+                .sqrt(),
+        )
     }
 
     /// Stokes drift averaged over a hull's draught, m/s: for a wave at the depth z it is a² ω k
@@ -315,14 +374,16 @@ impl WaveField {
         self.drift_m_s(|w| {
             let bottom = libm::exp(-2.0 * w.depth_rad());
             let a = w.component.amplitude_m;
-            let flat =
-                a * a * w.component.omega_rad_s * w.wavenumber_rad_m * bottom / ((1.0 - bottom) * (1.0 - bottom));
+            let flat = a * a * w.component.omega_rad_s * w.wavenumber_rad_m * bottom
+                / ((1.0 - bottom) * (1.0 - bottom));
             0.5 * w.stokes_m_s(draught_m) - flat
         })
     }
 
     fn drift_m_s(&self, speed_m_s: impl Fn(&PlaneWave) -> f64) -> Ned {
-        self.waves.iter().fold(Ned::default(), |drift, w| drift + w.toward.scaled(speed_m_s(w)))
+        self.waves.iter().fold(Ned::default(), |drift, w| {
+            drift + w.toward.scaled(speed_m_s(w))
+        })
     }
 
     /// Mean second-order force on a hull on this heading, in body axes: the momentum that the waves
@@ -334,18 +395,29 @@ impl WaveField {
     ///
     /// with b between the heading and the wave's travel. R is only a rough estimate of the hull's
     /// reflection, hence `drift_factor`.
-    pub fn mean_drift_newton(&self, boat: &Boat, water_density_kg_m3: f64, heading_rad: f64) -> Planar {
+    pub fn mean_drift_newton(
+        &self,
+        boat: &Boat,
+        water_density_kg_m3: f64,
+        heading_rad: f64,
+    ) -> Planar {
         let travel = |wave: &PlaneWave| {
             let (sin, cos) = libm::sincos(wave.component.toward_rad - heading_rad);
             (cos, sin)
         };
-        let parts = self.reflected_m(boat).into_iter().zip(self.waves.iter().map(travel));
+        let parts = self
+            .reflected_m(boat)
+            .into_iter()
+            .zip(self.waves.iter().map(travel));
         self.drift_of(boat, water_density_kg_m3, parts)
     }
 
     /// [`PlaneWave::reflected_m`] of each wave.
     pub(super) fn reflected_m(&self, boat: &Boat) -> Vec<f64> {
-        self.waves.iter().map(|wave| wave.reflected_m(boat.draught_m)).collect()
+        self.waves
+            .iter()
+            .map(|wave| wave.reflected_m(boat.draught_m))
+            .collect()
     }
 
     /// The same force from each wave's reflected part and its travel ahead and to starboard.
@@ -362,12 +434,19 @@ impl WaveField {
             sway += reflected_m * reflected_m * sin * sin.abs();
         }
         let scale = self.drift_factor * 0.5 * water_density_kg_m3 * GRAVITY_M_S2;
-        Planar { surge: scale * boat.beam_m * surge, sway: scale * boat.length_m * sway, yaw: 0.0 }
+        Planar {
+            surge: scale * boat.beam_m * surge,
+            sway: scale * boat.length_m * sway,
+            yaw: 0.0,
+        }
     }
 
     /// The variance of a quantity that is `per_m` of amplitude, given the square of `per_m`.
     fn mean(&self, per_m_squared: impl Fn(&PlaneWave) -> f64) -> f64 {
-        self.waves.iter().map(|w| 0.5 * w.component.amplitude_m * w.component.amplitude_m * per_m_squared(w)).sum()
+        self.waves
+            .iter()
+            .map(|w| 0.5 * w.component.amplitude_m * w.component.amplitude_m * per_m_squared(w))
+            .sum()
     }
 }
 

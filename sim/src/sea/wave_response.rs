@@ -79,16 +79,26 @@ impl Passed {
 impl Row {
     fn new(waves: &[PlaneWave]) -> Row {
         let part = |spring: (f64, f64), pick: fn((f64, f64)) -> f64| {
-            row_of(waves, |w| pick(transfer(spring.0, spring.1, w.component.omega_rad_s)))
+            row_of(waves, |w| {
+                pick(transfer(spring.0, spring.1, w.component.omega_rad_s))
+            })
         };
         let real = |spring| part(spring, |(real, _)| real);
         let behind = |spring| part(spring, |(_, behind)| behind);
         let minus = |numbers: [f32; ROW]| numbers.map(|number| -number);
         let springs = |heave: [f32; ROW], roll_and_pitch: &dyn Fn((f64, f64)) -> [f32; ROW]| {
-            Lanes::of_row([heave, roll_and_pitch(ROLL), roll_and_pitch(PITCH), [0.0; ROW]])
+            Lanes::of_row([
+                heave,
+                roll_and_pitch(ROLL),
+                roll_and_pitch(PITCH),
+                [0.0; ROW],
+            ])
         };
         Row {
-            value: Passed { of_sin: springs(minus(behind(HEAVE)), &real), of_cos: springs(real(HEAVE), &behind) },
+            value: Passed {
+                of_sin: springs(minus(behind(HEAVE)), &real),
+                of_cos: springs(real(HEAVE), &behind),
+            },
             slope: Passed {
                 of_sin: springs(minus(real(HEAVE)), &|spring| minus(behind(spring))),
                 of_cos: springs(minus(behind(HEAVE)), &real),
@@ -118,16 +128,26 @@ impl WaveResponse {
     pub(super) fn of(field: &WaveField, boat: &Boat, patches: &Patches) -> WaveResponse {
         // Waves that are short compared with the draught have little effect: the hull follows the
         // pressure at its keel, not the surface.
-        let pressed_m: Vec<f64> = field.waves.iter().map(|wave| pressed_m(wave, boat)).collect();
+        let pressed_m: Vec<f64> = field
+            .waves
+            .iter()
+            .map(|wave| pressed_m(wave, boat))
+            .collect();
         // Tabulated by heading: averaging each wave over the hull is most of the work and changes
         // little between ticks.
         let quasi_static = HeadingTable::new(row_count(&field.waves), |bin, wave| {
-            let Some(patch) = patches.of_bin(bin).get(wave) else { return [0.0; FOLD] };
+            let Some(patch) = patches.of_bin(bin).get(wave) else {
+                return [0.0; FOLD];
+            };
             let [heave, roll, pitch] = quasi_static(pressed_m[wave], patch);
             [heave, roll, pitch, 0.0]
         });
         let blocks = blocks(&field.waves, Row::new);
-        WaveResponse { instructions: field.instructions, blocks, quasi_static }
+        WaveResponse {
+            instructions: field.instructions,
+            blocks,
+            quasi_static,
+        }
     }
 
     pub(super) fn set_instructions(&mut self, instructions: Instructions) {
@@ -136,8 +156,17 @@ impl WaveResponse {
 
     /// The attitude of a boat with this velocity over the ground and yaw rate.
     pub fn at(&self, pose: Pose, velocity_m_s: Ned, turn_rad_s: f64, time_s: f64) -> Attitude {
-        let Sums { values, rates, heave_acceleration } =
-            self.instructions.run(At { response: self, pose, velocity_m_s, turn_rad_s, time_s });
+        let Sums {
+            values,
+            rates,
+            heave_acceleration,
+        } = self.instructions.run(At {
+            response: self,
+            pose,
+            velocity_m_s,
+            turn_rad_s,
+            time_s,
+        });
         Attitude {
             heave_up_m: values.sum(0),
             roll_rad: values.sum(1),
@@ -173,7 +202,11 @@ impl Kernel for At<'_> {
     #[inline(always)]
     fn run(self) -> Sums {
         let nothing = Lanes::<f32>::splat(0.0);
-        let mut sums = Sums { values: nothing, rates: nothing, heave_acceleration: nothing };
+        let mut sums = Sums {
+            values: nothing,
+            rates: nothing,
+            heave_acceleration: nothing,
+        };
         let (lines, fraction) = self.response.quasi_static.at(self.pose.psi_rad);
         let turn = Lanes::<f32>::splat(self.turn_rad_s as f32);
         for (block, lines) in self.response.blocks.iter().zip(lines.as_chunks::<FOLD>().0) {
@@ -205,5 +238,9 @@ pub(super) fn pressed_m(wave: &PlaneWave, boat: &Boat) -> f64 {
 /// one rising to starboard lifts that side.
 pub(super) fn quasi_static(pressed_m: f64, patch: &Patch) -> [f64; 3] {
     let a = pressed_m;
-    [a * patch.mean_x * patch.mean_y, a * patch.tilt_y * patch.mean_x, -a * patch.tilt_x * patch.mean_y]
+    [
+        a * patch.mean_x * patch.mean_y,
+        a * patch.tilt_y * patch.mean_x,
+        -a * patch.tilt_x * patch.mean_y,
+    ]
 }

@@ -73,11 +73,17 @@ impl WindField {
         );
         made.gusts = match wind.gusts {
             Gusts::None => None,
-            Gusts::OrnsteinUhlenbeck { intensity, across_ratio, length_m } => {
+            Gusts::OrnsteinUhlenbeck {
+                intensity,
+                across_ratio,
+                length_m,
+            } => {
                 let steps_per_m = STEPS_PER_LENGTH / length_m;
                 let steps_per_s = steps_per_m * carry_m_s;
                 // No redrawn gust has reached the field: they are all upwind of it.
-                let process = GaussMarkov::new(seeds, "gust", |now| place((steps_per_s, steps_per_m), reach_m.0, now));
+                let process = GaussMarkov::new(seeds, "gust", |now| {
+                    place((steps_per_s, steps_per_m), reach_m.0, now)
+                });
                 Some(Frozen {
                     process: CachedProcess::new(process, (reach_m.1 - reach_m.0) * steps_per_m),
                     intensity: (intensity, intensity * across_ratio),
@@ -101,7 +107,9 @@ impl WindField {
     pub fn prepare(&mut self, now: SimTime) {
         if let Some(gusts) = &mut self.gusts {
             let (near_m, far_m) = gusts.reach_m;
-            gusts.process.hold(gusts.place(far_m, now), gusts.place(near_m, now));
+            gusts
+                .process
+                .hold(gusts.place(far_m, now), gusts.place(near_m, now));
         }
     }
 
@@ -109,10 +117,13 @@ impl WindField {
     /// [`WindField::mean_m_s`]).
     #[inline]
     pub fn at(&self, place: Ned, mean_m_s: f64, now: SimTime) -> Ned {
-        let Some(gusts) = &self.gusts else { return self.downwind.scaled(mean_m_s) };
+        let Some(gusts) = &self.gusts else {
+            return self.downwind.scaled(mean_m_s);
+        };
         // Two processes, along and across: gusts change the direction as well.
         let (along, across) = gusts.process.at(gusts.place(place.dot(self.downwind), now));
-        self.downwind.scaled(mean_m_s * (1.0 + gusts.intensity.0 * along))
+        self.downwind
+            .scaled(mean_m_s * (1.0 + gusts.intensity.0 * along))
             + self.across.scaled(mean_m_s * (gusts.intensity.1 * across))
     }
 }

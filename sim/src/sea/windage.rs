@@ -23,13 +23,19 @@ const AIR_DENSITY_KG_M3: f64 = 1.225;
 #[inline]
 pub fn wind_past_boat(rotation: Rotation, wind_m_s: Ned, nu: Planar) -> Body {
     let wind = body_from_ned(rotation, wind_m_s);
-    Body { ahead: wind.ahead - nu.surge, starboard: wind.starboard - nu.sway }
+    Body {
+        ahead: wind.ahead - nu.surge,
+        starboard: wind.starboard - nu.sway,
+    }
 }
 
 /// The force on a hull of `length_m`, N and N m, for this air velocity in body axes, m/s.
 #[inline]
 pub fn wind_force(windage: &Windage, length_m: f64, past: Body) -> Planar {
-    let Body { ahead: a, starboard: s } = past;
+    let Body {
+        ahead: a,
+        starboard: s,
+    } = past;
     let half_rho = 0.5 * AIR_DENSITY_KG_M3;
     // Relative to the boat and in its axes. VRX applies the wind component by component in world
     // axes, which makes the force depend on the compass heading.
@@ -38,6 +44,12 @@ pub fn wind_force(windage: &Windage, length_m: f64, past: Body) -> Planar {
         surge: half_rho * windage.surge_coefficient * windage.frontal_area_m2 * speed_m_s * a,
         sway: half_rho * windage.sway_coefficient * windage.lateral_area_m2 * speed_m_s * s,
         // Subtracted from zero, so that calm air gives +0 as elsewhere.
-        yaw: 0.0 - half_rho * windage.yaw_coefficient * windage.lateral_area_m2 * length_m * 2.0 * (a * s),
+        yaw: 0.0
+            - half_rho
+                * windage.yaw_coefficient
+                * windage.lateral_area_m2
+                * length_m
+                * 2.0
+                * (a * s),
     }
 }

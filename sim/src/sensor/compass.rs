@@ -36,12 +36,22 @@ pub struct CompassState {
 
 impl CompassModel {
     /// The compass of the boat named `vehicle`, with these faults.
-    pub fn new(compass: &Compass, tick: SimTime, seeds: &Seeds, vehicle: &str, faults: &[FaultSpan]) -> CompassModel {
+    pub fn new(
+        compass: &Compass,
+        tick: SimTime,
+        seeds: &Seeds,
+        vehicle: &str,
+        faults: &[FaultSpan],
+    ) -> CompassModel {
         CompassModel {
             compass: compass.clone(),
             noise: seeds.noise(&format!("compass/{vehicle}")),
             period: whole_ticks(compass.period_s, tick),
-            faults: faults.iter().filter(|span| span.kind == FaultKind::CompassOffset).copied().collect(),
+            faults: faults
+                .iter()
+                .filter(|span| span.kind == FaultKind::CompassOffset)
+                .copied()
+                .collect(),
         }
     }
 
@@ -55,7 +65,11 @@ impl CompassModel {
 
     /// The present error due to faults, rad.
     fn fault_rad(&self, now: SimTime) -> Option<f64> {
-        self.faults.iter().filter(|span| span.is_on(now)).map(|span| span.offset_rad).reduce(|sum, one| sum + one)
+        self.faults
+            .iter()
+            .filter(|span| span.is_on(now))
+            .map(|span| span.offset_rad)
+            .reduce(|sum, one| sum + one)
     }
 
     /// The reading at `now`, rad, -pi to pi: that of the last period.
@@ -64,8 +78,10 @@ impl CompassModel {
             let number = (now.0 / self.period.0) as u64;
             let noise = self.noise.at(now).normal(number);
             let psi_rad = truth.pose.psi_rad;
-            let magnetic_rad = psi_rad - self.compass.declination_error_rad - self.deviation_rad(psi_rad);
-            let error_rad = self.compass.thrust_error_rad * truth.thrust_share + self.compass.noise_rad * noise;
+            let magnetic_rad =
+                psi_rad - self.compass.declination_error_rad - self.deviation_rad(psi_rad);
+            let error_rad =
+                self.compass.thrust_error_rad * truth.thrust_share + self.compass.noise_rad * noise;
             state.psi_rad = wrap_pi(magnetic_rad + error_rad);
             if let Some(off_rad) = self.fault_rad(now) {
                 state.psi_rad = wrap_pi(state.psi_rad + off_rad);

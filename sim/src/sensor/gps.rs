@@ -77,16 +77,30 @@ fn chain(outage: Outage, period: SimTime) -> TwoStateChain {
 }
 
 impl GpsModel {
-    /// The receiver of the boat named `vehicle`, read once per `tick`, with these faults. Its period
-    /// is a whole number of ticks.
+    /// The receiver of the boat named `vehicle`, read once per `tick`, with these faults. Its
+    /// period is a whole number of ticks.
     ///
     /// # Panics
     /// If its latency exceeds [`UNDER_WAY_MAX`] periods.
-    pub fn new(gps: &Gps, tick: SimTime, seeds: &Seeds, vehicle: &str, faults: &[FaultSpan]) -> GpsModel {
+    pub fn new(
+        gps: &Gps,
+        tick: SimTime,
+        seeds: &Seeds,
+        vehicle: &str,
+        faults: &[FaultSpan],
+    ) -> GpsModel {
         let period = whole_ticks(gps.period_s, tick);
         let latency = SimTime::from_s(gps.latency_s);
-        let is_of_gps = |kind| matches!(kind, FaultKind::GpsFrozen | FaultKind::GpsLost | FaultKind::GpsOffset);
-        assert!(latency <= period * UNDER_WAY_MAX as i64, "the latency exceeds {UNDER_WAY_MAX} periods");
+        let is_of_gps = |kind| {
+            matches!(
+                kind,
+                FaultKind::GpsFrozen | FaultKind::GpsLost | FaultKind::GpsOffset
+            )
+        };
+        assert!(
+            latency <= period * UNDER_WAY_MAX as i64,
+            "the latency exceeds {UNDER_WAY_MAX} periods"
+        );
         GpsModel {
             normals: seeds.noise(&format!("gps/{vehicle}")),
             uniforms: seeds.noise(&format!("gps/{vehicle}/events")),
@@ -100,19 +114,28 @@ impl GpsModel {
             freeze: chain(gps.freeze, period),
             jump_chance: -libm::expm1(-gps.jump.rate_per_s * period.as_s()),
             jump_m: gps.jump.sigma_m,
-            faults: faults.iter().filter(|span| is_of_gps(span.kind)).copied().collect(),
+            faults: faults
+                .iter()
+                .filter(|span| is_of_gps(span.kind))
+                .copied()
+                .collect(),
         }
     }
 
     fn fault(&self, kind: FaultKind, now: SimTime) -> Option<&FaultSpan> {
-        self.faults.iter().find(|span| span.kind == kind && span.is_on(now))
+        self.faults
+            .iter()
+            .find(|span| span.kind == kind && span.is_on(now))
     }
 
     /// The last fix delivered by `now`. The receiver has been on since before the game: the fix of
     /// time 0 is available at once, and there are no faults initially.
     pub fn read(&self, state: &mut GpsState, truth: &Truth, now: SimTime) -> Fix {
         // Delivery frees space for the new fix.
-        while let Some(fix) = state.under_way.pop_front_if(|fix| fix.at + self.latency <= now) {
+        while let Some(fix) = state
+            .under_way
+            .pop_front_if(|fix| fix.at + self.latency <= now)
+        {
             state.latest = fix;
         }
         if now.0 % self.period.0 == 0 {
@@ -123,7 +146,10 @@ impl GpsModel {
             if number == 0 || (self.latency == SimTime::ZERO && !dropped) {
                 state.latest = fix;
             } else if !dropped {
-                assert!(state.under_way.len() < UNDER_WAY_MAX, "more than {UNDER_WAY_MAX} fixes in transit");
+                assert!(
+                    state.under_way.len() < UNDER_WAY_MAX,
+                    "more than {UNDER_WAY_MAX} fixes in transit"
+                );
                 state.under_way.push_back(fix);
             }
         }
@@ -138,7 +164,11 @@ impl GpsModel {
             Ned { north, east }.scaled(sigma)
         };
         let uniform = |which: u64| uniforms.unit(UNIFORMS * number + which);
-        let GaussMarkovStep { kept, fresh } = if number == 0 { GaussMarkovStep::FIRST } else { self.bias_step };
+        let GaussMarkovStep { kept, fresh } = if number == 0 {
+            GaussMarkovStep::FIRST
+        } else {
+            self.bias_step
+        };
         state.bias = state.bias.scaled(kept) + normal(0, self.bias_m * fresh);
         if number > 0 {
             state.dropped = self.dropout.next(state.dropped, uniform(0));
@@ -155,7 +185,12 @@ impl GpsModel {
         };
         if let Some(span) = self.fault(FaultKind::GpsOffset, now) {
             let (sin, cos) = math::sin_cos(span.direction_rad);
-            measured.position = measured.position + Ned { north: cos, east: sin }.scaled(span.offset_m);
+            measured.position = measured.position
+                + Ned {
+                    north: cos,
+                    east: sin,
+                }
+                .scaled(span.offset_m);
         }
         let freezes = number > 0
             && (self.freeze.next(state.frozen.is_some(), uniform(1))
@@ -163,6 +198,8 @@ impl GpsModel {
         state.frozen = freezes.then(|| state.frozen.unwrap_or(measured));
         // A frozen receiver still stamps its fixes with new times, so their age does not reveal the
         // freeze.
-        state.frozen.map_or(measured, |frozen| Fix { at: now, ..frozen })
+        state
+            .frozen
+            .map_or(measured, |frozen| Fix { at: now, ..frozen })
     }
 }

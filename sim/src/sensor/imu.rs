@@ -48,7 +48,12 @@ pub struct ImuState {
 impl ImuReading {
     /// The true values.
     pub fn of(truth: &Truth) -> ImuReading {
-        let Truth { nu, nu_dot, attitude, .. } = *truth;
+        let Truth {
+            nu,
+            nu_dot,
+            attitude,
+            ..
+        } = *truth;
         let (sin_roll, cos_roll) = math::sin_cos(attitude.roll_rad);
         let (sin_pitch, cos_pitch) = math::sin_cos(attitude.pitch_rad);
         let roll_rate = attitude.roll_rad_s;
@@ -78,7 +83,14 @@ impl From<ImuReading> for picture::Imu {
     fn from(reading: ImuReading) -> picture::Imu {
         let [roll_rate_rad_s, pitch_rate_rad_s, yaw_rate_rad_s] = reading.gyro_rad_s;
         let [ahead_m_s2, starboard_m_s2, down_m_s2] = reading.accelerometer_m_s2;
-        picture::Imu { roll_rate_rad_s, pitch_rate_rad_s, yaw_rate_rad_s, ahead_m_s2, starboard_m_s2, down_m_s2 }
+        picture::Imu {
+            roll_rate_rad_s,
+            pitch_rate_rad_s,
+            yaw_rate_rad_s,
+            ahead_m_s2,
+            starboard_m_s2,
+            down_m_s2,
+        }
     }
 }
 
@@ -86,13 +98,22 @@ impl ImuModel {
     /// Gyro and accelerometers of the boat named `vehicle`, read every tick.
     pub fn new(imu: &Imu, tick: SimTime, seeds: &Seeds, vehicle: &str) -> ImuModel {
         let noise = seeds.noise(&format!("imu/{vehicle}"));
-        ImuModel { imu: imu.clone(), noise, tick, bias_step: GaussMarkovStep::new(tick, imu.bias_time_s) }
+        ImuModel {
+            imu: imu.clone(),
+            noise,
+            tick,
+            bias_step: GaussMarkovStep::new(tick, imu.bias_time_s),
+        }
     }
 
     /// The reading at `now`.
     pub fn read(&self, state: &mut ImuState, truth: &Truth, now: SimTime) -> ImuReading {
         let number = (now.0 / self.tick.0) as u64;
-        let GaussMarkovStep { kept, fresh } = if number == 0 { GaussMarkovStep::FIRST } else { self.bias_step };
+        let GaussMarkovStep { kept, fresh } = if number == 0 {
+            GaussMarkovStep::FIRST
+        } else {
+            self.bias_step
+        };
         let imu = &self.imu;
         let drawn = self.noise.at(now);
         let mut reading = ImuReading::of(truth);

@@ -60,12 +60,24 @@ impl SensorState {
 
 impl SensorModel {
     /// The sensors of the boat named `vehicle`, read once per tick, with these faults.
-    pub fn new(sensors: &Sensors, tick: SimTime, seeds: &Seeds, vehicle: &str, faults: &[FaultSpan]) -> SensorModel {
+    pub fn new(
+        sensors: &Sensors,
+        tick: SimTime,
+        seeds: &Seeds,
+        vehicle: &str,
+        faults: &[FaultSpan],
+    ) -> SensorModel {
         let compass = |compass| CompassModel::new(compass, tick, seeds, vehicle, faults);
         SensorModel {
-            gps: sensors.gps.as_ref().map(|gps| GpsModel::new(gps, tick, seeds, vehicle, faults)),
+            gps: sensors
+                .gps
+                .as_ref()
+                .map(|gps| GpsModel::new(gps, tick, seeds, vehicle, faults)),
             compass: sensors.compass.as_ref().map(compass),
-            imu: sensors.imu.as_ref().map(|imu| ImuModel::new(imu, tick, seeds, vehicle)),
+            imu: sensors
+                .imu
+                .as_ref()
+                .map(|imu| ImuModel::new(imu, tick, seeds, vehicle)),
         }
     }
 
@@ -80,16 +92,31 @@ impl SensorModel {
             Some(imu) => imu.read(&mut state.imu, truth, now),
         };
         let (at, velocity, fix_at) = match &self.gps {
-            None => (truth.pose.at, Body { ahead: truth.nu.surge, starboard: truth.nu.sway }, now),
+            None => (
+                truth.pose.at,
+                Body {
+                    ahead: truth.nu.surge,
+                    starboard: truth.nu.sway,
+                },
+                now,
+            ),
             // A receiver measures over the ground, north and east. The components in body axes
             // depend on the compass, so a compass error shows up as leeway.
             Some(gps) => {
                 let fix = gps.read(&mut state.gps, truth, now);
-                (fix.position, body_from_ned(Rotation::from_heading(psi_rad), fix.velocity_m_s), fix.at)
+                (
+                    fix.position,
+                    body_from_ned(Rotation::from_heading(psi_rad), fix.velocity_m_s),
+                    fix.at,
+                )
             }
         };
         // Without an inertial unit the true rate is used: an omitted sensor is perfect.
-        let yaw_rate_rad_s = if self.imu.is_some() { imu.gyro_rad_s[2] } else { truth.nu.yaw };
+        let yaw_rate_rad_s = if self.imu.is_some() {
+            imu.gyro_rad_s[2]
+        } else {
+            truth.nu.yaw
+        };
         let nav = Nav {
             north_m: at.north,
             east_m: at.east,

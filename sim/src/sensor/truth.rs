@@ -45,11 +45,17 @@ pub(super) struct GaussMarkovStep {
 
 impl GaussMarkovStep {
     /// The very first step, without memory.
-    pub(super) const FIRST: GaussMarkovStep = GaussMarkovStep { kept: 0.0, fresh: 1.0 };
+    pub(super) const FIRST: GaussMarkovStep = GaussMarkovStep {
+        kept: 0.0,
+        fresh: 1.0,
+    };
 
     /// A step of `span` for a process with this correlation time.
     pub(super) fn new(span: SimTime, time_s: f64) -> GaussMarkovStep {
         let spans = span.as_s() / time_s;
-        GaussMarkovStep { kept: math::exp(-spans), fresh: (-libm::expm1(-2.0 * spans)).sqrt() }
+        GaussMarkovStep {
+            kept: math::exp(-spans),
+            fresh: (-libm::expm1(-2.0 * spans)).sqrt(),
+        }
     }
 }

@@ -27,21 +27,24 @@ pub(crate) struct Args {
     /// serial:///dev/ttyUSB0?baud=38400
     #[arg(long, value_name = "URL", value_parser = to_listen)]
     listen: LinkAddress,
-    /// Address for the primary operator, who takes control with any command and returns it with OP2_ON in the text
-    /// field
+    /// Address for the primary operator, who takes control with any command and returns it with
+    /// OP2_ON in the text field
     #[arg(long, value_name = "URL", value_parser = to_listen)]
     primary: Option<LinkAddress>,
-    /// Address of a ground station that waits for the boat, for example udp://127.0.0.1:14550 for QGroundControl
-    /// (MAVLink only)
+    /// Address of a ground station that waits for the boat, for example udp://127.0.0.1:14550 for
+    /// QGroundControl (MAVLink only)
     #[arg(long, value_name = "URL", conflicts_with = "primary", value_parser = to_connect)]
     ground_station: Option<LinkAddress>,
-    /// Magnetic declination, degrees east [default: from the World Magnetic Model, for the field and today]
+    /// Magnetic declination, degrees east [default: from the World Magnetic Model, for the field
+    /// and today]
     #[arg(long, value_name = "DEG", value_parser = within(-180.0, 180.0, "degrees"))]
     declination_deg: Option<f64>,
-    /// Time without a command after which the boat goes to standby, s, or none; the real boat's value is unknown
+    /// Time without a command after which the boat goes to standby, s, or none; the real boat's
+    /// value is unknown
     #[arg(long, value_name = "S", default_value = "none", value_parser = or_none(seconds))]
     watchdog_s: OrNone,
-    /// Ignores a set-point that is not a whole number and keeps the previous one, as one known simulator does
+    /// Ignores a set-point that is not a whole number and keeps the previous one, as one known
+    /// simulator does
     #[arg(long)]
     integers: bool,
     /// Additional sentences beyond a Surveyor's; gpsd needs rmc for time, speed and course
@@ -97,10 +100,15 @@ impl ExtraArg {
 #[derive(Clone, Copy, Debug)]
 struct OrNone(Option<f64>);
 
-fn or_none(number: impl Fn(&str) -> Result<f64, String> + Clone) -> impl Fn(&str) -> Result<OrNone, String> + Clone {
+fn or_none(
+    number: impl Fn(&str) -> Result<f64, String> + Clone,
+) -> impl Fn(&str) -> Result<OrNone, String> + Clone {
     move |text| match text {
         "none" => Ok(OrNone(None)),
-        text => number(text).map(Some).map(OrNone).map_err(|e| format!("{e}, or none")),
+        text => number(text)
+            .map(Some)
+            .map(OrNone)
+            .map_err(|e| format!("{e}, or none")),
     }
 }
 
@@ -125,7 +133,11 @@ fn front_seat(args: &Args) -> Result<FrontSeatSettings> {
             });
         }
         (ProtocolArg::Mavlink, None, ground_station) => {
-            return Ok(FrontSeatSettings::ArduPilot { listen, ground_station: ground_station.clone(), charge });
+            return Ok(FrontSeatSettings::ArduPilot {
+                listen,
+                ground_station: ground_station.clone(),
+                charge,
+            });
         }
         (ProtocolArg::Surveyor, _, Some(_)) => "--ground-station requires --protocol mavlink",
         (ProtocolArg::Mavlink, Some(_), _) => {
@@ -136,7 +148,11 @@ fn front_seat(args: &Args) -> Result<FrontSeatSettings> {
 }
 
 /// Runs a boat with this front seat until its game is over.
-pub(super) fn emulate(vehicle: &str, front_seat: FrontSeatSettings, common: &CommonArgs) -> Result<ExitCode> {
+pub(super) fn emulate(
+    vehicle: &str,
+    front_seat: FrontSeatSettings,
+    common: &CommonArgs,
+) -> Result<ExitCode> {
     let stop = stop::on_ctrl_c_or_parent(common.for_parent)?;
     let leaf = common.leaf.clone().in_water();
     let settings = EmulatorSettings {
@@ -150,11 +166,16 @@ pub(super) fn emulate(vehicle: &str, front_seat: FrontSeatSettings, common: &Com
     };
     let log = Log::new(common.for_parent);
     let mut notify = |event: NodeEvent<'_>| match event {
-        NodeEvent::Looking { reason } => log.remark(format!("{vehicle}: looking for the game: {reason}")),
+        NodeEvent::Looking { reason } => {
+            log.remark(format!("{vehicle}: looking for the game: {reason}"))
+        }
         // The parent process may have requested any free port.
         NodeEvent::Listening { what, reach } => log.print(format!("{what} at {reach}\n")),
         NodeEvent::Event { at_s, event } => log.event(at_s, event),
-        NodeEvent::Recording(_) | NodeEvent::ControlPort { .. } | NodeEvent::Status(_) | NodeEvent::Ended(_) => {}
+        NodeEvent::Recording(_)
+        | NodeEvent::ControlPort { .. }
+        | NodeEvent::Status(_)
+        | NodeEvent::Ended(_) => {}
     };
     let emulated = gateway::node::emulate(&settings, &mut notify);
     log.end(String::new());

@@ -13,7 +13,8 @@ pub(crate) struct Args {
     /// Name of the vehicle in the game; the firmware becomes its agent
     #[arg(long, value_name = "NAME")]
     vehicle: String,
-    /// Address where the firmware sends its servo outputs, by UDP; instance N of SITL uses port 9002 + 10 N
+    /// Address where the firmware sends its servo outputs, by UDP; instance N of SITL uses port
+    /// 9002 + 10 N
     #[arg(long, value_name = "IP:PORT", default_value = "127.0.0.1:9002", value_parser = address)]
     listen: SocketAddr,
     /// Servo output of the port thruster (function 73, ThrottleLeft)
@@ -22,7 +23,8 @@ pub(crate) struct Args {
     /// Servo output of the starboard thruster (function 74, ThrottleRight)
     #[arg(long, value_name = "CHANNEL", default_value_t = 3, value_parser = whole::<usize>(1, Servos::CHANNEL_MAX))]
     starboard_servo: usize,
-    /// Pulse lengths of full astern, zero and full ahead, µs: SERVOn_MIN, _TRIM and _MAX. A BlueBoat has 1100,1500,1900
+    /// Pulse lengths of full astern, zero and full ahead, µs: SERVOn_MIN, _TRIM and _MAX. A
+    /// BlueBoat has 1100,1500,1900
     #[arg(long, value_name = "US,US,US", default_value = "1000,1500,2000", value_parser = pulses)]
     pulse_us: Pulses,
     #[command(flatten)]
@@ -33,7 +35,10 @@ pub(crate) struct Args {
 struct Pulses([u16; 3]);
 
 fn pulses(text: &str) -> Result<Pulses, String> {
-    let numbers: Option<Vec<u16>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
+    let numbers: Option<Vec<u16>> = text
+        .split(',')
+        .map(|number| number.trim().parse().ok())
+        .collect();
     match numbers.as_deref() {
         Some(&[astern, zero, ahead]) if 0 < astern && astern < zero && zero < ahead => {
             Ok(Pulses([astern, zero, ahead]))
@@ -43,6 +48,17 @@ fn pulses(text: &str) -> Result<Pulses, String> {
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
-    let servos = Servos { port: args.port_servo, starboard: args.starboard_servo, pulse_us: args.pulse_us.0 };
-    emulate(&args.vehicle, FrontSeatSettings::Sitl { listen: args.listen, servos }, &args.common)
+    let servos = Servos {
+        port: args.port_servo,
+        starboard: args.starboard_servo,
+        pulse_us: args.pulse_us.0,
+    };
+    emulate(
+        &args.vehicle,
+        FrontSeatSettings::Sitl {
+            listen: args.listen,
+            servos,
+        },
+        &args.common,
+    )
 }

@@ -26,7 +26,11 @@ pub(super) enum Source {
     /// An existing recording.
     Recorded(PathBuf),
     /// The game is played again; `digest` is the expected result, if the report has it.
-    Played { scenario: Box<Scenario>, seed: u64, digest: Option<String> },
+    Played {
+        scenario: Box<Scenario>,
+        seed: u64,
+        digest: Option<String>,
+    },
 }
 
 /// A game of a report.
@@ -64,11 +68,20 @@ impl Drop for Open {
 
 impl Games {
     pub(super) fn new(stop: &Arc<AtomicBool>) -> Result<Games> {
-        let folder =
-            TempDir::with_prefix("squall-view-").context("cannot create a folder for the recordings of games")?;
+        let folder = TempDir::with_prefix("squall-view-")
+            .context("cannot create a folder for the recordings of games")?;
         // A game that panics is reported by its thread, and must not end the others.
-        let players = ThreadPoolBuilder::new().num_threads(PLAYED_MAX).panic_handler(drop).build()?;
-        Ok(Games { open: Mutex::default(), folder, recordings: AtomicU64::new(0), players, stop: Arc::clone(stop) })
+        let players = ThreadPoolBuilder::new()
+            .num_threads(PLAYED_MAX)
+            .panic_handler(drop)
+            .build()?;
+        Ok(Games {
+            open: Mutex::default(),
+            folder,
+            recordings: AtomicU64::new(0),
+            players,
+            stop: Arc::clone(stop),
+        })
     }
 
     /// The view of the game with this name; `find` returns its source.
@@ -80,7 +93,9 @@ impl Games {
         let refused = |why: &str| Showing::new(Arc::new(PreparingView::failed(why))).shown();
         if open.len() >= OPEN_MAX {
             let Some(idle) = open.iter().position(|open| !open.showing.is_watched()) else {
-                return refused(&format!("{OPEN_MAX} other games are open; close one of them, then reload this page"));
+                return refused(&format!(
+                    "{OPEN_MAX} other games are open; close one of them, then reload this page"
+                ));
             };
             open.remove(idle);
         }
@@ -88,19 +103,30 @@ impl Games {
             Ok(game) => game,
             Err(why) => return refused(&command_line::explain::line(&why)),
         };
-        let preparing = Arc::new(PreparingView::new(&format!("{}: waiting for another game to end", game.about)));
+        let preparing = Arc::new(PreparingView::new(&format!(
+            "{}: waiting for another game to end",
+            game.about
+        )));
         let showing = Showing::new(Arc::clone(&preparing) as _);
-        let file = self.folder.path().join(format!("{}.mcap", self.recordings.fetch_add(1, Ordering::Relaxed)));
+        let file = self.folder.path().join(format!(
+            "{}.mcap",
+            self.recordings.fetch_add(1, Ordering::Relaxed)
+        ));
         let shown = showing.shown();
-        open.push_back(Open { name: name.to_owned(), showing: Arc::clone(&showing), file: file.clone() });
-        let stop = Arc::clone(&self.stop);
-        self.players.spawn(move || match prepare(&game, &file, &stop, &preparing) {
-            Ok(view) => showing.show(Arc::new(view)),
-            Err(why) => {
-                let why = format!("{}: {}", game.about, command_line::explain::line(&why));
-                showing.show(Arc::new(PreparingView::failed(&why)));
-            }
+        open.push_back(Open {
+            name: name.to_owned(),
+            showing: Arc::clone(&showing),
+            file: file.clone(),
         });
+        let stop = Arc::clone(&self.stop);
+        self.players
+            .spawn(move || match prepare(&game, &file, &stop, &preparing) {
+                Ok(view) => showing.show(Arc::new(view)),
+                Err(why) => {
+                    let why = format!("{}: {}", game.about, command_line::explain::line(&why));
+                    showing.show(Arc::new(PreparingView::failed(&why)));
+                }
+            });
         shown
     }
 }
@@ -114,10 +140,15 @@ fn prepare(
 ) -> Result<shore::page::replay::ReplayView> {
     let (scenario, seed, digest) = match &game.source {
         Source::Recorded(path) => return replay_command::open(path, Some(game.about.clone())),
-        Source::Played { scenario, seed, digest } => (scenario, *seed, digest),
+        Source::Played {
+            scenario,
+            seed,
+            digest,
+        } => (scenario, *seed, digest),
     };
     let end_s = scenario.rules.time_limit.as_s();
-    let new = NewFile::create(file).with_context(|| format!("cannot record to {}", file.display()))?;
+    let new =
+        NewFile::create(file).with_context(|| format!("cannot record to {}", file.display()))?;
     let report = in_process::play(scenario, seed, Some(new), stop, |contest| {
         if contest.decision().is_multiple_of(TELL_EVERY) {
             let share = 100.0 * (contest.now().as_s() / end_s).clamp(0.0, 1.0);
@@ -128,8 +159,13 @@ fn prepare(
         bail!("{problem}");
     }
     let about = match digest {
-        Some(digest) if *digest == report.outcome.digest => format!("{}; rerun, identical to the report", game.about),
-        Some(_) => format!("{}; rerun, NOT identical to the report: this program plays it differently", game.about),
+        Some(digest) if *digest == report.outcome.digest => {
+            format!("{}; rerun, identical to the report", game.about)
+        }
+        Some(_) => format!(
+            "{}; rerun, NOT identical to the report: this program plays it differently",
+            game.about
+        ),
         None => format!("{}; rerun", game.about),
     };
     replay_command::open(file, Some(about))

@@ -24,8 +24,13 @@ pub(super) fn open(path: &Path, stop: &Arc<AtomicBool>) -> Result<Arc<dyn Report
     let games = Games::new(stop)?;
     // For the HTML page of a report, open the data file beside it.
     let is_page = path.extension().is_some_and(|end| end == "html");
-    let folder =
-        if is_page { path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new(".")) } else { path };
+    let folder = if is_page {
+        path.parent()
+            .filter(|folder| *folder != Path::new(""))
+            .unwrap_or(Path::new("."))
+    } else {
+        path
+    };
     if !folder.is_dir() {
         return of_file(folder, games);
     }
@@ -36,9 +41,15 @@ pub(super) fn open(path: &Path, stop: &Arc<AtomicBool>) -> Result<Arc<dyn Report
     if TrainingReport::is_in(folder) {
         return Ok(Arc::new(TrainingReport::open(folder, games)?));
     }
-    if let Some(file) = ["until.json", "find.json"].map(|name| folder.join(name)).into_iter().find(|file| file.exists())
+    if let Some(file) = ["until.json", "find.json"]
+        .map(|name| folder.join(name))
+        .into_iter()
+        .find(|file| file.exists())
     {
-        bail!("there is no page for a search of a sweep; its result is in {}", file.display());
+        bail!(
+            "there is no page for a search of a sweep; its result is in {}",
+            file.display()
+        );
     }
     bail!(
         "there is no report in {}, expected report.json (of a league or a sweep) or updates.csv (of a training run)",
@@ -51,9 +62,17 @@ fn of_file(path: &Path, games: Games) -> Result<Arc<dyn Report>> {
     let is_none = || format!("{} is not a report", path.display());
     let value: Value = serde_json::from_slice(&bytes).with_context(is_none)?;
     match ["tournament", "sweep"].map(|kind| value.get(kind).is_some()) {
-        [true, _] => Ok(Arc::new(TournamentReport::new(serde_json::from_slice(&bytes).with_context(is_none)?, games))),
-        [_, true] => Ok(Arc::new(SweepReport::open(path, &value, games).with_context(is_none)?)),
-        _ => bail!("{} is not a report: it has neither the key tournament nor sweep", path.display()),
+        [true, _] => Ok(Arc::new(TournamentReport::new(
+            serde_json::from_slice(&bytes).with_context(is_none)?,
+            games,
+        ))),
+        [_, true] => Ok(Arc::new(
+            SweepReport::open(path, &value, games).with_context(is_none)?,
+        )),
+        _ => bail!(
+            "{} is not a report: it has neither the key tournament nor sweep",
+            path.display()
+        ),
     }
 }
 
@@ -78,26 +97,46 @@ impl TournamentReport {
             None => Err("the report has no plan".to_owned()),
             Some(packed) => tournament::Plan::unpack(packed).map_err(|why| why.to_string()),
         };
-        let digests = report.matches.iter().map(|row| (row.game, row.digest.clone())).collect();
+        let digests = report
+            .matches
+            .iter()
+            .map(|row| (row.game, row.digest.clone()))
+            .collect();
         let mut shown = serde_json::to_value(&report).expect("it has names for keys");
         // JavaScript numbers cannot represent every seed.
         let spell = |row: &mut Value| row["seed"] = row["seed"].to_string().into();
         spell(&mut shown);
         for list in ["matches", "failures"] {
-            shown[list].as_array_mut().into_iter().flatten().for_each(spell);
+            shown[list]
+                .as_array_mut()
+                .into_iter()
+                .flatten()
+                .for_each(spell);
         }
-        let json = json!({"kind": "tournament", "report": shown, "unplayable": plan.as_ref().err()});
-        TournamentReport { json: json.to_string().into_bytes(), plan, digests, games }
+        let json =
+            json!({"kind": "tournament", "report": shown, "unplayable": plan.as_ref().err()});
+        TournamentReport {
+            json: json.to_string().into_bytes(),
+            plan,
+            digests,
+            games,
+        }
     }
 
     fn find(&self, name: &str) -> Result<Game> {
-        let plan = self.plan.as_ref().map_err(|why| anyhow!("cannot rerun games: {why}"))?;
+        let plan = self
+            .plan
+            .as_ref()
+            .map_err(|why| anyhow!("cannot rerun games: {why}"))?;
         let place = place_of(name, plan.games())?;
         let (of, scenario) = plan.match_at(place);
         let [blue, red] = of.sides.map(|entry| &plan.tournament().entries[entry].name);
         let teams = plan.teams();
         Ok(Game {
-            about: format!("{blue} ({}) against {red} ({}), seed {}", teams[0], teams[1], of.seed),
+            about: format!(
+                "{blue} ({}) against {red} ({}), seed {}",
+                teams[0], teams[1], of.seed
+            ),
             source: Source::Played {
                 scenario: Box::new(scenario.clone()),
                 seed: of.seed,
@@ -112,7 +151,12 @@ fn place_of(name: &str, games: usize) -> Result<usize> {
     name.parse()
         .ok()
         .filter(|place| *place < games)
-        .with_context(|| format!("there is no game {name:?}, expected a number from 0 to {}", games.saturating_sub(1)))
+        .with_context(|| {
+            format!(
+                "there is no game {name:?}, expected a number from 0 to {}",
+                games.saturating_sub(1)
+            )
+        })
 }
 
 impl Report for TournamentReport {
@@ -147,7 +191,16 @@ struct SweepReport {
 
 impl SweepReport {
     fn open(path: &Path, value: &Value, games: Games) -> Result<SweepReport> {
-        for key in ["axes", "entries", "metrics", "points", "effects", "interactions", "worst", "failures"] {
+        for key in [
+            "axes",
+            "entries",
+            "metrics",
+            "points",
+            "effects",
+            "interactions",
+            "worst",
+            "failures",
+        ] {
             if !value[key].is_array() {
                 bail!("{key} is not a list");
             }
@@ -161,10 +214,20 @@ impl SweepReport {
         let plan = plan.map_err(|why| command_line::explain::line(&why));
         let rows = rows.map_err(|why| command_line::explain::line(&why));
         let worst = value["worst"].as_array().into_iter().flatten();
-        let digest =
-            |game: &Value| Some((usize::try_from(game["game"].as_u64()?).ok()?, game["digest"].as_str()?.to_owned()));
+        let digest = |game: &Value| {
+            Some((
+                usize::try_from(game["game"].as_u64()?).ok()?,
+                game["digest"].as_str()?.to_owned(),
+            ))
+        };
         let digests = worst.filter_map(digest).collect();
-        Ok(SweepReport { files: sweep::served(value, plan.is_ok()), plan, rows, digests, games })
+        Ok(SweepReport {
+            files: sweep::served(value, plan.is_ok()),
+            plan,
+            rows,
+            digests,
+            games,
+        })
     }
 
     /// The result of a game, if the table has it.
@@ -174,7 +237,11 @@ impl SweepReport {
 
     /// The games of a point, as JSON for the page.
     fn games_at(&self, point: usize) -> Option<Value> {
-        let plan = self.plan.as_ref().ok().filter(|plan| point < plan.points().len())?;
+        let plan = self
+            .plan
+            .as_ref()
+            .ok()
+            .filter(|plan| point < plan.points().len())?;
         let count = plan.games_per_point();
         let first = point * plan.games_per_point();
         let game = |index: usize| {
@@ -191,17 +258,26 @@ impl SweepReport {
             })
         };
         let games: Vec<Value> = (first..first + count.min(LISTED_MAX)).map(game).collect();
-        Some(json!({"games": games, "left_out": count - games.len(), "problem": self.rows.as_ref().err()}))
+        Some(
+            json!({"games": games, "left_out": count - games.len(), "problem": self.rows.as_ref().err()}),
+        )
     }
 
     fn find(&self, name: &str) -> Result<Game> {
-        let plan = self.plan.as_ref().map_err(|why| anyhow!("cannot rerun games: {why}"))?;
+        let plan = self
+            .plan
+            .as_ref()
+            .map_err(|why| anyhow!("cannot rerun games: {why}"))?;
         let job = plan.job(place_of(name, plan.games())?);
         let scenario = plan.scenario(job.point, job.entry, job.side)?;
         let sweep = plan.sweep();
         let values = &plan.points()[job.point];
-        let axes: Vec<String> =
-            sweep.axes.iter().zip(values).map(|(axis, value)| format!("{} {value}", axis.key)).collect();
+        let axes: Vec<String> = sweep
+            .axes
+            .iter()
+            .zip(values)
+            .map(|(axis, value)| format!("{} {value}", axis.key))
+            .collect();
         let entry = &sweep.entries[job.entry].name;
         let team = &plan.teams()[job.side];
         Ok(Game {
@@ -215,14 +291,17 @@ impl SweepReport {
     }
 
     fn digest(&self, index: usize) -> Option<&String> {
-        let in_table = self.row(index).map(|row| &row.digest).filter(|digest| !digest.is_empty());
+        let in_table = self
+            .row(index)
+            .map(|row| &row.digest)
+            .filter(|digest| !digest.is_empty());
         in_table.or_else(|| self.digests.get(&index))
     }
 }
 
 fn unpacked(path: &Path) -> Result<sweep::Plan> {
-    let packed: Packed =
-        serde_json::from_slice(&read(path)?).with_context(|| format!("{} is not a plan", path.display()))?;
+    let packed: Packed = serde_json::from_slice(&read(path)?)
+        .with_context(|| format!("{} is not a plan", path.display()))?;
     Ok(sweep::Plan::unpack(packed)?)
 }
 
@@ -232,10 +311,18 @@ impl Report for SweepReport {
     }
 
     fn file(&self, path: &str) -> Option<Vec<u8>> {
-        if let Some(point) = path.strip_prefix(GAMES_OF_POINT).and_then(|rest| rest.strip_suffix(".json")) {
-            return self.games_at(point.parse().ok()?).map(|games| games.to_string().into_bytes());
+        if let Some(point) = path
+            .strip_prefix(GAMES_OF_POINT)
+            .and_then(|rest| rest.strip_suffix(".json"))
+        {
+            return self
+                .games_at(point.parse().ok()?)
+                .map(|games| games.to_string().into_bytes());
         }
-        self.files.iter().find(|(name, _)| *name == path).map(|(_, text)| text.clone().into_bytes())
+        self.files
+            .iter()
+            .find(|(name, _)| *name == path)
+            .map(|(_, text)| text.clone().into_bytes())
     }
 
     fn game(&self, name: &str) -> Shown {

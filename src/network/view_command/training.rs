@@ -14,10 +14,25 @@ const POINTS_MAX: usize = 1000;
 /// Maximum number of listed episodes: the newest.
 const EPISODES_MAX: usize = 1000;
 /// Columns of an update besides its samples and stage.
-const UPDATES: [&str; 8] =
-    ["reward", "policy_loss", "value_loss", "entropy", "divergence", "clipped", "epochs", "explained_variance"];
+const UPDATES: [&str; 8] = [
+    "reward",
+    "policy_loss",
+    "value_loss",
+    "entropy",
+    "divergence",
+    "clipped",
+    "epochs",
+    "explained_variance",
+];
 /// Columns of an evaluation against an opponent.
-const EVALUATIONS: [&str; 6] = ["won", "drawn", "lost", "points", "points_against", "left_field"];
+const EVALUATIONS: [&str; 6] = [
+    "won",
+    "drawn",
+    "lost",
+    "points",
+    "points_against",
+    "left_field",
+];
 /// Columns that runs of earlier versions lack.
 const NEWER: [&str; 2] = ["explained_variance", "best"];
 const EPISODES: [&str; 3] = ["points", "points_against", "steps"];
@@ -49,7 +64,8 @@ impl TrainingReport {
 
     /// Opens the training in a folder; its tables must be readable.
     pub(super) fn open(folder: &Path, games: Games) -> Result<TrainingReport> {
-        let whole = std::fs::canonicalize(folder).with_context(|| format!("cannot read {}", folder.display()))?;
+        let whole = std::fs::canonicalize(folder)
+            .with_context(|| format!("cannot read {}", folder.display()))?;
         let run = Run::of(whole, folder);
         run.json()?;
         Ok(TrainingReport { run, games })
@@ -57,11 +73,23 @@ impl TrainingReport {
 
     /// The other runs in the same folder.
     fn others(&self) -> Vec<Run> {
-        let beside = self.run.folder.parent().and_then(|parent| std::fs::read_dir(parent).ok());
-        let folders = beside.into_iter().flatten().flatten().map(|entry| entry.path());
-        let is_other = |folder: &PathBuf| *folder != self.run.folder && TrainingReport::is_in(folder);
-        let mut runs: Vec<Run> =
-            folders.filter(is_other).take(RUNS_MAX).map(|folder| Run::of(folder.clone(), &folder)).collect();
+        let beside = self
+            .run
+            .folder
+            .parent()
+            .and_then(|parent| std::fs::read_dir(parent).ok());
+        let folders = beside
+            .into_iter()
+            .flatten()
+            .flatten()
+            .map(|entry| entry.path());
+        let is_other =
+            |folder: &PathBuf| *folder != self.run.folder && TrainingReport::is_in(folder);
+        let mut runs: Vec<Run> = folders
+            .filter(is_other)
+            .take(RUNS_MAX)
+            .map(|folder| Run::of(folder.clone(), &folder))
+            .collect();
         runs.sort_by(|a, b| a.name.cmp(&b.name));
         runs
     }
@@ -69,25 +97,40 @@ impl TrainingReport {
     /// The recording with this name in the folder of recordings; no other file is accepted.
     fn find(&self, name: &str) -> Result<Game> {
         let games = self.run.folder.join("games");
-        let is_name = name.ends_with(".mcap") && Path::new(name).file_name().is_some_and(|own| own == name);
+        let is_name =
+            name.ends_with(".mcap") && Path::new(name).file_name().is_some_and(|own| own == name);
         let path = games.join(name);
         if !is_name || !path.is_file() {
             bail!("there is no recording {name:?} in {}", games.display());
         }
         let about = format!("an episode of the training {}, {name}", self.run.name);
-        Ok(Game { about, source: Source::Recorded(path) })
+        Ok(Game {
+            about,
+            source: Source::Recorded(path),
+        })
     }
 }
 
 impl Run {
     /// The run in a folder, which `shown` names in commands.
     fn of(folder: PathBuf, shown: &Path) -> Run {
-        let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        Run { folder, name, strategy: argument_for(&shown.join("best.toml")) }
+        let name = folder
+            .file_name()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned();
+        Run {
+            folder,
+            name,
+            strategy: argument_for(&shown.join("best.toml")),
+        }
     }
 
     fn id(&self) -> String {
-        self.name.bytes().map(|byte| format!("{byte:02x}")).collect()
+        self.name
+            .bytes()
+            .map(|byte| format!("{byte:02x}"))
+            .collect()
     }
 
     /// Whether it is running; `None` if that is unknown.
@@ -99,13 +142,18 @@ impl Run {
         }
     }
 
-    /// Its plan from `run.json`, with the command that plays its best policy; null for runs of earlier
-    /// versions.
+    /// Its plan from `run.json`, with the command that plays its best policy; null for runs of
+    /// earlier versions.
     fn plan(&self) -> Value {
         let read = || serde_json::from_slice(&read(&self.folder.join("run.json")).ok()?).ok();
         let mut plan: Value = read().unwrap_or_default();
-        let sea = plan["sea"].as_str().map_or(String::new(), |sea| format!(" --sea {sea}"));
-        if let Some(game) = plan["game"].as_str().filter(|_| self.folder.join("best.toml").exists()) {
+        let sea = plan["sea"]
+            .as_str()
+            .map_or(String::new(), |sea| format!(" --sea {sea}"));
+        if let Some(game) = plan["game"]
+            .as_str()
+            .filter(|_| self.folder.join("best.toml").exists())
+        {
             plan["play"] = format!("squall run {game}{sea} --blue {}", self.strategy).into();
         }
         plan
@@ -113,12 +161,27 @@ impl Run {
 
     fn json(&self) -> Result<Value> {
         let updates = self.table("updates.csv", &["stage"], &UPDATES)?;
-        let evaluations = self.table("evaluations.csv", &["stage", "opponent", "best"], &EVALUATIONS)?;
-        let mut episodes = self.table("episodes.csv", &["stage", "seed", "opponent", "recording"], &EPISODES)?;
-        episodes.retain(|row| row["recording"].as_str().is_some_and(|file| !file.is_empty()));
+        let evaluations = self.table(
+            "evaluations.csv",
+            &["stage", "opponent", "best"],
+            &EVALUATIONS,
+        )?;
+        let mut episodes = self.table(
+            "episodes.csv",
+            &["stage", "seed", "opponent", "recording"],
+            &EPISODES,
+        )?;
+        episodes.retain(|row| {
+            row["recording"]
+                .as_str()
+                .is_some_and(|file| !file.is_empty())
+        });
         let from = episodes.len().saturating_sub(EPISODES_MAX);
-        let times =
-            if self.folder.join("times.csv").exists() { self.table("times.csv", &[], &["elapsed_s"])? } else { vec![] };
+        let times = if self.folder.join("times.csv").exists() {
+            self.table("times.csv", &[], &["elapsed_s"])?
+        } else {
+            vec![]
+        };
         Ok(json!({
             "kind": "training",
             "name": self.name,
@@ -136,33 +199,56 @@ impl Run {
         let path = self.folder.join(name);
         let bytes = read(&path)?;
         // The last line may still be in the middle of being written.
-        let whole = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
-        let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(&bytes[..whole]);
-        let heads = reader.headers().with_context(|| format!("{} is not a CSV table", path.display()))?.clone();
+        let whole = bytes
+            .iter()
+            .rposition(|byte| *byte == b'\n')
+            .map_or(0, |end| end + 1);
+        let mut reader = csv::ReaderBuilder::new()
+            .flexible(true)
+            .from_reader(&bytes[..whole]);
+        let heads = reader
+            .headers()
+            .with_context(|| format!("{} is not a CSV table", path.display()))?
+            .clone();
         let column = |name: &str| {
             let found = heads.iter().position(|head| head == name);
             if found.is_none() && NEWER.contains(&name) {
                 return Ok(None);
             }
-            found
-                .map(Some)
-                .with_context(|| format!("{} has no column {name}, expected those of a training run", path.display()))
+            found.map(Some).with_context(|| {
+                format!(
+                    "{} has no column {name}, expected those of a training run",
+                    path.display()
+                )
+            })
         };
-        let texts = texts.iter().map(|name| Ok((*name, column(name)?))).collect::<Result<Vec<_>>>()?;
+        let texts = texts
+            .iter()
+            .map(|name| Ok((*name, column(name)?)))
+            .collect::<Result<Vec<_>>>()?;
         let numbers = ["samples"].iter().chain(numbers);
-        let numbers = numbers.map(|name| Ok((*name, column(name)?))).collect::<Result<Vec<_>>>()?;
+        let numbers = numbers
+            .map(|name| Ok((*name, column(name)?)))
+            .collect::<Result<Vec<_>>>()?;
         let mut rows = vec![];
         for (line, record) in reader.records().enumerate() {
             let at = || format!("{} line {}", path.display(), line + 2);
             let record = record.with_context(at)?;
-            let cell = |column: usize| record.get(column).with_context(|| format!("{} is cut off", at()));
+            let cell = |column: usize| {
+                record
+                    .get(column)
+                    .with_context(|| format!("{} is cut off", at()))
+            };
             let mut row = serde_json::Map::new();
             for (name, column) in &texts {
                 row.insert((*name).to_owned(), column.map(cell).transpose()?.into());
             }
             for (name, column) in &numbers {
                 let cell = column.map_or(Ok(""), cell)?;
-                row.insert((*name).to_owned(), number(cell).with_context(|| format!("{}: {name}", at()))?);
+                row.insert(
+                    (*name).to_owned(),
+                    number(cell).with_context(|| format!("{}: {name}", at()))?,
+                );
             }
             rows.push(Value::Object(row));
         }
@@ -174,7 +260,11 @@ impl Run {
 fn thinned(rows: Vec<Value>) -> Vec<Value> {
     let step = rows.len().div_ceil(POINTS_MAX).max(1);
     let last = rows.len().saturating_sub(1);
-    rows.into_iter().enumerate().filter(|(i, _)| i.is_multiple_of(step) || *i == last).map(|(_, row)| row).collect()
+    rows.into_iter()
+        .enumerate()
+        .filter(|(i, _)| i.is_multiple_of(step) || *i == last)
+        .map(|(_, row)| row)
+        .collect()
 }
 
 /// A numeric cell; null if empty.
@@ -182,7 +272,10 @@ fn number(cell: &str) -> Result<Value> {
     if cell.is_empty() {
         return Ok(Value::Null);
     }
-    let number: f64 = cell.parse().ok().with_context(|| format!("found {cell:?}, expected a number"))?;
+    let number: f64 = cell
+        .parse()
+        .ok()
+        .with_context(|| format!("found {cell:?}, expected a number"))?;
     Ok(number.into())
 }
 
@@ -195,7 +288,9 @@ impl Report for TrainingReport {
         // If a table can no longer be read, show the error instead of the curves.
         let problem = |why: anyhow::Error| json!({"kind": "training", "problem": command_line::explain::line(&why)});
         let json = |run: &Run| run.json().unwrap_or_else(problem);
-        let wanted = path.strip_prefix(OTHER_RUN).and_then(|rest| rest.strip_suffix(".json"));
+        let wanted = path
+            .strip_prefix(OTHER_RUN)
+            .and_then(|rest| rest.strip_suffix(".json"));
         let shown = match wanted {
             Some(id) => json(self.others().iter().find(|run| run.id() == id)?),
             None if path == "/report.json" => {

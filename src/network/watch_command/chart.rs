@@ -14,7 +14,13 @@ const COLUMNS: usize = 78;
 const ROWS: usize = 20;
 
 /// One picture of the game.
-pub(super) fn page(info: &GameInfo, game: &GameName, frame: &Frame, events: &[String], rates: &Rates) -> String {
+pub(super) fn page(
+    info: &GameInfo,
+    game: &GameName,
+    frame: &Frame,
+    events: &[String],
+    rates: &Rates,
+) -> String {
     let scenario = &info.scenario;
     let mut text = format!(
         "{}  {}  {:.1} s of {:.0} s  {:.0}x  {:.0} frames/s\n",
@@ -30,7 +36,9 @@ pub(super) fn page(info: &GameInfo, game: &GameName, frame: &Frame, events: &[St
     draw_field(scenario, frame, &mut cells);
     draw_boats(scenario, frame, &mut cells);
     text += &format!("+{}+\n", "-".repeat(COLUMNS));
-    cells.iter().for_each(|row| text += &format!("|{}|\n", row.concat()));
+    cells
+        .iter()
+        .for_each(|row| text += &format!("|{}|\n", row.concat()));
     text += &format!("+{}+\n", "-".repeat(COLUMNS));
     boats(scenario, frame).for_each(|line| text += &format!("{line}\n"));
     events.iter().for_each(|line| text += &format!("{line}\n"));
@@ -40,7 +48,11 @@ pub(super) fn page(info: &GameInfo, game: &GameName, frame: &Frame, events: &[St
 /// The state of the game in one line.
 pub(super) fn line(scenario: &Scenario, frame: &Frame, rates: &Rates) -> String {
     let lost = frame.vehicles.iter().filter(|boat| boat.agent_lost).count();
-    let lost = if lost > 0 { format!("  {lost} without an agent") } else { String::new() };
+    let lost = if lost > 0 {
+        format!("  {lost} without an agent")
+    } else {
+        String::new()
+    };
     format!(
         "{:>7.1} s  {}  {:.0}x  {:.0} frames/s{lost}\n",
         frame.stamp.valid_ns.as_s(),
@@ -52,7 +64,10 @@ pub(super) fn line(scenario: &Scenario, frame: &Frame, rates: &Rates) -> String 
 
 fn score(scenario: &Scenario, frame: &Frame) -> String {
     let teams = scenario.teams.iter().zip(&frame.score);
-    teams.map(|(team, score)| format!("{} {score}", team.name)).collect::<Vec<_>>().join("  ")
+    teams
+        .map(|(team, score)| format!("{} {score}", team.name))
+        .collect::<Vec<_>>()
+        .join("  ")
 }
 
 /// The cell of a position; positions off the field are shown at its edge. The field's far side is
@@ -60,8 +75,12 @@ fn score(scenario: &Scenario, frame: &Frame) -> String {
 fn cell(scenario: &Scenario, at: Ned) -> (usize, usize) {
     let plan = &scenario.field.plan;
     let (along_m, across_m) = scenario.field.along_across(at);
-    let index = |share: f64, count: usize| (share * count as f64).clamp(0.0, count as f64 - 1.0) as usize;
-    (ROWS - 1 - index(across_m / plan.depth_m, ROWS), index(along_m / plan.width_m, COLUMNS))
+    let index =
+        |share: f64, count: usize| (share * count as f64).clamp(0.0, count as f64 - 1.0) as usize;
+    (
+        ROWS - 1 - index(across_m / plan.depth_m, ROWS),
+        index(along_m / plan.width_m, COLUMNS),
+    )
 }
 
 fn paint(cells: &mut [Vec<String>], (row, column): (usize, usize), team: usize, letter: &str) {
@@ -84,7 +103,12 @@ fn draw_boats(scenario: &Scenario, frame: &Frame, cells: &mut [Vec<String>]) {
         // The chart shows the field level, so headings are rotated with it.
         let heading_deg = boat.nav.psi_rad.to_degrees() + 90.0 - scenario.field.plan.along_deg;
         let eighth = (compass_deg_from_rad(heading_deg.to_radians()) / 45.0).round() as usize % 8;
-        paint(cells, cell(scenario, boat.nav.at()), vehicle.team.index(), ARROWS[eighth]);
+        paint(
+            cells,
+            cell(scenario, boat.nav.at()),
+            vehicle.team.index(),
+            ARROWS[eighth],
+        );
     }
 }
 
@@ -116,5 +140,10 @@ fn state(boat: &VehicleTruth) -> String {
         (boat.disabled, "out of action"),
         (boat.outside, "off the field"),
     ];
-    words.iter().filter(|(holds, _)| *holds).map(|(_, word)| *word).collect::<Vec<_>>().join(", ")
+    words
+        .iter()
+        .filter(|(holds, _)| *holds)
+        .map(|(_, word)| *word)
+        .collect::<Vec<_>>()
+        .join(", ")
 }

@@ -12,7 +12,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 /// Shows the helm of the vehicle with this name, at this interval, until the game is over.
-pub(super) fn watch(observer: &Observer, name: &str, pause: Duration, stop: &AtomicBool) -> Result<()> {
+pub(super) fn watch(
+    observer: &Observer,
+    name: &str,
+    pause: Duration,
+    stop: &AtomicBool,
+) -> Result<()> {
     let vehicle = observer.vehicle(name)?;
     let scenario = &observer.info.scenario;
     let live = std::io::stdout().is_terminal();

@@ -72,7 +72,11 @@ impl Encounters {
             Relation::Enemy => &mut self.enemy,
             Relation::TaggerAndTagged => &mut self.tagger_and_tagged,
         };
-        *(if encounter.touched { &mut nearness.contacts } else { &mut nearness.near_misses }) += 1;
+        *(if encounter.touched {
+            &mut nearness.contacts
+        } else {
+            &mut nearness.near_misses
+        }) += 1;
     }
 }
 
@@ -96,13 +100,21 @@ pub(super) struct EncounterCounter {
 impl EncounterCounter {
     pub(super) fn new(scenario: &Scenario) -> EncounterCounter {
         let count = scenario.vehicles.len();
-        EncounterCounter { scenario: scenario.clone(), open: vec![None; count * count], tagged_by: vec![None; count] }
+        EncounterCounter {
+            scenario: scenario.clone(),
+            open: vec![None; count * count],
+            tagged_by: vec![None; count],
+        }
     }
 
     /// Adds the next step; counts the encounters that end.
     pub(super) fn add(&mut self, step: &Step, quality: &mut Quality) {
         for logged in &step.events {
-            if let Event::Tagged { vehicle, cause: TagCause::Opponent(by) } = logged.event {
+            if let Event::Tagged {
+                vehicle,
+                cause: TagCause::Opponent(by),
+            } = logged.event
+            {
                 self.tagged_by[vehicle.index()] = Some((by.index(), logged.at.as_s()));
             }
         }
@@ -117,7 +129,9 @@ impl EncounterCounter {
     /// Updates the encounter of two boats, the lower vehicle first.
     fn look_at(&mut self, step: &Step, a: usize, b: usize, quality: &mut Quality) {
         let near_m = self.scenario.rules.collision_distance_m;
-        let (Some(one), Some(other)) = (step.samples.get(a), step.samples.get(b)) else { return };
+        let (Some(one), Some(other)) = (step.samples.get(a), step.samples.get(b)) else {
+            return;
+        };
         let distance_m = one.truth.at().distance(other.truth.at());
         let touched = self.touches((a, one), (b, other), distance_m);
         let place = a * self.tagged_by.len() + b;
@@ -138,20 +152,37 @@ impl EncounterCounter {
     }
 
     fn close(&mut self, place: usize, quality: &mut Quality) {
-        let Some(encounter) = self.open[place].take() else { return };
+        let Some(encounter) = self.open[place].take() else {
+            return;
+        };
         quality.encounters.count(encounter);
         let count = self.tagged_by.len();
-        let names = [place / count, place % count].map(|vehicle| strategy_name(&self.scenario, vehicle));
+        let names =
+            [place / count, place % count].map(|vehicle| strategy_name(&self.scenario, vehicle));
         let both_count = encounter.relation != Relation::Mate || names[0] != names[1];
         for name in names.into_iter().take(if both_count { 2 } else { 1 }) {
-            quality.strategies.entry(name.to_owned()).or_default().encounters.count(encounter);
+            quality
+                .strategies
+                .entry(name.to_owned())
+                .or_default()
+                .encounters
+                .count(encounter);
         }
     }
 
-    fn touches(&self, (a, one): (usize, &Sample), (b, other): (usize, &Sample), distance_m: f64) -> bool {
+    fn touches(
+        &self,
+        (a, one): (usize, &Sample),
+        (b, other): (usize, &Sample),
+        distance_m: f64,
+    ) -> bool {
         let hull = |vehicle: usize, sample: &Sample| {
             let boat = self.scenario.boat_of(VehicleId::at(vehicle));
-            HullRectangle { pose: sample.truth.pose(), length_m: boat.length_m, beam_m: boat.beam_m }
+            HullRectangle {
+                pose: sample.truth.pose(),
+                length_m: boat.length_m,
+                beam_m: boat.beam_m,
+            }
         };
         let one = hull(a, one);
         let other = hull(b, other);
@@ -161,8 +192,9 @@ impl EncounterCounter {
 
     fn relation(&self, a: usize, b: usize, now_s: f64) -> Relation {
         let team_of = |vehicle: usize| self.scenario.team_of(VehicleId::at(vehicle));
-        let tagged_by =
-            |on: usize, by: usize| self.tagged_by[on].is_some_and(|(b, at)| b == by && now_s - at <= TAG_REMEMBERED_S);
+        let tagged_by = |on: usize, by: usize| {
+            self.tagged_by[on].is_some_and(|(b, at)| b == by && now_s - at <= TAG_REMEMBERED_S)
+        };
         if team_of(a) == team_of(b) {
             Relation::Mate
         } else if tagged_by(a, b) || tagged_by(b, a) {

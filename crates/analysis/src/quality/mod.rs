@@ -111,14 +111,20 @@ pub struct MindState {
 
 impl From<HelmReport> for MindState {
     fn from(report: HelmReport) -> MindState {
-        MindState { role: report.program, mode: report.mode }
+        MindState {
+            role: report.program,
+            mode: report.mode,
+        }
     }
 }
 
 impl MindState {
     /// The state of a mind that does not report it.
     fn unknown() -> MindState {
-        MindState { role: "unknown".to_owned(), mode: "unknown".to_owned() }
+        MindState {
+            role: "unknown".to_owned(),
+            mode: "unknown".to_owned(),
+        }
     }
 }
 
@@ -133,14 +139,25 @@ struct BoatTrack {
 impl GameQuality {
     /// Starts before the first step of a game.
     pub fn new(scenario: &Scenario) -> GameQuality {
-        let mut quality = Quality { games: 1, ..Quality::default() };
+        let mut quality = Quality {
+            games: 1,
+            ..Quality::default()
+        };
         for team in (0..scenario.teams.len()).map(|team| TeamId(team as u8)) {
             for strategy in strategies_of(scenario, team) {
-                quality.strategies.entry(strategy.to_owned()).or_default().teams += 1;
+                quality
+                    .strategies
+                    .entry(strategy.to_owned())
+                    .or_default()
+                    .teams += 1;
             }
         }
         GameQuality {
-            boats: scenario.vehicles.iter().map(|_| BoatTrack::default()).collect(),
+            boats: scenario
+                .vehicles
+                .iter()
+                .map(|_| BoatTrack::default())
+                .collect(),
             encounters: EncounterCounter::new(scenario),
             before_s: None,
             scenario: scenario.clone(),
@@ -154,14 +171,28 @@ impl GameQuality {
         self.encounters.add(step, &mut self.quality);
         // A step covers the time since the previous one. The first covers none, because no order
         // led there.
-        let Some(before_s) = self.before_s.replace(step.time_s) else { return };
+        let Some(before_s) = self.before_s.replace(step.time_s) else {
+            return;
+        };
         let step_s = step.time_s - before_s;
         self.quality.time_s += step_s;
         self.add_attacks(step, step_s);
-        let GameQuality { scenario, boats, quality, .. } = self;
+        let GameQuality {
+            scenario,
+            boats,
+            quality,
+            ..
+        } = self;
         for (i, (sample, boat)) in step.samples.iter().zip(boats).enumerate() {
-            let strategy = quality.strategies.entry(strategy_name(scenario, i).to_owned()).or_default();
-            let mind = minds.get(i).cloned().flatten().unwrap_or_else(MindState::unknown);
+            let strategy = quality
+                .strategies
+                .entry(strategy_name(scenario, i).to_owned())
+                .or_default();
+            let mind = minds
+                .get(i)
+                .cloned()
+                .flatten()
+                .unwrap_or_else(MindState::unknown);
             let role = strategy.roles.entry(mind.role.clone()).or_default();
             let sums = role.modes.entry(mind.mode.clone()).or_default();
             sums.add(scenario, sample, step_s);
@@ -175,10 +206,15 @@ impl GameQuality {
 
     /// Adds the time in which no boat of a team attacks.
     fn add_attacks(&mut self, step: &Step, step_s: f64) {
-        let GameQuality { scenario, quality, .. } = self;
+        let GameQuality {
+            scenario, quality, ..
+        } = self;
         for team in (0..scenario.teams.len()).map(|team| TeamId(team as u8)) {
-            let mut mates =
-                step.samples.iter().enumerate().filter(|(i, _)| scenario.team_of(VehicleId::at(*i)) == team);
+            let mut mates = step
+                .samples
+                .iter()
+                .enumerate()
+                .filter(|(i, _)| scenario.team_of(VehicleId::at(*i)) == team);
             let is_attacked = mates.any(|(_, sample)| attacks(scenario, team, sample));
             for name in strategies_of(scenario, team) {
                 let strategy = quality.strategies.entry(name.to_owned()).or_default();
@@ -200,7 +236,11 @@ impl ModeQuality {
     fn add(&mut self, scenario: &Scenario, sample: &Sample, step_s: f64) {
         let is_at_edge = scenario.field.inside_by_m(sample.truth.at()) < EDGE_M;
         self.time_s += step_s;
-        self.standing_s += if sample.truth.speed_m_s() < STANDING_M_S { step_s } else { 0.0 };
+        self.standing_s += if sample.truth.speed_m_s() < STANDING_M_S {
+            step_s
+        } else {
+            0.0
+        };
         self.edge_s += if is_at_edge { step_s } else { 0.0 };
     }
 
@@ -211,10 +251,19 @@ impl ModeQuality {
             self.begun += 1;
             return;
         };
-        if let (Order::Steer { heading_rad: old_rad, .. }, Order::Steer { heading_rad, .. }) = (*before, order) {
+        if let (
+            Order::Steer {
+                heading_rad: old_rad,
+                ..
+            },
+            Order::Steer { heading_rad, .. },
+        ) = (*before, order)
+        {
             self.course_jumps += u64::from(wrap_pi(heading_rad - old_rad).abs() > COURSE_JUMP_RAD);
         }
-        let change_m_s = ordered_m_s(order).zip(ordered_m_s(*before)).map_or(0.0, |(new, old)| (new - old).abs());
+        let change_m_s = ordered_m_s(order)
+            .zip(ordered_m_s(*before))
+            .map_or(0.0, |(new, old)| (new - old).abs());
         self.speed_jumps += u64::from(change_m_s > SPEED_JUMP_M_S);
     }
 
@@ -235,7 +284,10 @@ impl Quality {
         self.time_s += other.time_s;
         self.encounters.merge(&other.encounters);
         for (name, other) in &other.strategies {
-            self.strategies.entry(name.clone()).or_default().merge(other);
+            self.strategies
+                .entry(name.clone())
+                .or_default()
+                .merge(other);
         }
     }
 }
@@ -264,7 +316,8 @@ fn strategy_name(scenario: &Scenario, vehicle: usize) -> &str {
 
 /// The distinct names of a team's strategies.
 fn strategies_of(scenario: &Scenario, team: TeamId) -> Vec<&str> {
-    let vehicles = (0..scenario.vehicles.len()).filter(|i| scenario.team_of(VehicleId::at(*i)) == team);
+    let vehicles =
+        (0..scenario.vehicles.len()).filter(|i| scenario.team_of(VehicleId::at(*i)) == team);
     let mut names: Vec<&str> = vehicles.map(|i| strategy_name(scenario, i)).collect();
     names.sort_unstable();
     names.dedup();

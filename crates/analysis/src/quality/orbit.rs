@@ -42,12 +42,19 @@ impl OrbitDetector {
     pub(super) fn add(&mut self, time_s: f64, at: Ned) -> OrbitPart {
         /// Rounding error of times, s.
         const ROUNDING_S: f64 = 1e-6;
-        let last_s = self.places.back().map_or(f64::NEG_INFINITY, |(last_s, _)| *last_s);
+        let last_s = self
+            .places
+            .back()
+            .map_or(f64::NEG_INFINITY, |(last_s, _)| *last_s);
         if time_s - last_s < SPACING_S - ROUNDING_S {
             return OrbitPart::default();
         }
         self.places.push_back((time_s, at));
-        while self.places.get(1).is_some_and(|(second_s, _)| time_s - second_s >= ORBIT_MIN_S - ROUNDING_S) {
+        while self
+            .places
+            .get(1)
+            .is_some_and(|(second_s, _)| time_s - second_s >= ORBIT_MIN_S - ROUNDING_S)
+        {
             self.places.pop_front();
         }
         let first_s = self.places.front().map_or(time_s, |(first_s, _)| *first_s);
@@ -55,21 +62,37 @@ impl OrbitDetector {
         let was_orbit = std::mem::replace(&mut self.is_orbit, is_orbit);
         match (was_orbit, is_orbit) {
             (_, false) => OrbitPart::default(),
-            (false, true) => OrbitPart { begun: true, lasted_s: time_s - first_s },
-            (true, true) => OrbitPart { begun: false, lasted_s: time_s - last_s },
+            (false, true) => OrbitPart {
+                begun: true,
+                lasted_s: time_s - first_s,
+            },
+            (true, true) => OrbitPart {
+                begun: false,
+                lasted_s: time_s - last_s,
+            },
         }
     }
 }
 
 /// Whether a track is on a circle and completes at least one turn.
 fn goes_round(places: &VecDeque<(f64, Ned)>) -> bool {
-    let Some((centre, radius_m)) = circle(places) else { return false };
+    let Some((centre, radius_m)) = circle(places) else {
+        return false;
+    };
     let off_m = OFF_M.max(OFF_SHARE * radius_m);
-    if radius_m < RADIUS_MIN_M || places.iter().any(|(_, at)| (at.distance(centre) - radius_m).abs() > off_m) {
+    if radius_m < RADIUS_MIN_M
+        || places
+            .iter()
+            .any(|(_, at)| (at.distance(centre) - radius_m).abs() > off_m)
+    {
         return false;
     }
     let bearings = places.iter().map(|(_, at)| centre.bearing_rad(*at));
-    let swept_rad: f64 = bearings.clone().zip(bearings.skip(1)).map(|(from, to)| wrap_pi(to - from)).sum();
+    let swept_rad: f64 = bearings
+        .clone()
+        .zip(bearings.skip(1))
+        .map(|(from, to)| wrap_pi(to - from))
+        .sum();
     swept_rad.abs() >= TAU
 }
 
@@ -79,7 +102,10 @@ fn goes_round(places: &VecDeque<(f64, Ned)>) -> bool {
 /// moments.
 fn circle(places: &VecDeque<(f64, Ned)>) -> Option<(Ned, f64)> {
     let share = 1.0 / places.len() as f64;
-    let mean = places.iter().fold(Ned::default(), |sum, (_, at)| sum + *at).scaled(share);
+    let mean = places
+        .iter()
+        .fold(Ned::default(), |sum, (_, at)| sum + *at)
+        .scaled(share);
     let mut nn = 0.0;
     let mut ee = 0.0;
     let mut ne = 0.0;
@@ -98,7 +124,9 @@ fn circle(places: &VecDeque<(f64, Ned)>) -> Option<(Ned, f64)> {
     let north = (third.north * ee - third.east * ne) / determinant;
     let east = (third.east * nn - third.north * ne) / determinant;
     let radius_m = (north * north + east * east + (nn + ee) * share).sqrt();
-    radius_m.is_finite().then_some((mean + Ned { north, east }, radius_m))
+    radius_m
+        .is_finite()
+        .then_some((mean + Ned { north, east }, radius_m))
 }
 
 #[cfg(test)]
@@ -111,18 +139,27 @@ mod tests {
     fn orbits(span_s: f64, at: impl Fn(f64) -> Ned) -> (u64, f64) {
         let mut detector = OrbitDetector::default();
         let steps = (span_s * 10.0).round() as usize;
-        let parts = (0..=steps).map(|i| i as f64 / 10.0).map(|time_s| detector.add(time_s, at(time_s)));
-        parts.fold((0, 0.0), |(count, lasted_s), part| (count + u64::from(part.begun), lasted_s + part.lasted_s))
+        let parts = (0..=steps)
+            .map(|i| i as f64 / 10.0)
+            .map(|time_s| detector.add(time_s, at(time_s)));
+        parts.fold((0, 0.0), |(count, lasted_s), part| {
+            (count + u64::from(part.begun), lasted_s + part.lasted_s)
+        })
     }
 
     fn round(radius_m: f64, turn_rad: f64) -> Ned {
         let (sin, cos) = math::sin_cos(turn_rad);
-        Ned { north: 100.0 + radius_m * cos, east: -50.0 + radius_m * sin }
+        Ned {
+            north: 100.0 + radius_m * cos,
+            east: -50.0 + radius_m * sin,
+        }
     }
 
     #[test]
     fn a_circle_is_an_orbit_for_as_long_as_it_lasts() {
-        let is = |got: (u64, f64), count: u64, lasted_s: f64| got.0 == count && (got.1 - lasted_s).abs() < 1e-6;
+        let is = |got: (u64, f64), count: u64, lasted_s: f64| {
+            got.0 == count && (got.1 - lasted_s).abs() < 1e-6
+        };
         for radius_m in [2.0, 4.0, 15.0] {
             let got = orbits(200.0, |time_s| round(radius_m, -TAU * time_s / 20.0));
             assert!(is(got, 1, 200.0), "{radius_m} m: {got:?}");
@@ -132,19 +169,40 @@ mod tests {
         // Two orbits of a minute and a half each, with a straight run of 100 s between.
         let twice = orbits(280.0, |time_s| match time_s {
             before if before < 90.0 => round(4.0, TAU * before / 20.0),
-            between if between < 190.0 => round(4.0, TAU * 4.5) + Ned { north: -(between - 90.0), east: 0.0 },
-            after => round(4.0, TAU * (after - 180.0) / 20.0) + Ned { north: -100.0, east: 0.0 },
+            between if between < 190.0 => {
+                round(4.0, TAU * 4.5)
+                    + Ned {
+                        north: -(between - 90.0),
+                        east: 0.0,
+                    }
+            }
+            after => {
+                round(4.0, TAU * (after - 180.0) / 20.0)
+                    + Ned {
+                        north: -100.0,
+                        east: 0.0,
+                    }
+            }
         });
         assert!(twice.0 == 2 && (twice.1 - 180.0).abs() < 4.0, "{twice:?}");
     }
 
     #[test]
     fn what_is_no_circle_is_no_orbit() {
-        let straight = |time_s: f64| Ned { north: 1.5 * time_s, east: -time_s };
-        let still = |_: f64| Ned { north: 3.0, east: 4.0 };
+        let straight = |time_s: f64| Ned {
+            north: 1.5 * time_s,
+            east: -time_s,
+        };
+        let still = |_: f64| Ned {
+            north: 3.0,
+            east: 4.0,
+        };
         let ellipse = |time_s: f64| {
             let at = round(10.0, TAU * time_s / 40.0);
-            Ned { north: 2.0 * at.north, east: at.east }
+            Ned {
+                north: 2.0 * at.north,
+                east: at.east,
+            }
         };
         let slow = |time_s: f64| round(20.0, TAU * time_s / 100.0);
         let to_and_fro = |time_s: f64| round(10.0, 2.0 * math::sin_cos(TAU * time_s / 30.0).0);

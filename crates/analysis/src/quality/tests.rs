@@ -10,31 +10,56 @@ use std::path::Path;
 /// Two blue boats with Pav01's two roles, then two red ones, on the field of 160 m east by 80 m
 /// north of the datum.
 fn scenario() -> Scenario {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
+    let file =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
     scenario::load(&file).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// At rest in the middle of the own half, mates 30 m apart.
 fn at_rest(i: usize) -> Sample {
-    let nav = Nav { north_m: [25.0, 55.0][i % 2], east_m: [40.0, 120.0][i / 2], ..Nav::default() };
-    Sample { truth: nav, is_free: true, ..Sample::default() }
+    let nav = Nav {
+        north_m: [25.0, 55.0][i % 2],
+        east_m: [40.0, 120.0][i / 2],
+        ..Nav::default()
+    };
+    Sample {
+        truth: nav,
+        is_free: true,
+        ..Sample::default()
+    }
 }
 
 fn in_mode(role: &str, mode: &str) -> MindState {
-    MindState { role: role.to_owned(), mode: mode.to_owned() }
+    MindState {
+        role: role.to_owned(),
+        mode: mode.to_owned(),
+    }
 }
 
 /// The quality of a game of `steps` steps of 0.1 s, in which all boats rest in mode `m` unless
 /// `change` alters that.
-fn quality(steps: usize, change: impl Fn(usize, &mut [Sample], &mut [Option<MindState>], &mut Vec<Logged>)) -> Quality {
+fn quality(
+    steps: usize,
+    change: impl Fn(usize, &mut [Sample], &mut [Option<MindState>], &mut Vec<Logged>),
+) -> Quality {
     let scenario = scenario();
     let mut game = GameQuality::new(&scenario);
     for step in 0..=steps {
         let mut samples: Vec<Sample> = (0..4).map(at_rest).collect();
-        let mut minds: Vec<_> = ["a", "b", "a", "b"].map(|role| Some(in_mode(role, "m"))).to_vec();
+        let mut minds: Vec<_> = ["a", "b", "a", "b"]
+            .map(|role| Some(in_mode(role, "m")))
+            .to_vec();
         let mut events = vec![];
         change(step, &mut samples, &mut minds, &mut events);
-        game.add(&Step { time_s: step as f64 / 10.0, samples, events, ..Step::default() }, &minds);
+        game.add(
+            &Step {
+                time_s: step as f64 / 10.0,
+                samples,
+                events,
+                ..Step::default()
+            },
+            &minds,
+        );
     }
     game.end()
 }
@@ -44,7 +69,10 @@ fn mode<'a>(quality: &'a Quality, role: &str, mode: &str) -> &'a ModeQuality {
 }
 
 fn steer(heading_deg: f64, speed_m_s: f64) -> Order {
-    Order::Steer { heading_rad: heading_deg.to_radians(), speed_m_s }
+    Order::Steer {
+        heading_rad: heading_deg.to_radians(),
+        speed_m_s,
+    }
 }
 
 #[test]
@@ -55,7 +83,11 @@ fn a_square_is_four_jumps_a_round_and_a_circle_is_none() {
         samples[1].order = steer(360.0 * step as f64 / 400.0, 2.0);
     });
     let a = mode(&square, "a", "m");
-    assert_eq!((a.course_jumps, a.speed_jumps, a.begun), (12, 0, 2), "two boats have the role");
+    assert_eq!(
+        (a.course_jumps, a.speed_jumps, a.begun),
+        (12, 0, 2),
+        "two boats have the role"
+    );
     assert!((a.time_s - 240.0).abs() < 1e-9 && (square.time_s - 120.0).abs() < 1e-9);
     assert_eq!(mode(&square, "b", "m").course_jumps, 0);
 }
@@ -63,8 +95,18 @@ fn a_square_is_four_jumps_a_round_and_a_circle_is_none() {
 #[test]
 fn only_what_is_more_than_45_degrees_or_1_m_s_jumps_and_only_in_the_same_mode() {
     for (what, first, second, want) in [
-        ("44 degrees across north", steer(340.0, 2.0), steer(24.0, 2.0), (0, 0)),
-        ("46 degrees across north", steer(340.0, 2.0), steer(26.0, 2.0), (1, 0)),
+        (
+            "44 degrees across north",
+            steer(340.0, 2.0),
+            steer(24.0, 2.0),
+            (0, 0),
+        ),
+        (
+            "46 degrees across north",
+            steer(340.0, 2.0),
+            steer(26.0, 2.0),
+            (1, 0),
+        ),
         ("0.9 m/s", steer(0.0, 2.0), steer(0.0, 1.1), (0, 0)),
         ("1.1 m/s", steer(0.0, 2.0), steer(0.0, 0.9), (0, 1)),
         ("both", steer(0.0, 2.0), steer(180.0, 0.0), (1, 1)),
@@ -77,8 +119,11 @@ fn only_what_is_more_than_45_degrees_or_1_m_s_jumps_and_only_in_the_same_mode() 
                     minds[0] = Some(in_mode("a", "n"));
                 }
             });
-            let modes: Vec<&ModeQuality> = got.strategies["pav01"].roles["a"].modes.values().collect();
-            let jumps = modes.iter().fold((0, 0), |sum, m| (sum.0 + m.course_jumps, sum.1 + m.speed_jumps));
+            let modes: Vec<&ModeQuality> =
+                got.strategies["pav01"].roles["a"].modes.values().collect();
+            let jumps = modes.iter().fold((0, 0), |sum, m| {
+                (sum.0 + m.course_jumps, sum.1 + m.speed_jumps)
+            });
             assert_eq!(jumps, want, "{what}, in another mode: {changes_mode}");
         }
     }
@@ -96,15 +141,31 @@ fn standing_still_and_the_edge_are_told_by_speed_and_place() {
     });
     let a = mode(&got, "a", "m");
     let other = mode(&got, "unknown", "unknown");
-    assert!((a.standing_s - 5.0).abs() < 1e-9 && (a.edge_s - 3.0).abs() < 1e-9, "{a:?}");
-    assert!(other.standing_s == 0.0 && (other.edge_s - 10.0).abs() < 1e-9, "{other:?}");
+    assert!(
+        (a.standing_s - 5.0).abs() < 1e-9 && (a.edge_s - 3.0).abs() < 1e-9,
+        "{a:?}"
+    );
+    assert!(
+        other.standing_s == 0.0 && (other.edge_s - 10.0).abs() < 1e-9,
+        "{other:?}"
+    );
 }
 
 /// One boat comes alongside another at a step, stays for a second, and leaves.
-fn visit(samples: &mut [Sample], step: usize, (begin, boat, other, gap_m): (usize, usize, usize, f64)) {
+fn visit(
+    samples: &mut [Sample],
+    step: usize,
+    (begin, boat, other, gap_m): (usize, usize, usize, f64),
+) {
     if (begin..begin + 10).contains(&step) {
-        let Nav { north_m, east_m, .. } = samples[other].truth;
-        samples[boat].truth = Nav { north_m, east_m: east_m + gap_m, ..Nav::default() };
+        let Nav {
+            north_m, east_m, ..
+        } = samples[other].truth;
+        samples[boat].truth = Nav {
+            north_m,
+            east_m: east_m + gap_m,
+            ..Nav::default()
+        };
     }
 }
 
@@ -128,15 +189,28 @@ fn encounters_are_told_by_nearness_and_relation() {
             events.push(Logged {
                 tick: 0,
                 at: SimTime::from_s(8.0),
-                event: Event::Tagged { vehicle: VehicleId(0), cause },
+                event: Event::Tagged {
+                    vehicle: VehicleId(0),
+                    cause,
+                },
             });
         }
     });
-    let nearness = |contacts, near_misses| Nearness { contacts, near_misses };
-    let want = Encounters { mate: nearness(1, 1), enemy: nearness(2, 1), tagger_and_tagged: nearness(1, 1) };
+    let nearness = |contacts, near_misses| Nearness {
+        contacts,
+        near_misses,
+    };
+    let want = Encounters {
+        mate: nearness(1, 1),
+        enemy: nearness(2, 1),
+        tagger_and_tagged: nearness(1, 1),
+    };
     assert_eq!(got.encounters, want);
     // Both sides are of the same strategy, and each counts; mates count once.
-    assert_eq!(got.strategies["pav01"].encounters.all(), nearness(1 + 2 * 3, 1 + 2 * 2));
+    assert_eq!(
+        got.strategies["pav01"].encounters.all(),
+        nearness(1 + 2 * 3, 1 + 2 * 2)
+    );
 }
 
 #[test]
@@ -146,9 +220,21 @@ fn one_that_bounces_is_one_encounter_and_an_open_one_counts_at_the_end() {
         samples[0].truth.north_m = samples[1].truth.north_m;
         samples[0].truth.east_m = samples[1].truth.east_m + gap_m;
     });
-    assert_eq!(bounce.encounters.mate, Nearness { contacts: 1, near_misses: 0 });
+    assert_eq!(
+        bounce.encounters.mate,
+        Nearness {
+            contacts: 1,
+            near_misses: 0
+        }
+    );
     // Two mates of one strategy count once.
-    assert_eq!(bounce.strategies["pav01"].encounters.mate, Nearness { contacts: 1, near_misses: 0 });
+    assert_eq!(
+        bounce.strategies["pav01"].encounters.mate,
+        Nearness {
+            contacts: 1,
+            near_misses: 0
+        }
+    );
 }
 
 #[test]
@@ -174,7 +260,10 @@ fn a_boat_that_goes_round_and_round_is_in_an_orbit() {
         samples[0].truth.east_m += 4.0 * cos;
     });
     let role = &got.strategies["pav01"].roles["a"];
-    assert!(role.orbits == 1 && (role.orbit_s - 100.0).abs() < 1.0 + 1e-9, "{role:?}");
+    assert!(
+        role.orbits == 1 && (role.orbit_s - 100.0).abs() < 1.0 + 1e-9,
+        "{role:?}"
+    );
     assert_eq!(got.strategies["pav01"].roles["b"].orbits, 0);
 }
 
@@ -187,7 +276,10 @@ fn games_add_up_and_the_text_fits_a_terminal() {
     assert!((sum.time_s - 30.0).abs() < 1e-9);
     assert!((mode(&sum, "a", "m").time_s - 60.0).abs() < 1e-9);
     let text = sum.to_string();
-    assert!(text.starts_with("quality of play in 3 games, 0.0 h\n"), "{text}");
+    assert!(
+        text.starts_with("quality of play in 3 games, 0.0 h\n"),
+        "{text}"
+    );
     for line in text.lines() {
         assert!(line.chars().count() <= 80, "{line:?}");
     }

@@ -10,7 +10,12 @@ const NAME: usize = 24;
 impl Display for Quality {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let s = if self.games == 1 { "" } else { "s" };
-        writeln!(f, "quality of play in {} game{s}, {:.1} h", self.games, self.time_s / 3600.0)?;
+        writeln!(
+            f,
+            "quality of play in {} game{s}, {:.1} h",
+            self.games,
+            self.time_s / 3600.0
+        )?;
         self.write_modes(f)?;
         self.write_encounters(f)?;
         self.write_strategies(f)
@@ -19,9 +24,21 @@ impl Display for Quality {
 
 impl Quality {
     fn write_modes(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        writeln!(f, "\n{:NAME$}    time   course    speed  entered    stands  at the", "")?;
-        writeln!(f, "{:NAME$}            jumps    jumps              still    edge", "")?;
-        writeln!(f, "{:NAME$}       h  per min  per min  per min         %       %", "")?;
+        writeln!(
+            f,
+            "\n{:NAME$}    time   course    speed  entered    stands  at the",
+            ""
+        )?;
+        writeln!(
+            f,
+            "{:NAME$}            jumps    jumps              still    edge",
+            ""
+        )?;
+        writeln!(
+            f,
+            "{:NAME$}       h  per min  per min  per min         %       %",
+            ""
+        )?;
         for (strategy, quality) in &self.strategies {
             writeln!(f, "{strategy}")?;
             for (role, of_role) in &quality.roles {
@@ -37,17 +54,42 @@ impl Quality {
     }
 
     fn write_encounters(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        writeln!(f, "\nper game: hull contacts / near misses (within the rules' collision distance)")?;
-        writeln!(f, "{:NAME$}         mate        enemy   tagger, tagged          all", "")?;
+        writeln!(
+            f,
+            "\nper game: hull contacts / near misses (within the rules' collision distance)"
+        )?;
+        writeln!(
+            f,
+            "{:NAME$}         mate        enemy   tagger, tagged          all",
+            ""
+        )?;
         for (strategy, quality) in &self.strategies {
-            writeln!(f, "{}{}", name(strategy), encounters(&quality.encounters, quality.teams))?;
+            writeln!(
+                f,
+                "{}{}",
+                name(strategy),
+                encounters(&quality.encounters, quality.teams)
+            )?;
         }
-        writeln!(f, "{}{}", name("all, each once"), encounters(&self.encounters, self.games))
+        writeln!(
+            f,
+            "{}{}",
+            name("all, each once"),
+            encounters(&self.encounters, self.games)
+        )
     }
 
     fn write_strategies(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        writeln!(f, "\n{:NAME$}         orbits    in an orbit           no attack", "")?;
-        writeln!(f, "{:NAME$}       per game     s per game       % of the game", "")?;
+        writeln!(
+            f,
+            "\n{:NAME$}         orbits    in an orbit           no attack",
+            ""
+        )?;
+        writeln!(
+            f,
+            "{:NAME$}       per game     s per game       % of the game",
+            ""
+        )?;
         for (strategy, quality) in &self.strategies {
             writeln!(f, "{}{}", name(strategy), team_row(quality))?;
         }
@@ -61,7 +103,14 @@ fn name(name: &str) -> String {
 }
 
 fn row(quality: &ModeQuality) -> String {
-    let ModeQuality { time_s, begun, course_jumps, speed_jumps, standing_s, edge_s } = *quality;
+    let ModeQuality {
+        time_s,
+        begun,
+        course_jumps,
+        speed_jumps,
+        standing_s,
+        edge_s,
+    } = *quality;
     let a_minute = |count: u64| rate(count as f64 * 60.0, time_s);
     let share = |part_s: f64| rate(100.0 * part_s, time_s);
     format!(
@@ -76,11 +125,18 @@ fn row(quality: &ModeQuality) -> String {
 }
 
 fn encounters(encounters: &Encounters, games: u64) -> String {
-    let cell = |Nearness { contacts, near_misses }: Nearness| {
+    let cell = |Nearness {
+                    contacts,
+                    near_misses,
+                }: Nearness| {
         let a_game = |count: u64| rate(count as f64, games as f64);
         format!("{:.2} / {:.2}", a_game(contacts), a_game(near_misses))
     };
-    let Encounters { mate, enemy, tagger_and_tagged } = *encounters;
+    let Encounters {
+        mate,
+        enemy,
+        tagger_and_tagged,
+    } = *encounters;
     let [mate, enemy, tag, all] = [mate, enemy, tagger_and_tagged, encounters.all()].map(cell);
     format!("{mate:>13}{enemy:>13}{tag:>17}{all:>13}")
 }

@@ -9,18 +9,26 @@ pub(super) type Cells = BTreeMap<String, String>;
 
 /// The cells in column order, time first.
 pub(super) fn in_order(mut cells: Cells, at: SimTime, columns: &[String]) -> Vec<String> {
-    let rest = columns.iter().skip(1).map(|column| cells.remove(column).unwrap_or_default());
+    let rest = columns
+        .iter()
+        .skip(1)
+        .map(|column| cells.remove(column).unwrap_or_default());
     std::iter::once(time(at)).chain(rest).collect()
 }
 
 /// A time in s, with no more digits than needed; empty for times before the game.
 pub(super) fn time(at: SimTime) -> String {
-    if at <= SimTime::LONG_AGO { String::new() } else { (at.0 as f64 / 1e9).to_string() }
+    if at <= SimTime::LONG_AGO {
+        String::new()
+    } else {
+        (at.0 as f64 / 1e9).to_string()
+    }
 }
 
 /// A text without quotes; any other value as JSON.
 pub(super) fn text(leaf: &Value) -> String {
-    leaf.as_str().map_or_else(|| leaf.to_string(), str::to_owned)
+    leaf.as_str()
+        .map_or_else(|| leaf.to_string(), str::to_owned)
 }
 
 /// The values inside a value, by path. Nulls are left out.
@@ -31,9 +39,17 @@ pub(super) fn flat(value: &Value) -> BTreeMap<String, Value> {
 }
 
 fn lay(path: &str, value: &Value, leaves: &mut BTreeMap<String, Value>) {
-    let below = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
+    let below = |name: &str| {
+        if path.is_empty() {
+            name.to_owned()
+        } else {
+            format!("{path}.{name}")
+        }
+    };
     match value {
-        Value::Object(fields) => fields.iter().for_each(|(name, value)| lay(&below(name), value, leaves)),
+        Value::Object(fields) => fields
+            .iter()
+            .for_each(|(name, value)| lay(&below(name), value, leaves)),
         Value::Array(items) => {
             for (i, item) in items.iter().enumerate() {
                 match named(item) {
@@ -44,7 +60,10 @@ fn lay(path: &str, value: &Value, leaves: &mut BTreeMap<String, Value>) {
         }
         Value::Null => {}
         // A value at the top level has no path.
-        leaf => drop(leaves.insert(if path.is_empty() { "value" } else { path }.to_owned(), leaf.clone())),
+        leaf => drop(leaves.insert(
+            if path.is_empty() { "value" } else { path }.to_owned(),
+            leaf.clone(),
+        )),
     }
 }
 
@@ -66,10 +85,21 @@ mod tests {
         let value = json!({
             "a": {"b": 1.5, "none": null}, "list": [true, {"c": "x"}], "counts": [["sentences in", 7], ["lost", 0]],
         });
-        let cells: Vec<(String, String)> = flat(&value).iter().map(|(name, leaf)| (name.clone(), text(leaf))).collect();
-        let want =
-            [("a.b", "1.5"), ("counts.lost", "0"), ("counts.sentences in", "7"), ("list.0", "true"), ("list.1.c", "x")];
-        assert_eq!(cells, want.map(|(name, cell)| (name.to_owned(), cell.to_owned())));
+        let cells: Vec<(String, String)> = flat(&value)
+            .iter()
+            .map(|(name, leaf)| (name.clone(), text(leaf)))
+            .collect();
+        let want = [
+            ("a.b", "1.5"),
+            ("counts.lost", "0"),
+            ("counts.sentences in", "7"),
+            ("list.0", "true"),
+            ("list.1.c", "x"),
+        ];
+        assert_eq!(
+            cells,
+            want.map(|(name, cell)| (name.to_owned(), cell.to_owned()))
+        );
         assert_eq!(flat(&json!("pause")).get("value"), Some(&json!("pause")));
     }
 }

@@ -80,7 +80,10 @@ pub fn check(bag: &Bag, topic: &str) -> Result<(), TableError> {
     if known.iter().any(|known| known == topic) {
         Ok(())
     } else {
-        Err(TableError::Unknown { topic: topic.to_owned(), known })
+        Err(TableError::Unknown {
+            topic: topic.to_owned(),
+            known,
+        })
     }
 }
 
@@ -89,7 +92,12 @@ pub fn check(bag: &Bag, topic: &str) -> Result<(), TableError> {
 ///
 /// # Errors
 /// [`TableError`] if the topic does not exist or is damaged, or a row cannot be written.
-pub fn write(bag: &Bag, scenario: Option<&Scenario>, topic: &str, sink: &mut Sink<'_>) -> Result<Damaged, TableError> {
+pub fn write(
+    bag: &Bag,
+    scenario: Option<&Scenario>,
+    topic: &str,
+    sink: &mut Sink<'_>,
+) -> Result<Damaged, TableError> {
     check(bag, topic)?;
     let schema = bag.on(topic).next().and_then(|message| message.schema);
     match (topic, schema, scenario) {
@@ -97,18 +105,26 @@ pub fn write(bag: &Bag, scenario: Option<&Scenario>, topic: &str, sink: &mut Sin
         (_, None, _) => json(bag, topic, sink),
         (_, Some(LinkBytes::SCHEMA), _) => link(bag, topic, sink),
         (_, Some(PayloadBytes::SCHEMA), _) => payload(bag, topic, sink),
-        (_, Some(schema), Some(scenario)) if let Some(columns) = message::columns(schema, scenario) => {
+        (_, Some(schema), Some(scenario))
+            if let Some(columns) = message::columns(schema, scenario) =>
+        {
             let columns: Vec<String> = std::iter::once("t_s".to_owned()).chain(columns).collect();
             sink(&columns)?;
             let mut damaged = Damaged::default();
             for message in bag.on(topic) {
-                for cells in damaged.sound(message::rows(&message, scenario)).unwrap_or_default() {
+                for cells in damaged
+                    .sound(message::rows(&message, scenario))
+                    .unwrap_or_default()
+                {
                     sink(&cells::in_order(cells, message.at, &columns))?;
                 }
             }
             Ok(damaged)
         }
-        (_, Some(schema), _) => Err(TableError::Strange { topic: topic.to_owned(), schema: schema.to_owned() }),
+        (_, Some(schema), _) => Err(TableError::Strange {
+            topic: topic.to_owned(),
+            schema: schema.to_owned(),
+        }),
     }
 }
 
@@ -116,13 +132,21 @@ pub fn write(bag: &Bag, scenario: Option<&Scenario>, topic: &str, sink: &mut Sin
 fn json(bag: &Bag, topic: &str, sink: &mut Sink<'_>) -> Result<Damaged, TableError> {
     let cells_of = |message: &RecordedMessage<'_>| -> Result<Cells, RecordingError> {
         let leaves = cells::flat(&message.read_json::<Value>()?);
-        Ok(leaves.into_iter().map(|(path, leaf)| (path, cells::text(&leaf))).collect())
+        Ok(leaves
+            .into_iter()
+            .map(|(path, leaf)| (path, cells::text(&leaf)))
+            .collect())
     };
     // The columns are known only after reading everything; the messages are few.
     let mut paths = BTreeSet::new();
     let mut damaged = Damaged::default();
     for message in bag.on(topic) {
-        paths.extend(damaged.sound(cells_of(&message)).unwrap_or_default().into_keys());
+        paths.extend(
+            damaged
+                .sound(cells_of(&message))
+                .unwrap_or_default()
+                .into_keys(),
+        );
     }
     let columns: Vec<String> = std::iter::once("t_s".to_owned()).chain(paths).collect();
     sink(&columns)?;
@@ -143,14 +167,39 @@ struct Piece {
 
 /// Writes a row for each line on a link.
 fn link(bag: &Bag, topic: &str, sink: &mut Sink<'_>) -> Result<Damaged, TableError> {
-    let piece = |LinkBytes { outward, data, .. }| Piece { connection: None, outward, data };
-    lines(bag, topic, ("boat", &["t_s", "direction", "text"]), piece, sink)
+    let piece = |LinkBytes { outward, data, .. }| Piece {
+        connection: None,
+        outward,
+        data,
+    };
+    lines(
+        bag,
+        topic,
+        ("boat", &["t_s", "direction", "text"]),
+        piece,
+        sink,
+    )
 }
 
 /// Writes a row for each line between a payload and a client.
 fn payload(bag: &Bag, topic: &str, sink: &mut Sink<'_>) -> Result<Damaged, TableError> {
-    let piece = |PayloadBytes { connection, outward, data, .. }| Piece { connection: Some(connection), outward, data };
-    lines(bag, topic, ("payload", &["t_s", "connection", "direction", "text"]), piece, sink)
+    let piece = |PayloadBytes {
+                     connection,
+                     outward,
+                     data,
+                     ..
+                 }| Piece {
+        connection: Some(connection),
+        outward,
+        data,
+    };
+    lines(
+        bag,
+        topic,
+        ("payload", &["t_s", "connection", "direction", "text"]),
+        piece,
+        sink,
+    )
 }
 
 /// Writes a row for each line in the bytes to and from `whom`.
@@ -165,40 +214,86 @@ fn lines<M: Message + DeserializeOwned>(
     let mut open: BTreeMap<Option<u32>, Lines> = BTreeMap::new();
     let mut last = SimTime::ZERO;
     let mut put = |at, connection: Option<u32>, line: Line| {
-        let direction = if line.outward { format!("to_{whom}") } else { format!("from_{whom}") };
+        let direction = if line.outward {
+            format!("to_{whom}")
+        } else {
+            format!("from_{whom}")
+        };
         let connection = connection.map(|number| number.to_string());
-        let cells = std::iter::once(cells::time(at)).chain(connection).chain([direction, line.text]);
+        let cells = std::iter::once(cells::time(at))
+            .chain(connection)
+            .chain([direction, line.text]);
         sink(&cells.collect::<Vec<_>>())
     };
     let mut damaged = Damaged::default();
     for message in bag.on(topic) {
         last = message.at;
-        let Some(Piece { connection, outward, data }) = damaged.sound(message.read()).map(&piece_of) else { continue };
+        let Some(Piece {
+            connection,
+            outward,
+            data,
+        }) = damaged.sound(message.read()).map(&piece_of)
+        else {
+            continue;
+        };
         let lines = open.entry(connection).or_default();
         // An empty piece means that this side has closed the connection.
-        let ended = if connection.is_some() && data.is_empty() { lines.end(outward) } else { None };
-        lines.take(outward, &data).into_iter().chain(ended).try_for_each(|line| put(last, connection, line))?;
+        let ended = if connection.is_some() && data.is_empty() {
+            lines.end(outward)
+        } else {
+            None
+        };
+        lines
+            .take(outward, &data)
+            .into_iter()
+            .chain(ended)
+            .try_for_each(|line| put(last, connection, line))?;
         if lines.is_empty() {
             open.remove(&connection);
         }
     }
     for (connection, lines) in open {
-        lines.rest().into_iter().try_for_each(|line| put(last, connection, line))?;
+        lines
+            .rest()
+            .into_iter()
+            .try_for_each(|line| put(last, connection, line))?;
     }
     Ok(damaged)
 }
 
 fn events(bag: &Bag, scenario: &Scenario, sink: &mut Sink<'_>) -> Result<Damaged, TableError> {
-    sink(&["t_s", "tick", "event", "vehicle", "other", "team", "sentence"].map(str::to_owned))?;
+    sink(
+        &[
+            "t_s", "tick", "event", "vehicle", "other", "team", "sentence",
+        ]
+        .map(str::to_owned),
+    )?;
     let mut damaged = Damaged::default();
     for message in bag.on(FRAME) {
-        let Some(frame) = damaged.sound(message.read::<Frame>()) else { continue };
+        let Some(frame) = damaged.sound(message.read::<Frame>()) else {
+            continue;
+        };
         for logged in frame.logged(scenario) {
             let event = EventOutcome::new(scenario, &logged);
             let sentence = event.sentence();
-            let EventOutcome { tick, at_s, event, vehicle, other, team } = event;
+            let EventOutcome {
+                tick,
+                at_s,
+                event,
+                vehicle,
+                other,
+                team,
+            } = event;
             let [vehicle, other, team] = [vehicle, other, team].map(Option::unwrap_or_default);
-            sink(&[cells::time(SimTime::from_s(at_s)), tick.to_string(), event, vehicle, other, team, sentence])?;
+            sink(&[
+                cells::time(SimTime::from_s(at_s)),
+                tick.to_string(),
+                event,
+                vehicle,
+                other,
+                team,
+                sentence,
+            ])?;
         }
     }
     Ok(damaged)

@@ -8,7 +8,9 @@ use sim::Contest;
 
 /// The digest of a game after its first minute.
 fn digest(scenario: &Scenario, seed: u64) -> String {
-    let mut game = scenario.of_seed(seed).unwrap_or_else(|problems| panic!("{problems}"));
+    let mut game = scenario
+        .of_seed(seed)
+        .unwrap_or_else(|problems| panic!("{problems}"));
     game.rules.time_limit = SimTime::from_s(60.0);
     played(&game).digest
 }
@@ -17,11 +19,17 @@ fn digest(scenario: &Scenario, seed: u64) -> String {
 fn small_games() -> Vec<Scenario> {
     let scenario = |entry: std::io::Result<std::fs::DirEntry>| {
         let path = entry.expect("it can be read").path();
-        let rehearsal = Overrides { simulate_all: true, ..Overrides::default() };
+        let rehearsal = Overrides {
+            simulate_all: true,
+            ..Overrides::default()
+        };
         load_with(&path, &rehearsal).unwrap_or_else(|problems| panic!("{problems}"))
     };
-    let all = std::fs::read_dir(shipped("games")).expect("the folder is there").map(scenario);
-    all.filter(|scenario| scenario.vehicles.len() <= 8).collect()
+    let all = std::fs::read_dir(shipped("games"))
+        .expect("the folder is there")
+        .map(scenario);
+    all.filter(|scenario| scenario.vehicles.len() <= 8)
+        .collect()
 }
 
 #[test]
@@ -30,7 +38,9 @@ fn another_seed_in_the_midst_leaves_what_was_before_and_changes_what_is_drawn_af
     let mut changed = vec![];
     for scenario in small_games() {
         let with = |reseed: Vec<Reseed>| {
-            let drawn = scenario.of_seed(3).unwrap_or_else(|problems| panic!("{problems}"));
+            let drawn = scenario
+                .of_seed(3)
+                .unwrap_or_else(|problems| panic!("{problems}"));
             let mut game = Scenario { reseed, ..drawn };
             game.rules.time_limit = SimTime::from_s(40.0);
             let mut digests = vec![];
@@ -42,13 +52,30 @@ fn another_seed_in_the_midst_leaves_what_was_before_and_changes_what_is_drawn_af
             digests
         };
         let first = with(vec![]);
-        let again = with(vec![Reseed { after_s: AFTER_S, seed: 77 }]);
-        let before = |all: &[(SimTime, u128)]| all.iter().filter(|(now, _)| now.as_s() <= AFTER_S).count();
-        assert_eq!(first[..before(&first)], again[..before(&again)], "{}", scenario.name);
+        let again = with(vec![Reseed {
+            after_s: AFTER_S,
+            seed: 77,
+        }]);
+        let before =
+            |all: &[(SimTime, u128)]| all.iter().filter(|(now, _)| now.as_s() <= AFTER_S).count();
+        assert_eq!(
+            first[..before(&first)],
+            again[..before(&again)],
+            "{}",
+            scenario.name
+        );
         if first.last() != again.last() {
             assert!(scenario.is_random(), "{}", scenario.name);
-            let same = first.iter().zip(&again).take_while(|(one, other)| one == other).count();
-            assert!(same < before(&first) + 20, "{} changes late: from decision {same} on", scenario.name);
+            let same = first
+                .iter()
+                .zip(&again)
+                .take_while(|(one, other)| one == other)
+                .count();
+            assert!(
+                same < before(&first) + 20,
+                "{} changes late: from decision {same} on",
+                scenario.name
+            );
             changed.push(scenario.name);
         }
     }
@@ -58,8 +85,12 @@ fn another_seed_in_the_midst_leaves_what_was_before_and_changes_what_is_drawn_af
 #[test]
 fn a_snapshot_from_either_side_of_another_seed_goes_on_as_the_game_did() {
     for scenario in small_games().into_iter().filter(Scenario::is_random) {
-        let reseed = [(10.0, 5), (14.0, 6)].map(|(after_s, seed)| Reseed { after_s, seed }).to_vec();
-        let drawn = scenario.of_seed(3).unwrap_or_else(|problems| panic!("{problems}"));
+        let reseed = [(10.0, 5), (14.0, 6)]
+            .map(|(after_s, seed)| Reseed { after_s, seed })
+            .to_vec();
+        let drawn = scenario
+            .of_seed(3)
+            .unwrap_or_else(|problems| panic!("{problems}"));
         let game = Scenario { reseed, ..drawn };
         let begin = || Contest::new(&game, 3).unwrap_or_else(|why| panic!("{why}"));
         let mut contest = begin();
@@ -71,7 +102,9 @@ fn a_snapshot_from_either_side_of_another_seed_goes_on_as_the_game_did() {
         // Restores snapshots from the end backwards, without having played the parts between.
         for snapshot in snapshots.iter().rev().step_by(45) {
             let mut other = begin();
-            other.restore(snapshot).unwrap_or_else(|why| panic!("{why}"));
+            other
+                .restore(snapshot)
+                .unwrap_or_else(|why| panic!("{why}"));
             while other.now() < contest.now() {
                 other.advance();
             }
@@ -85,8 +118,20 @@ fn two_seeds_are_two_games_where_a_scenario_is_random_and_one_where_it_is_not() 
     let mut random = 0;
     let mut fixed = 0;
     for scenario in small_games() {
-        assert_eq!(digest(&scenario, 1) != digest(&scenario, 2), scenario.is_random(), "{}", scenario.name);
-        *if scenario.is_random() { &mut random } else { &mut fixed } += 1;
+        assert_eq!(
+            digest(&scenario, 1) != digest(&scenario, 2),
+            scenario.is_random(),
+            "{}",
+            scenario.name
+        );
+        *if scenario.is_random() {
+            &mut random
+        } else {
+            &mut fixed
+        } += 1;
     }
-    assert!(random > 4 && fixed > 4, "{random} random games, {fixed} others");
+    assert!(
+        random > 4 && fixed > 4,
+        "{random} random games, {fixed} others"
+    );
 }

@@ -25,12 +25,19 @@ fn scenario(boat: &str, sea: &str, strategy: &str, heading_deg: f64) -> Scenario
          [[vehicle]]\nname = \"blue_one\"\nteam = \"blue\"\nboat = \"boat.toml\"\nat = [300, 200]\nheading_deg = {heading_deg}\n\
          [[vehicle]]\nname = \"red_one\"\nteam = \"red\"\nat = [790, 390]\n"
     );
-    loaded(&[("game.toml", game.as_str()), ("sea.toml", sea), ("boat.toml", boat), ("strategy.toml", strategy)])
+    loaded(&[
+        ("game.toml", game.as_str()),
+        ("sea.toml", sea),
+        ("boat.toml", boat),
+        ("strategy.toml", strategy),
+    ])
 }
 
 /// Calm water with this current.
 fn current(speed_m_s: f64, toward_deg: f64) -> String {
-    format!("base = \"SCENARIOS/seas/calm.toml\"\n[current]\nspeed_m_s = {speed_m_s}\ntoward_deg = {toward_deg}\n")
+    format!(
+        "base = \"SCENARIOS/seas/calm.toml\"\n[current]\nspeed_m_s = {speed_m_s}\ntoward_deg = {toward_deg}\n"
+    )
 }
 
 fn blue_at(contest: &Contest) -> Ned {
@@ -47,7 +54,9 @@ fn crossing(compensate_drift: bool) -> (Vec<(f64, f64)>, f64) {
          weight = 100\n"
     );
     let scenario = scenario(QUICK_BOAT, &current(0.5, 0.0), &strategy, 90.0);
-    let start = Contest::new(&scenario, 1).map(|contest| blue_at(&contest)).expect("a start");
+    let start = Contest::new(&scenario, 1)
+        .map(|contest| blue_at(&contest))
+        .expect("a start");
     let mut track = Vec::new();
     let mut time_s = 0.0;
     watch(&scenario, |contest, _| {
@@ -71,20 +80,33 @@ fn a_boat_that_only_points_at_its_goal_drifts_along_the_curve_of_pursuit() {
     };
     let (track, _) = crossing(false);
     for (to_go_m, off_m) in track.iter().filter(|(to_go_m, _)| *to_go_m > 5.0) {
-        assert!((off_m - curve_m(*to_go_m)).abs() < 1.0, "{to_go_m} m to go: {off_m} m, {} m", curve_m(*to_go_m));
+        assert!(
+            (off_m - curve_m(*to_go_m)).abs() < 1.0,
+            "{to_go_m} m to go: {off_m} m, {} m",
+            curve_m(*to_go_m)
+        );
     }
     let farthest_m = track.iter().map(|(_, off_m)| *off_m).fold(0.0, f64::max);
-    assert!((farthest_m - 18.6).abs() < 1.0, "{farthest_m} m off the line");
+    assert!(
+        (farthest_m - 18.6).abs() < 1.0,
+        "{farthest_m} m off the line"
+    );
 }
 
 #[test]
 fn a_boat_crosses_a_current_on_a_straight_line() {
     let (track, time_s) = crossing(true);
-    let farthest_m = track.iter().map(|(_, off_m)| off_m.abs()).fold(0.0, f64::max);
+    let farthest_m = track
+        .iter()
+        .map(|(_, off_m)| off_m.abs())
+        .fold(0.0, f64::max);
     assert!(farthest_m < 2.0, "{farthest_m} m off the line");
     // The velocity over the ground with the crab angle: sqrt(V² - c²).
     let want_s = 199.0 / (SPEED_M_S * SPEED_M_S - 0.25_f64).sqrt();
-    assert!((time_s - want_s).abs() < 0.03 * want_s, "{time_s} s, {want_s} s");
+    assert!(
+        (time_s - want_s).abs() < 0.03 * want_s,
+        "{time_s} s, {want_s} s"
+    );
 }
 
 #[test]
@@ -99,14 +121,24 @@ fn a_helm_sees_the_current_that_there_is() {
             let mut off_m_s: Vec<f64> = Vec::new();
             watch(&scenario, |contest, runner| {
                 let truth = contest.world().sea().current_at(blue_at(contest));
-                let seen = runner.mind(VehicleId(0)).and_then(|mind| mind.report()).expect("a helm reports").drift;
+                let seen = runner
+                    .mind(VehicleId(0))
+                    .and_then(|mind| mind.report())
+                    .expect("a helm reports")
+                    .drift;
                 if contest.now().as_s() > 120.0 {
-                    off_m_s.push(truth.distance(Ned { north: seen.north_m_s, east: seen.east_m_s }));
+                    off_m_s.push(truth.distance(Ned {
+                        north: seen.north_m_s,
+                        east: seen.east_m_s,
+                    }));
                 }
                 contest.now().as_s() < 240.0
             });
             let mean_m_s = off_m_s.iter().sum::<f64>() / off_m_s.len() as f64;
-            assert!(mean_m_s < 0.1, "{boat}, {speed_m_s} m/s towards {toward_deg}: off by {mean_m_s} m/s");
+            assert!(
+                mean_m_s < 0.1,
+                "{boat}, {speed_m_s} m/s towards {toward_deg}: off by {mean_m_s} m/s"
+            );
         }
     }
 }
@@ -118,10 +150,17 @@ fn a_boat_outside_comes_back_against_a_wind_that_drifts_it_faster_than_its_recov
     // At the lee edge of open water: a gale from the south-east over a bay drifts a free boat by
     // 0.75 m/s.
     let boat = "base = \"SCENARIOS/boats/surveyor_m1_8.toml\"\n";
-    let mut scenario = scenario(boat, "base = \"SCENARIOS/seas/bay_gale.toml\"\n", strategy, 0.0);
+    let mut scenario = scenario(
+        boat,
+        "base = \"SCENARIOS/seas/bay_gale.toml\"\n",
+        strategy,
+        0.0,
+    );
     let field = scenario.field.clone();
-    scenario.vehicles[0].start_position =
-        StartPosition::At(primitives::Pose { at: field.at(300.0, 415.0), psi_rad: 0.0 });
+    scenario.vehicles[0].start_position = StartPosition::At(primitives::Pose {
+        at: field.at(300.0, 415.0),
+        psi_rad: 0.0,
+    });
     let mut inside_s = None;
     watch(&scenario, |contest, _| {
         let (_, y) = field.along_across(blue_at(contest));

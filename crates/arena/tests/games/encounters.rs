@@ -19,14 +19,25 @@ fn encounter(stream: &mut Stream) -> Scenario {
          [[team]]\nname = \"red\"\nstrategy = \"SCENARIOS/strategies/idle.toml\"\n\
          [[vehicle]]\nname = \"red_one\"\nteam = \"red\"\nat = [790, 390]\n"
         .to_owned();
-    let mut files = vec![("team.toml", "about = \"Two\"\nroles = [\"blue_one.toml\", \"blue_two.toml\"]\n".to_owned())];
+    let mut files = vec![(
+        "team.toml",
+        "about = \"Two\"\nroles = [\"blue_one.toml\", \"blue_two.toml\"]\n".to_owned(),
+    )];
     let speed_m_s = stream.between(1.5, 3.0);
     let one_deg = stream.between(0.0, 360.0);
     let other_deg = one_deg + stream.between(40.0, 320.0);
-    for (name, file, way_deg) in [("blue_one", "blue_one.toml", one_deg), ("blue_two", "blue_two.toml", other_deg)] {
+    for (name, file, way_deg) in [
+        ("blue_one", "blue_one.toml", one_deg),
+        ("blue_two", "blue_two.toml", other_deg),
+    ] {
         let beside_m = stream.between(-4.0, 4.0);
         let (sin, cos) = primitives::math::sin_cos(f64::to_radians(way_deg));
-        let place = |way_m: f64| (MIDDLE_M.0 + way_m * cos - beside_m * sin, MIDDLE_M.1 + way_m * sin + beside_m * cos);
+        let place = |way_m: f64| {
+            (
+                MIDDLE_M.0 + way_m * cos - beside_m * sin,
+                MIDDLE_M.1 + way_m * sin + beside_m * cos,
+            )
+        };
         let from = place(-START_M);
         let to = place(2.0 * START_M);
         let heading_deg = f64::rem_euclid(90.0 - way_deg, 360.0);
@@ -57,7 +68,11 @@ fn nearest(scenario: &Scenario) -> (f64, bool) {
         let hull = |vehicle: VehicleId| {
             let boat = scenario.boat_of(vehicle);
             let pose = contest.world().state().boats[vehicle.index()].pose;
-            HullRectangle { pose, length_m: boat.length_m, beam_m: boat.beam_m }
+            HullRectangle {
+                pose,
+                length_m: boat.length_m,
+                beam_m: boat.beam_m,
+            }
         };
         let one = hull(boats[0]);
         let other = hull(boats[1]);
@@ -81,5 +96,8 @@ fn boats_whose_ways_cross_choose_different_sides() {
         met += u32::from(nearest_m < 30.0);
     }
     assert!(met > 120, "{met} of 150 met");
-    assert!(touches == 0 && near <= 3, "{touches} of 150 touched, {near} came nearer than 4 m");
+    assert!(
+        touches == 0 && near <= 3,
+        "{touches} of 150 touched, {near} came nearer than 4 m"
+    );
 }

@@ -7,14 +7,19 @@ use std::path::{Path, PathBuf};
 
 /// A shipped file.
 pub(crate) fn shipped(path: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(path)
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../scenarios")
+        .join(path)
 }
 
-/// The scenario of `game.toml` among these files. `SCENARIOS` in them is the folder of the shipped ones.
+/// The scenario of `game.toml` among these files. `SCENARIOS` in them is the folder of the shipped
+/// ones.
 pub(crate) fn loaded(files: &[(&str, impl AsRef<str>)]) -> Scenario {
     let folder = tempfile::tempdir().expect("a folder for files");
     for (name, text) in files {
-        let text = text.as_ref().replace("SCENARIOS", &shipped("").display().to_string());
+        let text = text
+            .as_ref()
+            .replace("SCENARIOS", &shipped("").display().to_string());
         std::fs::write(folder.path().join(name), text).expect("a file in it");
     }
     scenario::load(&folder.path().join("game.toml")).unwrap_or_else(|e| panic!("{e}"))
@@ -22,7 +27,8 @@ pub(crate) fn loaded(files: &[(&str, impl AsRef<str>)]) -> Scenario {
 
 /// The outcome of the game of its seed.
 pub(crate) fn played(scenario: &Scenario) -> Outcome {
-    arena::play(scenario, agent::minds_of(scenario), scenario.seed).unwrap_or_else(|e| panic!("{e}"))
+    arena::play(scenario, agent::minds_of(scenario), scenario.seed)
+        .unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// Plays, and shows the contest after every decision until `shown` returns `false`.

@@ -17,12 +17,21 @@ type Played = BTreeMap<(&'static str, u64), Arc<OnceLock<Outcome>>>;
 /// The outcome of a shipped game.
 fn played(game: &'static str, seed: u64) -> Outcome {
     static PLAYED: Mutex<Played> = Mutex::new(BTreeMap::new());
-    let outcome = Arc::clone(PLAYED.lock().expect("no test fails with it").entry((game, seed)).or_default());
+    let outcome = Arc::clone(
+        PLAYED
+            .lock()
+            .expect("no test fails with it")
+            .entry((game, seed))
+            .or_default(),
+    );
     outcome.get_or_init(|| play(&shipped(game), seed)).clone()
 }
 
 fn play(scenario: &Scenario, seed: u64) -> Outcome {
-    files::played(&Scenario { seed, ..scenario.clone() })
+    files::played(&Scenario {
+        seed,
+        ..scenario.clone()
+    })
 }
 
 fn all(outcome: &Outcome, count: impl Fn(&Counts) -> u32) -> u32 {
@@ -33,9 +42,19 @@ fn all(outcome: &Outcome, count: impl Fn(&Counts) -> u32) -> u32 {
 fn the_first_game_of_the_paper_is_played_to_its_end() {
     for seed in 1..=5 {
         let outcome = played("pav01_vs_pav01.toml", seed);
-        assert_eq!((outcome.ticks, outcome.duration_s), (12_000, 600.0), "seed {seed}");
-        let ends: Vec<usize> = (0..outcome.events.len()).filter(|i| outcome.events[*i].event == "ended").collect();
-        assert_eq!(ends, [outcome.events.len() - 1], "seed {seed}: it ends once, and nothing comes after");
+        assert_eq!(
+            (outcome.ticks, outcome.duration_s),
+            (12_000, 600.0),
+            "seed {seed}"
+        );
+        let ends: Vec<usize> = (0..outcome.events.len())
+            .filter(|i| outcome.events[*i].event == "ended")
+            .collect();
+        assert_eq!(
+            ends,
+            [outcome.events.len() - 1],
+            "seed {seed}: it ends once, and nothing comes after"
+        );
 
         let [grabs, captures, tags] = [
             all(&outcome, |counts| counts.grabs),
@@ -43,9 +62,16 @@ fn the_first_game_of_the_paper_is_played_to_its_end() {
             all(&outcome, |counts| counts.tags),
         ];
         // Attackers reach the flag, some bring it home, and defenders catch some of them.
-        assert!(grabs > 0 && captures > 0 && tags > 0, "seed {seed}: {grabs} grabs, {captures} captures, {tags} tags");
+        assert!(
+            grabs > 0 && captures > 0 && tags > 0,
+            "seed {seed}: {grabs} grabs, {captures} captures, {tags} tags"
+        );
         assert!(captures <= grabs, "seed {seed}");
-        let left = outcome.events.iter().filter(|event| event.event == "left_field").count();
+        let left = outcome
+            .events
+            .iter()
+            .filter(|event| event.event == "left_field")
+            .count();
         assert_eq!(left, 0, "seed {seed}: nobody leaves the field");
     }
 }
@@ -63,7 +89,11 @@ fn the_same_seed_is_the_same_game() {
     let [first, again, other] = [5, 5, 6].map(|seed| play(&swarm, seed));
     assert_eq!(first, again);
     assert_ne!(first.digest, other.digest);
-    assert!(all(&first, |counts| counts.tags) > 5, "much happens in it: {:?}", first.counts);
+    assert!(
+        all(&first, |counts| counts.tags) > 5,
+        "much happens in it: {:?}",
+        first.counts
+    );
 }
 
 #[test]
@@ -76,8 +106,11 @@ fn mirrored_teams_draw() {
 
 #[test]
 fn harbour_games_have_winners() {
-    // Between identical boats without noise, both teams mirrored each other and every game was a draw.
-    let won = (1..=6).filter(|seed| played("harbour_2v2.toml", *seed).winner.is_some()).count();
+    // Between identical boats without noise, both teams mirrored each other and every game was a
+    // draw.
+    let won = (1..=6)
+        .filter(|seed| played("harbour_2v2.toml", *seed).winner.is_some())
+        .count();
     assert!(won > 3, "{won} of 6 games have a winner");
 }
 
@@ -88,13 +121,28 @@ fn seeds_deal_the_roles_when_the_strategy_says_so() {
         strategy.assignment = scenario::strategy::Assignment::Seeded;
     }
     let deal = |seed: u64| {
-        let scenario = Scenario { seed, ..pav01.clone() };
-        (0..4).map(|i| agent::roles::role_of(&scenario, VehicleId::at(i)).name.clone()).collect::<Vec<String>>()
+        let scenario = Scenario {
+            seed,
+            ..pav01.clone()
+        };
+        (0..4)
+            .map(|i| {
+                agent::roles::role_of(&scenario, VehicleId::at(i))
+                    .name
+                    .clone()
+            })
+            .collect::<Vec<String>>()
     };
     let first = deal(1);
-    assert!((2..20).any(|seed| deal(seed) != first), "every seed deals {first:?}");
+    assert!(
+        (2..20).any(|seed| deal(seed) != first),
+        "every seed deals {first:?}"
+    );
     for seed in 1..20 {
-        let attackers = deal(seed).iter().filter(|role| *role == "easy_attacker").count();
+        let attackers = deal(seed)
+            .iter()
+            .filter(|role| *role == "easy_attacker")
+            .count();
         assert_eq!(attackers, 2, "seed {seed}: one a team");
     }
 }
@@ -105,14 +153,31 @@ fn the_shipped_games_are_what_they_say_and_no_boat_is_quarantined() {
         let games: Vec<Outcome> = (1..=seeds).map(|seed| played(game, seed)).collect();
         let mut events = games.iter().flat_map(|outcome| &outcome.events);
         assert!(events.all(|event| event.event != "quarantined"), "{game}");
-        let sum = |count: fn(&Counts) -> u32| games.iter().map(|outcome| all(outcome, count)).sum::<u32>();
-        (sum(|counts| counts.grabs), sum(|counts| counts.captures), sum(|counts| counts.tags))
+        let sum = |count: fn(&Counts) -> u32| {
+            games.iter().map(|outcome| all(outcome, count)).sum::<u32>()
+        };
+        (
+            sum(|counts| counts.grabs),
+            sum(|counts| counts.captures),
+            sum(|counts| counts.tags),
+        )
     };
-    assert_eq!(sums("attack_1v1.toml", 1), (3, 3, 0), "nothing stops the attacker");
+    assert_eq!(
+        sums("attack_1v1.toml", 1),
+        (3, 3, 0),
+        "nothing stops the attacker"
+    );
     // The second game does not use its seed.
-    for (game, seeds) in [("pav01_3v3.toml", 5), ("pav01_4v4.toml", 1), ("harbour_2v2.toml", 1)] {
+    for (game, seeds) in [
+        ("pav01_3v3.toml", 5),
+        ("pav01_4v4.toml", 1),
+        ("harbour_2v2.toml", 1),
+    ] {
         let (grabs, captures, tags) = sums(game, seeds);
-        assert!(grabs > 0 && captures > 0 && tags > 0, "{game}: {grabs} grabs, {captures} captures, {tags} tags");
+        assert!(
+            grabs > 0 && captures > 0 && tags > 0,
+            "{game}: {grabs} grabs, {captures} captures, {tags} tags"
+        );
     }
     let (.., tags) = sums("pav01_popolopen.toml", 1);
     assert!(tags > 0);
@@ -122,7 +187,10 @@ fn the_shipped_games_are_what_they_say_and_no_boat_is_quarantined() {
 fn a_game_with_real_boats_does_not_start_here() {
     let scenario = shipped("mixed_2v2.toml");
     let refused = arena::play(&scenario, agent::minds_of(&scenario), 1);
-    assert!(matches!(refused, Err(sim::NoStart::RealBoats(_))), "{refused:?}");
+    assert!(
+        matches!(refused, Err(sim::NoStart::RealBoats(_))),
+        "{refused:?}"
+    );
 }
 
 #[test]
@@ -137,7 +205,8 @@ fn an_agent_that_is_killed_begins_anew_when_it_is_back() {
     let mut decisions = vec![];
     arena::play_observed(&scenario, agent::minds_of(&scenario), 1, |_, runner| {
         let count = |(_, mind): (VehicleId, &dyn agent::Mind)| {
-            mind.report().map(|report| report.variables[0].value.parse::<f64>().expect("a number"))
+            mind.report()
+                .map(|report| report.variables[0].value.parse::<f64>().expect("a number"))
         };
         decisions = runner.minds().map(count).collect();
         true

@@ -17,22 +17,36 @@ fn game(boats: u32, blue: &str, red: &str, seed: u64) -> Scenario {
              [[fleet]]\nteam = \"{team}\"\ncount = {boats}\n{spawn}\n"
         )
     };
-    let game = format!("base = \"SCENARIOS/games/surveyor_2v2.toml\"\n{}{}", team("blue", blue), team("red", red));
-    loaded(&[("game.toml", game)]).of_seed(seed).unwrap_or_else(|e| panic!("{e}"))
+    let game = format!(
+        "base = \"SCENARIOS/games/surveyor_2v2.toml\"\n{}{}",
+        team("blue", blue),
+        team("red", red)
+    );
+    loaded(&[("game.toml", game)])
+        .of_seed(seed)
+        .unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// The final report of the first boat's helm, and the modes it was in.
 fn watched(scenario: &Scenario) -> (HelmReport, Vec<String>) {
     let mut last = None;
     let mut modes = vec![];
-    arena::play_observed(scenario, agent::minds_of(scenario), scenario.seed, |_, runner| {
-        let report = runner.mind(VehicleId(0)).and_then(Mind::report).expect("a helm");
-        if modes.last() != Some(&report.mode) {
-            modes.push(report.mode.clone());
-        }
-        last = Some(report);
-        true
-    })
+    arena::play_observed(
+        scenario,
+        agent::minds_of(scenario),
+        scenario.seed,
+        |_, runner| {
+            let report = runner
+                .mind(VehicleId(0))
+                .and_then(Mind::report)
+                .expect("a helm");
+            if modes.last() != Some(&report.mode) {
+                modes.push(report.mode.clone());
+            }
+            last = Some(report);
+            true
+        },
+    )
     .unwrap_or_else(|e| panic!("{e}"));
     (last.expect("there were decisions"), modes)
 }
@@ -41,16 +55,32 @@ fn watched(scenario: &Scenario) -> (HelmReport, Vec<String>) {
 fn each_of_the_four_kinds_of_opponent_is_known_and_gets_its_own_response() {
     const GAMES: usize = 8;
     for (red, offensive, aggressive, response) in [
-        ("easy_attacker", true, true, ["pursuing", "punishing:awaiting", "punishing:raiding"].as_slice()),
-        ("medium_attacker", true, false, &["pursuing", "driving_out:slipping_in"]),
+        (
+            "easy_attacker",
+            true,
+            true,
+            ["pursuing", "punishing:awaiting", "punishing:raiding"].as_slice(),
+        ),
+        (
+            "medium_attacker",
+            true,
+            false,
+            &["pursuing", "driving_out:slipping_in"],
+        ),
         ("medium_defender", false, true, &["luring:feinting"]),
         ("easy_defender", false, false, &["stealing:grabbing"]),
     ] {
-        let games: Vec<_> = (1..=GAMES as u64).map(|seed| watched(&game(1, "observer", red, seed))).collect();
+        let games: Vec<_> = (1..=GAMES as u64)
+            .map(|seed| watched(&game(1, "observer", red, seed)))
+            .collect();
         let is = |report: &HelmReport, name: &str, want: bool| {
-            report.variables.iter().any(|variable| variable.name == name && variable.value == want.to_string())
+            report
+                .variables
+                .iter()
+                .any(|variable| variable.name == name && variable.value == want.to_string())
         };
-        let is_offensive = |(report, _): &&(HelmReport, Vec<String>)| is(report, "offensive", offensive);
+        let is_offensive =
+            |(report, _): &&(HelmReport, Vec<String>)| is(report, "offensive", offensive);
         assert_eq!(
             games.iter().filter(is_offensive).count(),
             GAMES,
@@ -58,11 +88,22 @@ fn each_of_the_four_kinds_of_opponent_is_known_and_gets_its_own_response() {
         );
         let right: Vec<_> = games
             .iter()
-            .filter(|(report, _)| is(report, "classified", true) && is(report, "aggressive", aggressive))
+            .filter(|(report, _)| {
+                is(report, "classified", true) && is(report, "aggressive", aggressive)
+            })
             .collect();
-        assert!(4 * right.len() >= 3 * GAMES, "{red}: right in {} of {GAMES} games", right.len());
+        assert!(
+            4 * right.len() >= 3 * GAMES,
+            "{red}: right in {} of {GAMES} games",
+            right.len()
+        );
         for (_, modes) in right {
-            assert!(response.iter().all(|mode| modes.iter().any(|was| was == mode)), "{red}: {modes:?}");
+            assert!(
+                response
+                    .iter()
+                    .all(|mode| modes.iter().any(|was| was == mode)),
+                "{red}: {modes:?}"
+            );
         }
     }
 }
@@ -72,7 +113,11 @@ fn two_teams_that_watch_each_other_play_a_game() {
     for seed in 1..=4 {
         let outcome = played(&game(2, "observer", "observer", seed));
         for team in ["blue", "red"] {
-            assert!(outcome.counts.teams[team].grabs > 0, "seed {seed}: {team} grabs nothing: {:?}", outcome.counts);
+            assert!(
+                outcome.counts.teams[team].grabs > 0,
+                "seed {seed}: {team} grabs nothing: {:?}",
+                outcome.counts
+            );
         }
     }
 }
@@ -83,9 +128,10 @@ fn strategy_5_beats_strategy_4_from_either_side() {
     let points = |outcome: &Outcome, team: &str| outcome.score.teams[team];
     let mut won = 0;
     let mut lost = 0;
-    for (blue, red, own, other) in
-        [("strategy_5", "strategy_4", "blue", "red"), ("strategy_4", "strategy_5", "red", "blue")]
-    {
+    for (blue, red, own, other) in [
+        ("strategy_5", "strategy_4", "blue", "red"),
+        ("strategy_4", "strategy_5", "red", "blue"),
+    ] {
         for seed in 1..=SEEDS {
             let outcome = played(&game(2, blue, red, seed));
             won += u64::from(points(&outcome, own) > points(&outcome, other));
@@ -102,15 +148,19 @@ fn twenty_boats_a_side_grab_and_capture() {
     let scenario = fleet.unwrap_or_else(|e| panic!("{e}"));
     let counts = played(&scenario).counts;
     let all = |count: fn(&Counts) -> u32| counts.teams.values().map(count).sum::<u32>();
-    assert!(counts.teams.values().all(|team| team.grabs > 0) && all(|team| team.captures) > 0, "{counts:?}");
+    assert!(
+        counts.teams.values().all(|team| team.grabs > 0) && all(|team| team.captures) > 0,
+        "{counts:?}"
+    );
 }
 
 #[test]
 fn a_tagged_boat_does_not_lie_at_an_edge() {
-    // A boat once took 258 s to get home in this game. For most of them it lay 10 m from an edge with nobody near,
-    // because the helm's steadiness outweighed the way home.
+    // A boat once took 258 s to get home in this game. For most of them it lay 10 m from an edge
+    // with nobody near, because the helm's steadiness outweighed the way home.
     const HOME_S: f64 = 150.0;
-    let game = scenario::load(&shipped("games/strategy_4_vs_3.toml")).and_then(|game| game.of_seed(1));
+    let game =
+        scenario::load(&shipped("games/strategy_4_vs_3.toml")).and_then(|game| game.of_seed(1));
     let outcome = played(&game.unwrap_or_else(|e| panic!("{e}")));
     let mut tagged_at_s = BTreeMap::new();
     let mut came_home = 0;
@@ -121,7 +171,10 @@ fn a_tagged_boat_does_not_lie_at_an_edge() {
             }
             "untagged" => {
                 let since_s = tagged_at_s.remove(&event.vehicle).expect("it was tagged");
-                assert!(event.at_s - since_s < HOME_S, "{event:?}: tagged at {since_s} s");
+                assert!(
+                    event.at_s - since_s < HOME_S,
+                    "{event:?}: tagged at {since_s} s"
+                );
                 came_home += 1;
             }
             _ => {}

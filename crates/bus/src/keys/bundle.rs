@@ -44,28 +44,49 @@ impl Bundle {
     pub fn load(folder: &Path) -> Result<Bundle, BundleError> {
         let path = |name: &str| folder.join(name);
         if !path(CERTIFICATE_FILE).exists() {
-            let problem = format!("no keys found: a bundle is a folder with {CERTIFICATE_FILE}{}", bundles_in(folder));
-            return Err(BundleError { file: folder.to_owned(), problem });
+            let problem = format!(
+                "no keys found: a bundle is a folder with {CERTIFICATE_FILE}{}",
+                bundles_in(folder)
+            );
+            return Err(BundleError {
+                file: folder.to_owned(),
+                problem,
+            });
         }
         let chain = certificates(&path(CERTIFICATE_FILE))?;
         let key = private_key(&path(KEY_FILE))?;
         certificates(&path(AUTHORITY_FILE))?;
         // zenoh would only report that it cannot open a session. This names the faulty file and its
         // fault before anything is opened.
-        CertifiedKey::from_der(chain.clone(), key, &ring::default_provider())
-            .map_err(|e| refused(&path(KEY_FILE), format!("is not the key of {CERTIFICATE_FILE}: {e}")))?;
+        CertifiedKey::from_der(chain.clone(), key, &ring::default_provider()).map_err(|e| {
+            refused(
+                &path(KEY_FILE),
+                format!("is not the key of {CERTIFICATE_FILE}: {e}"),
+            )
+        })?;
         let not_understood = |problem: String| refused(&path(CERTIFICATE_FILE), problem);
-        let (_, certificate) =
-            X509Certificate::from_der(&chain[0]).map_err(|e| not_understood(format!("is not a certificate: {e}")))?;
-        let name = certificate.subject().iter_common_name().find_map(|name| name.as_str().ok()).unwrap_or_default();
-        let identity = name.parse().map_err(|e| not_understood(format!("was not made by `squall keys new`: {e}")))?;
+        let (_, certificate) = X509Certificate::from_der(&chain[0])
+            .map_err(|e| not_understood(format!("is not a certificate: {e}")))?;
+        let name = certificate
+            .subject()
+            .iter_common_name()
+            .find_map(|name| name.as_str().ok())
+            .unwrap_or_default();
+        let identity = name
+            .parse()
+            .map_err(|e| not_understood(format!("was not made by `squall keys new`: {e}")))?;
         // To its owner an expired certificate looks like a network failure, since the other side
         // closes the link silently.
         check_period(&certificate, ASN1Time::now()).map_err(not_understood)?;
         let validity = certificate.validity();
         let hosts = hosts(&certificate);
         let valid = [validity.not_before, validity.not_after].map(|at| at.to_string());
-        Ok(Bundle { folder: folder.to_owned(), identity, hosts, valid })
+        Ok(Bundle {
+            folder: folder.to_owned(),
+            identity,
+            hosts,
+            valid,
+        })
     }
 
     /// The paths of the authority, the certificate and the key.
@@ -75,9 +96,20 @@ impl Bundle {
 
     pub(super) fn contents(
         &self,
-    ) -> Result<(Vec<CertificateDer<'static>>, Vec<CertificateDer<'static>>, PrivateKeyDer<'static>), BundleError> {
+    ) -> Result<
+        (
+            Vec<CertificateDer<'static>>,
+            Vec<CertificateDer<'static>>,
+            PrivateKeyDer<'static>,
+        ),
+        BundleError,
+    > {
         let [authority, certificate, key] = self.files();
-        Ok((certificates(&authority)?, certificates(&certificate)?, private_key(&key)?))
+        Ok((
+            certificates(&authority)?,
+            certificates(&certificate)?,
+            private_key(&key)?,
+        ))
     }
 }
 
@@ -93,7 +125,8 @@ fn certificates(file: &Path) -> Result<Vec<CertificateDer<'static>>, BundleError
 }
 
 fn private_key(file: &Path) -> Result<PrivateKeyDer<'static>, BundleError> {
-    PrivateKeyDer::from_pem_slice(&read(file)?).map_err(|e| refused(file, format!("has no private key in PEM: {e}")))
+    PrivateKeyDer::from_pem_slice(&read(file)?)
+        .map_err(|e| refused(file, format!("has no private key in PEM: {e}")))
 }
 
 fn read(file: &Path) -> Result<Vec<u8>, BundleError> {
@@ -101,7 +134,10 @@ fn read(file: &Path) -> Result<Vec<u8>, BundleError> {
 }
 
 fn refused(file: &Path, problem: impl Display) -> BundleError {
-    BundleError { file: file.to_owned(), problem: problem.to_string() }
+    BundleError {
+        file: file.to_owned(),
+        problem: problem.to_string(),
+    }
 }
 
 /// Checks the validity period of a certificate against `now`.
@@ -109,11 +145,15 @@ fn check_period(certificate: &X509Certificate<'_>, now: ASN1Time) -> Result<(), 
     let validity = certificate.validity();
     if now > validity.not_after {
         let at = validity.not_after;
-        return Err(format!("expired at {at}, and it is {now}: make new keys for all nodes with `squall keys new`"));
+        return Err(format!(
+            "expired at {at}, and it is {now}: make new keys for all nodes with `squall keys new`"
+        ));
     }
     if now < validity.not_before {
         let at = validity.not_before;
-        return Err(format!("is valid from {at}, but it is {now} by this machine's clock: check the clock"));
+        return Err(format!(
+            "is valid from {at}, but it is {now} by this machine's clock: check the clock"
+        ));
     }
     Ok(())
 }
@@ -125,7 +165,9 @@ fn hosts(certificate: &X509Certificate<'_>) -> Vec<String> {
         GeneralName::DNSName(name) => Some((*name).to_owned()),
         GeneralName::IPAddress(bytes) => match <[u8; 4]>::try_from(*bytes) {
             Ok(v4) => Some(std::net::Ipv4Addr::from(v4).to_string()),
-            Err(_) => <[u8; 16]>::try_from(*bytes).ok().map(|v6| std::net::Ipv6Addr::from(v6).to_string()),
+            Err(_) => <[u8; 16]>::try_from(*bytes)
+                .ok()
+                .map(|v6| std::net::Ipv6Addr::from(v6).to_string()),
         },
         _ => None,
     };
@@ -136,8 +178,14 @@ fn hosts(certificate: &X509Certificate<'_>) -> Vec<String> {
 fn bundles_in(folder: &Path) -> String {
     let is_bundle = |name: &String| name.parse::<Identity>().is_ok();
     let names = std::fs::read_dir(folder).into_iter().flatten().flatten();
-    let mut names: Vec<String> =
-        names.filter_map(|entry| entry.file_name().into_string().ok()).filter(is_bundle).collect();
+    let mut names: Vec<String> = names
+        .filter_map(|entry| entry.file_name().into_string().ok())
+        .filter(is_bundle)
+        .collect();
     names.sort();
-    if names.is_empty() { String::new() } else { format!("; this folder contains the bundles {}", names.join(", ")) }
+    if names.is_empty() {
+        String::new()
+    } else {
+        format!("; this folder contains the bundles {}", names.join(", "))
+    }
 }

@@ -6,7 +6,9 @@ use crate::net::address;
 use rustls::crypto::ring;
 use rustls::pki_types::ServerName;
 use rustls::version::TLS13;
-use rustls::{AlertDescription, CertificateError, ClientConfig, ClientConnection, Error, RootCertStore};
+use rustls::{
+    AlertDescription, CertificateError, ClientConfig, ClientConnection, Error, RootCertStore,
+};
 use std::io::{Read, Write};
 use std::net::{TcpStream, ToSocketAddrs};
 use std::sync::Arc;
@@ -22,7 +24,11 @@ const ALERT: u8 = 0x15;
 pub(crate) fn refusal(endpoint: &str, keys: &Bundle) -> Option<BusError> {
     let refused = |why: String| BusError::Keys(format!("{endpoint}: {why}"));
     let address = address(endpoint);
-    let host = address.rsplit_once(':')?.0.trim_start_matches('[').trim_end_matches(']');
+    let host = address
+        .rsplit_once(':')?
+        .0
+        .trim_start_matches('[')
+        .trim_end_matches(']');
     // zenoh (1.10) only reports that it could not connect. rustls repeats the handshake directly to
     // learn why.
     let mut stream = connect(address)?;
@@ -32,15 +38,23 @@ pub(crate) fn refusal(endpoint: &str, keys: &Bundle) -> Option<BusError> {
     };
     // The sim checks our certificate after the handshake has ended on our side: its alert arrives
     // when we read.
-    let outcome =
-        tls.complete_io(&mut stream).and_then(|_| rustls::Stream::new(&mut tls, &mut stream).read(&mut [0; 1]));
+    let outcome = tls
+        .complete_io(&mut stream)
+        .and_then(|_| rustls::Stream::new(&mut tls, &mut stream).read(&mut [0; 1]));
     let error = outcome.err()?;
-    if let Some(error) = error.get_ref().and_then(|inner| inner.downcast_ref::<Error>()) {
+    if let Some(error) = error
+        .get_ref()
+        .and_then(|inner| inner.downcast_ref::<Error>())
+    {
         return Some(refused(explained(error, host, &keys.identity)));
     }
     // A suspended sim does not answer either, and may resume.
-    let reason = "who listens there does not speak TLS: the game may be served without keys".to_owned();
-    tls.is_handshaking().then(|| BusError::Open { what: format!("to connect to {endpoint}"), reason })
+    let reason =
+        "who listens there does not speak TLS: the game may be served without keys".to_owned();
+    tls.is_handshaking().then(|| BusError::Open {
+        what: format!("to connect to {endpoint}"),
+        reason,
+    })
 }
 
 /// Whether a TLS hub listens at `endpoint`.
@@ -57,7 +71,10 @@ pub(crate) fn is_tls(endpoint: &str) -> bool {
 }
 
 fn connect(address: &str) -> Option<TcpStream> {
-    let found = address.to_socket_addrs().ok()?.find_map(|at| TcpStream::connect_timeout(&at, STEP).ok())?;
+    let found = address
+        .to_socket_addrs()
+        .ok()?
+        .find_map(|at| TcpStream::connect_timeout(&at, STEP).ok())?;
     found.set_read_timeout(Some(STEP)).ok()?;
     found.set_write_timeout(Some(STEP)).ok()?;
     Some(found)
@@ -73,8 +90,14 @@ fn client(host: &str, keys: &Bundle) -> Result<ClientConnection, String> {
         // Like zenoh's own links, which accept nothing older (`zenoh-link-tls` 1.10.2): with other
         // versions the handshake could fail or succeed for other reasons.
         .with_protocol_versions(&[&TLS13])
-        .and_then(|builder| builder.with_root_certificates(roots).with_client_auth_cert(chain, key));
-    config.and_then(|config| ClientConnection::new(Arc::new(config), name)).map_err(|e| e.to_string())
+        .and_then(|builder| {
+            builder
+                .with_root_certificates(roots)
+                .with_client_auth_cert(chain, key)
+        });
+    config
+        .and_then(|config| ClientConnection::new(Arc::new(config), name))
+        .map_err(|e| e.to_string())
 }
 
 fn explained(error: &Error, host: &str, identity: &Identity) -> String {

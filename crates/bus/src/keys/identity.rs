@@ -21,7 +21,9 @@ pub enum Identity {
 
 /// A text that is not an identity.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("unknown identity {0:?}, expected sim, team-NAME, gateway, gateway-NAME, observer, operator")]
+#[error(
+    "unknown identity {0:?}, expected sim, team-NAME, gateway, gateway-NAME, observer, operator"
+)]
 pub struct UnknownIdentity(String);
 
 impl fmt::Display for Identity {
@@ -41,7 +43,11 @@ impl FromStr for Identity {
     type Err = UnknownIdentity;
 
     fn from_str(text: &str) -> Result<Identity, UnknownIdentity> {
-        let named = |kind: &str| text.strip_prefix(kind).filter(|name| is_name(name)).map(str::to_owned);
+        let named = |kind: &str| {
+            text.strip_prefix(kind)
+                .filter(|name| is_name(name))
+                .map(str::to_owned)
+        };
         match text {
             "sim" => Ok(Identity::Sim),
             "gateway" => Ok(Identity::Gateway(None)),
@@ -70,12 +76,26 @@ mod tests {
     fn an_identity_is_read_as_it_is_written() {
         let team = Identity::Team("blue".to_owned());
         let boat = Identity::Gateway(Some("blue_one".to_owned()));
-        for identity in [Identity::Sim, team, Identity::Gateway(None), boat, Identity::Observer, Identity::Operator] {
+        for identity in [
+            Identity::Sim,
+            team,
+            Identity::Gateway(None),
+            boat,
+            Identity::Observer,
+            Identity::Operator,
+        ] {
             assert_eq!(identity.to_string().parse(), Ok(identity));
         }
-        for bad in
-            ["", "team-", "team-../x", "team-a/b", "gateway-*", "Sim", "root", &format!("team-{}", "x".repeat(49))]
-        {
+        for bad in [
+            "",
+            "team-",
+            "team-../x",
+            "team-a/b",
+            "gateway-*",
+            "Sim",
+            "root",
+            &format!("team-{}", "x".repeat(49)),
+        ] {
             assert!(bad.parse::<Identity>().is_err(), "{bad}");
         }
     }

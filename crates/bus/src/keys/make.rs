@@ -2,7 +2,8 @@
 
 use super::{AUTHORITY_FILE, CERTIFICATE_FILE, Identity, KEY_FILE};
 use rcgen::{
-    BasicConstraints, CertificateParams, DnType, ExtendedKeyUsagePurpose, IsCa, Issuer, KeyPair, KeyUsagePurpose,
+    BasicConstraints, CertificateParams, DnType, ExtendedKeyUsagePurpose, IsCa, Issuer, KeyPair,
+    KeyUsagePurpose,
 };
 use std::fs::{DirBuilder, OpenOptions};
 use std::io::Write;
@@ -46,8 +47,13 @@ pub fn make(
     valid: Duration,
 ) -> Result<Vec<PathBuf>, MakeError> {
     let now = OffsetDateTime::now_utc();
-    let period = (now - CLOCKS_DIFFER, now.checked_add(valid.try_into().map_err(|_| MakeError::TooLong)?));
-    let (from, Some(until)) = period else { return Err(MakeError::TooLong) };
+    let period = (
+        now - CLOCKS_DIFFER,
+        now.checked_add(valid.try_into().map_err(|_| MakeError::TooLong)?),
+    );
+    let (from, Some(until)) = period else {
+        return Err(MakeError::TooLong);
+    };
     let params = |name: String, hosts: &[String]| -> Result<CertificateParams, rcgen::Error> {
         let mut params = CertificateParams::new(hosts)?;
         // zenoh's access control distinguishes nodes by the common name alone.
@@ -91,7 +97,10 @@ pub fn make(
 
 /// Creates a folder, readable by its owner only, with its parents; fails if it exists.
 fn make_folder(path: &Path) -> Result<(), MakeError> {
-    let failed = |source| MakeError::Write { path: path.to_owned(), source };
+    let failed = |source| MakeError::Write {
+        path: path.to_owned(),
+        source,
+    };
     let mut builder = DirBuilder::new();
     builder.mode(0o700);
     if let Some(above) = path.parent() {
@@ -103,7 +112,14 @@ fn make_folder(path: &Path) -> Result<(), MakeError> {
 }
 
 fn write(path: &Path, text: &str) -> Result<(), MakeError> {
-    let file = OpenOptions::new().write(true).create_new(true).mode(0o600).open(path);
+    let file = OpenOptions::new()
+        .write(true)
+        .create_new(true)
+        .mode(0o600)
+        .open(path);
     let written = file.and_then(|mut file| file.write_all(text.as_bytes()));
-    written.map_err(|source| MakeError::Write { path: path.to_owned(), source })
+    written.map_err(|source| MakeError::Write {
+        path: path.to_owned(),
+        source,
+    })
 }

@@ -66,7 +66,12 @@ impl StopClient {
     ///
     /// # Errors
     /// If the system cannot provide a socket or thread, or if there are too many ports.
-    pub fn add_gateway(&self, at: SocketAddr, vehicle: Option<&str>, token: Option<Token>) -> io::Result<()> {
+    pub fn add_gateway(
+        &self,
+        at: SocketAddr,
+        vehicle: Option<&str>,
+        token: Option<Token>,
+    ) -> io::Result<()> {
         self.0.add_gateway(at, vehicle, token)
     }
 
@@ -75,11 +80,22 @@ impl StopClient {
     /// # Errors
     /// If the system cannot provide a socket or thread. Endpoints of other kinds or of unknown
     /// hosts are skipped.
-    pub fn add_hub(&self, endpoints: &[String], game: Option<&GameName>, token: Option<&Token>) -> io::Result<()> {
+    pub fn add_hub(
+        &self,
+        endpoints: &[String],
+        game: Option<&GameName>,
+        token: Option<&Token>,
+    ) -> io::Result<()> {
         // With keys there are no datagrams: they do not identify their sender, and every node in
         // such a game has a link anyway.
-        for endpoint in endpoints.iter().filter(|endpoint| endpoint.starts_with("tcp/")) {
-            let found = address(endpoint).to_socket_addrs().ok().and_then(|mut found| found.next());
+        for endpoint in endpoints
+            .iter()
+            .filter(|endpoint| endpoint.starts_with("tcp/"))
+        {
+            let found = address(endpoint)
+                .to_socket_addrs()
+                .ok()
+                .and_then(|mut found| found.next());
             let Some(at) = found else { continue };
             let shared = Arc::downgrade(&self.0);
             let on_news: OnNews = Arc::new(move |news| {
@@ -105,7 +121,10 @@ impl StopClient {
         let shared = Arc::downgrade(&self.0);
         let is_here = bus.is_on_this_machine;
         let path = StopTopics::open(bus, game, boats, move |status| {
-            shared.upgrade().iter().for_each(|shared| shared.hear(&status, is_here));
+            shared
+                .upgrade()
+                .iter()
+                .for_each(|shared| shared.hear(&status, is_here));
         })?;
         let before = self.0.game.lock().replace(Arc::new(path));
         // A callback of a dropped subscription may still be running, so no lock is held here.
@@ -129,7 +148,10 @@ impl StopClient {
     /// Stops a boat, or all of them; replaces an earlier stop of the same kind and target.
     pub fn stop(&self, target: Option<&str>, command: StopCommand) {
         let now = clock::now();
-        let number = self.0.orders.visit(|orders| orders.ask(now, target.map(str::to_owned), command));
+        let number = self
+            .0
+            .orders
+            .visit(|orders| orders.ask(now, target.map(str::to_owned), command));
         // The thread sends it: the caller may hold a lock, and sending takes time.
         if target.is_none() && command == StopCommand::EStop {
             self.0.ask_sim(number);
@@ -153,7 +175,9 @@ impl StopClient {
         // The sim's answer proves nothing: the sim may be suspended while all boats have stopped,
         // or answer while one has not. Only the boats' own states count.
         self.wait(limit.min(GAME_MAX), |orders| orders.is_done(clock::now()));
-        self.wait(limit.saturating_sub(clock::since(start)), |orders| orders.unfinished().is_empty());
+        self.wait(limit.saturating_sub(clock::since(start)), |orders| {
+            orders.unfinished().is_empty()
+        });
         self.visit(|orders| orders.unfinished())
     }
 
@@ -165,7 +189,9 @@ impl StopClient {
     /// The known control ports, with their boats and tokens.
     pub fn gateways(&self) -> Vec<(SocketAddr, Option<String>, Option<Token>)> {
         let gateways = self.0.gateways.lock();
-        let known = gateways.iter().map(|(at, gateway)| (*at, gateway.vehicle.lock().clone(), gateway.token.get()));
+        let known = gateways
+            .iter()
+            .map(|(at, gateway)| (*at, gateway.vehicle.lock().clone(), gateway.token.get()));
         known.collect()
     }
 
@@ -198,22 +224,37 @@ impl Shared {
             self.say(now);
             let named = std::mem::take(&mut *self.named.lock());
             for (at, vehicle) in named {
-                let token = self.game.lock().as_ref().and_then(|game| game.bus.token.clone());
+                let token = self
+                    .game
+                    .lock()
+                    .as_ref()
+                    .and_then(|game| game.bus.token.clone());
                 // The next status names it again.
                 drop(self.add_gateway(at, Some(&vehicle), token));
             }
             // The answer to a stop includes the boat's state.
-            if now >= status_at && !self.orders.visit(|orders| orders.is_asked_within(now, STATUS_AGAIN)) {
+            if now >= status_at
+                && !self
+                    .orders
+                    .visit(|orders| orders.is_asked_within(now, STATUS_AGAIN))
+            {
                 status_at = now + STATUS_AGAIN;
                 self.ask_status();
             }
-            let (next, changes) = self.orders.visit(|orders| (orders.next(now), orders.changes));
+            let (next, changes) = self
+                .orders
+                .visit(|orders| (orders.next(now), orders.changes));
             let wait = next.saturating_duration_since(clock::now());
             self.orders.wait(wait, |orders| orders.changes != changes);
         }
     }
 
-    fn add_gateway(self: &Arc<Self>, at: SocketAddr, vehicle: Option<&str>, token: Option<Token>) -> io::Result<()> {
+    fn add_gateway(
+        self: &Arc<Self>,
+        at: SocketAddr,
+        vehicle: Option<&str>,
+        token: Option<Token>,
+    ) -> io::Result<()> {
         let mut gateways = self.gateways.lock();
         if let Some(gateway) = gateways.get(&at) {
             if token.is_some() {
@@ -222,7 +263,9 @@ impl Shared {
             return Ok(());
         }
         if gateways.len() >= GATEWAYS_MAX {
-            return Err(io::Error::other(format!("more than {GATEWAYS_MAX} gateways")));
+            return Err(io::Error::other(format!(
+                "more than {GATEWAYS_MAX} gateways"
+            )));
         }
         // Until its boat is known, the address is used as its name.
         let expected = vehicle.map_or_else(|| at.to_string(), str::to_owned);
@@ -230,7 +273,12 @@ impl Shared {
         let shared = Arc::downgrade(self);
         let unnamed = vehicle.is_none().then_some(expected);
         let on_news: OnNews = Arc::new(move |news| gateway_said(&shared, unnamed.as_deref(), news));
-        let gateway = GatewayPath::open(at, vehicle.map(str::to_owned), CurrentToken::from(token), on_news)?;
+        let gateway = GatewayPath::open(
+            at,
+            vehicle.map(str::to_owned),
+            CurrentToken::from(token),
+            on_news,
+        )?;
         gateways.insert(at, gateway);
         drop(gateways);
         self.orders.visit(StopOrders::hurry);
@@ -239,12 +287,18 @@ impl Shared {
 
     /// Requests the states of boats on every path.
     fn ask_status(&self) {
-        let ask = |name: String| GatewayCommand::Boat { name, command: OperatorCommand::Status };
+        let ask = |name: String| GatewayCommand::Boat {
+            name,
+            command: OperatorCommand::Status,
+        };
         for gateway in self.gateways.lock().values() {
             let vehicle = gateway.vehicle.lock().clone().unwrap_or_default();
             gateway.send(&ask(vehicle), 0);
         }
-        self.hubs.lock().iter().for_each(|hub| hub.send(&ask(String::new()), 0));
+        self.hubs
+            .lock()
+            .iter()
+            .for_each(|hub| hub.send(&ask(String::new()), 0));
     }
 
     /// Sends stops that are due, on the quickest paths first.
@@ -254,7 +308,9 @@ impl Shared {
             self.say_to_game(&saying);
             for gateway in self.gateways.lock().values() {
                 let vehicle = gateway.vehicle.lock().clone();
-                let is_open = vehicle.as_ref().is_none_or(|vehicle| saying.boats.contains(vehicle));
+                let is_open = vehicle
+                    .as_ref()
+                    .is_none_or(|vehicle| saying.boats.contains(vehicle));
                 if let Some(command) = saying.command_to(vehicle.as_deref()).filter(|_| is_open) {
                     gateway.send(&command, saying.number);
                 }
@@ -265,22 +321,33 @@ impl Shared {
     fn say_to_hubs(&self, saying: &Saying) {
         let hubs = self.hubs.lock();
         if saying.to_everybody && saying.command == StopCommand::EStop {
-            hubs.iter().for_each(|hub| hub.send(&GatewayCommand::Fleet(FleetCommand::EStop), saying.number));
+            hubs.iter().for_each(|hub| {
+                hub.send(&GatewayCommand::Fleet(FleetCommand::EStop), saying.number)
+            });
             return;
         }
         // This path cannot send a stop of the fleet to single boats.
-        let boats = saying.boats.iter().filter(|_| saying.command == StopCommand::Disarm || !saying.is_of_fleet);
+        let boats = saying
+            .boats
+            .iter()
+            .filter(|_| saying.command == StopCommand::Disarm || !saying.is_of_fleet);
         for command in boats.filter_map(|boat| saying.command_to(Some(boat))) {
-            hubs.iter().for_each(|hub| hub.send(&command, saying.number));
+            hubs.iter()
+                .for_each(|hub| hub.send(&command, saying.number));
         }
     }
 
     fn say_to_game(&self, saying: &Saying) {
         // No lock is held while messages go out.
-        let Some(game) = self.game.lock().clone() else { return };
+        let Some(game) = self.game.lock().clone() else {
+            return;
+        };
         let send = |publisher: &Publisher, json: Vec<u8>| drop(publisher.send_json(json));
         if saying.to_everybody && saying.command == StopCommand::EStop {
-            send(&game.control, serde_json::to_vec(&Control::EStop).unwrap_or_default());
+            send(
+                &game.control,
+                serde_json::to_vec(&Control::EStop).unwrap_or_default(),
+            );
         }
         let command = match saying.command_to(None) {
             Some(command @ GatewayCommand::Fleet(_)) => serde_json::to_vec(&command),
@@ -295,17 +362,25 @@ impl Shared {
     /// Asks the sim to stop all boats and waits for its answer: it stops the boats that it
     /// simulates.
     fn ask_sim(self: &Arc<Self>, stop: u64) {
-        let game = self.game.lock().as_ref().map(|game| (game.bus.clone(), game.game.clone()));
+        let game = self
+            .game
+            .lock()
+            .as_ref()
+            .map(|game| (game.bus.clone(), game.game.clone()));
         let Some((bus, name)) = game else { return };
         let shared = Arc::downgrade(self);
         let asked = start_thread("stop-sim", move || {
             let answer = control(&bus, &name, Control::EStop).map_err(|e| e.to_string());
             if let Some(shared) = shared.upgrade() {
-                shared.orders.visit(|orders| orders.sim_answered(clock::now(), stop, answer));
+                shared
+                    .orders
+                    .visit(|orders| orders.sim_answered(clock::now(), stop, answer));
             }
         });
         if let Err(e) = asked {
-            self.orders.visit(|orders| orders.sim_answered(clock::now(), stop, Err(format!("no thread: {e}"))));
+            self.orders.visit(|orders| {
+                orders.sim_answered(clock::now(), stop, Err(format!("no thread: {e}")))
+            });
         }
     }
 
@@ -314,11 +389,20 @@ impl Shared {
         self.orders.visit(|orders| {
             let now = clock::now();
             let as_of = orders.as_of(now, &status.vehicle, status.at_s);
-            orders.report(now, &status.vehicle, &status.state, Source::Published(as_of));
+            orders.report(
+                now,
+                &status.vehicle,
+                &status.state,
+                Source::Published(as_of),
+            );
         });
-        let control = status.control.as_ref().and_then(|control| control.parse::<SocketAddr>().ok());
+        let control = status
+            .control
+            .as_ref()
+            .and_then(|control| control.parse::<SocketAddr>().ok());
         // A loopback address may belong to another machine.
-        let control = control.filter(|at| !at.ip().is_unspecified() && (is_here || !at.ip().is_loopback()));
+        let control =
+            control.filter(|at| !at.ip().is_unspecified() && (is_here || !at.ip().is_loopback()));
         let mut named = self.named.lock();
         if let Some(at) = control.filter(|_| named.len() < GATEWAYS_MAX) {
             named.insert(at, status.vehicle.clone());
@@ -331,7 +415,9 @@ impl Shared {
                 orders.expect(vehicle);
                 if !state.is_empty() {
                     // If the request arrived instantly, the sim heard the state this long before.
-                    let as_of = asked.checked_sub(Duration::from_millis(*age_ms)).unwrap_or(asked);
+                    let as_of = asked
+                        .checked_sub(Duration::from_millis(*age_ms))
+                        .unwrap_or(asked);
                     orders.report(clock::now(), vehicle, state, Source::Relayed(as_of));
                 }
             }
@@ -342,12 +428,18 @@ impl Shared {
 
 /// Handles news from a gateway, expected by the name `unnamed` until its boat is known.
 fn gateway_said(shared: &Weak<Shared>, unnamed: Option<&str>, news: PathNews) {
-    let Some(shared) = shared.upgrade() else { return };
+    let Some(shared) = shared.upgrade() else {
+        return;
+    };
     shared.orders.visit(|orders| match news {
         PathNews::Connected => orders.hurry(),
         PathNews::States(states, Asked { stop, at }) => {
             unnamed.iter().for_each(|name| orders.forget(name));
-            let source = if stop == 0 { Source::Published(at) } else { Source::Answer(stop) };
+            let source = if stop == 0 {
+                Source::Published(at)
+            } else {
+                Source::Answer(stop)
+            };
             for (vehicle, (state, _)) in &states {
                 orders.report(clock::now(), vehicle, state, source);
             }
@@ -362,7 +454,17 @@ impl Saying {
         if self.is_of_fleet && self.command == StopCommand::EStop {
             return Some(GatewayCommand::Fleet(FleetCommand::EStop));
         }
-        let name = vehicle.or_else(|| self.boats.first().map(String::as_str).filter(|_| !self.is_of_fleet))?.to_owned();
-        Some(GatewayCommand::Boat { name, command: self.command.operator_command() })
+        let name = vehicle
+            .or_else(|| {
+                self.boats
+                    .first()
+                    .map(String::as_str)
+                    .filter(|_| !self.is_of_fleet)
+            })?
+            .to_owned();
+        Some(GatewayCommand::Boat {
+            name,
+            command: self.command.operator_command(),
+        })
     }
 }

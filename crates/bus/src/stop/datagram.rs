@@ -81,8 +81,17 @@ impl StopRequest {
     /// Never: an answer is JSON.
     pub fn answer(&self, room: usize, token: Option<&Token>, boats: &States) -> Option<Vec<u8>> {
         let boats = to_raw_value(boats).expect("states are JSON");
-        let mac = token.map(|token| token.prove(self.challenge(), ANSWER_KEY, boats.get().as_bytes()).mac);
-        let answer = AnswerDatagram { session: self.session, number: self.number, boats, mac };
+        let mac = token.map(|token| {
+            token
+                .prove(self.challenge(), ANSWER_KEY, boats.get().as_bytes())
+                .mac
+        });
+        let answer = AnswerDatagram {
+            session: self.session,
+            number: self.number,
+            boats,
+            mac,
+        };
         let bytes = serde_json::to_vec(&answer).expect("an answer is JSON");
         (bytes.len() <= room).then_some(bytes)
     }
@@ -90,15 +99,29 @@ impl StopRequest {
     /// Decodes the answer to this request; `None` if it is garbage, for another request, or does
     /// not prove the known token.
     pub(super) fn read_answer(&self, bytes: &[u8], token: Option<&Token>) -> Option<States> {
-        let AnswerDatagram { session, number, boats, mac } = serde_json::from_slice(bytes).ok()?;
-        let proof = |mac| Proof { challenge: self.challenge(), mac };
+        let AnswerDatagram {
+            session,
+            number,
+            boats,
+            mac,
+        } = serde_json::from_slice(bytes).ok()?;
+        let proof = |mac| Proof {
+            challenge: self.challenge(),
+            mac,
+        };
         let is_proven = match (token, mac) {
-            (Some(token), Some(mac)) => token.is_proven(&proof(mac), ANSWER_KEY, boats.get().as_bytes()),
+            (Some(token), Some(mac)) => {
+                token.is_proven(&proof(mac), ANSWER_KEY, boats.get().as_bytes())
+            }
             (Some(_), None) => false,
             (None, _) => true,
         };
         let is_ours = (session, number) == (self.session, self.number);
-        if is_ours && is_proven { serde_json::from_str(boats.get()).ok() } else { None }
+        if is_ours && is_proven {
+            serde_json::from_str(boats.get()).ok()
+        } else {
+            None
+        }
     }
 
     fn challenge(&self) -> String {
@@ -108,7 +131,9 @@ impl StopRequest {
 
 /// The number of the request that these bytes claim to answer.
 pub(super) fn answered_number(bytes: &[u8]) -> Option<u64> {
-    serde_json::from_slice::<AnswerDatagram>(bytes).ok().map(|answer| answer.number)
+    serde_json::from_slice::<AnswerDatagram>(bytes)
+        .ok()
+        .map(|answer| answer.number)
 }
 
 #[cfg(test)]
@@ -117,32 +142,61 @@ mod tests {
     use messages::external::{FleetCommand, OperatorCommand};
 
     fn request(command: GatewayCommand) -> StopRequest {
-        StopRequest { session: u64::MAX, number: 7, game: Some("match".to_owned()), command }
+        StopRequest {
+            session: u64::MAX,
+            number: 7,
+            game: Some("match".to_owned()),
+            command,
+        }
     }
 
     fn boat(command: OperatorCommand) -> GatewayCommand {
-        GatewayCommand::Boat { name: "blue_one".to_owned(), command }
+        GatewayCommand::Boat {
+            name: "blue_one".to_owned(),
+            command,
+        }
     }
 
     fn states(count: usize) -> States {
-        (0..count).map(|i| (format!("boat_{i:03}"), ("e-stopped (by an E-stop of the fleet)".to_owned(), 3))).collect()
+        (0..count)
+            .map(|i| {
+                (
+                    format!("boat_{i:03}"),
+                    ("e-stopped (by an E-stop of the fleet)".to_owned(), 3),
+                )
+            })
+            .collect()
     }
 
     #[test]
     fn stops_and_status_are_read_as_they_were_sent_and_nothing_else_is() {
-        let commands = [OperatorCommand::EStop, OperatorCommand::Disarm, OperatorCommand::Status].map(boat);
-        for command in commands.into_iter().chain([GatewayCommand::Fleet(FleetCommand::EStop)]) {
+        let commands = [
+            OperatorCommand::EStop,
+            OperatorCommand::Disarm,
+            OperatorCommand::Status,
+        ]
+        .map(boat);
+        for command in commands
+            .into_iter()
+            .chain([GatewayCommand::Fleet(FleetCommand::EStop)])
+        {
             let request = request(command);
             let bytes = request.encode();
             assert!((FILLED..=DATAGRAM_MAX).contains(&bytes.len()));
             assert_eq!(StopRequest::decode(&bytes), Some(request));
         }
-        for command in [boat(OperatorCommand::Arm), GatewayCommand::Fleet(FleetCommand::Release)] {
+        for command in [
+            boat(OperatorCommand::Arm),
+            GatewayCommand::Fleet(FleetCommand::Release),
+        ] {
             assert_eq!(StopRequest::decode(&request(command).encode()), None);
         }
         // In the format of a line at a control port.
         let line = StopRequest::decode(br#"{"body":{"fleet":"e_stop"}}"#).expect("a request");
-        assert_eq!((line.game, line.command), (None, GatewayCommand::Fleet(FleetCommand::EStop)));
+        assert_eq!(
+            (line.game, line.command),
+            (None, GatewayCommand::Fleet(FleetCommand::EStop))
+        );
     }
 
     #[test]
@@ -150,8 +204,21 @@ mod tests {
         let mut long = request(boat(OperatorCommand::EStop)).encode();
         long.resize(DATAGRAM_MAX + 1, b' ');
         let deep = [b'['; DATAGRAM_MAX];
-        for bad in [&long[..], b"", b"{}", b"\"e_stop\"", b"{\"body\":{\"fleet\":\"e_stop\"}", &[0xff; 300], &deep] {
-            assert_eq!(StopRequest::decode(bad), None, "{}", String::from_utf8_lossy(bad));
+        for bad in [
+            &long[..],
+            b"",
+            b"{}",
+            b"\"e_stop\"",
+            b"{\"body\":{\"fleet\":\"e_stop\"}",
+            &[0xff; 300],
+            &deep,
+        ] {
+            assert_eq!(
+                StopRequest::decode(bad),
+                None,
+                "{}",
+                String::from_utf8_lossy(bad)
+            );
         }
     }
 
@@ -160,11 +227,19 @@ mod tests {
         let request = request(GatewayCommand::Fleet(FleetCommand::EStop));
         let token = Token::random();
         let answer = |count, room| request.answer(room, Some(&token), &states(count));
-        assert_eq!((answer(1, 0), answer(1, 27), answer(100, FILLED)), (None, None, None));
+        assert_eq!(
+            (answer(1, 0), answer(1, 27), answer(100, FILLED)),
+            (None, None, None)
+        );
         for count in [0, 1, 12] {
             let whole = answer(count, FILLED).expect("there is room");
-            assert_eq!(request.read_answer(&whole, Some(&token)), Some(states(count)));
-            assert!(answer(count, whole.len()).is_some() && answer(count, whole.len() - 1).is_none());
+            assert_eq!(
+                request.read_answer(&whole, Some(&token)),
+                Some(states(count))
+            );
+            assert!(
+                answer(count, whole.len()).is_some() && answer(count, whole.len() - 1).is_none()
+            );
         }
     }
 
@@ -174,16 +249,32 @@ mod tests {
         let token = Token::random();
         let other = Token::random();
         let answer = |token| request.answer(FILLED, token, &states(1)).expect("room");
-        assert_eq!(request.read_answer(&answer(Some(&token)), Some(&token)), Some(states(1)));
-        assert_eq!(request.read_answer(&answer(Some(&token)), None), Some(states(1)), "nothing is known to prove");
+        assert_eq!(
+            request.read_answer(&answer(Some(&token)), Some(&token)),
+            Some(states(1))
+        );
+        assert_eq!(
+            request.read_answer(&answer(Some(&token)), None),
+            Some(states(1)),
+            "nothing is known to prove"
+        );
         for forged in [answer(None), answer(Some(&other))] {
             assert_eq!(request.read_answer(&forged, Some(&token)), None);
         }
         for (session, number) in [(1, 7), (u64::MAX, 8)] {
-            let replayed = StopRequest { session, number, ..request.clone() };
-            assert_eq!(replayed.read_answer(&answer(Some(&token)), Some(&token)), None);
+            let replayed = StopRequest {
+                session,
+                number,
+                ..request.clone()
+            };
+            assert_eq!(
+                replayed.read_answer(&answer(Some(&token)), Some(&token)),
+                None
+            );
         }
-        let changed = String::from_utf8(answer(Some(&token))).expect("JSON").replace("e-stopped", "armed");
+        let changed = String::from_utf8(answer(Some(&token)))
+            .expect("JSON")
+            .replace("e-stopped", "armed");
         assert_eq!(request.read_answer(changed.as_bytes(), Some(&token)), None);
     }
 }

@@ -38,18 +38,29 @@ impl DatagramPort {
                 match socket.recv_from(&mut buffer) {
                     Ok((count, from)) if count <= DATAGRAM_MAX => {
                         // A lost answer is requested again.
-                        serve(&buffer[..count]).into_iter().for_each(|answer| drop(socket.send_to(&answer, from)));
+                        serve(&buffer[..count])
+                            .into_iter()
+                            .for_each(|answer| drop(socket.send_to(&answer, from)));
                     }
                     Ok(_) => {}
                     // No process listens at the target of a request yet.
                     Err(e) if e.kind() == io::ErrorKind::ConnectionRefused => {}
-                    Err(e) if matches!(e.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut) => {}
+                    Err(e)
+                        if matches!(
+                            e.kind(),
+                            io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut
+                        ) => {}
                     Err(_) => clock::rest(LOOK),
                 }
             }
         };
-        let thread = std::thread::Builder::new().name(name.to_owned()).spawn(read)?;
-        Ok(DatagramPort { is_closing, thread: Some(thread) })
+        let thread = std::thread::Builder::new()
+            .name(name.to_owned())
+            .spawn(read)?;
+        Ok(DatagramPort {
+            is_closing,
+            thread: Some(thread),
+        })
     }
 
     /// Tells the thread to end; drop waits for it.
@@ -62,6 +73,10 @@ impl Drop for DatagramPort {
     fn drop(&mut self) {
         self.close();
         // A panicked thread has no result.
-        self.thread.take().map(JoinHandle::join).into_iter().for_each(drop);
+        self.thread
+            .take()
+            .map(JoinHandle::join)
+            .into_iter()
+            .for_each(drop);
     }
 }

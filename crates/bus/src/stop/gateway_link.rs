@@ -67,7 +67,11 @@ impl DatagramPath {
         token: CurrentToken,
         on_news: OnNews,
     ) -> io::Result<DatagramPath> {
-        let any: IpAddr = if at.is_ipv4() { Ipv4Addr::UNSPECIFIED.into() } else { Ipv6Addr::UNSPECIFIED.into() };
+        let any: IpAddr = if at.is_ipv4() {
+            Ipv4Addr::UNSPECIFIED.into()
+        } else {
+            Ipv6Addr::UNSPECIFIED.into()
+        };
         let socket = UdpSocket::bind((any, 0))?;
         // Accepts datagrams from this address only.
         socket.connect(at)?;
@@ -75,13 +79,24 @@ impl DatagramPath {
         let answered = Arc::clone(&sent);
         let port = DatagramPort::open(socket.try_clone()?, "stop-answers", move |bytes| {
             let number = answered_number(bytes)?;
-            let awaited = answered.lock().awaited.iter().find(|(request, _)| request.number == number).cloned();
+            let awaited = answered
+                .lock()
+                .awaited
+                .iter()
+                .find(|(request, _)| request.number == number)
+                .cloned();
             let (request, asked) = awaited?;
             let states = request.read_answer(bytes, token.get().as_ref())?;
             on_news(PathNews::States(states, asked));
             None
         })?;
-        Ok(DatagramPath { socket, session: random_number(), game, sent, port })
+        Ok(DatagramPath {
+            socket,
+            session: random_number(),
+            game,
+            sent,
+            port,
+        })
     }
 
     /// Tells the thread to end; drop waits for it.
@@ -96,9 +111,20 @@ impl DatagramPath {
         let number = sent.number;
         let game = self.game.clone();
         let command = command.clone();
-        let request = StopRequest { session: self.session, number, game, command };
+        let request = StopRequest {
+            session: self.session,
+            number,
+            game,
+            command,
+        };
         let bytes = request.encode();
-        sent.awaited.push_back((request, Asked { stop, at: clock::now() }));
+        sent.awaited.push_back((
+            request,
+            Asked {
+                stop,
+                at: clock::now(),
+            },
+        ));
         let surplus = sent.awaited.len().saturating_sub(AWAITED_MAX);
         sent.awaited.drain(..surplus);
         drop(sent);
@@ -143,18 +169,29 @@ impl GatewayPath {
         let learn: OnNews = Arc::new(move |mut news| {
             if let PathNews::States(states, _) = &mut news {
                 let mut vehicle = learnt.lock();
-                let own = vehicle.get_or_insert_with(|| states.keys().next().cloned().unwrap_or_default());
+                let own = vehicle
+                    .get_or_insert_with(|| states.keys().next().cloned().unwrap_or_default());
                 // A gateway reports only its own boat.
                 states.retain(|name, _| name == own);
             }
             on_news(news);
         });
         let datagrams = DatagramPath::open(at, None, token.clone(), Arc::clone(&learn))?;
-        let connection = Connection { at, open: Mutex::default(), on_news: learn, is_closing: AtomicBool::new(false) };
+        let connection = Connection {
+            at,
+            open: Mutex::default(),
+            on_news: learn,
+            is_closing: AtomicBool::new(false),
+        };
         let connection = Arc::new(connection);
         let at_work = Arc::clone(&connection);
         start_thread("stop-connection", move || at_work.run())?;
-        Ok(GatewayPath { vehicle, token, datagrams, connection })
+        Ok(GatewayPath {
+            vehicle,
+            token,
+            datagrams,
+            connection,
+        })
     }
 
     /// Tells the threads to end; drop waits for them.
@@ -193,17 +230,35 @@ impl Connection {
         stream.set_write_timeout(Some(WRITE_MAX))?;
         stream.set_read_timeout(Some(SILENT_MAX))?;
         let mut reader = BufReader::new(stream.try_clone()?);
-        *self.open.lock() = Some(Open { stream, awaited: VecDeque::new() });
+        *self.open.lock() = Some(Open {
+            stream,
+            awaited: VecDeque::new(),
+        });
         (self.on_news)(PathNews::Connected);
         loop {
             let mut line = Vec::new();
-            reader.by_ref().take(ANSWER_BYTES_MAX).read_until(b'\n', &mut line)?;
-            let awaited = self.open.lock().as_mut().and_then(|open| open.awaited.pop_front());
-            let Some(asked) = awaited.filter(|_| line.ends_with(b"\n")) else { return Ok(()) };
+            reader
+                .by_ref()
+                .take(ANSWER_BYTES_MAX)
+                .read_until(b'\n', &mut line)?;
+            let awaited = self
+                .open
+                .lock()
+                .as_mut()
+                .and_then(|open| open.awaited.pop_front());
+            let Some(asked) = awaited.filter(|_| line.ends_with(b"\n")) else {
+                return Ok(());
+            };
             // This connection proves nothing: requests that need the token use a separate one.
             match serde_json::from_slice(&line) {
-                Ok(Answer::Answer(OperatorReply { refused: None, status })) => {
-                    (self.on_news)(PathNews::States(States::from([(status.vehicle, (status.state, 0))]), asked));
+                Ok(Answer::Answer(OperatorReply {
+                    refused: None,
+                    status,
+                })) => {
+                    (self.on_news)(PathNews::States(
+                        States::from([(status.vehicle, (status.state, 0))]),
+                        asked,
+                    ));
                 }
                 // Another boat's gateway, or one that does not run yet.
                 Ok(_) => {}
@@ -216,8 +271,13 @@ impl Connection {
         let mut line = first(command);
         line.push(b'\n');
         let mut open = self.open.lock();
-        let Some(Open { stream, awaited }) = &mut *open else { return };
-        awaited.push_back(Asked { stop, at: clock::now() });
+        let Some(Open { stream, awaited }) = &mut *open else {
+            return;
+        };
+        awaited.push_back(Asked {
+            stop,
+            at: clock::now(),
+        });
         if awaited.len() > AWAITED_MAX || (&*stream).write_all(&line).is_err() {
             // The peer takes no more data, and a partial line is invalid.
             drop(stream.shutdown(Shutdown::Both));

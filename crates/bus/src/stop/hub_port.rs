@@ -36,33 +36,54 @@ impl HubStopPort {
     ///
     /// # Errors
     /// [`BusError`] if a port is taken, or the session is closed.
-    pub fn open(bus: &Bus, net: &Net, game: &GameName, boats: &[String]) -> Result<HubStopPort, BusError> {
+    pub fn open(
+        bus: &Bus,
+        net: &Net,
+        game: &GameName,
+        boats: &[String],
+    ) -> Result<HubStopPort, BusError> {
         // A datagram carries no certificate, and a game with keys accepts nothing without one.
         if !runtime().has_sockets() || net.keys.is_some() {
             return Ok(HubStopPort(vec![]));
         }
-        let heard = Arc::new(Mutex::new(boats.iter().map(|boat| (boat.clone(), None)).collect::<Heard>()));
+        let heard = Arc::new(Mutex::new(
+            boats
+                .iter()
+                .map(|boat| (boat.clone(), None))
+                .collect::<Heard>(),
+        ));
         let told = Arc::clone(&heard);
         let topics = StopTopics::open(bus, game, boats, move |status| {
-            told.lock().insert(status.vehicle, Some((status.state, clock::now())));
+            told.lock()
+                .insert(status.vehicle, Some((status.state, clock::now())));
         })?;
         let server = Arc::new(Server { topics, heard });
         let mut ports = Vec::new();
-        for endpoint in net.listen.iter().filter(|endpoint| endpoint.starts_with("tcp/")) {
+        for endpoint in net
+            .listen
+            .iter()
+            .filter(|endpoint| endpoint.starts_with("tcp/"))
+        {
             let failed = |e: std::io::Error| BusError::Open {
                 what: format!("to take stops at udp/{}", address(endpoint)),
                 reason: e.to_string(),
             };
             let found = address(endpoint).to_socket_addrs().map_err(failed)?;
             // A name may have addresses of a family that this machine does not use.
-            let (bound, missed): (Vec<_>, Vec<_>) = found.map(UdpSocket::bind).partition(Result::is_ok);
+            let (bound, missed): (Vec<_>, Vec<_>) =
+                found.map(UdpSocket::bind).partition(Result::is_ok);
             if bound.is_empty() {
                 let missed = missed.into_iter().find_map(Result::err);
-                return Err(failed(missed.unwrap_or_else(|| std::io::Error::other("it has no address"))));
+                return Err(failed(
+                    missed.unwrap_or_else(|| std::io::Error::other("it has no address")),
+                ));
             }
             for socket in bound.into_iter().flatten() {
                 let server = Arc::clone(&server);
-                ports.push(DatagramPort::open(socket, "stops", move |bytes| server.serve(bytes)).map_err(failed)?);
+                ports.push(
+                    DatagramPort::open(socket, "stops", move |bytes| server.serve(bytes))
+                        .map_err(failed)?,
+                );
             }
         }
         Ok(HubStopPort(ports))
@@ -72,17 +93,30 @@ impl HubStopPort {
 impl Server {
     fn serve(&self, bytes: &[u8]) -> Option<Vec<u8>> {
         let request = StopRequest::decode(bytes)?;
-        let StopTopics { bus, game: own, control, stops, .. } = &self.topics;
-        if request.game.as_ref().is_some_and(|game| game != own.as_str()) {
+        let StopTopics {
+            bus,
+            game: own,
+            control,
+            stops,
+            ..
+        } = &self.topics;
+        if request
+            .game
+            .as_ref()
+            .is_some_and(|game| game != own.as_str())
+        {
             return None;
         }
         let publish = |publisher: &Publisher, json: serde_json::Result<Vec<u8>>| {
             // A closed session has nothing to stop.
-            json.into_iter().for_each(|json| drop(publisher.send_json(json)));
+            json.into_iter()
+                .for_each(|json| drop(publisher.send_json(json)));
         };
         match &request.command {
             // This session receives it too.
-            GatewayCommand::Fleet(FleetCommand::EStop) => publish(control, serde_json::to_vec(&Control::EStop)),
+            GatewayCommand::Fleet(FleetCommand::EStop) => {
+                publish(control, serde_json::to_vec(&Control::EStop))
+            }
             GatewayCommand::Boat { name, command } if *command != OperatorCommand::Status => {
                 // Published by the sim's session, which needs no rule at the hub. An unknown boat
                 // gets no answer: nothing can be learnt.
@@ -92,12 +126,21 @@ impl Server {
         }
         let now = clock::now();
         let state = |heard: &Option<(String, Instant)>| {
-            let fresh = heard.as_ref().map(|(state, at)| (state, now.saturating_duration_since(*at)));
+            let fresh = heard
+                .as_ref()
+                .map(|(state, at)| (state, now.saturating_duration_since(*at)));
             let fresh = fresh.filter(|(_, age)| *age < FRESH);
-            fresh.map(|(state, age)| (state.clone(), age.as_millis() as u64)).unwrap_or_default()
+            fresh
+                .map(|(state, age)| (state.clone(), age.as_millis() as u64))
+                .unwrap_or_default()
         };
         // Names all boats, so that the operator knows that there are no others.
-        let states: States = self.heard.lock().iter().map(|(boat, heard)| (boat.clone(), state(heard))).collect();
+        let states: States = self
+            .heard
+            .lock()
+            .iter()
+            .map(|(boat, heard)| (boat.clone(), state(heard)))
+            .collect();
         request.answer(bytes.len(), bus.token.as_ref(), &states)
     }
 }

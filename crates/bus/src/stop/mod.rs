@@ -49,7 +49,13 @@ impl StopTopics {
             statuses.push(bus.subscribe_status(game, boat, take.clone())?);
         }
         let control = publisher(topic::control(game))?;
-        Ok(StopTopics { bus: bus.clone(), game: game.clone(), control, stops, _statuses: statuses })
+        Ok(StopTopics {
+            bus: bus.clone(),
+            game: game.clone(),
+            control,
+            stops,
+            _statuses: statuses,
+        })
     }
 }
 
@@ -82,6 +88,7 @@ impl StopCommand {
 
     /// Whether this state of a boat, as gateways spell it, shows the stop.
     pub fn is_shown_by(self, state: &str) -> bool {
-        state.starts_with("e-stopped") || (self == StopCommand::Disarm && state.starts_with("disarmed"))
+        state.starts_with("e-stopped")
+            || (self == StopCommand::Disarm && state.starts_with("disarmed"))
     }
 }

@@ -151,13 +151,25 @@ impl StopOrders {
         let boats = BTreeMap::new();
         let stops = Vec::new();
         let news = VecDeque::new();
-        StopOrders { limit, boats, is_complete: false, stops, count: 0, changes: 0, news }
+        StopOrders {
+            limit,
+            boats,
+            is_complete: false,
+            stops,
+            count: 0,
+            changes: 0,
+            news,
+        }
     }
 
     /// Whether a boat has shown the last stop of this kind that was requested for it alone.
     pub fn is_shown(&self, vehicle: &str, command: StopCommand) -> bool {
-        let is_it = |stop: &&Stop| stop.command == command && stop.target.as_deref() == Some(vehicle);
-        self.stops.iter().find(is_it).is_some_and(|stop| stop.shown.contains_key(vehicle))
+        let is_it =
+            |stop: &&Stop| stop.command == command && stop.target.as_deref() == Some(vehicle);
+        self.stops
+            .iter()
+            .find(is_it)
+            .is_some_and(|stop| stop.shown.contains_key(vehicle))
     }
 
     /// The known boats.
@@ -169,8 +181,12 @@ impl StopOrders {
     /// boats.
     pub fn is_done(&self, now: Instant) -> bool {
         let is_for_all = self.stops.iter().any(|stop| stop.target.is_none());
-        let is_sure = |stop: &Stop| now >= stop.asked + DOUBTED || stop.shown.values().all(|is_sure| *is_sure);
-        (self.is_complete || !is_for_all) && self.unfinished().is_empty() && self.stops.iter().all(is_sure)
+        let is_sure = |stop: &Stop| {
+            now >= stop.asked + DOUBTED || stop.shown.values().all(|is_sure| *is_sure)
+        };
+        (self.is_complete || !is_for_all)
+            && self.unfinished().is_empty()
+            && self.stops.iter().all(is_sure)
     }
 
     /// Returns and clears the unread news.
@@ -180,7 +196,13 @@ impl StopOrders {
 
     /// Expects a boat to show stops of all boats, whether it is heard or not.
     pub(super) fn expect(&mut self, vehicle: &str) {
-        let unheard = KnownBoat { state: None, heard: None, heard_itself: None, began: None, is_silent: false };
+        let unheard = KnownBoat {
+            state: None,
+            heard: None,
+            heard_itself: None,
+            began: None,
+            is_silent: false,
+        };
         self.boats.entry(vehicle.to_owned()).or_insert(unheard);
     }
 
@@ -196,12 +218,27 @@ impl StopOrders {
     }
 
     /// Requests a stop; it replaces an earlier one of the same kind and target.
-    pub(super) fn ask(&mut self, now: Instant, target: Option<String>, command: StopCommand) -> u64 {
+    pub(super) fn ask(
+        &mut self,
+        now: Instant,
+        target: Option<String>,
+        command: StopCommand,
+    ) -> u64 {
         // Pressing the button again requests a new confirmation, not the earlier one.
-        self.stops.retain(|stop| (&stop.target, stop.command) != (&target, command));
+        self.stops
+            .retain(|stop| (&stop.target, stop.command) != (&target, command));
         self.count += 1;
-        let is_other = |boat: &KnownBoat| boat.state.as_ref().is_some_and(|state| !command.is_shown_by(state));
-        let others = self.boats.iter().filter(|(_, boat)| is_other(boat)).map(|(name, _)| name.clone()).collect();
+        let is_other = |boat: &KnownBoat| {
+            boat.state
+                .as_ref()
+                .is_some_and(|state| !command.is_shown_by(state))
+        };
+        let others = self
+            .boats
+            .iter()
+            .filter(|(_, boat)| is_other(boat))
+            .map(|(name, _)| name.clone())
+            .collect();
         self.stops.push(Stop {
             number: self.count,
             target,
@@ -226,32 +263,52 @@ impl StopOrders {
 
     /// Sends unfinished stops at once, because a path was added.
     pub(super) fn hurry(&mut self) {
-        self.stops.iter_mut().for_each(|stop| stop.is_hurried = true);
+        self.stops
+            .iter_mut()
+            .for_each(|stop| stop.is_hurried = true);
         self.changes += 1;
     }
 
     /// The stops of all boats that no sim has answered.
     pub(super) fn unanswered(&self) -> Vec<u64> {
-        let stops = self.stops.iter().filter(|stop| stop.target.is_none() && stop.command == StopCommand::EStop);
-        stops.filter(|stop| !stop.is_cancelled && stop.sim.is_none()).map(|stop| stop.number).collect()
+        let stops = self
+            .stops
+            .iter()
+            .filter(|stop| stop.target.is_none() && stop.command == StopCommand::EStop);
+        stops
+            .filter(|stop| !stop.is_cancelled && stop.sim.is_none())
+            .map(|stop| stop.number)
+            .collect()
     }
 
     /// Ends the repeats of earlier stops of a boat, or of all, because of a newer command.
     pub fn cancel(&mut self, target: Option<&str>) {
-        let is_meant = |stop: &Stop| target.is_none() || stop.target.is_none() || stop.target.as_deref() == target;
-        self.stops.iter_mut().filter(|stop| is_meant(stop)).for_each(|stop| stop.is_cancelled = true);
+        let is_meant = |stop: &Stop| {
+            target.is_none() || stop.target.is_none() || stop.target.as_deref() == target
+        };
+        self.stops
+            .iter_mut()
+            .filter(|stop| is_meant(stop))
+            .for_each(|stop| stop.is_cancelled = true);
     }
 
     /// A lower bound of the time at which a status arriving now was true; `at_s` is its time since
     /// the gateway started, s.
     pub(super) fn as_of(&mut self, now: Instant, vehicle: &str, at_s: f64) -> Instant {
         let at = Duration::try_from_secs_f64(at_s).ok();
-        let (Some(boat), Some(at)) = (self.boats.get_mut(vehicle), at) else { return now };
-        let Some(began) = now.checked_sub(at) else { return now };
+        let (Some(boat), Some(at)) = (self.boats.get_mut(vehicle), at) else {
+            return now;
+        };
+        let Some(began) = now.checked_sub(at) else {
+            return now;
+        };
         // The clocks may drift apart, and a restarted gateway started later. The earliest start
         // time that any status implies comes from the status with the shortest delay; all later
         // ones are judged by it.
-        let known = boat.began.map(|known| known + DRIFT).filter(|known| began < *known + RESTARTED);
+        let known = boat
+            .began
+            .map(|known| known + DRIFT)
+            .filter(|known| began < *known + RESTARTED);
         let began = known.map_or(began, |known| known.min(began));
         boat.began = Some(began);
         began + at
@@ -260,24 +317,40 @@ impl StopOrders {
     /// Records a boat's reported state.
     pub(super) fn report(&mut self, now: Instant, vehicle: &str, state: &str, source: Source) {
         self.expect(vehicle);
-        let Some(boat) = self.boats.get_mut(vehicle) else { return };
-        let relayed = if let Source::Relayed(as_of) = source { Some(as_of) } else { None };
+        let Some(boat) = self.boats.get_mut(vehicle) else {
+            return;
+        };
+        let relayed = if let Source::Relayed(as_of) = source {
+            Some(as_of)
+        } else {
+            None
+        };
         if relayed.is_none() {
             boat.heard_itself = Some(now);
         }
         // The boat's own report is newer than the sim's copy.
-        let is_news = relayed.is_none() || boat.heard_itself.is_none_or(|heard| now >= heard + RELAYED_AFTER);
+        let is_news = relayed.is_none()
+            || boat
+                .heard_itself
+                .is_none_or(|heard| now >= heard + RELAYED_AFTER);
         let is_change = is_news && (boat.state.as_deref() != Some(state) || boat.is_silent);
         if is_news {
             (boat.state, boat.heard, boat.is_silent) = (Some(state.to_owned()), Some(now), false);
         }
         let mut news = Vec::new();
-        for stop in self.stops.iter_mut().filter(|stop| stop.target.as_deref().is_none_or(|target| target == vehicle)) {
+        for stop in self.stops.iter_mut().filter(|stop| {
+            stop.target
+                .as_deref()
+                .is_none_or(|target| target == vehicle)
+        }) {
             // A status in transit may be older than the stop: only an answer to the stop, or a
             // status certainly received after it, is proof.
-            let is_sure = source == Source::Answer(stop.number) || relayed.is_some_and(|as_of| as_of > stop.asked);
+            let is_sure = source == Source::Answer(stop.number)
+                || relayed.is_some_and(|as_of| as_of > stop.asked);
             // A lost packet delays statuses for longer than a stop takes.
-            if matches!(source, Source::Published(as_of) if as_of < stop.asked) && now < stop.asked + DOUBTED {
+            if matches!(source, Source::Published(as_of) if as_of < stop.asked)
+                && now < stop.asked + DOUBTED
+            {
                 continue;
             }
             if relayed.is_some() && !(is_sure && stop.command.is_shown_by(state)) {
@@ -294,25 +367,37 @@ impl StopOrders {
                     let state = state.to_owned();
                     let after = now - stop.asked;
                     stop.shown.insert(vehicle.clone(), is_sure);
-                    news.push(StopNews::Done { vehicle, command: stop.command, state, after });
+                    news.push(StopNews::Done {
+                        vehicle,
+                        command: stop.command,
+                        state,
+                        after,
+                    });
                 }
                 Some(was_sure) if stop.command.is_shown_by(state) => {
                     stop.shown.insert(vehicle.to_owned(), was_sure || is_sure);
                 }
                 // The report that showed it was older than the stop.
-                Some(false) if !stop.is_cancelled && now < stop.asked + DOUBTED => drop(stop.shown.remove(vehicle)),
+                Some(false) if !stop.is_cancelled && now < stop.asked + DOUBTED => {
+                    stop.shown.remove(vehicle);
+                }
                 _ => {}
             }
         }
         if is_change && news.is_empty() {
-            news.push(StopNews::State { vehicle: vehicle.to_owned(), state: state.to_owned() });
+            news.push(StopNews::State {
+                vehicle: vehicle.to_owned(),
+                state: state.to_owned(),
+            });
         }
         self.tell(news);
     }
 
     /// Records the sim's answer to a stop of all boats.
     pub(super) fn sim_answered(&mut self, now: Instant, number: u64, answer: Result<(), String>) {
-        let Some(stop) = self.stops.iter_mut().find(|stop| stop.number == number) else { return };
+        let Some(stop) = self.stops.iter_mut().find(|stop| stop.number == number) else {
+            return;
+        };
         let news = StopNews::Sim(answer.clone().map(|()| now - stop.asked));
         stop.sim = Some(answer);
         self.tell(vec![news]);
@@ -325,7 +410,10 @@ impl StopOrders {
         let is_complete = self.is_complete;
         let limit = self.limit;
         for stop in &mut self.stops {
-            if stop.next(boats, is_complete, limit).is_none_or(|at| at > now) {
+            if stop
+                .next(boats, is_complete, limit)
+                .is_none_or(|at| at > now)
+            {
                 continue;
             }
             stop.is_hurried = false;
@@ -348,7 +436,11 @@ impl StopOrders {
 
     /// When the next repeat or report is due.
     pub(super) fn next(&self, now: Instant) -> Instant {
-        let next = self.stops.iter().filter_map(|stop| stop.next(&self.boats, self.is_complete, self.limit)).min();
+        let next = self
+            .stops
+            .iter()
+            .filter_map(|stop| stop.next(&self.boats, self.is_complete, self.limit))
+            .min();
         next.map_or(now + AGAIN, |at| at.min(now + AGAIN))
     }
 
@@ -357,15 +449,22 @@ impl StopOrders {
         for stop in &mut self.stops {
             if !stop.is_late && now >= stop.asked + LATE {
                 stop.is_late = true;
-                let missing = stop.targets(&self.boats).filter(|name| !stop.shown.contains_key(*name));
-                let late = |name: &String| StopNews::Late { vehicle: name.clone(), command: stop.command };
+                let missing = stop
+                    .targets(&self.boats)
+                    .filter(|name| !stop.shown.contains_key(*name));
+                let late = |name: &String| StopNews::Late {
+                    vehicle: name.clone(),
+                    command: stop.command,
+                };
                 news.extend(missing.map(late));
             }
         }
         for (name, boat) in &mut self.boats {
             if !boat.is_silent && boat.heard.is_some_and(|heard| now >= heard + SILENCE) {
                 boat.is_silent = true;
-                news.push(StopNews::Silent { vehicle: name.clone() });
+                news.push(StopNews::Silent {
+                    vehicle: name.clone(),
+                });
             }
         }
         self.tell(news);
@@ -382,10 +481,14 @@ impl StopOrders {
     pub fn unfinished(&self) -> Vec<String> {
         let mut left = Vec::new();
         for stop in &self.stops {
-            let missing = stop.targets(&self.boats).filter(|name| !stop.shown.contains_key(*name));
-            left.extend(missing.map(|name| match self.boats.get(name).and_then(|boat| boat.state.as_ref()) {
-                Some(state) => format!("{name} does not report that it has stopped: {state}"),
-                None => format!("no report from {name}"),
+            let missing = stop
+                .targets(&self.boats)
+                .filter(|name| !stop.shown.contains_key(*name));
+            left.extend(missing.map(|name| {
+                match self.boats.get(name).and_then(|boat| boat.state.as_ref()) {
+                    Some(state) => format!("{name} does not report that it has stopped: {state}"),
+                    None => format!("no report from {name}"),
+                }
             }));
             // Without real boats, the sim answers for those that it simulates.
             if stop.target.is_none() && self.boats.is_empty() {
@@ -402,7 +505,10 @@ impl StopOrders {
 
 impl Stop {
     /// The target boats.
-    fn targets<'a>(&'a self, boats: &'a BTreeMap<String, KnownBoat>) -> Box<dyn Iterator<Item = &'a String> + 'a> {
+    fn targets<'a>(
+        &'a self,
+        boats: &'a BTreeMap<String, KnownBoat>,
+    ) -> Box<dyn Iterator<Item = &'a String> + 'a> {
         match &self.target {
             Some(target) => Box::new(std::iter::once(target)),
             None => Box::new(boats.keys()),
@@ -418,16 +524,29 @@ impl Stop {
         match SOON_MS.get(n) {
             Some(ms) => self.asked + Duration::from_millis(*ms),
             None => {
-                self.asked + Duration::from_millis(SOON_MS[SOON_MS.len() - 1]) + AGAIN * (n + 1 - SOON_MS.len()) as u32
+                self.asked
+                    + Duration::from_millis(SOON_MS[SOON_MS.len() - 1])
+                    + AGAIN * (n + 1 - SOON_MS.len()) as u32
             }
         }
     }
 
     /// When it is sent next, if at all.
-    fn next(&self, boats: &BTreeMap<String, KnownBoat>, is_complete: bool, limit: Duration) -> Option<Instant> {
-        let at = if self.is_hurried { self.asked } else { self.at(self.said) };
+    fn next(
+        &self,
+        boats: &BTreeMap<String, KnownBoat>,
+        is_complete: bool,
+        limit: Duration,
+    ) -> Option<Instant> {
+        let at = if self.is_hurried {
+            self.asked
+        } else {
+            self.at(self.said)
+        };
         let is_sure = self.targets(boats).all(|name| !self.is_open(name));
-        let is_shown = self.targets(boats).all(|name| self.shown.contains_key(name));
+        let is_shown = self
+            .targets(boats)
+            .all(|name| self.shown.contains_key(name));
         let is_doubted = !is_sure && at < self.asked + DOUBTED;
         let is_done = match self.target {
             Some(_) => is_shown && !is_doubted,

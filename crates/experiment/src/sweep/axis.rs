@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::path::Path;
 
-/// A quantity that varies between points. It has one of `values`, `range`, `normal` and `log_normal`.
+/// A quantity that varies between points. It has one of `values`, `range`, `normal` and
+/// `log_normal`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Axis {
     /// A kind of file and its key, such as `sea.wind.speed_m_s`, `boat.gps.noise_m`,
@@ -80,7 +81,11 @@ impl AxisValue {
 
     /// The value as a number, if it is one.
     pub fn number(&self) -> Option<f64> {
-        if let AxisValue::Number(number) = self { Some(*number) } else { None }
+        if let AxisValue::Number(number) = self {
+            Some(*number)
+        } else {
+            None
+        }
     }
 }
 
@@ -118,8 +123,18 @@ impl Axis {
     ///
     /// # Errors
     /// If the key of the axis does not begin with a kind of file.
-    pub(super) fn setting(&self, team: &str, value: &AxisValue, path: &Path) -> Result<Setting, String> {
-        Setting::new(&self.setting_key(team), value.toml(), path.to_owned(), self.place)
+    pub(super) fn setting(
+        &self,
+        team: &str,
+        value: &AxisValue,
+        path: &Path,
+    ) -> Result<Setting, String> {
+        Setting::new(
+            &self.setting_key(team),
+            value.toml(),
+            path.to_owned(),
+            self.place,
+        )
     }
 
     /// What it varies, from the reference of scenario files; `None` if its key is not there.
@@ -182,10 +197,12 @@ impl Axis {
 
     /// The value while another axis changes alone.
     pub fn nominal(&self) -> AxisValue {
-        self.nominal.clone().unwrap_or_else(|| match self.values.len() {
-            0 => self.at(0.5),
-            count => self.values[(count - 1) / 2].clone(),
-        })
+        self.nominal
+            .clone()
+            .unwrap_or_else(|| match self.values.len() {
+                0 => self.at(0.5),
+                count => self.values[(count - 1) / 2].clone(),
+            })
     }
 }
 
@@ -202,7 +219,11 @@ fn truncated_normal(share: f64) -> f64 {
     let mut high = CUT;
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
-        *(if below(middle) < wanted { &mut low } else { &mut high }) = middle;
+        *(if below(middle) < wanted {
+            &mut low
+        } else {
+            &mut high
+        }) = middle;
     }
     0.5 * (low + high)
 }
@@ -231,20 +252,39 @@ mod tests {
 
     #[test]
     fn ranges_are_spaced_evenly_and_distributions_by_their_quantiles() {
-        assert_eq!(numbers(&Axis { range: Some([2.0, 4.0]), ..axis() }), [2.0, 2.5, 3.0, 3.5, 4.0]);
-        let log = numbers(&Axis { range: Some([0.01, 100.0]), log: true, ..axis() });
+        assert_eq!(
+            numbers(&Axis {
+                range: Some([2.0, 4.0]),
+                ..axis()
+            }),
+            [2.0, 2.5, 3.0, 3.5, 4.0]
+        );
+        let log = numbers(&Axis {
+            range: Some([0.01, 100.0]),
+            log: true,
+            ..axis()
+        });
         for (got, want) in log.iter().zip([0.01, 0.1, 1.0, 10.0, 100.0]) {
             assert!((got / want - 1.0).abs() < 1e-12, "{log:?}");
         }
         // From tables: 10, 30, 50 ... per cent of the normal distribution lie below these.
         // Truncation moves them by less than 0.01.
-        let normal = numbers(&Axis { normal: Some([10.0, 2.0]), ..axis() });
+        let normal = numbers(&Axis {
+            normal: Some([10.0, 2.0]),
+            ..axis()
+        });
         for (got, want) in normal.iter().zip([-1.2816, -0.5244, 0.0, 0.5244, 1.2816]) {
             assert!(((got - 10.0) / 2.0 - want).abs() < 0.01, "{normal:?}");
         }
-        let log_normal = Axis { log_normal: Some([3.0, 0.5]), ..axis() };
+        let log_normal = Axis {
+            log_normal: Some([3.0, 0.5]),
+            ..axis()
+        };
         let ends = [0.0, 0.5, 1.0].map(|share| log_normal.at(share).number().unwrap_or(f64::NAN));
-        for (got, want) in ends.iter().zip([3.0 * libm::exp(-1.5), 3.0, 3.0 * libm::exp(1.5)]) {
+        for (got, want) in ends
+            .iter()
+            .zip([3.0 * libm::exp(-1.5), 3.0, 3.0 * libm::exp(1.5)])
+        {
             assert!((got / want - 1.0).abs() < 1e-9, "{ends:?}");
         }
     }
@@ -252,8 +292,14 @@ mod tests {
     #[test]
     fn a_share_of_a_list_is_the_value_at_that_share_of_it() {
         let values = ["a", "b", "c", "d"].map(|text| AxisValue::Text(text.to_owned()));
-        let axis = Axis { values: values.to_vec(), ..axis() };
-        assert_eq!([0.0, 0.24, 0.25, 0.99, 1.0].map(|share| axis.at(share).to_string()), ["a", "a", "b", "d", "d"]);
+        let axis = Axis {
+            values: values.to_vec(),
+            ..axis()
+        };
+        assert_eq!(
+            [0.0, 0.24, 0.25, 0.99, 1.0].map(|share| axis.at(share).to_string()),
+            ["a", "a", "b", "d", "d"]
+        );
         assert_eq!(axis.nominal().to_string(), "b");
     }
 
@@ -263,9 +309,16 @@ mod tests {
             (AxisValue::Number(3.0), "3", "3"),
             (AxisValue::Number(0.1), "0.1", "0.1"),
             (AxisValue::Truth(true), "true", "true"),
-            (AxisValue::Text("../seas/gale.toml".to_owned()), "\"../seas/gale.toml\"", "gale"),
+            (
+                AxisValue::Text("../seas/gale.toml".to_owned()),
+                "\"../seas/gale.toml\"",
+                "gale",
+            ),
         ] {
-            assert_eq!((value.toml().as_str(), value.to_string().as_str()), (toml, shown));
+            assert_eq!(
+                (value.toml().as_str(), value.to_string().as_str()),
+                (toml, shown)
+            );
         }
     }
 }

@@ -22,7 +22,9 @@ pub struct Condition {
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum ConditionError {
     /// Its form is wrong.
-    #[error("{0:?} is not a condition, expected ENTRY.METRIC < NUMBER or > NUMBER, such as {1}.win_share < 0.5")]
+    #[error(
+        "{0:?} is not a condition, expected ENTRY.METRIC < NUMBER or > NUMBER, such as {1}.win_share < 0.5"
+    )]
     Form(String, String),
     /// The entry is unknown.
     #[error("there is no entry {0:?}, expected one of {1}")]
@@ -38,27 +40,49 @@ impl Condition {
     /// # Errors
     /// [`ConditionError`] if the text is not a condition, or names an unknown entry or metric.
     pub fn parse(text: &str, sweep: &Sweep) -> Result<Condition, ConditionError> {
-        let names: Vec<&str> = sweep.entries.iter().map(|entry| entry.name.as_str()).collect();
+        let names: Vec<&str> = sweep
+            .entries
+            .iter()
+            .map(|entry| entry.name.as_str())
+            .collect();
         let wrong = || ConditionError::Form(text.to_owned(), names[0].to_owned());
         let at = text.find(['<', '>']).ok_or_else(wrong)?;
         let left = text[..at].trim();
         let number = text[at + 1..].trim();
-        let threshold = number.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(wrong)?;
+        let threshold = number
+            .parse()
+            .ok()
+            .filter(|number: &f64| number.is_finite())
+            .ok_or_else(wrong)?;
         let (entry, metric) = match left.split_once('.') {
             Some((entry, metric)) => {
                 let place = names.iter().position(|name| *name == entry);
-                (place.ok_or_else(|| ConditionError::Entry(entry.to_owned(), names.join(", ")))?, metric)
+                (
+                    place
+                        .ok_or_else(|| ConditionError::Entry(entry.to_owned(), names.join(", ")))?,
+                    metric,
+                )
             }
             None if names.len() == 1 => (0, left),
             None => return Err(wrong()),
         };
-        let metric = Metric::place(metric).ok_or_else(|| ConditionError::Metric(metric.to_owned()))?;
-        Ok(Condition { entry, metric, is_below: text[at..].starts_with('<'), threshold })
+        let metric =
+            Metric::place(metric).ok_or_else(|| ConditionError::Metric(metric.to_owned()))?;
+        Ok(Condition {
+            entry,
+            metric,
+            is_below: text[at..].starts_with('<'),
+            threshold,
+        })
     }
 
     /// The distance of a number from the threshold; negative where the condition holds.
     pub(crate) fn margin(&self, number: f64) -> f64 {
-        if self.is_below { number - self.threshold } else { self.threshold - number }
+        if self.is_below {
+            number - self.threshold
+        } else {
+            self.threshold - number
+        }
     }
 }
 

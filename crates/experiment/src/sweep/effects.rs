@@ -82,9 +82,14 @@ impl Observations {
     /// By seed, the mean of an entry's metric over points; `None` for seeds that are incomplete at
     /// any of them.
     fn mean(&self, points: &[usize], entry: usize, metric: usize) -> Vec<Option<f64>> {
-        let seeds = self.by_point.first().and_then(|entries| entries.first()).map_or(0, Vec::len);
+        let seeds = self
+            .by_point
+            .first()
+            .and_then(|entries| entries.first())
+            .map_or(0, Vec::len);
         let of_seed = |seed: usize| {
-            let of_point = |point: &usize| Some(self.by_point[*point][entry][seed].as_ref()?.0[metric]);
+            let of_point =
+                |point: &usize| Some(self.by_point[*point][entry][seed].as_ref()?.0[metric]);
             let all = points.iter().map(of_point).collect::<Option<Vec<f64>>>()?;
             let mean = all.iter().sum::<f64>() / all.len() as f64;
             mean.is_finite().then_some(mean)
@@ -93,13 +98,31 @@ impl Observations {
     }
 
     /// The estimate of an entry's metric over points.
-    pub(crate) fn estimate(&self, points: &[usize], entry: usize, metric: usize) -> Option<Estimate> {
-        estimate(self.mean(points, entry, metric).into_iter().flatten().collect())
+    pub(crate) fn estimate(
+        &self,
+        points: &[usize],
+        entry: usize,
+        metric: usize,
+    ) -> Option<Estimate> {
+        estimate(
+            self.mean(points, entry, metric)
+                .into_iter()
+                .flatten()
+                .collect(),
+        )
     }
 
     /// The estimate of the difference of a metric between two entries at a point.
-    pub(crate) fn difference(&self, point: usize, [one, other]: [usize; 2], metric: usize) -> Option<Estimate> {
-        difference(&self.mean(&[point], one, metric), &self.mean(&[point], other, metric))
+    pub(crate) fn difference(
+        &self,
+        point: usize,
+        [one, other]: [usize; 2],
+        metric: usize,
+    ) -> Option<Estimate> {
+        difference(
+            &self.mean(&[point], one, metric),
+            &self.mean(&[point], other, metric),
+        )
     }
 }
 
@@ -108,7 +131,12 @@ fn estimate(numbers: Vec<f64>) -> Option<Estimate> {
 }
 
 fn difference(one: &[Option<f64>], other: &[Option<f64>]) -> Option<Estimate> {
-    estimate(one.iter().zip(other).filter_map(|(one, other)| Some((*one)? - (*other)?)).collect())
+    estimate(
+        one.iter()
+            .zip(other)
+            .filter_map(|(one, other)| Some((*one)? - (*other)?))
+            .collect(),
+    )
 }
 
 /// The effect of every axis on every entry.
@@ -122,7 +150,9 @@ pub(crate) fn effects(plan: &Plan, observed: &Observations) -> Vec<Effect> {
                 label: group.label.clone(),
                 value: group.value,
                 points: group.points.len(),
-                metrics: (0..METRICS.len()).map(|metric| observed.estimate(&group.points, entry, metric)).collect(),
+                metrics: (0..METRICS.len())
+                    .map(|metric| observed.estimate(&group.points, entry, metric))
+                    .collect(),
             };
             let contrast = |metric: usize| {
                 let [first, last] = [groups.first()?, groups.last()?];
@@ -147,10 +177,16 @@ fn groups(plan: &Plan, axis: usize) -> Vec<Group> {
     let points = plan.points();
     let about = &sweep.axes[axis];
     let others_are_nominal = |point: &Point| {
-        let mut others = sweep.axes.iter().zip(point).enumerate().filter(|(k, _)| *k != axis);
+        let mut others = sweep
+            .axes
+            .iter()
+            .zip(point)
+            .enumerate()
+            .filter(|(k, _)| *k != axis);
         others.all(|(_, (other, value))| *value == other.nominal())
     };
-    let is_looked_at = |point: &Point| sweep.design != Design::OneAtATime || others_are_nominal(point);
+    let is_looked_at =
+        |point: &Point| sweep.design != Design::OneAtATime || others_are_nominal(point);
     let is_sampled = matches!(sweep.design, Design::LatinHypercube | Design::Sobol);
     if is_sampled && about.values.is_empty() {
         return pieces(axis, points);
@@ -158,16 +194,26 @@ fn groups(plan: &Plan, axis: usize) -> Vec<Group> {
     let group = |level: AxisValue| Group {
         label: level.to_string(),
         value: level.number(),
-        points: (0..points.len()).filter(|i| is_looked_at(&points[*i]) && points[*i][axis] == level).collect(),
+        points: (0..points.len())
+            .filter(|i| is_looked_at(&points[*i]) && points[*i][axis] == level)
+            .collect(),
     };
     let mut levels = about.levels();
     // In a one-at-a-time design the nominal value may not be one of the levels.
     let nominal = about.nominal();
     if sweep.design == Design::OneAtATime && !levels.contains(&nominal) {
         levels.push(nominal);
-        levels.sort_by(|a, b| a.number().unwrap_or(0.0).total_cmp(&b.number().unwrap_or(0.0)));
+        levels.sort_by(|a, b| {
+            a.number()
+                .unwrap_or(0.0)
+                .total_cmp(&b.number().unwrap_or(0.0))
+        });
     }
-    levels.into_iter().map(group).filter(|group| !group.points.is_empty()).collect()
+    levels
+        .into_iter()
+        .map(group)
+        .filter(|group| !group.points.is_empty())
+        .collect()
 }
 
 /// Groups of an axis with equally many points.
@@ -180,7 +226,11 @@ fn pieces(axis: usize, points: &[Point]) -> Vec<Group> {
         let points = order[i * order.len() / count..(i + 1) * order.len() / count].to_vec();
         let mean = points.iter().map(number).sum::<f64>() / points.len() as f64;
         let digits = if mean.abs() < 1.0 { 3 } else { 2 };
-        Group { label: format!("{mean:.digits$}"), value: Some(mean), points }
+        Group {
+            label: format!("{mean:.digits$}"),
+            value: Some(mean),
+            points,
+        }
     };
     (0..count).map(piece).collect()
 }
@@ -191,14 +241,19 @@ pub(crate) fn interactions(plan: &Plan, observed: &Observations) -> Vec<Interact
     if sweep.design == Design::OneAtATime {
         return vec![];
     }
-    let halves: Vec<[Vec<usize>; 2]> = (0..sweep.axes.len()).map(|axis| halves(&groups(plan, axis))).collect();
+    let halves: Vec<[Vec<usize>; 2]> = (0..sweep.axes.len())
+        .map(|axis| halves(&groups(plan, axis)))
+        .collect();
     let mut found = vec![];
     for a in 0..sweep.axes.len() {
         for b in a + 1..sweep.axes.len() {
             let cell = |i: usize| -> Vec<usize> {
                 let one = &halves[a][i / 2];
                 let other = &halves[b][i % 2];
-                one.iter().filter(|point| other.contains(point)).copied().collect()
+                one.iter()
+                    .filter(|point| other.contains(point))
+                    .copied()
+                    .collect()
             };
             let cells = [0, 1, 2, 3].map(cell);
             if cells.iter().any(Vec::is_empty) {
@@ -206,7 +261,9 @@ pub(crate) fn interactions(plan: &Plan, observed: &Observations) -> Vec<Interact
             }
             let axes = [a, b].map(|axis| sweep.axes[axis].key.clone());
             for entry in 0..sweep.entries.len() {
-                let of = |metric: &&'static str| interaction(plan, observed, (&axes, &cells), entry, metric);
+                let of = |metric: &&'static str| {
+                    interaction(plan, observed, (&axes, &cells), entry, metric)
+                };
                 found.extend(HEADLINES.iter().filter_map(of));
             }
         }
@@ -219,7 +276,12 @@ pub(crate) fn interactions(plan: &Plan, observed: &Observations) -> Vec<Interact
 /// if there are many.
 fn halves(groups: &[Group]) -> [Vec<usize>; 2] {
     let middle = groups.len() / 2;
-    let of = |groups: &[Group]| groups.iter().flat_map(|group| group.points.clone()).collect::<Vec<usize>>();
+    let of = |groups: &[Group]| {
+        groups
+            .iter()
+            .flat_map(|group| group.points.clone())
+            .collect::<Vec<usize>>()
+    };
     [of(&groups[..middle]), of(&groups[groups.len() - middle..])]
 }
 
@@ -275,7 +337,10 @@ fn probability(numbers: &[f64]) -> Option<f64> {
 fn mark_those_that_matter(found: &mut [Interaction]) {
     found.sort_by(|a, b| a.p.total_cmp(&b.p));
     for metric in HEADLINES {
-        let mut of_metric: Vec<&mut Interaction> = found.iter_mut().filter(|one| one.metric == metric).collect();
+        let mut of_metric: Vec<&mut Interaction> = found
+            .iter_mut()
+            .filter(|one| one.metric == metric)
+            .collect();
         let count = of_metric.len();
         for (i, one) in of_metric.iter_mut().enumerate() {
             if one.p > 0.05 / (count - i) as f64 {
@@ -296,15 +361,28 @@ mod tests {
         // A mean of 1 with a standard error of 1 / 2.2622 over 10 numbers: the 97.5 % quantile with
         // 9 degrees of freedom.
         let spread = 1.0 / 2.2622 * 3.0;
-        let numbers: Vec<f64> = (0..10).map(|i| 1.0 + if i % 2 == 0 { spread } else { -spread }).collect();
+        let numbers: Vec<f64> = (0..10)
+            .map(|i| 1.0 + if i % 2 == 0 { spread } else { -spread })
+            .collect();
         let p = probability(&numbers).expect("ten numbers");
         assert!((p - 0.05).abs() < 1e-4, "{p}");
         assert_eq!(
-            (probability(&[2.0; 4]), probability(&[2.0; 5]), probability(&[0.0; 5])),
+            (
+                probability(&[2.0; 4]),
+                probability(&[2.0; 5]),
+                probability(&[0.0; 5])
+            ),
             (None, Some(0.0), Some(1.0))
         );
         // Four equal seeds give no certainty.
-        assert_eq!(estimate(vec![2.0; 4]), Some(Estimate { mean: 2.0, low: None, high: None }));
+        assert_eq!(
+            estimate(vec![2.0; 4]),
+            Some(Estimate {
+                mean: 2.0,
+                low: None,
+                high: None
+            })
+        );
         assert!(estimate(vec![2.0; 5]).is_some_and(|five| five.low == Some(2.0)));
     }
 
@@ -315,7 +393,11 @@ mod tests {
             entry: "one".to_owned(),
             metric: "score",
             cells: [0.0; 4],
-            contrast: Estimate { mean: 1.0, low: None, high: None },
+            contrast: Estimate {
+                mean: 1.0,
+                low: None,
+                high: None,
+            },
             p,
             matters: false,
         };
@@ -323,6 +405,9 @@ mod tests {
         // test.
         let mut found = [0.024, 0.9, 0.01, 0.02].map(of);
         mark_those_that_matter(&mut found);
-        assert_eq!(found.map(|one| (one.p, one.matters)), [(0.01, true), (0.02, false), (0.024, false), (0.9, false)]);
+        assert_eq!(
+            found.map(|one| (one.p, one.matters)),
+            [(0.01, true), (0.02, false), (0.024, false), (0.9, false)]
+        );
     }
 }

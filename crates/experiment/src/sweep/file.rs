@@ -4,8 +4,8 @@ use super::axis::{Axis, AxisValue, Target};
 use crate::tournament::{Entrant, check_entries};
 use scenario::keys::FilePath;
 use scenario::{
-    Diagnostics, Document, GameVariants, Overrides, Problem, Problems, Scenario, ScenarioFile, StrategyFiles,
-    tidied_path,
+    Diagnostics, Document, GameVariants, Overrides, Problem, Problems, Scenario, ScenarioFile,
+    StrategyFiles, tidied_path,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -80,7 +80,11 @@ impl ScenarioFile for Sweep {
 
     /// Checks the game with the values of every axis that suffice to check all, one axis at a time.
     fn check_games(&self) -> Result<(), Problems> {
-        let teams: Vec<String> = scenario::load(&self.game)?.teams.into_iter().map(|team| team.name).collect();
+        let teams: Vec<String> = scenario::load(&self.game)?
+            .teams
+            .into_iter()
+            .map(|team| team.name)
+            .collect();
         let nominal: Vec<AxisValue> = self.axes.iter().map(Axis::nominal).collect();
         // Fifty axes of a thousand values are many games, so the parts that no axis changes are
         // read once.
@@ -99,12 +103,19 @@ impl ScenarioFile for Sweep {
                 read(&values);
             }
         }
-        // Each value is read as a setting of its own: the same problem, but a line that no file has.
-        let of_axes = problems.iter_mut().filter(|problem: &&mut Problem| problem.path == self.path);
+        // Each value is read as a setting of its own: the same problem, but a line that no file
+        // has.
+        let of_axes = problems
+            .iter_mut()
+            .filter(|problem: &&mut Problem| problem.path == self.path);
         of_axes.for_each(|problem| problem.source.clear());
         problems.sort();
         problems.dedup();
-        if problems.is_empty() { Ok(()) } else { Err(Problems(problems)) }
+        if problems.is_empty() {
+            Ok(())
+        } else {
+            Err(Problems(problems))
+        }
     }
 }
 
@@ -115,7 +126,13 @@ impl Sweep {
     /// # Panics
     /// If the entry or side does not exist, or a key is invalid; a checked sweep has only valid
     /// keys.
-    pub fn overrides(&self, teams: &[String], entry: usize, side: usize, values: &[AxisValue]) -> Overrides {
+    pub fn overrides(
+        &self,
+        teams: &[String],
+        entry: usize,
+        side: usize,
+        values: &[AxisValue],
+    ) -> Overrides {
         let mut opponent = self.opponent.clone();
         let mut settings = vec![];
         for (axis, value) in self.axes.iter().zip(values) {
@@ -131,7 +148,11 @@ impl Sweep {
             0 => [own, opponent],
             _ => [opponent, own],
         };
-        Overrides { strategies: teams.iter().cloned().zip(strategies).collect(), settings, ..Overrides::default() }
+        Overrides {
+            strategies: teams.iter().cloned().zip(strategies).collect(),
+            settings,
+            ..Overrides::default()
+        }
     }
 }
 
@@ -157,8 +178,13 @@ fn checked(diagnostics: &mut Diagnostics, document: &Document<Sweep>) -> Option<
         if document.is_sound(&at) {
             check_axis(diagnostics, document, &at, axis);
             if !keys.insert(axis.key.clone()) {
-                diagnostics
-                    .note(key_at, format!("the key {:?} is used twice, expected a unique key for each axis", axis.key));
+                diagnostics.note(
+                    key_at,
+                    format!(
+                        "the key {:?} is used twice, expected a unique key for each axis",
+                        axis.key
+                    ),
+                );
             }
         }
     }
@@ -179,33 +205,99 @@ fn check_axis(diagnostics: &mut Diagnostics, document: &Document<Sweep>, at: &st
     {
         wrong(
             "key",
-            format!("key is {:?}, expected sea, boat, rules, field, opponent or a longer key: {error}", axis.key),
+            format!(
+                "key is {:?}, expected sea, boat, rules, field, opponent or a longer key: {error}",
+                axis.key
+            ),
         )
     } else if given.len() != 1 {
-        let found = if given.is_empty() { "none".to_owned() } else { given.join(" and ") };
-        wrong("key", format!("{} has {found}, expected one of values, range, normal, log_normal", axis.key))
-    } else if axis.is_of_files() && !axis.values.iter().all(|value| matches!(value, AxisValue::Text(_))) {
-        wrong("values", format!("values of {} are not files, expected {}", axis.key, files()))
-    } else if axis.is_of_files() && axis.values.is_empty() {
-        wrong(given[0], format!("{} has no values, expected {}", axis.key, files()))
-    } else if axis.values.is_empty() && given[0] == "values" {
-        wrong("values", format!("{} has no values, expected at least one", axis.key))
-    } else if axis.values.windows(2).any(|pair| sort(&pair[0]) != sort(&pair[1])) {
-        wrong("values", format!("values of {} have different types, expected all numbers or all texts", axis.key))
-    } else if axis.values.iter().enumerate().any(|(k, value)| axis.values[..k].contains(value)) {
-        wrong("values", format!("values of {} contains a duplicate, expected unique values", axis.key))
-    } else if let Some([low, high]) = axis.range.filter(|[low, high]| low >= high) {
-        wrong("range", format!("range is [{low}, {high}], expected the lower number first"))
-    } else if let Some([low, _]) = axis.range.filter(|[low, _]| axis.log && *low <= 0.0) {
-        wrong("range", format!("range begins at {low}, expected more than 0 with log"))
-    } else if axis.log && axis.range.is_none() {
-        wrong("log", "log is given without range, which it requires".to_owned())
-    } else if let Some([_, sigma]) = axis.normal.filter(|[_, sigma]| *sigma <= 0.0) {
-        wrong("normal", format!("normal has a deviation of {sigma}, expected more than 0"))
-    } else if let Some(pair) =
-        axis.log_normal.filter(|[median, sigma]| *median <= 0.0 || !(0.0..=10.0).contains(sigma) || *sigma == 0.0)
+        let found = if given.is_empty() {
+            "none".to_owned()
+        } else {
+            given.join(" and ")
+        };
+        wrong(
+            "key",
+            format!(
+                "{} has {found}, expected one of values, range, normal, log_normal",
+                axis.key
+            ),
+        )
+    } else if axis.is_of_files()
+        && !axis
+            .values
+            .iter()
+            .all(|value| matches!(value, AxisValue::Text(_)))
     {
-        wrong("log_normal", format!("log_normal is {pair:?}, expected a median above 0 and a deviation of at most 10"))
+        wrong(
+            "values",
+            format!("values of {} are not files, expected {}", axis.key, files()),
+        )
+    } else if axis.is_of_files() && axis.values.is_empty() {
+        wrong(
+            given[0],
+            format!("{} has no values, expected {}", axis.key, files()),
+        )
+    } else if axis.values.is_empty() && given[0] == "values" {
+        wrong(
+            "values",
+            format!("{} has no values, expected at least one", axis.key),
+        )
+    } else if axis
+        .values
+        .windows(2)
+        .any(|pair| sort(&pair[0]) != sort(&pair[1]))
+    {
+        wrong(
+            "values",
+            format!(
+                "values of {} have different types, expected all numbers or all texts",
+                axis.key
+            ),
+        )
+    } else if axis
+        .values
+        .iter()
+        .enumerate()
+        .any(|(k, value)| axis.values[..k].contains(value))
+    {
+        wrong(
+            "values",
+            format!(
+                "values of {} contains a duplicate, expected unique values",
+                axis.key
+            ),
+        )
+    } else if let Some([low, high]) = axis.range.filter(|[low, high]| low >= high) {
+        wrong(
+            "range",
+            format!("range is [{low}, {high}], expected the lower number first"),
+        )
+    } else if let Some([low, _]) = axis.range.filter(|[low, _]| axis.log && *low <= 0.0) {
+        wrong(
+            "range",
+            format!("range begins at {low}, expected more than 0 with log"),
+        )
+    } else if axis.log && axis.range.is_none() {
+        wrong(
+            "log",
+            "log is given without range, which it requires".to_owned(),
+        )
+    } else if let Some([_, sigma]) = axis.normal.filter(|[_, sigma]| *sigma <= 0.0) {
+        wrong(
+            "normal",
+            format!("normal has a deviation of {sigma}, expected more than 0"),
+        )
+    } else if let Some(pair) = axis
+        .log_normal
+        .filter(|[median, sigma]| *median <= 0.0 || !(0.0..=10.0).contains(sigma) || *sigma == 0.0)
+    {
+        wrong(
+            "log_normal",
+            format!(
+                "log_normal is {pair:?}, expected a median above 0 and a deviation of at most 10"
+            ),
+        )
     } else {
         None
     };

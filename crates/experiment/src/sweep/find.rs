@@ -76,7 +76,9 @@ pub fn find(
     for first in (0..games).step_by(ROUND) {
         let count = ROUND.min(games - first);
         let mut value = |axis: &Axis| axis.at(stream.unit());
-        let points: Vec<Point> = (0..count).map(|_| plan.sweep().axes.iter().map(&mut value).collect()).collect();
+        let points: Vec<Point> = (0..count)
+            .map(|_| plan.sweep().axes.iter().map(&mut value).collect())
+            .collect();
         // A point has two games, one from each side. One of them is played, with its own seed.
         let round = plan.at(points, (plan.sweep().seed, 1));
         let job = |i: usize| Job {
@@ -93,17 +95,31 @@ pub fn find(
             let value = metrics.0[condition.metric];
             let margin = condition.margin(value);
             if margin < 0.0 {
-                failed.push(Failed { value, margin, point: round.points()[job.point].clone(), job });
+                failed.push(Failed {
+                    value,
+                    margin,
+                    point: round.points()[job.point].clone(),
+                    job,
+                });
             }
         }
         tell(count, failed.len() - before);
     }
     let failures = failed.len();
-    failed.sort_by(|a, b| a.margin.total_cmp(&b.margin).then(a.job.seed.cmp(&b.job.seed)));
+    failed.sort_by(|a, b| {
+        a.margin
+            .total_cmp(&b.margin)
+            .then(a.job.seed.cmp(&b.job.seed))
+    });
     let named = failed.iter().take(NAMED).map(|one| Named {
         value: one.value,
         values: one.point.iter().map(ToString::to_string).collect(),
-        command: plan.at(vec![one.point.clone()], (one.job.seed, 1)).command(&Job { point: 0, ..one.job }),
+        command: plan
+            .at(vec![one.point.clone()], (one.job.seed, 1))
+            .command(&Job {
+                point: 0,
+                ..one.job
+            }),
     });
     Ok(Found {
         entry: plan.sweep().entries[0].name.clone(),
@@ -123,8 +139,16 @@ fn rate_of(failures: usize, games: usize) -> Estimate {
     let quantile = |a: f64, b: f64, p: f64| Beta::new(a, b).ok().map(|beta| beta.inverse_cdf(p));
     Estimate {
         mean: k / n,
-        low: if failures == 0 { Some(0.0) } else { quantile(k, n - k + 1.0, 0.025) },
-        high: if failures == games { Some(1.0) } else { quantile(k + 1.0, n - k, 0.975) },
+        low: if failures == 0 {
+            Some(0.0)
+        } else {
+            quantile(k, n - k + 1.0, 0.025)
+        },
+        high: if failures == games {
+            Some(1.0)
+        } else {
+            quantile(k + 1.0, n - k, 0.975)
+        },
     }
 }
 
@@ -135,12 +159,17 @@ mod tests {
     #[test]
     fn the_interval_of_a_rate_is_that_of_the_tables_of_clopper_and_pearson() {
         // By bisection of the sums of binomial probabilities.
-        for (failures, games, low, high) in
-            [(0, 100, 0.0, 0.036_217), (7, 600, 0.004_703, 0.023_889), (10, 10, 0.691_503, 1.0)]
-        {
+        for (failures, games, low, high) in [
+            (0, 100, 0.0, 0.036_217),
+            (7, 600, 0.004_703, 0.023_889),
+            (10, 10, 0.691_503, 1.0),
+        ] {
             let rate = rate_of(failures, games);
             let got = rate.low.zip(rate.high).expect("an interval");
-            assert!((got.0 - low).abs() < 1e-5 && (got.1 - high).abs() < 1e-5, "{failures} of {games}: {rate:?}");
+            assert!(
+                (got.0 - low).abs() < 1e-5 && (got.1 - high).abs() < 1e-5,
+                "{failures} of {games}: {rate:?}"
+            );
         }
     }
 }

@@ -8,7 +8,8 @@ const PAGE: &str = include_str!("report.html");
 pub(crate) fn page(title: &str, json: &str) -> String {
     // No text in the report can end the script.
     let json = json.replace("</", "<\\/").replace("<!--", "<\\!--");
-    PAGE.replace("<title></title>", &format!("<title>{title}</title>")).replace(PLACE, json.trim_end())
+    PAGE.replace("<title></title>", &format!("<title>{title}</title>"))
+        .replace(PLACE, json.trim_end())
 }
 
 /// The page as files of a server that forbids inline styles and scripts, each under its path.
@@ -24,7 +25,10 @@ pub fn served(json: &serde_json::Value, has_games: bool) -> [(&'static str, Stri
     );
     let (_, body) = halves(after, "</head>");
     let (body, _) = halves(body, "<script>");
-    let head = head.replace("<html lang=\"en\">", &format!("<html lang=\"en\" data-games=\"{has_games}\">"));
+    let head = head.replace(
+        "<html lang=\"en\">",
+        &format!("<html lang=\"en\" data-games=\"{has_games}\">"),
+    );
     let scripts = "<script src=\"/sweep_report.js\"></script>\n<script src=\"/sweep.js\"></script>";
     [
         ("/sweep.html", format!("{head}</head>{body}{scripts}{end}")),
@@ -52,20 +56,30 @@ mod tests {
     #[test]
     fn a_report_stands_in_the_page_once_and_cannot_end_its_script() {
         let page = page("wind", "{\"why\": \"</script><script>alert(1)</script>\"}");
-        assert!(page.contains("<title>wind</title>") && page.contains("<\\/script><script>alert(1)<\\/script>"));
+        assert!(
+            page.contains("<title>wind</title>")
+                && page.contains("<\\/script><script>alert(1)<\\/script>")
+        );
         assert!(!page.contains(PLACE) && PAGE.matches(PLACE).count() == 1);
     }
 
     #[test]
     fn a_server_has_style_and_scripts_apart_and_all_of_them() {
-        let [(_, page), (_, style), (_, data), (_, script)] = served(&serde_json::json!({"sweep": "wind"}), true);
+        let [(_, page), (_, style), (_, data), (_, script)] =
+            served(&serde_json::json!({"sweep": "wind"}), true);
         for inside in ["<style", "<script>", "http-equiv", "style="] {
             assert!(!page.contains(inside), "{inside}");
         }
         assert!(
-            page.contains("data-games=\"true\"") && page.contains("id=\"worst-list\"") && page.ends_with("</html>\n")
+            page.contains("data-games=\"true\"")
+                && page.contains("id=\"worst-list\"")
+                && page.ends_with("</html>\n")
         );
         assert_eq!(data.trim(), "const report = {\"sweep\":\"wind\"};");
-        assert!(style.contains(".tornado") && script.contains("function begin()") && !script.contains("</script>"));
+        assert!(
+            style.contains(".tornado")
+                && script.contains("function begin()")
+                && !script.contains("</script>")
+        );
     }
 }

@@ -56,7 +56,10 @@ impl Journal {
         std::fs::create_dir_all(folder).map_err(io("create the folder", folder))?;
         let games = text_if_any(&path)?.lines().count().saturating_sub(1);
         if games > 0 {
-            return Err(StudyError::Exists { folder: folder.to_owned(), games });
+            return Err(StudyError::Exists {
+                folder: folder.to_owned(),
+                games,
+            });
         }
         output_file::write(&path, plan.digest() + "\n").map_err(io("write", &path))?;
         Journal::open(path, BTreeMap::new())
@@ -72,23 +75,44 @@ impl Journal {
         let path = folder.join(NAME);
         let text = text_if_any(&path)?;
         if text.is_empty() {
-            return Err(StudyError::Missing { folder: folder.to_owned() });
+            return Err(StudyError::Missing {
+                folder: folder.to_owned(),
+            });
         }
         let whole = text.rfind('\n').map_or("", |end| &text[..=end]);
         let (found, lines) = whole.split_once('\n').unwrap_or_default();
         if found != plan.digest() {
             let expected = plan.digest();
             let found = found.to_owned();
-            return Err(StudyError::Other { folder: folder.to_owned(), expected, found });
+            return Err(StudyError::Other {
+                folder: folder.to_owned(),
+                expected,
+                found,
+            });
         }
-        let file = OpenOptions::new().write(true).open(&path).map_err(io("open", &path))?;
+        let file = OpenOptions::new()
+            .write(true)
+            .open(&path)
+            .map_err(io("open", &path))?;
         file.set_len(whole.len() as u64).map_err(io("cut", &path))?;
-        let mut reader = csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(lines.as_bytes());
-        Journal::open(path, reader.records().filter_map(|line| game_of(&line.ok()?)).collect())
+        let mut reader = csv::ReaderBuilder::new()
+            .has_headers(false)
+            .flexible(true)
+            .from_reader(lines.as_bytes());
+        Journal::open(
+            path,
+            reader
+                .records()
+                .filter_map(|line| game_of(&line.ok()?))
+                .collect(),
+        )
     }
 
     fn open(path: PathBuf, known: BTreeMap<Vec<String>, Outcome>) -> Result<Journal, StudyError> {
-        let file = OpenOptions::new().append(true).open(&path).map_err(io("open", &path))?;
+        let file = OpenOptions::new()
+            .append(true)
+            .open(&path)
+            .map_err(io("open", &path))?;
         Ok(Journal { path, file, known })
     }
 
@@ -109,16 +133,29 @@ impl Journal {
     ) -> Result<Vec<Metrics>, SearchError> {
         let keys: Vec<Vec<String>> = order.iter().map(|job| key(plan, job)).collect();
         let is_new = |(_, key): &(&Job, &Vec<String>)| !self.known.contains_key(*key);
-        let new: Vec<Job> = order.iter().zip(&keys).filter(is_new).map(|(job, _)| *job).collect();
+        let new: Vec<Job> = order
+            .iter()
+            .zip(&keys)
+            .filter(is_new)
+            .map(|(job, _)| *job)
+            .collect();
         play_jobs(plan, &new, threads, stop, |played| {
             let key = key(plan, &played.row.job);
-            self.file.write_all(line_of(&key, &played.row.result).as_bytes()).map_err(io("write", &self.path))?;
+            self.file
+                .write_all(line_of(&key, &played.row.result).as_bytes())
+                .map_err(io("write", &self.path))?;
             self.known.insert(key, played.row.result);
             Ok::<(), StudyError>(())
         })?;
         let outcome = |key: &Vec<String>| self.known.get(key).cloned().ok_or(SearchError::Stopped);
-        let outcomes = keys.iter().map(outcome).collect::<Result<Vec<Outcome>, SearchError>>()?;
-        outcomes.into_iter().map(|outcome| outcome.map_err(SearchError::Game)).collect()
+        let outcomes = keys
+            .iter()
+            .map(outcome)
+            .collect::<Result<Vec<Outcome>, SearchError>>()?;
+        outcomes
+            .into_iter()
+            .map(|outcome| outcome.map_err(SearchError::Game))
+            .collect()
     }
 }
 
@@ -126,7 +163,11 @@ impl Journal {
 fn key(plan: &Plan, job: &Job) -> Vec<String> {
     let point = &plan.points()[job.point];
     let values = point.iter().map(super::AxisValue::toml);
-    let first = [plan.sweep().entries[job.entry].name.clone(), job.seed.to_string(), job.side.to_string()];
+    let first = [
+        plan.sweep().entries[job.entry].name.clone(),
+        job.seed.to_string(),
+        job.side.to_string(),
+    ];
     first.into_iter().chain(values).collect()
 }
 
@@ -134,7 +175,10 @@ fn key(plan: &Plan, job: &Job) -> Vec<String> {
 /// identity.
 fn line_of(key: &[String], result: &Outcome) -> String {
     let why = result.as_ref().err().cloned().unwrap_or_default();
-    let cells: Vec<String> = metrics_cells(result).chain([why]).chain(key.iter().cloned()).collect();
+    let cells: Vec<String> = metrics_cells(result)
+        .chain([why])
+        .chain(key.iter().cloned())
+        .collect();
     let sum = sum_of(cells.iter().map(String::as_str));
     record(std::iter::once(sum).chain(cells))
 }
@@ -155,6 +199,16 @@ fn game_of(line: &csv::StringRecord) -> Option<(Vec<String>, Outcome)> {
         return None;
     }
     let why = line.get(METRICS.len())?;
-    let result = if why.is_empty() { Ok(metrics_in(line.iter())?) } else { Err(why.to_owned()) };
-    Some((line.iter().skip(METRICS.len() + 1).map(str::to_owned).collect(), result))
+    let result = if why.is_empty() {
+        Ok(metrics_in(line.iter())?)
+    } else {
+        Err(why.to_owned())
+    };
+    Some((
+        line.iter()
+            .skip(METRICS.len() + 1)
+            .map(str::to_owned)
+            .collect(),
+        result,
+    ))
 }

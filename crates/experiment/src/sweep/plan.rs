@@ -64,7 +64,11 @@ impl Plan {
         problems.sort();
         problems.dedup();
         plan.files_needed = plan.files.list().len();
-        if problems.is_empty() { Ok(plan) } else { Err(Problems(problems)) }
+        if problems.is_empty() {
+            Ok(plan)
+        } else {
+            Err(Problems(problems))
+        }
     }
 
     /// A plan with unchecked points, read from these files.
@@ -72,18 +76,39 @@ impl Plan {
         let teams = teams_of(&sweep.game, &files)?;
         let points = points(sweep)?;
         let files_needed = files.list().len();
-        Ok(Plan { sweep: sweep.clone(), teams, seeds: u64::from(sweep.games).div_ceil(2), points, files, files_needed })
+        Ok(Plan {
+            sweep: sweep.clone(),
+            teams,
+            seeds: u64::from(sweep.games).div_ceil(2),
+            points,
+            files,
+            files_needed,
+        })
     }
 
     /// The same sweep at other points, with `seeds` seeds at each, starting at `first_seed`.
     pub(crate) fn at(&self, points: Vec<Point>, (first_seed, seeds): (u64, u64)) -> Plan {
-        Plan { sweep: Sweep { seed: first_seed, ..self.sweep.clone() }, points, seeds, ..self.clone() }
+        Plan {
+            sweep: Sweep {
+                seed: first_seed,
+                ..self.sweep.clone()
+            },
+            points,
+            seeds,
+            ..self.clone()
+        }
     }
 
     /// The same sweep with one entry alone.
     pub(crate) fn of_entry(&self, entry: usize) -> Plan {
         let entries = vec![self.sweep.entries[entry].clone()];
-        Plan { sweep: Sweep { entries, ..self.sweep.clone() }, ..self.clone() }
+        Plan {
+            sweep: Sweep {
+                entries,
+                ..self.sweep.clone()
+            },
+            ..self.clone()
+        }
     }
 
     /// The sweep.
@@ -108,7 +133,9 @@ impl Plan {
 
     /// The number of games at each point.
     pub fn games_per_point(&self) -> usize {
-        usize::try_from(self.seeds).map_or(usize::MAX, |seeds| seeds.saturating_mul(2 * self.sweep.entries.len()))
+        usize::try_from(self.seeds).map_or(usize::MAX, |seeds| {
+            seeds.saturating_mul(2 * self.sweep.entries.len())
+        })
     }
 
     /// The total number of games.
@@ -125,8 +152,17 @@ impl Plan {
         let point = index / self.games_per_point();
         let within = index % self.games_per_point();
         let entries = self.sweep.entries.len();
-        let seed = self.sweep.seed.wrapping_add((within / (2 * entries)) as u64);
-        Job { index, point, entry: within / 2 % entries, seed, side: within % 2 }
+        let seed = self
+            .sweep
+            .seed
+            .wrapping_add((within / (2 * entries)) as u64);
+        Job {
+            index,
+            point,
+            entry: within / 2 % entries,
+            seed,
+            side: within % 2,
+        }
     }
 
     /// The scenario of an entry on a side at a point.
@@ -134,22 +170,35 @@ impl Plan {
     /// # Errors
     /// All problems in any file.
     pub fn scenario(&self, point: usize, entry: usize, side: usize) -> Result<Scenario, Problems> {
-        load_game(&self.sweep.game, &self.overrides(point, entry, side), &self.files, &self.sweep.path)
+        load_game(
+            &self.sweep.game,
+            &self.overrides(point, entry, side),
+            &self.files,
+            &self.sweep.path,
+        )
     }
 
     fn overrides(&self, point: usize, entry: usize, side: usize) -> Overrides {
-        self.sweep.overrides(&self.teams, entry, side, &self.points[point])
+        self.sweep
+            .overrides(&self.teams, entry, side, &self.points[point])
     }
 
     /// The command that replays a game.
     pub fn command(&self, job: &Job) -> String {
-        let Overrides { strategies, settings, .. } = self.overrides(job.point, job.entry, job.side);
+        let Overrides {
+            strategies,
+            settings,
+            ..
+        } = self.overrides(job.point, job.entry, job.side);
         let mut command = format!("squall run {}", argument_for(&self.sweep.game));
         for (team, file) in &strategies {
             command += &strategy_option(team, &argument_for(file));
         }
         for setting in settings {
-            let option = setting.key.strip_prefix("game.").filter(|key| ["sea", "field"].contains(key));
+            let option = setting
+                .key
+                .strip_prefix("game.")
+                .filter(|key| ["sea", "field"].contains(key));
             command += &match option.zip(file_of(&setting)) {
                 Some((option, file)) => format!(" --{option} {}", argument_for(&file)),
                 None => format!(" {}", beside_here(&setting).argument()),
@@ -170,8 +219,14 @@ impl Plan {
     /// give the same digest.
     pub fn digest(&self) -> String {
         let nowhere = PathBuf::new;
-        let entry = |entry: &Entrant| Entrant { strategy: nowhere(), ..entry.clone() };
-        let axis = |axis: &Axis| Axis { place: (1, 1), ..axis.clone() };
+        let entry = |entry: &Entrant| Entrant {
+            strategy: nowhere(),
+            ..entry.clone()
+        };
+        let axis = |axis: &Axis| Axis {
+            place: (1, 1),
+            ..axis.clone()
+        };
         let Sweep { entries, axes, .. } = &self.sweep;
         let sweep = Sweep {
             path: nowhere(),
@@ -201,34 +256,56 @@ impl Plan {
 /// The file that a setting names, if it names one.
 fn file_of(setting: &Setting) -> Option<PathBuf> {
     let named: Option<String> = serde_json::from_str(&setting.value).ok();
-    Some(setting.path.parent()?.join(named.filter(|named| named.ends_with(".toml"))?))
+    Some(
+        setting
+            .path
+            .parent()?
+            .join(named.filter(|named| named.ends_with(".toml"))?),
+    )
 }
 
 /// A setting with the whole path of the file that it names.
 fn beside_here(setting: &Setting) -> Setting {
     let whole = file_of(setting).and_then(|path| std::path::absolute(path).ok());
     let value = whole.map(|path| serde_json::Value::from(path.display().to_string()).to_string());
-    Setting { value: value.unwrap_or_else(|| setting.value.clone()), ..setting.clone() }
+    Setting {
+        value: value.unwrap_or_else(|| setting.value.clone()),
+        ..setting.clone()
+    }
 }
 
 fn points(sweep: &Sweep) -> Result<Vec<Point>, Problems> {
     let axes = &sweep.axes;
     let count = sweep.points as usize;
     let sampled = |share: &dyn Fn(usize, usize) -> f64| {
-        let point = |i: usize| axes.iter().enumerate().map(|(k, axis)| axis.at(share(i, k))).collect();
+        let point = |i: usize| {
+            axes.iter()
+                .enumerate()
+                .map(|(k, axis)| axis.at(share(i, k)))
+                .collect()
+        };
         (0..count).map(point).collect()
     };
     Ok(match sweep.design {
         Design::Grid => grid(sweep)?,
         Design::OneAtATime => one_at_a_time(axes),
         Design::LatinHypercube => {
-            let columns: Vec<Vec<f64>> = axes.iter().map(|axis| latin_column(sweep.seed, &axis.key, count)).collect();
+            let columns: Vec<Vec<f64>> = axes
+                .iter()
+                .map(|axis| latin_column(sweep.seed, &axis.key, count))
+                .collect();
             sampled(&|i, k| columns[k][i])
         }
         Design::Sobol => {
             // The generator takes a 32-bit seed, and one sequence has at most 65536 points.
             let seed = (sweep.seed ^ (sweep.seed >> 32)) as u32;
-            sampled(&|i, k| f64::from(sobol_burley::sample(i as u32, k as u32 % SOBOL_DIMENSIONS, seed)))
+            sampled(&|i, k| {
+                f64::from(sobol_burley::sample(
+                    i as u32,
+                    k as u32 % SOBOL_DIMENSIONS,
+                    seed,
+                ))
+            })
         }
     })
 }
@@ -239,20 +316,34 @@ fn latin_column(seed: u64, key: &str, count: usize) -> Vec<f64> {
     let mut stream = Stream::new(seed, &format!("sweep/{key}"));
     let mut pieces: Vec<usize> = (0..count).collect();
     stream.shuffle(&mut pieces);
-    pieces.into_iter().map(|piece| (piece as f64 + stream.unit()) / count as f64).collect()
+    pieces
+        .into_iter()
+        .map(|piece| (piece as f64 + stream.unit()) / count as f64)
+        .collect()
 }
 
 fn grid(sweep: &Sweep) -> Result<Vec<Point>, Problems> {
     let levels: Vec<Vec<AxisValue>> = sweep.axes.iter().map(Axis::levels).collect();
-    let count = levels.iter().try_fold(1_usize, |count, levels| count.checked_mul(levels.len()));
+    let count = levels
+        .iter()
+        .try_fold(1_usize, |count, levels| count.checked_mul(levels.len()));
     if count.is_none_or(|count| count > POINTS_MAX) {
-        let message = format!("the grid has more than {POINTS_MAX} points; use fewer levels or another design");
-        return Err(Problems(vec![Problem::of_file(sweep.path.clone(), message)]));
+        let message = format!(
+            "the grid has more than {POINTS_MAX} points; use fewer levels or another design"
+        );
+        return Err(Problems(vec![Problem::of_file(
+            sweep.path.clone(),
+            message,
+        )]));
     }
     let mut points: Vec<Point> = vec![vec![]];
     for levels in &levels {
-        let with = |point: &Point, level: &AxisValue| [&point[..], std::slice::from_ref(level)].concat();
-        points = points.iter().flat_map(|point| levels.iter().map(move |level| with(point, level))).collect();
+        let with =
+            |point: &Point, level: &AxisValue| [&point[..], std::slice::from_ref(level)].concat();
+        points = points
+            .iter()
+            .flat_map(|point| levels.iter().map(move |level| with(point, level)))
+            .collect();
     }
     Ok(points)
 }

@@ -48,8 +48,13 @@ impl Loaded {
         if self.point.replace(job.point) != Some(job.point) {
             self.scenarios.clear();
         }
-        let load = || plan.scenario(job.point, job.entry, job.side).map_err(|problems| problems.to_string());
-        self.scenarios.entry((job.entry, job.side)).or_insert_with(load)
+        let load = || {
+            plan.scenario(job.point, job.entry, job.side)
+                .map_err(|problems| problems.to_string())
+        };
+        self.scenarios
+            .entry((job.entry, job.side))
+            .or_insert_with(load)
     }
 }
 
@@ -66,7 +71,8 @@ pub fn play<E>(
     stop: &AtomicBool,
     take: impl FnMut(Played) -> Result<(), E>,
 ) -> Result<(), E> {
-    let one = |loaded: &mut Loaded, i: usize, stop: Stop<'_>| one(plan, plan.job(from + i), loaded, stop);
+    let one =
+        |loaded: &mut Loaded, i: usize, stop: Stop<'_>| one(plan, plan.job(from + i), loaded, stop);
     play_in_order(to.saturating_sub(from), (threads, stop), one, take)
 }
 
@@ -84,12 +90,16 @@ pub(crate) fn play_jobs<E>(
 
 fn one(plan: &Plan, job: Job, loaded: &mut Loaded, stop: Stop<'_>) -> Played {
     let scenario = match loaded.scenario(plan, &job) {
-        Ok(scenario) => scenario.of_seed(job.seed).map_err(|problems| problems.to_string()),
+        Ok(scenario) => scenario
+            .of_seed(job.seed)
+            .map_err(|problems| problems.to_string()),
         Err(why) => Err(why.clone()),
     };
     let played = scenario.and_then(|scenario| {
         let mut watch = Watch::new(&scenario, job.side);
-        let game = play_game(&scenario, job.seed, stop, |contest, runner| watch.see(contest, runner))?;
+        let game = play_game(&scenario, job.seed, stop, |contest, runner| {
+            watch.see(contest, runner)
+        })?;
         let (metrics, boats) = watch.end(&game);
         Ok((metrics, game.digest, boats))
     });
@@ -97,7 +107,15 @@ fn one(plan: &Plan, job: Job, loaded: &mut Loaded, stop: Stop<'_>) -> Played {
         Ok((metrics, digest, boats)) => (Ok(metrics), digest, boats),
         Err(why) => (Err(why), String::new(), vec![]),
     };
-    Played { row: Row { job, boats: boats.len(), digest, result }, boats }
+    Played {
+        row: Row {
+            job,
+            boats: boats.len(),
+            digest,
+            result,
+        },
+        boats,
+    }
 }
 
 /// Observes a game.
@@ -140,11 +158,13 @@ impl<'a> Watch<'a> {
             for other in &step.samples[..i] {
                 self.closest_m = at.distance(other.truth.at()).min(self.closest_m);
             }
-            let edge_m = &mut self.edges_m[usize::from(self.scenario.vehicles[i].team.index() != 0)];
+            let edge_m =
+                &mut self.edges_m[usize::from(self.scenario.vehicles[i].team.index() != 0)];
             *edge_m = edge_m.min(self.scenario.field.inside_by_m(at));
         }
         for (i, energy_kj) in self.energies_kj.iter_mut().enumerate() {
-            if let Drive::Thrusters { thruster, .. } = &self.scenario.boat_of(VehicleId::at(i)).drive
+            if let Drive::Thrusters { thruster, .. } =
+                &self.scenario.boat_of(VehicleId::at(i)).drive
                 && let Some(battery) = &thruster.flaws.battery
             {
                 let spent = battery.charge - contest.world().state().flaws[i].charge;
@@ -154,7 +174,16 @@ impl<'a> Watch<'a> {
     }
 
     fn end(self, game: &Game) -> (Metrics, Vec<BoatRow>) {
-        let Watch { scenario, quality, statistics, energies_kj, closest_m, edges_m, side, .. } = self;
+        let Watch {
+            scenario,
+            quality,
+            statistics,
+            energies_kj,
+            closest_m,
+            edges_m,
+            side,
+            ..
+        } = self;
         let nearness = quality.end().encounters.all();
         let own = &scenario.teams[side].name;
         let boat = |(statistics, energy_kj): (BoatStatistics, f64)| BoatRow {
@@ -162,13 +191,23 @@ impl<'a> Watch<'a> {
             statistics,
             energy_kj,
         };
-        let boats: Vec<BoatRow> = statistics.end().into_iter().zip(energies_kj).map(boat).collect();
+        let boats: Vec<BoatRow> = statistics
+            .end()
+            .into_iter()
+            .zip(energies_kj)
+            .map(boat)
+            .collect();
         // In the order of `METRICS`, from the score to the distance from the edge.
         let team = |team: usize| -> [f64; 12] {
             let counts = &game.counts[team];
             let is_own = team == side;
-            let sum =
-                |of: &dyn Fn(&BoatRow) -> f64| boats.iter().filter(|boat| boat.is_own == is_own).map(of).sum::<f64>();
+            let sum = |of: &dyn Fn(&BoatRow) -> f64| {
+                boats
+                    .iter()
+                    .filter(|boat| boat.is_own == is_own)
+                    .map(of)
+                    .sum::<f64>()
+            };
             [
                 f64::from(game.score[team]),
                 f64::from(counts.grabs),
@@ -186,15 +225,24 @@ impl<'a> Watch<'a> {
         };
         let own = team(side);
         let opponent = team(1 - side);
-        let win_share = game.winner.map_or(0.5, |winner| f64::from(u8::from(winner == side)));
+        let win_share = game
+            .winner
+            .map_or(0.5, |winner| f64::from(u8::from(winner == side)));
         let of_game = [
             own[0] - opponent[0],
             nearness.contacts as f64,
             nearness.near_misses as f64,
-            if closest_m.is_finite() { closest_m } else { f64::NAN },
+            if closest_m.is_finite() {
+                closest_m
+            } else {
+                f64::NAN
+            },
             game.duration_s,
         ];
         let all = [&[win_share], &own[..], &opponent, &of_game].concat();
-        (Metrics(all.try_into().expect("a number for each metric")), boats)
+        (
+            Metrics(all.try_into().expect("a number for each metric")),
+            boats,
+        )
     }
 }

@@ -127,10 +127,18 @@ impl Report {
     pub fn new(plan: &Plan, rows: &[Row]) -> Report {
         let sweep = plan.sweep();
         let observed = observations(plan, rows);
-        let names: Vec<String> = sweep.entries.iter().map(|entry| entry.name.clone()).collect();
+        let names: Vec<String> = sweep
+            .entries
+            .iter()
+            .map(|entry| entry.name.clone())
+            .collect();
         let failures = rows.iter().filter_map(|row| {
             let why = row.result.as_ref().err()?.clone();
-            Some(Failure { game: row.job.index, why, command: plan.command(&row.job) })
+            Some(Failure {
+                game: row.job.index,
+                why,
+                command: plan.command(&row.job),
+            })
         });
         Report {
             sweep: sweep.name.clone(),
@@ -146,7 +154,9 @@ impl Report {
             axes: sweep.axes.iter().map(|axis| axis.key.clone()).collect(),
             axis_meanings: sweep.axes.iter().map(Axis::meaning).collect(),
             metrics: METRICS.to_vec(),
-            points: (0..plan.points().len()).map(|point| point_report(plan, &observed, &names, point)).collect(),
+            points: (0..plan.points().len())
+                .map(|point| point_report(plan, &observed, &names, point))
+                .collect(),
             effects: effects(plan, &observed),
             interactions: interactions(plan, &observed),
             worst: worst(plan, rows),
@@ -164,35 +174,60 @@ fn observations(plan: &Plan, rows: &[Row]) -> Observations {
     let of_seed = |point: usize, seed: usize| -> Option<Vec<Metrics>> {
         let first = point * plan.games_per_point() + seed * 2 * entries;
         let games = rows.get(first..first + 2 * entries)?;
-        let games = games.iter().map(|row| row.result.as_ref().ok().copied()).collect::<Option<Vec<Metrics>>>()?;
+        let games = games
+            .iter()
+            .map(|row| row.result.as_ref().ok().copied())
+            .collect::<Option<Vec<Metrics>>>()?;
         Some(games.chunks(2).map(mean).collect())
     };
     let of_point = |point: usize| {
-        let seeds: Vec<Option<Vec<Metrics>>> = (0..seeds).map(|seed| of_seed(point, seed)).collect();
-        let of_entry = |entry: usize| seeds.iter().map(|seed| Some(seed.as_ref()?[entry])).collect();
+        let seeds: Vec<Option<Vec<Metrics>>> =
+            (0..seeds).map(|seed| of_seed(point, seed)).collect();
+        let of_entry = |entry: usize| {
+            seeds
+                .iter()
+                .map(|seed| Some(seed.as_ref()?[entry]))
+                .collect()
+        };
         (0..entries).map(of_entry).collect()
     };
-    Observations { by_point: (0..plan.points().len()).map(of_point).collect() }
+    Observations {
+        by_point: (0..plan.points().len()).map(of_point).collect(),
+    }
 }
 
 /// The mean over games.
 fn mean(games: &[Metrics]) -> Metrics {
-    Metrics(std::array::from_fn(|i| games.iter().map(|game| game.0[i]).sum::<f64>() / games.len() as f64))
+    Metrics(std::array::from_fn(|i| {
+        games.iter().map(|game| game.0[i]).sum::<f64>() / games.len() as f64
+    }))
 }
 
-fn point_report(plan: &Plan, observed: &Observations, names: &[String], point: usize) -> PointReport {
+fn point_report(
+    plan: &Plan,
+    observed: &Observations,
+    names: &[String],
+    point: usize,
+) -> PointReport {
     let all = |of: &dyn Fn(usize) -> Option<Estimate>| (0..METRICS.len()).map(of).collect();
     let entries = names.iter().enumerate().map(|(entry, name)| EntryAtPoint {
         entry: name.clone(),
         metrics: all(&|metric| observed.estimate(&[point], entry, metric)),
     });
-    let differences = names.iter().enumerate().skip(1).map(|(entry, name)| Difference {
-        entry: name.clone(),
-        from: names[0].clone(),
-        metrics: all(&|metric| observed.difference(point, [entry, 0], metric)),
-    });
+    let differences = names
+        .iter()
+        .enumerate()
+        .skip(1)
+        .map(|(entry, name)| Difference {
+            entry: name.clone(),
+            from: names[0].clone(),
+            metrics: all(&|metric| observed.difference(point, [entry, 0], metric)),
+        });
     PointReport {
-        values: plan.points()[point].iter().map(ToString::to_string).collect(),
+        values: plan.points()[point]
+            .iter()
+            .map(ToString::to_string)
+            .collect(),
         seeds: observed.by_point[point][0].iter().flatten().count(),
         entries: entries.collect(),
         differences: differences.collect(),
@@ -206,20 +241,31 @@ fn worst(plan: &Plan, rows: &[Row]) -> Vec<Worst> {
     for (entry, entrant) in plan.sweep().entries.iter().enumerate() {
         let of_entry = rows.iter().filter(|row| row.job.entry == entry);
         let measured = of_entry.filter_map(|row| Some((row, row.result.as_ref().ok()?)));
-        let mut games: Vec<(f64, &Row, &Metrics)> =
-            measured.map(|(row, metrics)| (metrics.of("score_difference"), row, metrics)).collect();
+        let mut games: Vec<(f64, &Row, &Metrics)> = measured
+            .map(|(row, metrics)| (metrics.of("score_difference"), row, metrics))
+            .collect();
         games.retain(|(difference, ..)| *difference <= 0.0);
-        games.sort_by(|(one, a, _), (other, b, _)| one.total_cmp(other).then(a.job.index.cmp(&b.job.index)));
-        worst.extend(games.into_iter().take(WORST).map(|(_, Row { job, digest, .. }, metrics)| Worst {
-            entry: entrant.name.clone(),
-            game: job.index,
-            values: plan.points()[job.point].iter().map(ToString::to_string).collect(),
-            score: metrics.score(),
-            contacts: metrics.of("contacts"),
-            out_of_bounds: metrics.of("out_of_bounds"),
-            digest: digest.clone(),
-            command: plan.command(job),
-        }));
+        games.sort_by(|(one, a, _), (other, b, _)| {
+            one.total_cmp(other).then(a.job.index.cmp(&b.job.index))
+        });
+        worst.extend(
+            games
+                .into_iter()
+                .take(WORST)
+                .map(|(_, Row { job, digest, .. }, metrics)| Worst {
+                    entry: entrant.name.clone(),
+                    game: job.index,
+                    values: plan.points()[job.point]
+                        .iter()
+                        .map(ToString::to_string)
+                        .collect(),
+                    score: metrics.score(),
+                    contacts: metrics.of("contacts"),
+                    out_of_bounds: metrics.of("out_of_bounds"),
+                    digest: digest.clone(),
+                    command: plan.command(job),
+                }),
+        );
     }
     worst
 }

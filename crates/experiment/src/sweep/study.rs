@@ -103,7 +103,10 @@ impl Study {
         std::fs::create_dir_all(folder).map_err(io("create the folder", folder))?;
         let games = rows_in(plan, &text_if_any(&folder.join(GAMES))?).len();
         if games > 0 {
-            return Err(StudyError::Exists { folder: folder.to_owned(), games });
+            return Err(StudyError::Exists {
+                folder: folder.to_owned(),
+                games,
+            });
         }
         write_plan(folder, plan)?;
         for (name, head) in heads(plan) {
@@ -123,11 +126,17 @@ impl Study {
     pub fn resume(folder: &Path, plan: &Plan) -> Result<Study, StudyError> {
         let found = text_if_any(&folder.join(PLAN))?.trim().to_owned();
         if found.is_empty() {
-            return Err(StudyError::Missing { folder: folder.to_owned() });
+            return Err(StudyError::Missing {
+                folder: folder.to_owned(),
+            });
         }
         let expected = plan.digest();
         if found != expected {
-            return Err(StudyError::Other { folder: folder.to_owned(), expected, found });
+            return Err(StudyError::Other {
+                folder: folder.to_owned(),
+                expected,
+                found,
+            });
         }
         write_plan(folder, plan)?;
         let text = |name: &str| text_if_any(&folder.join(name));
@@ -138,7 +147,10 @@ impl Study {
             if length == 0 {
                 write(&path, &head)?;
             } else if length < text.len() {
-                let file = OpenOptions::new().write(true).open(&path).map_err(io("open", &path))?;
+                let file = OpenOptions::new()
+                    .write(true)
+                    .open(&path)
+                    .map_err(io("open", &path))?;
                 file.set_len(length as u64).map_err(io("cut", &path))?;
             }
         }
@@ -148,9 +160,18 @@ impl Study {
     fn open(folder: &Path, done: usize) -> Result<Study, StudyError> {
         let open = |name: &str| {
             let path = folder.join(name);
-            OpenOptions::new().append(true).open(&path).map_err(io("open", &path))
+            OpenOptions::new()
+                .append(true)
+                .open(&path)
+                .map_err(io("open", &path))
         };
-        Ok(Study { folder: folder.to_owned(), games: open(GAMES)?, boats: open(BOATS)?, sums: open(SUMS)?, done })
+        Ok(Study {
+            folder: folder.to_owned(),
+            games: open(GAMES)?,
+            boats: open(BOATS)?,
+            sums: open(SUMS)?,
+            done,
+        })
     }
 
     /// The number of games in it, which is the index of the next one.
@@ -182,9 +203,15 @@ impl Study {
         // The checksum is written last, to confirm the other lines.
         let folder = &self.folder;
         let sum = sum_line(game, boats);
-        self.boats.write_all(boats.as_bytes()).map_err(io("write", &folder.join(BOATS)))?;
-        self.games.write_all(game.as_bytes()).map_err(io("write", &folder.join(GAMES)))?;
-        self.sums.write_all(sum.as_bytes()).map_err(io("write", &folder.join(SUMS)))?;
+        self.boats
+            .write_all(boats.as_bytes())
+            .map_err(io("write", &folder.join(BOATS)))?;
+        self.games
+            .write_all(game.as_bytes())
+            .map_err(io("write", &folder.join(GAMES)))?;
+        self.sums
+            .write_all(sum.as_bytes())
+            .map_err(io("write", &folder.join(SUMS)))?;
         self.done += 1;
         Ok(())
     }
@@ -197,12 +224,21 @@ impl Study {
         let rows = rows_in(plan, &text(&self.folder.join(GAMES))?);
         let report = Report::new(plan, &rows);
         let json = serde_json::to_string_pretty(&report);
-        let json = json.map_err(|error| StudyError::Table { what: "report.json", why: error.to_string() })? + "\n";
-        write(&self.folder.join("report.html"), &html::page(&report.sweep, &json))?;
+        let json = json.map_err(|error| StudyError::Table {
+            what: "report.json",
+            why: error.to_string(),
+        })? + "\n";
+        write(
+            &self.folder.join("report.html"),
+            &html::page(&report.sweep, &json),
+        )?;
         write(&self.folder.join("report.json"), &json)?;
         let path = self.folder.join("games.parquet");
         let table = table::parquet(plan, &rows);
-        let table = table.map_err(|error| StudyError::Table { what: "games.parquet", why: error.to_string() })?;
+        let table = table.map_err(|error| StudyError::Table {
+            what: "games.parquet",
+            why: error.to_string(),
+        })?;
         output_file::write(&path, table).map_err(io("write", &path))?;
         Ok(report)
     }
@@ -214,15 +250,41 @@ pub fn lines(plan: &Plan, played: &Played) -> (String, String) {
     let boat = |boat: &BoatRow| {
         let of = &boat.statistics;
         let counts = &boat.statistics.counts;
-        let counts =
-            [counts.grabs, counts.captures, counts.tags, counts.tagged, counts.out_of_bounds, counts.collisions];
-        let mut cells = vec![index.to_string(), of.boat.clone(), of.team.clone(), u8::from(boat.is_own).to_string()];
+        let counts = [
+            counts.grabs,
+            counts.captures,
+            counts.tags,
+            counts.tagged,
+            counts.out_of_bounds,
+            counts.collisions,
+        ];
+        let mut cells = vec![
+            index.to_string(),
+            of.boat.clone(),
+            of.team.clone(),
+            u8::from(boat.is_own).to_string(),
+        ];
         cells.extend(counts.map(|count| count.to_string()));
-        let numbers = [of.tagged_s, of.outside_s, of.carrying_s, of.distance_m, of.speed_mean_m_s, of.speed_max_m_s];
-        cells.extend(numbers.into_iter().chain([boat.energy_kj]).map(table::cell_of));
+        let numbers = [
+            of.tagged_s,
+            of.outside_s,
+            of.carrying_s,
+            of.distance_m,
+            of.speed_mean_m_s,
+            of.speed_max_m_s,
+        ];
+        cells.extend(
+            numbers
+                .into_iter()
+                .chain([boat.energy_kj])
+                .map(table::cell_of),
+        );
         table::record(cells)
     };
-    (table::csv_line(plan, &played.row), played.boats.iter().map(boat).collect())
+    (
+        table::csv_line(plan, &played.row),
+        played.boats.iter().map(boat).collect(),
+    )
 }
 
 /// The games in `text`, in the format of `games.csv`, up to the first line that is incomplete or of
@@ -233,7 +295,11 @@ pub fn rows_in(plan: &Plan, text: &str) -> Vec<Row> {
 
 /// The header lines of the tables.
 fn heads(plan: &Plan) -> [(&'static str, String); 3] {
-    [(GAMES, table::csv_head(plan)), (BOATS, BOATS_HEAD.to_owned()), (SUMS, String::new())]
+    [
+        (GAMES, table::csv_head(plan)),
+        (BOATS, BOATS_HEAD.to_owned()),
+        (SUMS, String::new()),
+    ]
 }
 
 /// The checksum line of a game.
@@ -252,12 +318,25 @@ fn whole(plan: &Plan, [games, boats, sums]: &[String; 3]) -> (usize, [usize; 3])
     let mut lengths = [games_head.len(), boats_head.len(), 0];
     for (row, games_end) in table::csv_rows(plan, games) {
         let rest = &boats[lengths[1]..];
-        let boats_end = lengths[1] + rest.split_inclusive('\n').take(row.boats).map(str::len).sum::<usize>();
+        let boats_end = lengths[1]
+            + rest
+                .split_inclusive('\n')
+                .take(row.boats)
+                .map(str::len)
+                .sum::<usize>();
         let sum = sums.get(lengths[2]..lengths[2] + SUM_BYTES);
-        if sum != Some(&sum_line(&games[lengths[0]..games_end], &boats[lengths[1]..boats_end])) {
+        if sum
+            != Some(&sum_line(
+                &games[lengths[0]..games_end],
+                &boats[lengths[1]..boats_end],
+            ))
+        {
             break;
         }
-        (done, lengths) = (row.job.index + 1, [games_end, boats_end, lengths[2] + SUM_BYTES]);
+        (done, lengths) = (
+            row.job.index + 1,
+            [games_end, boats_end, lengths[2] + SUM_BYTES],
+        );
     }
     (done, lengths)
 }
@@ -265,7 +344,10 @@ fn whole(plan: &Plan, [games, boats, sums]: &[String; 3]) -> (usize, [usize; 3])
 /// Writes the plan with all required files.
 fn write_plan(folder: &Path, plan: &Plan) -> Result<(), StudyError> {
     let packed = serde_json::to_string(&plan.pack());
-    let packed = packed.map_err(|error| StudyError::Table { what: PACKED_PLAN, why: error.to_string() })?;
+    let packed = packed.map_err(|error| StudyError::Table {
+        what: PACKED_PLAN,
+        why: error.to_string(),
+    })?;
     write(&folder.join(PACKED_PLAN), &(packed + "\n"))
 }
 
@@ -273,7 +355,9 @@ fn write_plan(folder: &Path, plan: &Plan) -> Result<(), StudyError> {
 // Anything else in its place is an error: writing to a named pipe would wait for a reader.
 pub(super) fn text_if_any(path: &Path) -> Result<String, StudyError> {
     match text(path) {
-        Err(StudyError::Io { error, .. }) if error.kind() == std::io::ErrorKind::NotFound => Ok(String::new()),
+        Err(StudyError::Io { error, .. }) if error.kind() == std::io::ErrorKind::NotFound => {
+            Ok(String::new())
+        }
         other => other,
     }
 }

@@ -30,8 +30,15 @@ pub fn text(report: &Report) -> String {
     let done = report.games_done;
     let points = report.points.len();
     let few = report.games_per_point < 2 * OBSERVATIONS_MIN as u64;
-    let interval = if few { "; too few seeds for ± 95 %" } else { " ± 95 % over seeds" };
-    line(format!("{done} of {} games at {points} points; means per game{interval}", report.games));
+    let interval = if few {
+        "; too few seeds for ± 95 %"
+    } else {
+        " ± 95 % over seeds"
+    };
+    line(format!(
+        "{done} of {} games at {points} points; means per game{interval}",
+        report.games
+    ));
     for effect in &report.effects {
         line(String::new());
         table(effect, &mut line);
@@ -42,36 +49,57 @@ pub fn text(report: &Report) -> String {
         line("\nworst games".to_owned());
         for worst in report.worst.iter().take(SHOWN) {
             let [own, theirs] = worst.score;
-            line(format!("  {} {own} : {theirs}  at {}", worst.entry, worst.values.join(", ")));
+            line(format!(
+                "  {} {own} : {theirs}  at {}",
+                worst.entry,
+                worst.values.join(", ")
+            ));
             line(format!("    {}", worst.command));
         }
     }
     for failure in report.failures.iter().take(SHOWN) {
-        line(format!("\ngame {} could not start: {}\n    {}", failure.game, failure.why, failure.command));
+        line(format!(
+            "\ngame {} could not start: {}\n    {}",
+            failure.game, failure.why, failure.command
+        ));
     }
     if report.failures.len() > SHOWN {
-        line(format!("\nand {} more could not start", report.failures.len() - SHOWN));
+        line(format!(
+            "\nand {} more could not start",
+            report.failures.len() - SHOWN
+        ));
     }
     text
 }
 
 fn table(effect: &Effect, line: &mut impl FnMut(String)) {
     line(format!("{} with {}", effect.entry, effect.axis));
-    let heads: String = COLUMNS.iter().map(|(_, head, ..)| format!("{head:>13}")).collect();
+    let heads: String = COLUMNS
+        .iter()
+        .map(|(_, head, ..)| format!("{head:>13}"))
+        .collect();
     line(format!("{:<14}{heads}", ""));
     for level in &effect.levels {
         let cell = |(metric, _, times, digits): &(&str, &str, f64, usize)| {
             let estimate = Metric::place(metric).and_then(|i| level.metrics[i]);
-            format!("{:>13}", estimate.map_or("-".to_owned(), |estimate| estimate.shown(*times, *digits)))
+            format!(
+                "{:>13}",
+                estimate.map_or("-".to_owned(), |estimate| estimate.shown(*times, *digits))
+            )
         };
         let label: String = level.label.chars().take(13).collect();
-        line(format!("{label:<14}{}", COLUMNS.iter().map(cell).collect::<String>()));
+        line(format!(
+            "{label:<14}{}",
+            COLUMNS.iter().map(cell).collect::<String>()
+        ));
     }
 }
 
 /// Differences in win share to the first entry, at the points where they are significant.
 fn differences(report: &Report, line: &mut impl FnMut(String)) {
-    let Some(index) = Metric::place("win_share") else { return };
+    let Some(index) = Metric::place("win_share") else {
+        return;
+    };
     for (k, entry) in report.entries.iter().enumerate().skip(1) {
         let of_point = |point: &PointReport| point.differences[k - 1].metrics[index];
         let all: Vec<Estimate> = report.points.iter().filter_map(of_point).collect();
@@ -82,8 +110,12 @@ fn differences(report: &Report, line: &mut impl FnMut(String)) {
         let first = &report.entries[0];
         let pct = 100.0 * mean;
         let count = all.len();
-        line(format!("\n{entry} minus {first}, on the same seeds: {pct:+.0} % of games won on average;"));
-        line(format!("significantly more at {better} and fewer at {worse} of {count} points"));
+        line(format!(
+            "\n{entry} minus {first}, on the same seeds: {pct:+.0} % of games won on average;"
+        ));
+        line(format!(
+            "significantly more at {better} and fewer at {worse} of {count} points"
+        ));
     }
 }
 
@@ -92,22 +124,50 @@ fn interactions(all: &[Interaction], line: &mut impl FnMut(String)) {
         return;
     }
     let matter = all.iter().filter(|one| one.matters);
-    line(format!("\nsignificant interactions: {} of {}", matter.clone().count(), all.len()));
+    line(format!(
+        "\nsignificant interactions: {} of {}",
+        matter.clone().count(),
+        all.len()
+    ));
     for one in matter.take(SHOWN) {
         let [low, second, first, both] = one.cells;
-        line(format!("  {} of {}: {} with {}", one.metric, one.entry, one.axes[0], one.axes[1]));
-        line(format!("    both low {low:.2}, second high {second:.2}, first high {first:.2}, both high {both:.2}"));
+        line(format!(
+            "  {} of {}: {} with {}",
+            one.metric, one.entry, one.axes[0], one.axes[1]
+        ));
+        line(format!(
+            "    both low {low:.2}, second high {second:.2}, first high {first:.2}, both high {both:.2}"
+        ));
     }
 }
 
 /// The result of a search for rare failures, as text.
 pub fn found_text(found: &Found) -> String {
-    let Found { entry, condition, games, failures, rate, .. } = found;
-    let interval = rate.low.zip(rate.high).map(|(low, high)| format!(" ({low:.4} to {high:.4})"));
+    let Found {
+        entry,
+        condition,
+        games,
+        failures,
+        rate,
+        ..
+    } = found;
+    let interval = rate
+        .low
+        .zip(rate.high)
+        .map(|(low, high)| format!(" ({low:.4} to {high:.4})"));
     let interval = interval.unwrap_or_default();
-    let mut text = format!("{entry}: {condition} in {failures} of {games} games, {:.4}{interval} of all\n", rate.mean);
+    let mut text = format!(
+        "{entry}: {condition} in {failures} of {games} games, {:.4}{interval} of all\n",
+        rate.mean
+    );
     for named in found.named.iter().take(SHOWN) {
-        let _ = writeln!(text, "  {:.3} at {}\n    {}", named.value, named.values.join(", "), named.command);
+        let _ = writeln!(
+            text,
+            "  {:.3} at {}\n    {}",
+            named.value,
+            named.values.join(", "),
+            named.command
+        );
     }
     text
 }

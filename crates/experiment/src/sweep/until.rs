@@ -76,12 +76,20 @@ pub fn breaking_point(
     mut tell: impl FnMut(&Tried),
 ) -> Result<BreakingPoint, SearchError> {
     let axes = &plan.sweep().axes;
-    let numeric: Vec<usize> = (0..axes.len()).filter(|k| axes[*k].at(0.0).number().is_some()).collect();
+    let numeric: Vec<usize> = (0..axes.len())
+        .filter(|k| axes[*k].at(0.0).number().is_some())
+        .collect();
     let axis = match along {
         Some(key) => numeric.iter().copied().find(|k| axes[*k].key == key),
         None => (numeric.len() == 1).then(|| numeric[0]),
     };
-    let keys = || numeric.iter().map(|k| axes[*k].key.as_str()).collect::<Vec<_>>().join(", ");
+    let keys = || {
+        numeric
+            .iter()
+            .map(|k| axes[*k].key.as_str())
+            .collect::<Vec<_>>()
+            .join(", ")
+    };
     let axis = axis.ok_or_else(|| SearchError::Axes(numeric.len(), keys()))?;
     let plan = plan.of_entry(condition.entry);
     let mut tried: Vec<Tried> = vec![];
@@ -142,10 +150,16 @@ fn try_value(
     let mut observations: Vec<f64> = vec![];
     let mut until = FIRST_SEEDS.min(most);
     loop {
-        let order: Vec<Job> = (2 * observations.len()..2 * until as usize).map(|index| plan.job(index)).collect();
+        let order: Vec<Job> = (2 * observations.len()..2 * until as usize)
+            .map(|index| plan.job(index))
+            .collect();
         let played = journal.play(&plan, &order, threads)?;
         let number = |metrics: &Metrics| metrics.0[condition.metric];
-        observations.extend(played.chunks(2).map(|sides| 0.5 * (number(&sides[0]) + number(&sides[1]))));
+        observations.extend(
+            played
+                .chunks(2)
+                .map(|sides| 0.5 * (number(&sides[0]) + number(&sides[1]))),
+        );
         let holds = verdict(condition, &observations, alpha);
         if holds.is_some() || until >= most {
             return Ok(Tried {
@@ -169,7 +183,9 @@ fn verdict(condition: &Condition, observations: &[f64], alpha: f64) -> Option<bo
     // Equal observations are less informative than their spread suggests: adds one that is half a
     // unit off.
     let error = ((squares + 0.25) / (count - 1.0).max(1.0) / count).sqrt();
-    let quantile = StudentsT::new(0.0, 1.0, (count - 1.0).max(1.0)).ok()?.inverse_cdf(1.0 - alpha / 2.0);
+    let quantile = StudentsT::new(0.0, 1.0, (count - 1.0).max(1.0))
+        .ok()?
+        .inverse_cdf(1.0 - alpha / 2.0);
     let margin = condition.margin(mean);
     (margin.abs() > quantile * error).then_some(margin < 0.0)
 }
@@ -177,16 +193,26 @@ fn verdict(condition: &Condition, observations: &[f64], alpha: f64) -> Option<bo
 fn found(plan: &Plan, condition: &Condition, axis: usize, mut tried: Vec<Tried>) -> BreakingPoint {
     tried.sort_by(|a, b| a.share.total_cmp(&b.share));
     let rises = tried.first().is_none_or(|first| first.holds != Some(true));
-    let sure = |holds: bool| tried.iter().filter(move |one| one.holds == Some(holds)).map(|one| one.value);
+    let sure = |holds: bool| {
+        tried
+            .iter()
+            .filter(move |one| one.holds == Some(holds))
+            .map(|one| one.value)
+    };
     // Starting from the end where it is false: the last such value before it is ever true.
     let pick = |holds: bool, greatest: bool| {
         let values = sure(holds);
-        if greatest { values.reduce(f64::max) } else { values.reduce(f64::min) }
+        if greatest {
+            values.reduce(f64::max)
+        } else {
+            values.reduce(f64::min)
+        }
     };
     let crossing = tried.windows(2).find_map(|pair| {
         let margins = [0, 1].map(|i| condition.margin(pair[i].mean.mean));
         let is_crossed = (margins[0] < 0.0) != (margins[1] < 0.0);
-        let share = pair[0].share + (pair[1].share - pair[0].share) * margins[0] / (margins[0] - margins[1]);
+        let share = pair[0].share
+            + (pair[1].share - pair[0].share) * margins[0] / (margins[0] - margins[1]);
         is_crossed.then(|| plan.sweep().axes[axis].at(share).number())?
     });
     BreakingPoint {
@@ -208,16 +234,36 @@ mod tests {
     fn a_verdict_is_as_seldom_wrong_as_it_says() {
         // Coins with 50 % heads: whether fewer than half are heads cannot be decided, and is rarely
         // decided wrongly.
-        let condition = Condition { entry: 0, metric: 0, is_below: true, threshold: 0.5 };
+        let condition = Condition {
+            entry: 0,
+            metric: 0,
+            is_below: true,
+            threshold: 0.5,
+        };
         let mut wrong = 0;
         for trial in 0..2000 {
             let mut stream = primitives::stream::Stream::new(trial, "coins");
-            let coins: Vec<f64> = (0..64).map(|_| f64::from(u8::from(stream.unit() < 0.5))).collect();
+            let coins: Vec<f64> = (0..64)
+                .map(|_| f64::from(u8::from(stream.unit() < 0.5)))
+                .collect();
             wrong += i32::from(verdict(&condition, &coins, 0.05).is_some());
         }
-        assert!((40..140).contains(&wrong), "{wrong} of 2000, expected about 100");
+        assert!(
+            (40..140).contains(&wrong),
+            "{wrong} of 2000, expected about 100"
+        );
         let sure: Vec<f64> = vec![1.0; 20];
         assert_eq!(verdict(&condition, &sure, 0.001), Some(false));
-        assert_eq!(verdict(&Condition { is_below: false, ..condition }, &sure, 0.001), Some(true));
+        assert_eq!(
+            verdict(
+                &Condition {
+                    is_below: false,
+                    ..condition
+                },
+                &sure,
+                0.001
+            ),
+            Some(true)
+        );
     }
 }

@@ -62,10 +62,22 @@ impl ScenarioFile for Tournament {
             diagnostics.referenced::<Sea, _>(document, "sea", &*sea);
             *sea = diagnostics.resolve(document.at("sea"), &*sea);
         }
-        let names = check_entries(diagnostics, document, &mut StrategyFiles::default(), &mut tournament.entries);
-        if let Some(challenger) = tournament.challenger.as_ref().filter(|name| !names.contains(name)) {
+        let names = check_entries(
+            diagnostics,
+            document,
+            &mut StrategyFiles::default(),
+            &mut tournament.entries,
+        );
+        if let Some(challenger) = tournament
+            .challenger
+            .as_ref()
+            .filter(|name| !names.contains(name))
+        {
             let listed: Vec<&str> = names.iter().map(|name| name.as_str()).collect();
-            let message = format!("challenger is {challenger:?}, expected an entry: {}", listed.join(", "));
+            let message = format!(
+                "challenger is {challenger:?}, expected an entry: {}",
+                listed.join(", ")
+            );
             diagnostics.note(document.at("challenger"), message);
         }
         document.is_faultless(diagnostics).then_some(tournament)
@@ -84,7 +96,10 @@ pub(crate) fn check_entries<'a, K>(
         let [name_path, path] = ["name", "strategy"].map(|key| format!("entry.{i}.{key}"));
         entry.strategy = strategies.read(diagnostics, document, &path, &entry.strategy);
         if document.is_sound(&name_path) && !names.insert(&entry.name) {
-            let message = format!("the name {:?} is used twice, expected a unique name for each entry", entry.name);
+            let message = format!(
+                "the name {:?} is used twice, expected a unique name for each entry",
+                entry.name
+            );
             diagnostics.note(document.at(&name_path), message);
         }
     }

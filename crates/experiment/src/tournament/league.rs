@@ -58,7 +58,10 @@ impl League {
     pub fn parse(text: &str) -> Result<League, LeagueError> {
         let whole = text.rsplit_once('\n').map_or("", |(whole, _)| whole);
         let game = |(line, text): (usize, &str)| {
-            let failed = |why: String| LeagueError { line: line + 1, why };
+            let failed = |why: String| LeagueError {
+                line: line + 1,
+                why,
+            };
             let text = match text.rsplit_once(SUM) {
                 // Lines of earlier versions have no checksum.
                 None => text.to_owned(),
@@ -66,15 +69,25 @@ impl League {
                     .filter(|body| format!("{}\"}}", checksum(body)) == sum)
                     .ok_or_else(|| failed("its checksum does not match".to_owned()))?,
             };
-            let Line { pairing, seed, outcome, .. } =
-                serde_json::from_str(&text).map_err(|why| failed(why.to_string()))?;
+            let Line {
+                pairing,
+                seed,
+                outcome,
+                ..
+            } = serde_json::from_str(&text).map_err(|why| failed(why.to_string()))?;
             let result = match outcome {
                 Outcome::Game(game) => Ok(game),
                 Outcome::Failed(why) => Err(why),
             };
             Ok(((pairing, seed), (line, result)))
         };
-        Ok(League { known: whole.lines().enumerate().map(game).collect::<Result<_, _>>()? })
+        Ok(League {
+            known: whole
+                .lines()
+                .enumerate()
+                .map(game)
+                .collect::<Result<_, _>>()?,
+        })
     }
 
     /// The line of a game.
@@ -82,13 +95,22 @@ impl League {
     /// # Panics
     /// If the game is not part of the plan that these pairings belong to.
     pub fn line(plan: &Plan, pairings: &[String], record: &Record) -> String {
-        let [blue, red] = record.of.sides.map(|entry| plan.tournament().entries[entry].name.clone());
+        let [blue, red] = record
+            .of
+            .sides
+            .map(|entry| plan.tournament().entries[entry].name.clone());
         let outcome = match record.result.clone() {
             Ok(game) => Outcome::Game(game),
             Err(why) => Outcome::Failed(why),
         };
         let pairing = pairings[plan.place_of(record.of) % pairings.len()].clone();
-        let line = Line { pairing, blue, red, seed: record.of.seed, outcome };
+        let line = Line {
+            pairing,
+            blue,
+            red,
+            seed: record.of.seed,
+            outcome,
+        };
         let body = serde_json::to_string(&line).expect("it has names for keys");
         let sum = checksum(&body);
         format!("{}{SUM}{sum}\"}}\n", &body[..body.len() - 1])
@@ -101,8 +123,17 @@ impl League {
         let mut new = vec![];
         for place in 0..plan.games() {
             let of = plan.match_at(place).0;
-            match self.known.get(&(pairings[place % pairings.len()].clone(), of.seed)) {
-                Some((line, result)) => known.push((line, Record { of, result: result.clone() })),
+            match self
+                .known
+                .get(&(pairings[place % pairings.len()].clone(), of.seed))
+            {
+                Some((line, result)) => known.push((
+                    line,
+                    Record {
+                        of,
+                        result: result.clone(),
+                    },
+                )),
                 None => new.push(place),
             }
         }

@@ -45,7 +45,11 @@ impl Plan {
         let teams = teams_of(&tournament.game, &files)?;
         let count = tournament.entries.len();
         let is_played = |sides: [usize; 2]| {
-            let is_there = |name: &String| sides.iter().any(|side| tournament.entries[*side].name == *name);
+            let is_there = |name: &String| {
+                sides
+                    .iter()
+                    .any(|side| tournament.entries[*side].name == *name)
+            };
             tournament.challenger.as_ref().is_none_or(is_there)
         };
         let mut rounds = vec![];
@@ -60,13 +64,26 @@ impl Plan {
                 for sides in sides {
                     let strategy = |entry: usize| tournament.entries[entry].strategy.clone();
                     let strategies = teams.iter().cloned().zip(sides.map(strategy)).collect();
-                    let overrides = Overrides { sea: tournament.sea.clone(), strategies, ..Overrides::default() };
-                    rounds.push((*sides, load_game(&tournament.game, &overrides, &files, &tournament.game)?));
+                    let overrides = Overrides {
+                        sea: tournament.sea.clone(),
+                        strategies,
+                        ..Overrides::default()
+                    };
+                    rounds.push((
+                        *sides,
+                        load_game(&tournament.game, &overrides, &files, &tournament.game)?,
+                    ));
                 }
             }
         }
         let seeds = u64::from(tournament.games).div_ceil(2);
-        let plan = Plan { tournament: tournament.clone(), teams, seeds, rounds, files };
+        let plan = Plan {
+            tournament: tournament.clone(),
+            teams,
+            seeds,
+            rounds,
+            files,
+        };
         match too_many_games(plan.games(), &tournament.game) {
             Some(problem) => Err(Problems(vec![problem])),
             None => Ok(plan),
@@ -95,7 +112,8 @@ impl Plan {
 
     /// The total number of games.
     pub fn games(&self) -> usize {
-        usize::try_from(self.seeds).map_or(usize::MAX, |seeds| seeds.saturating_mul(self.rounds.len()))
+        usize::try_from(self.seeds)
+            .map_or(usize::MAX, |seeds| seeds.saturating_mul(self.rounds.len()))
     }
 
     /// The game at `index`, ordered by seed: an early stop leaves complete seeds.
@@ -107,8 +125,17 @@ impl Plan {
         let (sides, scenario) = &self.rounds[index % self.rounds.len()];
         // Ordered by seed: a seed counts only if all its games were played. Otherwise an entry
         // would be measured against some of its opponents, perhaps the easy ones.
-        let seed = self.tournament.seed.wrapping_add((index / self.rounds.len()) as u64);
-        (Match { seed, sides: *sides }, scenario)
+        let seed = self
+            .tournament
+            .seed
+            .wrapping_add((index / self.rounds.len()) as u64);
+        (
+            Match {
+                seed,
+                sides: *sides,
+            },
+            scenario,
+        )
     }
 
     /// The index of a game.
@@ -116,23 +143,38 @@ impl Plan {
     /// # Panics
     /// If the game is not part of the plan.
     pub fn place_of(&self, of: Match) -> usize {
-        let round = self.rounds.iter().position(|(sides, _)| *sides == of.sides).expect("they play each other");
+        let round = self
+            .rounds
+            .iter()
+            .position(|(sides, _)| *sides == of.sides)
+            .expect("they play each other");
         of.seed.wrapping_sub(self.tournament.seed) as usize * self.rounds.len() + round
     }
 
     /// Identifies the games of each seed, in order, by their parsed files. Another version of
     /// Squall or another file gives another game; other entry names or file locations do not.
     pub fn pairings(&self) -> Vec<String> {
-        self.rounds.iter().map(|(_, scenario)| scenario.digest()).collect()
+        self.rounds
+            .iter()
+            .map(|(_, scenario)| scenario.digest())
+            .collect()
     }
 
     /// Identifies the plan. It depends on the contents of files, not on their location: moved files
     /// with the same references to each other give the same digest.
     pub fn digest(&self) -> String {
-        let nowhere = |entry: &Entrant| Entrant { strategy: PathBuf::new(), ..entry.clone() };
+        let nowhere = |entry: &Entrant| Entrant {
+            strategy: PathBuf::new(),
+            ..entry.clone()
+        };
         let entries = self.tournament.entries.iter().map(nowhere).collect();
         let sea = self.tournament.sea.is_some();
-        let meant = Tournament { game: PathBuf::new(), sea: None, entries, ..self.tournament.clone() };
+        let meant = Tournament {
+            game: PathBuf::new(),
+            sea: None,
+            entries,
+            ..self.tournament.clone()
+        };
         digest_of(&format!("{meant:?} {sea}"), &self.files.list())
     }
 

@@ -34,9 +34,20 @@ pub struct Observer<B, S> {
 ///
 /// # Panics
 /// If an index is out of range.
-pub fn play(plan: &Plan, games: &[usize], threads: NonZeroUsize, stop: &AtomicBool, mut take: impl FnMut(Record)) {
-    let nobody = Observer { begin: |_: &Scenario| (), see: |(): &mut (), _: &Contest, _: &MindRunner| () };
-    play_observed(plan, games, (threads, stop), &nobody, |record, _| take(record));
+pub fn play(
+    plan: &Plan,
+    games: &[usize],
+    threads: NonZeroUsize,
+    stop: &AtomicBool,
+    mut take: impl FnMut(Record),
+) {
+    let nobody = Observer {
+        begin: |_: &Scenario| (),
+        see: |(): &mut (), _: &Contest, _: &MindRunner| (),
+    };
+    play_observed(plan, games, (threads, stop), &nobody, |record, _| {
+        take(record)
+    });
 }
 
 /// Like [`play`], with an observer; each record of a game that started comes with the observer's
@@ -48,20 +59,40 @@ pub fn play_observed<T: Send>(
     plan: &Plan,
     games: &[usize],
     (threads, stop): (NonZeroUsize, &AtomicBool),
-    observer: &Observer<impl Fn(&Scenario) -> T + Sync, impl Fn(&mut T, &Contest, &MindRunner) + Sync>,
+    observer: &Observer<
+        impl Fn(&Scenario) -> T + Sync,
+        impl Fn(&mut T, &Contest, &MindRunner) + Sync,
+    >,
     mut take: impl FnMut(Record, Option<T>),
 ) {
     let one = |(): &mut (), i: usize, stop: Stop<'_>| {
         let (of, scenario) = plan.match_at(games[i]);
-        let played = scenario.of_seed(of.seed).map_err(|problems| problems.to_string()).and_then(|scenario| {
-            let mut seen = (observer.begin)(&scenario);
-            let see = |contest: &Contest, runner: &MindRunner| (observer.see)(&mut seen, contest, runner);
-            let game = play_game(&scenario, of.seed, stop, see)?;
-            Ok((game, seen))
-        });
+        let played = scenario
+            .of_seed(of.seed)
+            .map_err(|problems| problems.to_string())
+            .and_then(|scenario| {
+                let mut seen = (observer.begin)(&scenario);
+                let see = |contest: &Contest, runner: &MindRunner| {
+                    (observer.see)(&mut seen, contest, runner)
+                };
+                let game = play_game(&scenario, of.seed, stop, see)?;
+                Ok((game, seen))
+            });
         match played {
-            Ok((game, seen)) => (Record { of, result: Ok(game) }, Some(seen)),
-            Err(why) => (Record { of, result: Err(why) }, None),
+            Ok((game, seen)) => (
+                Record {
+                    of,
+                    result: Ok(game),
+                },
+                Some(seen),
+            ),
+            Err(why) => (
+                Record {
+                    of,
+                    result: Err(why),
+                },
+                None,
+            ),
         }
     };
     let Ok(()) = play_in_order(games.len(), (threads, stop), one, |(record, seen)| {

@@ -61,7 +61,9 @@ pub fn ratings(entries: usize, rounds: &[Vec<Meeting>]) -> Vec<Rating> {
     for _ in 0..STEPS_MAX {
         let slope = slope_of(&all, &strengths) + prior_slope(&strengths);
         curvature = curvature_of(&all, &strengths);
-        let Some(root) = curvature.clone().cholesky() else { break };
+        let Some(root) = curvature.clone().cholesky() else {
+            break;
+        };
         let step = root.solve(&slope);
         let longest = step.amax();
         strengths += &step * f64::min(1.0, STEP_MAX / longest.max(CLOSE));
@@ -74,7 +76,11 @@ pub fn ratings(entries: usize, rounds: &[Vec<Meeting>]) -> Vec<Rating> {
     let rating = |entry: usize| {
         let elo = MEAN_ELO + ELO * (strengths[entry] - mean);
         let half = errors.as_ref().map(|errors| ELO * errors[entry]);
-        Rating { elo, low: half.map(|half| elo - half), high: half.map(|half| elo + half) }
+        Rating {
+            elo,
+            low: half.map(|half| elo - half),
+            high: half.map(|half| elo + half),
+        }
     };
     (0..entries).map(rating).collect()
 }
@@ -105,9 +111,17 @@ fn curvature_of(games: &[Meeting], strengths: &DVector<f64>) -> DMatrix<f64> {
         let share = 1.0 / (1.0 + math::exp(-strength));
         2.0 * PRIOR * share * (1.0 - share)
     }));
-    for Meeting { sides: [one, other], .. } in games {
+    for Meeting {
+        sides: [one, other],
+        ..
+    } in games
+    {
         let share = expected(strengths, [*one, *other]);
-        let weight = if one == other { 0.0 } else { share * (1.0 - share) };
+        let weight = if one == other {
+            0.0
+        } else {
+            share * (1.0 - share)
+        };
         curvature[(*one, *one)] += weight;
         curvature[(*other, *other)] += weight;
         curvature[(*one, *other)] -= weight;
@@ -117,7 +131,11 @@ fn curvature_of(games: &[Meeting], strengths: &DVector<f64>) -> DMatrix<f64> {
 }
 
 /// The half width of each interval, in units of strength; `None` with fewer than five seeds.
-fn errors(rounds: &[Vec<Meeting>], strengths: &DVector<f64>, curvature: &DMatrix<f64>) -> Option<Vec<f64>> {
+fn errors(
+    rounds: &[Vec<Meeting>],
+    strengths: &DVector<f64>,
+    curvature: &DMatrix<f64>,
+) -> Option<Vec<f64>> {
     let seeds = rounds.len() as f64;
     let entries = strengths.len();
     let quantile = quantile(seeds - 1.0).filter(|_| rounds.len() >= OBSERVATIONS_MIN)?;
@@ -132,11 +150,16 @@ fn errors(rounds: &[Vec<Meeting>], strengths: &DVector<f64>, curvature: &DMatrix
     // counts.
     let clustered = &covariance * spread * &covariance * (seeds / (seeds - 1.0));
     // Only the difference of an entry from the mean of all is known; the mean itself is arbitrary.
-    let centre = DMatrix::identity(entries, entries) - DMatrix::from_element(entries, entries, 1.0 / entries as f64);
+    let centre = DMatrix::identity(entries, entries)
+        - DMatrix::from_element(entries, entries, 1.0 / entries as f64);
     let of_mean = |covariance: DMatrix<f64>| (&centre * covariance * &centre).diagonal();
     let independent = of_mean(covariance);
     let clustered = of_mean(clustered);
-    Some((0..entries).map(|i| quantile * f64::max(independent[i], clustered[i]).max(0.0).sqrt()).collect())
+    Some(
+        (0..entries)
+            .map(|i| quantile * f64::max(independent[i], clustered[i]).max(0.0).sqrt())
+            .collect(),
+    )
 }
 
 #[cfg(test)]
@@ -145,7 +168,14 @@ mod tests {
     use primitives::stream::Stream;
 
     fn meetings(sides: [usize; 2], wins: usize, of: usize) -> Vec<Vec<Meeting>> {
-        (0..of).map(|i| vec![Meeting { sides, share: f64::from(u8::from(i < wins)) }]).collect()
+        (0..of)
+            .map(|i| {
+                vec![Meeting {
+                    sides,
+                    share: f64::from(u8::from(i < wins)),
+                }]
+            })
+            .collect()
     }
 
     #[test]
@@ -155,7 +185,10 @@ mod tests {
         let rated = ratings(2, &meetings([0, 1], 750, 1000));
         let ahead = rated[0].elo - rated[1].elo;
         let want = 190.85;
-        assert!((ahead - want).abs() < PULL && (rated[0].elo + rated[1].elo - 3000.0).abs() < 1e-6, "{rated:?}");
+        assert!(
+            (ahead - want).abs() < PULL && (rated[0].elo + rated[1].elo - 3000.0).abs() < 1e-6,
+            "{rated:?}"
+        );
         // By the delta method: the error of ln(p / (1 - p)) is 1 / sqrt(n p (1 - p)), split evenly
         // between the two.
         let half = 1.96 * ELO / (1000.0_f64 * 0.75 * 0.25).sqrt() / 2.0;
@@ -166,26 +199,56 @@ mod tests {
     #[test]
     fn who_wins_everything_is_rated_high_and_not_surely_so() {
         let rated = ratings(2, &meetings([0, 1], 20, 20));
-        assert!(rated[0].elo - rated[1].elo > 400.0 && rated[0].elo.is_finite(), "{rated:?}");
+        assert!(
+            rated[0].elo - rated[1].elo > 400.0 && rated[0].elo.is_finite(),
+            "{rated:?}"
+        );
         assert!(
             rated[0].high.expect("an interval") - rated[0].elo > 100.0,
             "equal seeds do not mean no error: {rated:?}"
         );
         // Four seeds, which would give an interval of thousands.
         let rated = ratings(2, &meetings([0, 1], 4, 4));
-        assert!(rated.iter().all(|one| one.low.is_none() && one.high.is_none()), "{rated:?}");
+        assert!(
+            rated
+                .iter()
+                .all(|one| one.low.is_none() && one.high.is_none()),
+            "{rated:?}"
+        );
         // An entry against itself, and a single seed.
-        let rated = ratings(2, &[vec![Meeting { sides: [0, 0], share: 1.0 }, Meeting { sides: [0, 1], share: 0.5 }]]);
-        assert!(rated.iter().all(|one| (one.elo - 1500.0).abs() < 1e-9 && one.low.is_none()), "{rated:?}");
+        let rated = ratings(
+            2,
+            &[vec![
+                Meeting {
+                    sides: [0, 0],
+                    share: 1.0,
+                },
+                Meeting {
+                    sides: [0, 1],
+                    share: 0.5,
+                },
+            ]],
+        );
+        assert!(
+            rated
+                .iter()
+                .all(|one| (one.elo - 1500.0).abs() < 1e-9 && one.low.is_none()),
+            "{rated:?}"
+        );
         assert_eq!(ratings(0, &[]), []);
     }
 
     #[test]
     fn games_of_a_seed_that_all_go_alike_are_one_observation() {
         let apart = ratings(2, &meetings([0, 1], 30, 40));
-        let alike: Vec<Vec<Meeting>> = meetings([0, 1], 30, 40).into_iter().map(|round| round.repeat(9)).collect();
+        let alike: Vec<Vec<Meeting>> = meetings([0, 1], 30, 40)
+            .into_iter()
+            .map(|round| round.repeat(9))
+            .collect();
         let alike = ratings(2, &alike);
-        let width = |rated: &[Rating]| rated[0].high.expect("an interval") - rated[0].low.expect("an interval");
+        let width = |rated: &[Rating]| {
+            rated[0].high.expect("an interval") - rated[0].low.expect("an interval")
+        };
         assert!(width(&alike) > 0.95 * width(&apart), "{apart:?} {alike:?}");
     }
 
@@ -199,11 +262,17 @@ mod tests {
             let mut stream = Stream::new(trial, "ratings");
             let mut meet = |one: usize, other: usize| {
                 let share = 1.0 / (1.0 + math::exp(truth[other] - truth[one]));
-                Meeting { sides: [one, other], share: f64::from(u8::from(stream.unit() < share)) }
+                Meeting {
+                    sides: [one, other],
+                    share: f64::from(u8::from(stream.unit() < share)),
+                }
             };
             let mut round = || {
                 let pairs = (0..4).flat_map(|one| (one + 1..4).map(move |other| (one, other)));
-                pairs.flat_map(|(one, other)| [(one, other), (other, one)]).map(|(a, b)| meet(a, b)).collect::<Vec<_>>()
+                pairs
+                    .flat_map(|(one, other)| [(one, other), (other, one)])
+                    .map(|(a, b)| meet(a, b))
+                    .collect::<Vec<_>>()
             };
             let rounds: Vec<Vec<Meeting>> = (0..30).map(|_| round()).collect();
             for (rating, strength) in ratings(4, &rounds).iter().zip(truth) {

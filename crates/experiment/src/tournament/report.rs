@@ -196,25 +196,50 @@ impl Report {
         let whole: Vec<&[Record]> = rounds.into_iter().filter(is_whole).collect();
         let seeds = whole.iter().map(|round| round[0].of.seed);
         let counted: BTreeSet<u64> = seeds.collect();
-        let is_left_out = |record: &&Record| record.result.is_ok() && !counted.contains(&record.of.seed);
+        let is_left_out =
+            |record: &&Record| record.result.is_ok() && !counted.contains(&record.of.seed);
         let mut order: Vec<(usize, Row)> = match whole.is_empty() {
             true => vec![],
             false => {
                 let rated = ratings(tournament.entries.len(), &meetings(&whole));
-                rated.into_iter().enumerate().map(|(entry, rating)| (entry, row(plan, &whole, entry, rating))).collect()
+                rated
+                    .into_iter()
+                    .enumerate()
+                    .map(|(entry, rating)| (entry, row(plan, &whole, entry, rating)))
+                    .collect()
             }
         };
         order.sort_by(|(_, a), (_, b)| b.rating.elo.total_cmp(&a.rating.elo));
         let ranks: Vec<usize> = order.iter().map(|(entry, _)| *entry).collect();
         let failures = records.iter().filter_map(|record| {
             let why = record.result.as_ref().err()?.clone();
-            Some(Failure { blue: name(record.of.sides[0]), red: name(record.of.sides[1]), seed: record.of.seed, why })
+            Some(Failure {
+                blue: name(record.of.sides[0]),
+                red: name(record.of.sides[1]),
+                seed: record.of.seed,
+                why,
+            })
         });
         let matches = records.iter().filter_map(|record| {
-            let Game { score, winner, duration_s, digest, .. } = record.result.as_ref().ok()?.clone();
+            let Game {
+                score,
+                winner,
+                duration_s,
+                digest,
+                ..
+            } = record.result.as_ref().ok()?.clone();
             let [blue, red] = record.of.sides.map(name);
             let game = plan.place_of(record.of);
-            Some(MatchRow { game, blue, red, seed: record.of.seed, score, winner, duration_s, digest })
+            Some(MatchRow {
+                game,
+                blue,
+                red,
+                seed: record.of.seed,
+                score,
+                winner,
+                duration_s,
+                digest,
+            })
         });
         Report {
             tournament: tournament.name.clone(),
@@ -231,7 +256,12 @@ impl Report {
             games_left_out: records.iter().filter(is_left_out).count() as u64,
             rate: None,
             matrix: matrix(plan, &whole, &ranks),
-            history: history(played.iter().filter(|record| counted.contains(&record.of.seed)), &ranks),
+            history: history(
+                played
+                    .iter()
+                    .filter(|record| counted.contains(&record.of.seed)),
+                &ranks,
+            ),
             entries: order.into_iter().map(|(_, row)| row).collect(),
             failures: failures.collect(),
             matches: matches.collect(),
@@ -243,12 +273,18 @@ impl Report {
 /// The entries of a game, and its result.
 fn meeting(record: &Record) -> Option<Meeting> {
     let winner = record.result.as_ref().ok()?.winner;
-    Some(Meeting { sides: record.of.sides, share: winner.map_or(0.5, |side| if side == 0 { 1.0 } else { 0.0 }) })
+    Some(Meeting {
+        sides: record.of.sides,
+        share: winner.map_or(0.5, |side| if side == 0 { 1.0 } else { 0.0 }),
+    })
 }
 
 /// The pairings and their results, grouped by seed.
 fn meetings(rounds: &[&[Record]]) -> Vec<Vec<Meeting>> {
-    rounds.iter().map(|round| round.iter().filter_map(meeting).collect()).collect()
+    rounds
+        .iter()
+        .map(|round| round.iter().filter_map(meeting).collect())
+        .collect()
 }
 
 /// The ratings after a growing number of games, of the entries in `ranks` that had played by then.
@@ -256,15 +292,28 @@ fn history<'a>(played: impl Iterator<Item = &'a Record>, ranks: &[usize]) -> Vec
     let all: Vec<Meeting> = played.filter_map(meeting).collect();
     let step = all.len().div_ceil(STANDINGS_MAX).max(1);
     let after = |games: usize| {
-        let entries: BTreeSet<usize> = all[..games].iter().flat_map(|meeting| meeting.sides).collect();
+        let entries: BTreeSet<usize> = all[..games]
+            .iter()
+            .flat_map(|meeting| meeting.sides)
+            .collect();
         let place = |entry: usize| entries.iter().position(|one| *one == entry);
-        let renamed =
-            |one: &Meeting| Meeting { sides: one.sides.map(|entry| place(entry).unwrap_or_default()), ..*one };
+        let renamed = |one: &Meeting| Meeting {
+            sides: one.sides.map(|entry| place(entry).unwrap_or_default()),
+            ..*one
+        };
         // As one seed: intervals are not needed.
         let rated = ratings(entries.len(), &[all[..games].iter().map(renamed).collect()]);
-        Standings { games, elo: ranks.iter().map(|entry| Some(rated[place(*entry)?].elo)).collect() }
+        Standings {
+            games,
+            elo: ranks
+                .iter()
+                .map(|entry| Some(rated[place(*entry)?].elo))
+                .collect(),
+        }
     };
-    let points = (step..all.len()).step_by(step).chain((!all.is_empty()).then_some(all.len()));
+    let points = (step..all.len())
+        .step_by(step)
+        .chain((!all.is_empty()).then_some(all.len()));
     points.map(after).collect()
 }
 
@@ -274,7 +323,11 @@ fn appearances(round: &[Record], entry: usize) -> impl Iterator<Item = Appearanc
         let sides = (0..2).filter(move |side| record.of.sides[*side] == entry);
         sides.filter_map(move |side| {
             let game = record.result.as_ref().ok()?;
-            Some(Appearance { game, side, opponent: record.of.sides[1 - side] })
+            Some(Appearance {
+                game,
+                side,
+                opponent: record.of.sides[1 - side],
+            })
         })
     })
 }
@@ -284,7 +337,9 @@ fn row(plan: &Plan, rounds: &[&[Record]], entry: usize, rating: Rating) -> Row {
     let entrant = &plan.tournament().entries[entry];
     let estimate = |value: &dyn Fn(&Appearance<'_>) -> u32| {
         let observation = |round: &&[Record]| {
-            let values: Vec<f64> = appearances(round, entry).map(|appearance| f64::from(value(&appearance))).collect();
+            let values: Vec<f64> = appearances(round, entry)
+                .map(|appearance| f64::from(value(&appearance)))
+                .collect();
             values.iter().sum::<f64>() / values.len() as f64
         };
         Estimate::of(&rounds.iter().map(observation).collect::<Vec<f64>>())
@@ -312,21 +367,32 @@ fn row(plan: &Plan, rounds: &[&[Record]], entry: usize, rating: Rating) -> Row {
 
 /// The numbers of games won, drawn and lost.
 fn standing<'a>(appearances: impl Iterator<Item = Appearance<'a>>) -> [u64; 3] {
-    appearances.fold([0; 3], |[wins, draws, losses], appearance| match appearance.game.winner {
-        None => [wins, draws + 1, losses],
-        Some(winner) if winner == appearance.side => [wins + 1, draws, losses],
-        Some(_) => [wins, draws, losses + 1],
-    })
+    appearances.fold(
+        [0; 3],
+        |[wins, draws, losses], appearance| match appearance.game.winner {
+            None => [wins, draws + 1, losses],
+            Some(winner) if winner == appearance.side => [wins + 1, draws, losses],
+            Some(_) => [wins, draws, losses + 1],
+        },
+    )
 }
 
 /// The results of each entry in `ranks` against each of its opponents.
 fn matrix<'a>(plan: &Plan, rounds: &[&'a [Record]], ranks: &[usize]) -> Vec<Cell> {
-    let (Some(first), Some(last)) = (rounds.first(), rounds.last()) else { return vec![] };
-    let seeds = Seeds { first: first[0].of.seed, last: last[0].of.seed };
+    let (Some(first), Some(last)) = (rounds.first(), rounds.last()) else {
+        return vec![];
+    };
+    let seeds = Seeds {
+        first: first[0].of.seed,
+        last: last[0].of.seed,
+    };
     let name = |entry: usize| plan.tournament().entries[entry].name.clone();
-    let pairs = ranks.iter().flat_map(|row| ranks.iter().map(move |column| (*row, *column)));
+    let pairs = ranks
+        .iter()
+        .flat_map(|row| ranks.iter().map(move |column| (*row, *column)));
     let cell = |(row, column): (usize, usize)| {
-        let of_round = |round: &&'a [Record]| appearances(round, row).filter(move |a| a.opponent == column);
+        let of_round =
+            |round: &&'a [Record]| appearances(round, row).filter(move |a| a.opponent == column);
         let all = || rounds.iter().flat_map(of_round);
         let games = all().count() as u64;
         let decided = |round: &&'a [Record]| {
@@ -335,7 +401,9 @@ fn matrix<'a>(plan: &Plan, rounds: &[&'a [Record]], ranks: &[usize]) -> Vec<Cell
         };
         let won_of_decided = Estimate::of_ratio(&rounds.iter().map(decided).collect::<Vec<_>>());
         let points = |side: usize| {
-            let of = |a: Appearance<'_>| f64::from(a.game.score[if side == 0 { a.side } else { 1 - a.side }]);
+            let of = |a: Appearance<'_>| {
+                f64::from(a.game.score[if side == 0 { a.side } else { 1 - a.side }])
+            };
             all().map(of).sum::<f64>() / games as f64
         };
         let score = [points(0), points(1)];
@@ -343,7 +411,18 @@ fn matrix<'a>(plan: &Plan, rounds: &[&'a [Record]], ranks: &[usize]) -> Vec<Cell
         let score_difference = score[0] - score[1];
         let row = name(row);
         let column = name(column);
-        let cell = Cell { row, column, games, wins, draws, losses, won_of_decided, score, score_difference, seeds };
+        let cell = Cell {
+            row,
+            column,
+            games,
+            wins,
+            draws,
+            losses,
+            won_of_decided,
+            score,
+            score_difference,
+            seeds,
+        };
         (games > 0).then_some(cell)
     };
     pairs.filter_map(cell).collect()

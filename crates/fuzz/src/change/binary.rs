@@ -23,8 +23,18 @@ const EDGES: [u64; 12] = [
 ];
 
 /// Edge-case floating-point numbers.
-const POINTS: [f64; 10] =
-    [0.0, -0.0, 1.0, -1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX, f64::MIN_POSITIVE, 1e-320];
+const POINTS: [f64; 10] = [
+    0.0,
+    -0.0,
+    1.0,
+    -1.0,
+    f64::NAN,
+    f64::INFINITY,
+    f64::NEG_INFINITY,
+    f64::MAX,
+    f64::MIN_POSITIVE,
+    1e-320,
+];
 
 /// One of the inputs with a few mutations.
 pub fn change(inputs: &[Vec<u8>], dice: &mut Dice) -> Vec<u8> {
@@ -40,17 +50,28 @@ fn once(bytes: &mut Vec<u8>, inputs: &[Vec<u8>], dice: &mut Dice) {
     match dice.roll(9) {
         0 => {
             let at = dice.roll(bytes.len());
-            bytes.iter_mut().skip(at).take(1).for_each(|byte| *byte = dice.number() as u8);
+            bytes
+                .iter_mut()
+                .skip(at)
+                .take(1)
+                .for_each(|byte| *byte = dice.number() as u8);
         }
         1 => {
             let at = dice.roll(bytes.len());
-            bytes.iter_mut().skip(at).take(1).for_each(|byte| *byte ^= 1 << dice.roll(8));
+            bytes
+                .iter_mut()
+                .skip(at)
+                .take(1)
+                .for_each(|byte| *byte ^= 1 << dice.roll(8));
         }
         2 | 3 => {
             // Numbers lie at multiples of their size after the four bytes of the encapsulation, or
             // anywhere.
             let size = *dice.one_of(&[1, 2, 4, 4, 8, 8]);
-            let edge = dice.one_of(&EDGES).wrapping_add(dice.roll(3) as u64).wrapping_sub(1);
+            let edge = dice
+                .one_of(&EDGES)
+                .wrapping_add(dice.roll(3) as u64)
+                .wrapping_sub(1);
             put(bytes, &edge.to_le_bytes()[..size], dice);
         }
         4 => put(bytes, &dice.one_of(&POINTS).to_le_bytes(), dice),
@@ -71,8 +92,16 @@ fn once(bytes: &mut Vec<u8>, inputs: &[Vec<u8>], dice: &mut Dice) {
 
 /// Overwrites a random place with a piece, as far as it fits.
 fn put(bytes: &mut [u8], piece: &[u8], dice: &mut Dice) {
-    let step = if dice.roll(4) == 0 { 1 } else { piece.len().next_power_of_two().min(8) };
+    let step = if dice.roll(4) == 0 {
+        1
+    } else {
+        piece.len().next_power_of_two().min(8)
+    };
     let first = if step == 1 { 0 } else { 4 % step };
     let at = first + step * dice.roll(bytes.len() / step + 1);
-    bytes.iter_mut().skip(at).zip(piece).for_each(|(byte, new)| *byte = *new);
+    bytes
+        .iter_mut()
+        .skip(at)
+        .zip(piece)
+        .for_each(|(byte, new)| *byte = *new);
 }

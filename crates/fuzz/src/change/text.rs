@@ -35,12 +35,26 @@ const NUMBERS: [&str; 24] = [
 ];
 
 /// Words with a meaning to some reader.
-const WORDS: [&str; 13] =
-    ["null", "true", "false", "\"\"", "[]", "{}", "\"\\u0000\"", "\"../x\"", "\"é\"", "base", ",", "\n", "[[x]]"];
+const WORDS: [&str; 13] = [
+    "null",
+    "true",
+    "false",
+    "\"\"",
+    "[]",
+    "{}",
+    "\"\\u0000\"",
+    "\"../x\"",
+    "\"é\"",
+    "base",
+    ",",
+    "\n",
+    "[[x]]",
+];
 
 /// Characters that end a text, or control a terminal when printed.
-const CHARACTERS: [char; 12] =
-    ['\0', '\x1b', '\x7f', '\u{9b}', '\u{202e}', '\u{feff}', 'ß', '"', '\\', '\n', '\r', '#'];
+const CHARACTERS: [char; 12] = [
+    '\0', '\x1b', '\x7f', '\u{9b}', '\u{202e}', '\u{feff}', 'ß', '"', '\\', '\n', '\r', '#',
+];
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
@@ -62,11 +76,25 @@ impl Pieces {
     pub fn of(texts: &[Vec<u8>]) -> Pieces {
         let numbers = NUMBERS.map(str::to_owned).to_vec();
         let words = WORDS.map(str::to_owned).to_vec();
-        let mut pieces = Pieces { kinds: [numbers, words, vec!["\"\"".to_owned()]], lines: vec![String::new()] };
+        let mut pieces = Pieces {
+            kinds: [numbers, words, vec!["\"\"".to_owned()]],
+            lines: vec![String::new()],
+        };
         for text in texts.iter().map(|text| String::from_utf8_lossy(text)) {
-            pieces.lines.extend(text.lines().filter(|line| line.len() < 1000).map(str::to_owned));
-            for (kind, piece) in split(&text).into_iter().filter(|(_, piece)| piece.len() < 200) {
-                pieces.kinds.get_mut(kind as usize).into_iter().for_each(|all| all.push(piece.to_owned()));
+            pieces.lines.extend(
+                text.lines()
+                    .filter(|line| line.len() < 1000)
+                    .map(str::to_owned),
+            );
+            for (kind, piece) in split(&text)
+                .into_iter()
+                .filter(|(_, piece)| piece.len() < 200)
+            {
+                pieces
+                    .kinds
+                    .get_mut(kind as usize)
+                    .into_iter()
+                    .for_each(|all| all.push(piece.to_owned()));
             }
         }
         for all in pieces.kinds.iter_mut().chain([&mut pieces.lines]) {
@@ -92,7 +120,11 @@ impl Pieces {
     pub fn change(&self, texts: &[Vec<u8>], dice: &mut Dice) -> Vec<u8> {
         let mut text = String::from_utf8_lossy(&texts[dice.roll(texts.len())]).into_owned();
         for _ in 0..count(dice) {
-            text = if dice.roll(3) == 0 { self.change_line(&text, dice) } else { self.change_piece(&text, dice) };
+            text = if dice.roll(3) == 0 {
+                self.change_line(&text, dice)
+            } else {
+                self.change_piece(&text, dice)
+            };
             if text.len() > LENGTH_MAX {
                 break;
             }
@@ -112,9 +144,17 @@ impl Pieces {
     fn change_piece(&self, text: &str, dice: &mut Dice) -> String {
         let mut pieces: Vec<(Kind, &str)> = split(text);
         // Half of the time a number, because numbers affect a program most.
-        let numbers: Vec<usize> = (0..pieces.len()).filter(|i| pieces[*i].0 == Kind::Number).collect();
-        let at = if numbers.is_empty() || dice.roll(2) == 0 { dice.roll(pieces.len()) } else { *dice.one_of(&numbers) };
-        let Some((kind, piece)) = pieces.get(at).copied() else { return dice.one_of(&WORDS).to_string() };
+        let numbers: Vec<usize> = (0..pieces.len())
+            .filter(|i| pieces[*i].0 == Kind::Number)
+            .collect();
+        let at = if numbers.is_empty() || dice.roll(2) == 0 {
+            dice.roll(pieces.len())
+        } else {
+            *dice.one_of(&numbers)
+        };
+        let Some((kind, piece)) = pieces.get(at).copied() else {
+            return dice.one_of(&WORDS).to_string();
+        };
         let longer;
         match dice.roll(8) {
             0 => drop(pieces.remove(at)),
@@ -160,8 +200,14 @@ fn split(text: &str) -> Vec<(Kind, &str)> {
     while let Some(first) = rest.chars().next() {
         let (kind, length) = match first {
             '"' | '\'' => (Kind::Quoted, quoted_length(rest, first)),
-            '0'..='9' | '-' => (Kind::Number, length_of(rest, |c| c.is_ascii_alphanumeric() || "-+._".contains(c))),
-            c if c.is_alphabetic() => (Kind::Word, length_of(rest, |c| c.is_alphanumeric() || c == '_')),
+            '0'..='9' | '-' => (
+                Kind::Number,
+                length_of(rest, |c| c.is_ascii_alphanumeric() || "-+._".contains(c)),
+            ),
+            c if c.is_alphabetic() => (
+                Kind::Word,
+                length_of(rest, |c| c.is_alphanumeric() || c == '_'),
+            ),
             c if c.is_whitespace() => (Kind::Other, length_of(rest, char::is_whitespace)),
             c => (Kind::Other, c.len_utf8()),
         };
@@ -199,10 +245,16 @@ mod tests {
     fn a_text_is_split_into_words_and_numbers_and_nothing_is_lost() {
         let text = "a_b = -1.5e3 # ß\n\"x\\\"y\" 'open\n{\"k\":[1]}";
         let pieces = split(text);
-        assert_eq!(pieces.iter().map(|(_, piece)| *piece).collect::<String>(), text);
-        for want in
-            [(Kind::Word, "a_b"), (Kind::Number, "-1.5e3"), (Kind::Quoted, "\"x\\\"y\""), (Kind::Quoted, "\"k\"")]
-        {
+        assert_eq!(
+            pieces.iter().map(|(_, piece)| *piece).collect::<String>(),
+            text
+        );
+        for want in [
+            (Kind::Word, "a_b"),
+            (Kind::Number, "-1.5e3"),
+            (Kind::Quoted, "\"x\\\"y\""),
+            (Kind::Quoted, "\"k\""),
+        ] {
             assert!(pieces.contains(&want), "no {want:?} in {pieces:?}");
         }
     }

@@ -9,18 +9,31 @@ use std::sync::LazyLock;
 use std::time::Duration;
 use tempfile::TempDir;
 
-pub(super) const TARGET: Target =
-    Target { name: "keys", seeds, change: binaries, check, allocated_max: (4 << 20, 500) };
+pub(super) const TARGET: Target = Target {
+    name: "keys",
+    seeds,
+    change: binaries,
+    check,
+    allocated_max: (4 << 20, 500),
+};
 
 /// The files of a bundle, with the labels of their contents.
-const FILES: [(&str, &str); 3] =
-    [("authority.pem", "CERTIFICATE"), ("certificate.pem", "CERTIFICATE"), ("key.pem", "PRIVATE KEY")];
+const FILES: [(&str, &str); 3] = [
+    ("authority.pem", "CERTIFICATE"),
+    ("certificate.pem", "CERTIFICATE"),
+    ("key.pem", "PRIVATE KEY"),
+];
 const VALID: Duration = Duration::from_secs(3600);
 
 static FOLDER: LazyLock<TempDir> = LazyLock::new(|| tempfile::tempdir().expect("a folder"));
 
 fn seeds() -> Vec<Vec<u8>> {
-    let identities = [Identity::Sim, Identity::Team("blue".to_owned()), Identity::Gateway(None), Identity::Operator];
+    let identities = [
+        Identity::Sim,
+        Identity::Team("blue".to_owned()),
+        Identity::Gateway(None),
+        Identity::Operator,
+    ];
     let hosts = ["boat.example".to_owned(), "192.168.1.2".to_owned()];
     let folder = tempfile::tempdir().expect("a folder");
     let bundles = make(folder.path(), &identities, &hosts, VALID).expect("keys");
@@ -40,18 +53,29 @@ fn check(mut bytes: &[u8]) {
     for (file, label) in FILES {
         let (length, rest) = bytes.split_first_chunk::<4>().unwrap_or((&[0; 4], &[]));
         let (der, rest) = rest.split_at((u32::from_le_bytes(*length) as usize).min(rest.len()));
-        let pem = format!("-----BEGIN {label}-----\n{}\n-----END {label}-----\n", BASE64_STANDARD.encode(der));
+        let pem = format!(
+            "-----BEGIN {label}-----\n{}\n-----END {label}-----\n",
+            BASE64_STANDARD.encode(der)
+        );
         std::fs::write(FOLDER.path().join(file), pem).expect("a file");
         bytes = rest;
     }
     match Bundle::load(FOLDER.path()) {
         Ok(bundle) => {
-            assert_eq!(bundle.identity.to_string().parse(), Ok(bundle.identity.clone()));
+            assert_eq!(
+                bundle.identity.to_string().parse(),
+                Ok(bundle.identity.clone())
+            );
             check_shown(&bundle.valid.join(" "));
         }
         Err(error) => {
             check_shown(&error);
-            assert!(error.to_string().contains(&FOLDER.path().display().to_string()), "{error} names no file");
+            assert!(
+                error
+                    .to_string()
+                    .contains(&FOLDER.path().display().to_string()),
+                "{error} names no file"
+            );
         }
     }
 }
@@ -64,7 +88,10 @@ mod tests {
     fn real_keys_are_keys_here() {
         for seed in seeds() {
             check(&seed);
-            assert!(Bundle::load(FOLDER.path()).is_ok(), "a reassembled bundle is valid");
+            assert!(
+                Bundle::load(FOLDER.path()).is_ok(),
+                "a reassembled bundle is valid"
+            );
         }
     }
 }

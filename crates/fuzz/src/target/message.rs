@@ -21,40 +21,88 @@ use sim::node::membership::Membership;
 use sim::node::{Pace, agents, gateways};
 use std::cell::RefCell;
 
-pub(super) const TARGET: Target =
-    Target { name: "message", seeds, change: binaries, check, allocated_max: (32 << 20, 500) };
+pub(super) const TARGET: Target = Target {
+    name: "message",
+    seeds,
+    change: binaries,
+    check,
+    allocated_max: (32 << 20, 500),
+};
 
 /// The ticket of every node.
 const TICKET: u64 = 7;
 
 fn seeds() -> Vec<Vec<u8>> {
-    let Played { decisions, orders, says, .. } = played(played::scenario("pav01_vs_pav01"), 30);
+    let Played {
+        decisions,
+        orders,
+        says,
+        ..
+    } = played(played::scenario("pav01_vs_pav01"), 30);
     let mut seeds = Vec::new();
     for (i, decision) in decisions.iter().enumerate().step_by(10) {
         seeds.push(codec::encode(&*decision.frame));
         seeds.extend(decision.pictures.iter().map(codec::encode));
         seeds.extend([codec::encode(&orders[i]), codec::encode(&says[i])]);
-        let inputs = decision.inputs.iter().map(|input| InputRecord::from(*input)).collect();
-        let stamp = Stamp { version: Inputs::VERSION, ..decision.frame.stamp };
+        let inputs = decision
+            .inputs
+            .iter()
+            .map(|input| InputRecord::from(*input))
+            .collect();
+        let stamp = Stamp {
+            version: Inputs::VERSION,
+            ..decision.frame.stamp
+        };
         seeds.push(codec::encode(&Inputs { stamp, inputs }));
     }
-    let stamp = |version| Stamp { version, ..Stamp::default() };
-    let nav = Nav { north_m: 10.0, ..Nav::default() };
+    let stamp = |version| Stamp {
+        version,
+        ..Stamp::default()
+    };
+    let nav = Nav {
+        north_m: 10.0,
+        ..Nav::default()
+    };
     let vehicle = VehicleId(1);
     let valid = true;
-    let report = NavReport { stamp: stamp(NavReport::VERSION), ticket: TICKET, vehicle, valid, age_ns: 30, nav };
+    let report = NavReport {
+        stamp: stamp(NavReport::VERSION),
+        ticket: TICKET,
+        vehicle,
+        valid,
+        age_ns: 30,
+        nav,
+    };
     let data = b"$GPHDT,12.5,T*30\r\n".to_vec();
-    let link = LinkBytes { stamp: stamp(LinkBytes::VERSION), vehicle, outward: false, data };
+    let link = LinkBytes {
+        stamp: stamp(LinkBytes::VERSION),
+        vehicle,
+        outward: false,
+        data,
+    };
     let data = b"data\r".to_vec();
-    let payload = PayloadBytes { stamp: stamp(PayloadBytes::VERSION), connection: 3, outward: true, data };
+    let payload = PayloadBytes {
+        stamp: stamp(PayloadBytes::VERSION),
+        connection: 3,
+        outward: true,
+        data,
+    };
     let all = played::orders().map(|order| ExternalOrder {
         stamp: stamp(ExternalOrder::VERSION),
         given_ns: SimTime(7),
         order,
     });
-    let orders = Orders { stamp: stamp(Orders::VERSION), ticket: TICKET, orders: played::orders().to_vec() };
+    let orders = Orders {
+        stamp: stamp(Orders::VERSION),
+        ticket: TICKET,
+        orders: played::orders().to_vec(),
+    };
     seeds.extend(all.iter().map(codec::encode));
-    seeds.extend([codec::encode(&report), codec::encode(&link), codec::encode(&played::proposal())]);
+    seeds.extend([
+        codec::encode(&report),
+        codec::encode(&link),
+        codec::encode(&played::proposal()),
+    ]);
     seeds.extend([codec::encode(&orders), codec::encode(&payload)]);
     seeds
 }
@@ -78,17 +126,30 @@ impl Readers {
         let names = scenario.vehicles.iter().map(|vehicle| vehicle.name.clone());
         let member = |role, vehicles: Vec<String>| {
             let mut membership = Membership::new(&scenario, role);
-            let request =
-                JoinRequest { version: primitives::VERSION.to_owned(), role, node: "fuzz".to_owned(), vehicles };
+            let request = JoinRequest {
+                version: primitives::VERSION.to_owned(),
+                role,
+                node: "fuzz".to_owned(),
+                vehicles,
+            };
             membership.join(&request, TICKET, SimTime::ZERO);
             membership
         };
         let agents = member(Role::Agent, names.collect());
-        let real = scenario.externals().map(|vehicle| scenario.vehicles[vehicle.index()].name.clone());
+        let real = scenario
+            .externals()
+            .map(|vehicle| scenario.vehicles[vehicle.index()].name.clone());
         let gateways = member(Role::Gateway, real.collect());
         let teams = scenario.vehicles.iter().map(|vehicle| (vehicle.team, true));
         let team_inbox = TeamInbox::new(teams, &[VehicleId(0)]);
-        Readers { snapshot: contest.snapshot(), agents, gateways, team_inbox, contest, scenario }
+        Readers {
+            snapshot: contest.snapshot(),
+            agents,
+            gateways,
+            team_inbox,
+            contest,
+            scenario,
+        }
     }
 }
 
@@ -101,23 +162,39 @@ fn check(bytes: &[u8]) {
         if let Some(orders) = read::<Orders>(bytes) {
             let mut refusals = Refusals::default();
             let open = (readers.contest.decision(), Pace::Realtime { factor: 1.0 });
-            for (vehicle, order) in agents::accept(&mut readers.agents.clone(), &orders, open, &mut refusals).orders {
+            for (vehicle, order) in
+                agents::accept(&mut readers.agents.clone(), &orders, open, &mut refusals).orders
+            {
                 // Non-finite numbers make the boat hold.
-                readers.contest.order(vehicle, order, orders.stamp.valid_ns).unwrap_or_default();
+                readers
+                    .contest
+                    .order(vehicle, order, orders.stamp.valid_ns)
+                    .unwrap_or_default();
             }
             readers.go_on();
         }
         if let Some(report) = read::<NavReport>(bytes) {
             let now = readers.contest.now();
-            let fix_at = gateways::accept(&mut readers.gateways.clone(), &report, now, &mut Refusals::default());
+            let fix_at = gateways::accept(
+                &mut readers.gateways.clone(),
+                &report,
+                now,
+                &mut Refusals::default(),
+            );
             if let Some(fix_at) = fix_at {
                 assert!(fix_at <= now);
-                readers.contest.report(report.vehicle, report.nav, fix_at, report.valid).unwrap_or_default();
+                readers
+                    .contest
+                    .report(report.vehicle, report.nav, fix_at, report.valid)
+                    .unwrap_or_default();
             }
             readers.go_on();
         }
         if let Some(inputs) = read::<Inputs>(bytes) {
-            inputs.of(&readers.scenario).flatten().for_each(|input| readers.contest.give(input));
+            inputs
+                .of(&readers.scenario)
+                .flatten()
+                .for_each(|input| readers.contest.give(input));
             readers.go_on();
         }
         if let Some(mut picture) = read::<Picture>(bytes) {
@@ -126,7 +203,11 @@ fn check(bytes: &[u8]) {
         }
         if let Some(frame) = read::<Frame>(bytes) {
             for logged in frame.logged(&readers.scenario) {
-                assert!(!EventOutcome::new(&readers.scenario, &logged).sentence().is_empty());
+                assert!(
+                    !EventOutcome::new(&readers.scenario, &logged)
+                        .sentence()
+                        .is_empty()
+                );
             }
         }
         read::<PolicyProposal>(bytes);
@@ -147,7 +228,8 @@ fn read<M: Message + Serialize + DeserializeOwned>(bytes: &[u8]) -> Option<M> {
         Ok(message) => {
             let written = codec::encode(&message);
             assert_eq!(written.len(), bytes.len(), "{}", M::SCHEMA);
-            let again = codec::decode::<M>(&written).unwrap_or_else(|e| panic!("cannot decode what was encoded: {e}"));
+            let again = codec::decode::<M>(&written)
+                .unwrap_or_else(|e| panic!("cannot decode what was encoded: {e}"));
             assert_eq!(codec::encode(&again), written, "{}", M::SCHEMA);
             Some(message)
         }
@@ -165,26 +247,60 @@ impl Readers {
         self.contest.advance();
         let frame = self.contest.frame(&mut EventCursor::default());
         for (truth, vehicle) in frame.vehicles.iter().zip(&self.scenario.vehicles) {
-            let Nav { north_m, east_m, psi_rad, surge_m_s, sway_m_s, yaw_rate_rad_s } = truth.nav;
-            let numbers = [north_m, east_m, psi_rad, surge_m_s, sway_m_s, yaw_rate_rad_s];
-            assert!(numbers.iter().all(|number| number.is_finite()), "{} is at {:?}", vehicle.name, truth.nav);
+            let Nav {
+                north_m,
+                east_m,
+                psi_rad,
+                surge_m_s,
+                sway_m_s,
+                yaw_rate_rad_s,
+            } = truth.nav;
+            let numbers = [
+                north_m,
+                east_m,
+                psi_rad,
+                surge_m_s,
+                sway_m_s,
+                yaw_rate_rad_s,
+            ];
+            assert!(
+                numbers.iter().all(|number| number.is_finite()),
+                "{} is at {:?}",
+                vehicle.name,
+                truth.nav
+            );
         }
-        self.contest.restore(&self.snapshot).expect("the snapshot is valid");
+        self.contest
+            .restore(&self.snapshot)
+            .expect("the snapshot is valid");
     }
 
     /// Checks that the sim accepts the minds' orders after any picture.
     fn decide(&mut self, picture: &Picture) {
-        let mind = |i| (VehicleId::at(i), agent::mind_of(&self.scenario, VehicleId::at(i)));
+        let mind = |i| {
+            (
+                VehicleId::at(i),
+                agent::mind_of(&self.scenario, VehicleId::at(i)),
+            )
+        };
         let mut runner = MindRunner::new([mind(0), mind(2)]);
         runner.propose(&played::proposal(), picture.stamp);
         for _ in 0..2 {
-            runner.decide(picture.stamp, |vehicle| picture.own(vehicle).map(|_| picture));
+            runner.decide(picture.stamp, |vehicle| {
+                picture.own(vehicle).map(|_| picture)
+            });
         }
         for (vehicle, order) in runner.orders() {
             let taken = self.contest.order(vehicle, order, SimTime::ZERO);
-            assert!(taken.is_ok(), "{order:?} for {}", self.scenario.vehicles[vehicle.index()].name);
+            assert!(
+                taken.is_ok(),
+                "{order:?} for {}",
+                self.scenario.vehicles[vehicle.index()].name
+            );
         }
-        self.contest.restore(&self.snapshot).expect("the snapshot is valid");
+        self.contest
+            .restore(&self.snapshot)
+            .expect("the snapshot is valid");
     }
 
     /// Checks that teammates receive no more words than boats may send, and only finite numbers.

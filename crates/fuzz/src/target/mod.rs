@@ -83,7 +83,11 @@ fn check_shown(error: &dyn Display) {
     let shown = primitives::printable::message(&error.to_string());
     assert!(!shown.trim().is_empty(), "an empty error");
     for line in shown.lines() {
-        assert!(line.chars().count() < 2100, "{} characters: {line:.200}", line.chars().count());
+        assert!(
+            line.chars().count() < 2100,
+            "{} characters: {line:.200}",
+            line.chars().count()
+        );
         assert!(!line.contains(|c: char| c.is_control()), "{line:?}");
     }
 }

@@ -5,8 +5,13 @@ use super::{Target, binaries, in_pieces};
 use moos::database::Database;
 use moos::wire::{self, Framer, Kind, Malformed, Msg};
 
-pub(super) const TARGET: Target =
-    Target { name: "moos", seeds, change: binaries, check, allocated_max: (1 << 20, 2000) };
+pub(super) const TARGET: Target = Target {
+    name: "moos",
+    seeds,
+    change: binaries,
+    check,
+    allocated_max: (1 << 20, 2000),
+};
 
 /// Messages of each kind that a database processes, one by one and together.
 fn seeds() -> Vec<Vec<u8>> {
@@ -22,15 +27,21 @@ fn seeds() -> Vec<Vec<u8>> {
         Msg::text(Kind::REQUEST, "ALL", "", 1e9),
         Msg::text(Kind::REQUEST, "VAR_SUMMARY", "", 1e9),
     ];
-    let one_by_one = messages.iter().map(|msg| wire::packet_of(std::slice::from_ref(msg)));
+    let one_by_one = messages
+        .iter()
+        .map(|msg| wire::packet_of(std::slice::from_ref(msg)));
     let datagram = wire::packet_of(&messages[1..2])[9..].to_vec();
     let in_a_row: Vec<u8> = one_by_one.clone().flatten().collect();
-    one_by_one.chain([wire::packet_of(&messages), in_a_row, datagram]).collect()
+    one_by_one
+        .chain([wire::packet_of(&messages), in_a_row, datagram])
+        .collect()
 }
 
 fn check(bytes: &[u8]) {
     let mut database = Database::new("blue_one", ["DEPLOY".to_owned()].into(), 1e9);
-    let (_, mail) = database.admit(&Msg::text(Kind::DATA, "", "pFuzz", 1e9), 1e9).expect("a name that is free");
+    let (_, mail) = database
+        .admit(&Msg::text(Kind::DATA, "", "pFuzz", 1e9), 1e9)
+        .expect("a name that is free");
     // As text, because NaN does not equal itself.
     let (_, packets) = in_pieces(bytes, |size| {
         let (packets, end) = framed(bytes.chunks(size));
@@ -41,7 +52,10 @@ fn check(bytes: &[u8]) {
     for messages in read {
         let written = wire::packet_of(&messages);
         let (again, end) = framed([written.as_slice()]);
-        assert_eq!((format!("{again:?}"), end), (format!("[{messages:?}]"), None));
+        assert_eq!(
+            (format!("{again:?}"), end),
+            (format!("[{messages:?}]"), None)
+        );
         database.receive("pFuzz", messages, 1e9);
     }
     if let Some(packet) = mail.visit(|mail| mail.take_packet(None)) {
@@ -50,7 +64,10 @@ fn check(bytes: &[u8]) {
     if let Ok(msg) = wire::decode(bytes) {
         let mut written = Vec::new();
         wire::encode(&msg, &mut written);
-        assert_eq!(format!("{:?}", wire::decode(&written)), format!("{:?}", Ok::<_, Malformed>(msg)));
+        assert_eq!(
+            format!("{:?}", wire::decode(&written)),
+            format!("{:?}", Ok::<_, Malformed>(msg))
+        );
     }
 }
 

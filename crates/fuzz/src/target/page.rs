@@ -12,15 +12,21 @@ use shore::page::{Access, Outgoing, PageRequest, PageSession, View};
 use std::sync::{Arc, LazyLock};
 use std::time::{Duration, Instant};
 
-pub(super) const TARGET: Target = Target { name: "page", seeds, change: texts, check, allocated_max: (16 << 20, 5000) };
+pub(super) const TARGET: Target = Target {
+    name: "page",
+    seeds,
+    change: texts,
+    check,
+    allocated_max: (16 << 20, 5000),
+};
 
 /// Maximum number of messages to a page at once: a minute of history in half seconds, events, and
 /// new data.
 const SENT_MAX: usize = 300;
 
 static REPLAY: LazyLock<ReplayView> = LazyLock::new(|| {
-    let recording =
-        Recording::of(played(played::scenario("attack_1v1"), 30).recording(&[])).expect("the recording is valid");
+    let recording = Recording::of(played(played::scenario("attack_1v1"), 30).recording(&[]))
+        .expect("the recording is valid");
     replay_of(recording)
 });
 
@@ -32,7 +38,11 @@ static LIVE: LazyLock<LiveView> = LazyLock::new(|| {
 
 fn seeds() -> Vec<Vec<u8>> {
     let cases = include_str!("../../../shore/src/page/request_cases.txt");
-    let requests: Vec<&str> = cases.lines().filter_map(|line| line.split_once(" is ")).map(|(text, _)| text).collect();
+    let requests: Vec<&str> = cases
+        .lines()
+        .filter_map(|line| line.split_once(" is "))
+        .map(|(text, _)| text)
+        .collect();
     let more = [
         r#"{"do":"select","vehicle":"blue_one","functions":true}"#,
         r#"{"do":"seek","t_s":1.5}"#,
@@ -43,25 +53,46 @@ fn seeds() -> Vec<Vec<u8>> {
         "!",
         r#"{"do":"step","by":2}"#,
     ];
-    vec![requests.join("\n").into_bytes(), more.join("\n").into_bytes(), [more, more].concat().join("\n").into_bytes()]
+    vec![
+        requests.join("\n").into_bytes(),
+        more.join("\n").into_bytes(),
+        [more, more].concat().join("\n").into_bytes(),
+    ]
 }
 
 fn check(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     for access in [Access::Watch, Access::Control, Access::Operate] {
-        talk(PageSession::new(REPLAY.open_viewer(access), access), &text, |_, _| ());
+        talk(
+            PageSession::new(REPLAY.open_viewer(access), access),
+            &text,
+            |_, _| (),
+        );
     }
     let access = Access::Watch;
-    talk(PageSession::new(LIVE.open_viewer(access), access), &text, |line, said| {
-        // A viewer without control rights cannot change anything.
-        let acts = serde_json::from_str::<PageRequest>(line).is_ok_and(|ask| ask.needs() > Access::Watch);
-        let refused = |text: &String| text.starts_with(r#"{"kind":"refused""#) && text.contains("may only watch");
-        assert!(!acts || said.iter().any(refused), "the reply to {line} was {said:?}");
-    });
+    talk(
+        PageSession::new(LIVE.open_viewer(access), access),
+        &text,
+        |line, said| {
+            // A viewer without control rights cannot change anything.
+            let acts = serde_json::from_str::<PageRequest>(line)
+                .is_ok_and(|ask| ask.needs() > Access::Watch);
+            let refused = |text: &String| {
+                text.starts_with(r#"{"kind":"refused""#) && text.contains("may only watch")
+            };
+            assert!(
+                !acts || said.iter().any(refused),
+                "the reply to {line} was {said:?}"
+            );
+        },
+    );
 }
 
 fn replay_of(recording: Recording) -> ReplayView {
-    ReplayView::new(Arc::new(Recorded::new(Arc::new(recording), "fuzz.mcap".to_owned())), None)
+    ReplayView::new(
+        Arc::new(Recorded::new(Arc::new(recording), "fuzz.mcap".to_owned())),
+        None,
+    )
 }
 
 /// Shows a recording to a page and navigates in it.
@@ -69,7 +100,11 @@ pub(super) fn look_around(recording: Recording) {
     let view = replay_of(recording);
     let access = Access::Watch;
     let seed = String::from_utf8(seeds().swap_remove(1)).expect("a text");
-    talk(PageSession::new(view.open_viewer(access), access), &seed, |_, _| ());
+    talk(
+        PageSession::new(view.open_viewer(access), access),
+        &seed,
+        |_, _| (),
+    );
 }
 
 /// Sends lines to a session. Every reply has a kind, replies end, and at most two frames are in
@@ -98,7 +133,8 @@ fn said(session: &mut PageSession, now: Instant, under_way: &mut usize) -> Vec<S
         match session.next_message(now) {
             None => return texts,
             Some(Outgoing::Text(text)) => {
-                let value: Value = serde_json::from_str(&text).unwrap_or_else(|e| panic!("{e}: {text:.300}"));
+                let value: Value =
+                    serde_json::from_str(&text).unwrap_or_else(|e| panic!("{e}: {text:.300}"));
                 assert!(value["kind"].is_string(), "{text:.300}");
                 texts.push(text);
             }

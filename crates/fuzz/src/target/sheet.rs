@@ -9,7 +9,13 @@ use std::sync::LazyLock;
 use trial::identify::Log;
 use trial::{Engine, LONGEST_S, Mistake, Orders, Sheet};
 
-pub(super) const TARGET: Target = Target { name: "sheet", seeds, change: texts, check, allocated_max: (1 << 20, 1000) };
+pub(super) const TARGET: Target = Target {
+    name: "sheet",
+    seeds,
+    change: texts,
+    check,
+    allocated_max: (1 << 20, 1000),
+};
 
 /// Boats with propellers, a thrust table, and a rudder.
 static BOATS: LazyLock<[Boat; 3]> = LazyLock::new(|| {
@@ -31,7 +37,10 @@ fn seeds() -> Vec<Vec<u8>> {
         table("port_newton,starboard_newton", "10,-10"),
         table("thrust_pct,rudder_pct", "100, -20"),
         table("speed_m_s,heading_deg,remark", "1.5,270,\"a, b\""),
-        table("port_pct,starboard_pct,x_m,y_m,heading_deg,surge_m_s,sway_m_s,yaw_rate_deg_s", "5,5,1,2,359,1,,nan"),
+        table(
+            "port_pct,starboard_pct,x_m,y_m,heading_deg,surge_m_s,sway_m_s,yaw_rate_deg_s",
+            "5,5,1,2,359,1,,nan",
+        ),
     ]
 }
 
@@ -45,7 +54,8 @@ fn check(bytes: &[u8]) {
         match Orders::of_sheet(&sheet, &Engine::new(boat)) {
             Ok(orders) => {
                 assert!(orders.end() <= SimTime::from_s(LONGEST_S));
-                let _ = [-1.0, 0.0, 1.0, LONGEST_S, 1e9].map(|at_s| orders.at(SimTime::from_s(at_s)));
+                let _ =
+                    [-1.0, 0.0, 1.0, LONGEST_S, 1e9].map(|at_s| orders.at(SimTime::from_s(at_s)));
             }
             Err(mistake) => check_place(&mistake, lines),
         }
@@ -57,5 +67,8 @@ fn check(bytes: &[u8]) {
 
 fn check_place(mistake: &Mistake, lines: u64) {
     check_shown(mistake);
-    assert!(mistake.file == "in.csv" && mistake.line.is_none_or(|line| (1..=lines).contains(&line)), "{mistake:?}");
+    assert!(
+        mistake.file == "in.csv" && mistake.line.is_none_or(|line| (1..=lines).contains(&line)),
+        "{mistake:?}"
+    );
 }

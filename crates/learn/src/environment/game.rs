@@ -59,8 +59,12 @@ impl Game {
         let mind = |vehicle: VehicleId| -> Box<dyn Mind> {
             let is_learner = scenario.team_of(vehicle) == side.learner;
             match (is_learner, &setup.opponents[side.opponent].1, &setup.mates) {
-                (false, Player::Strategy(strategy), _) => agent::mind_by(scenario, vehicle, strategy),
-                (_, _, Some(strategy)) if !pilots.contains(&vehicle) => agent::mind_by(scenario, vehicle, strategy),
+                (false, Player::Strategy(strategy), _) => {
+                    agent::mind_by(scenario, vehicle, strategy)
+                }
+                (_, _, Some(strategy)) if !pilots.contains(&vehicle) => {
+                    agent::mind_by(scenario, vehicle, strategy)
+                }
                 (false, Player::Model(model), _) => {
                     Box::new(policy_pilot(setup, scenario, vehicle).by_model(model.clone()))
                 }
@@ -155,7 +159,9 @@ impl Game {
 
     /// Writes the boat's observation. Returns whether the boat's next action takes effect.
     pub(super) fn observe(&mut self, place: usize, out: &mut [f32]) -> bool {
-        let Some((pilot, picture)) = self.pilot(place) else { return false };
+        let Some((pilot, picture)) = self.pilot(place) else {
+            return false;
+        };
         out.copy_from_slice(pilot.observe(picture));
         pilot.obeys()
     }
@@ -170,7 +176,13 @@ impl Game {
         let teams = [self.side.learner, TeamId(1 - self.side.learner.0)];
         let counts = teams.map(|team| self.tally.team(team, |i| scenario.vehicles[i].team));
         let score = teams.map(|team| score[team.index()]);
-        Standing { seed: self.seed, side: self.side, score, counts, steps: self.steps }
+        Standing {
+            seed: self.seed,
+            side: self.side,
+            score,
+            counts,
+            steps: self.steps,
+        }
     }
 
     pub(super) fn contest(&self) -> &Contest {
@@ -180,23 +192,34 @@ impl Game {
     fn reward(&mut self, setup: &Setup, ending: Ending) {
         let rewards = &setup.rewards;
         let carrying: Vec<bool> = self.boats.iter().map(|boat| boat.carrying).collect();
-        let before: Vec<f64> =
-            self.boats.iter().map(|boat| rewards.potential.of(boat) + rewards.place.of(boat)).collect();
+        let before: Vec<f64> = self
+            .boats
+            .iter()
+            .map(|boat| rewards.potential.of(boat) + rewards.place.of(boat))
+            .collect();
         self.boats = progress(&self.contest, rewards.mind_others());
         let scenario = self.contest.scenario();
-        let step_s = scenario.tick.as_s() * f64::from(scenario.ticks_per_decision * setup.decisions_per_step);
+        let step_s = scenario.tick.as_s()
+            * f64::from(scenario.ticks_per_decision * setup.decisions_per_step);
         for (i, reward) in self.rewards.iter_mut().enumerate() {
             // A potential of the state alone, 0 at the end: it does not change the best policy (Ng,
             // Harada and Russell, ICML 1999). Places pay the undiscounted gain of a step. A payment
             // per second failed: half a second on the right course changed the sum by a hundredth,
             // and boats trained to retreat on 300,000 such samples ended no nearer to home than
             // stationary ones.
-            let after = if ending == Ending::Over { 0.0 } else { rewards.potential.of(&self.boats[i]) };
-            *reward = setup.discount * after + rewards.place.of(&self.boats[i]) - before[i] + rewards.second * step_s;
+            let after = if ending == Ending::Over {
+                0.0
+            } else {
+                rewards.potential.of(&self.boats[i])
+            };
+            *reward = setup.discount * after + rewards.place.of(&self.boats[i]) - before[i]
+                + rewards.second * step_s;
         }
         let events = self.read.read(self.contest.events());
         rewards.add_events(scenario, events, &carrying, &mut self.rewards);
-        events.iter().for_each(|logged| self.tally.add(logged.event));
+        events
+            .iter()
+            .for_each(|logged| self.tally.add(logged.event));
         if ending == Ending::Over {
             for (i, reward) in self.rewards.iter_mut().enumerate() {
                 *reward += rewards.of_end(self.contest.score(), scenario.team_of(VehicleId::at(i)));
@@ -226,14 +249,27 @@ fn policy_pilot(setup: &Setup, scenario: &Scenario, vehicle: VehicleId) -> Pilot
 
 /// Draws the opponent and the sides. Consecutive games alternate sides unless the side is fixed.
 fn draw_side(setup: &Setup, seed: u64) -> Side {
-    let total: f64 = setup.opponents.iter().map(|(weight, _)| weight.max(0.0)).sum();
+    let total: f64 = setup
+        .opponents
+        .iter()
+        .map(|(weight, _)| weight.max(0.0))
+        .sum();
     let mut left = Stream::new(seed, "opponent").between(0.0, total);
     let chosen = setup.opponents.iter().position(|(weight, _)| {
         left -= weight.max(0.0);
         left < 0.0
     });
-    let last = || setup.opponents.iter().rposition(|(weight, _)| *weight > 0.0).unwrap_or_default();
+    let last = || {
+        setup
+            .opponents
+            .iter()
+            .rposition(|(weight, _)| *weight > 0.0)
+            .unwrap_or_default()
+    };
     // Alternates because the ends of the field differ: the wind has a direction.
     let learner = setup.learner.unwrap_or(TeamId((seed % 2) as u8));
-    Side { learner, opponent: chosen.unwrap_or_else(last) }
+    Side {
+        learner,
+        opponent: chosen.unwrap_or_else(last),
+    }
 }

@@ -97,13 +97,25 @@ impl Games {
         watches: Option<Watches>,
     ) -> Result<Games, SetupError> {
         setup.check()?;
-        let pool = || rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be started");
+        let pool = || {
+            rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .expect("threads can be started")
+        };
         let starts = Starts::new(&setup, seed, watches);
         let slot = |i: usize| {
             let game = starts.game(&setup, i as u64)?;
             let taught = vec![];
             let truth = [vec![], vec![]];
-            Ok(Slot { game, number: i as u64, ended: None, taught, truth, is_shown: false })
+            Ok(Slot {
+                game,
+                number: i as u64,
+                ended: None,
+                taught,
+                truth,
+                is_shown: false,
+            })
         };
         let slots: Result<Vec<Slot>, SetupError> = (0..games).map(slot).collect();
         Ok(Games {
@@ -130,7 +142,10 @@ impl Games {
     /// Sets the opponents' draw weights from each slot's next game on. Missing weights are 0.
     pub(crate) fn set_weights(&mut self, weights: impl IntoIterator<Item = f64>) {
         let mut weights = weights.into_iter();
-        self.setup.opponents.iter_mut().for_each(|(weight, _)| *weight = weights.next().unwrap_or(0.0));
+        self.setup
+            .opponents
+            .iter_mut()
+            .for_each(|(weight, _)| *weight = weights.next().unwrap_or(0.0));
     }
 
     /// The total number of rows, and the number per game.
@@ -198,13 +213,24 @@ impl Games {
     pub fn restart(&mut self, seed: Option<u64>) -> Result<(), SetupError> {
         if let Some(seed) = seed {
             self.starts = self.starts.from(&self.setup, seed);
-            self.slots.iter_mut().enumerate().for_each(|(i, slot)| slot.number = i as u64);
+            self.slots
+                .iter_mut()
+                .enumerate()
+                .for_each(|(i, slot)| slot.number = i as u64);
         } else {
             let count = self.slots.len() as u64;
-            self.slots.iter_mut().for_each(|slot| slot.number = slot.number.wrapping_add(count));
+            self.slots
+                .iter_mut()
+                .for_each(|slot| slot.number = slot.number.wrapping_add(count));
         }
         self.finished.clear();
-        let Games { slots, starts, setup, pool, .. } = self;
+        let Games {
+            slots,
+            starts,
+            setup,
+            pool,
+            ..
+        } = self;
         let begin = |slot: &mut Slot| slot.begin(setup, starts);
         let begun: Vec<Result<(), SetupError>> = match pool {
             Some(pool) => pool.install(|| slots.par_iter_mut().map(begin).collect()),
@@ -217,8 +243,8 @@ impl Games {
     /// steps of the number of games. [`Games::show`] writes its rows.
     ///
     /// # Errors
-    /// [`SetupError::NoStart`] if it cannot begin; [`SetupError::SeedOfStarts`] if the seed is not one
-    /// of the repeating starts.
+    /// [`SetupError::NoStart`] if it cannot begin; [`SetupError::SeedOfStarts`] if the seed is not
+    /// one of the repeating starts.
     pub fn restart_game(&mut self, game: usize, seed: Option<u64>) -> Result<(), SetupError> {
         let count = self.slots.len() as u64;
         let slot = &mut self.slots[game];
@@ -257,7 +283,8 @@ impl Games {
             Ok(())
         });
         self.finished.clear();
-        self.finished.extend(self.slots.iter().filter_map(|slot| slot.ended));
+        self.finished
+            .extend(self.slots.iter().filter_map(|slot| slot.ended));
         begun.into_iter().collect()
     }
 
@@ -266,10 +293,21 @@ impl Games {
         rows: Rows<'_>,
         work: impl Fn(&Setup, &Starts, usize, &mut Slot, &mut Rows<'_>) -> T + Sync,
     ) -> Vec<T> {
-        let Games { setup, starts, slots, pool, rows_per_game: per_game, observation_size, .. } = self;
+        let Games {
+            setup,
+            starts,
+            slots,
+            pool,
+            rows_per_game: per_game,
+            observation_size,
+            ..
+        } = self;
         let numbers = *per_game * *observation_size;
         let count = slots.len();
-        assert!(rows.observations.len() == count * numbers && rows.final_observations.len() == count * numbers);
+        assert!(
+            rows.observations.len() == count * numbers
+                && rows.final_observations.len() == count * numbers
+        );
         assert!(rows.rewards.len() == count * *per_game && rows.counts.len() == count * *per_game);
         let games = slots
             .iter_mut()
@@ -277,10 +315,22 @@ impl Games {
             .zip(rows.final_observations.chunks_exact_mut(numbers))
             .zip(rows.rewards.chunks_exact_mut(*per_game))
             .zip(rows.counts.chunks_exact_mut(*per_game))
-            .map(|((((slot, observations), final_observations), rewards), counts)| {
-                (slot, Rows { observations, final_observations, rewards, counts })
-            });
-        let work = |(i, (slot, mut rows)): (usize, (&mut Slot, Rows<'_>))| work(setup, starts, i, slot, &mut rows);
+            .map(
+                |((((slot, observations), final_observations), rewards), counts)| {
+                    (
+                        slot,
+                        Rows {
+                            observations,
+                            final_observations,
+                            rewards,
+                            counts,
+                        },
+                    )
+                },
+            );
+        let work = |(i, (slot, mut rows)): (usize, (&mut Slot, Rows<'_>))| {
+            work(setup, starts, i, slot, &mut rows)
+        };
         match pool {
             Some(pool) => {
                 let games: Vec<_> = games.enumerate().collect();
@@ -300,13 +350,21 @@ impl Slot {
 
     fn play(&mut self, setup: &Setup, game: usize, actions: &[Action], rows: &mut Rows<'_>) {
         let pilots = self.game.pilots();
-        actions.iter().take(pilots).enumerate().for_each(|(i, action)| self.game.act(i, *action));
+        actions
+            .iter()
+            .take(pilots)
+            .enumerate()
+            .for_each(|(i, action)| self.game.act(i, *action));
         let ending = self.game.step(setup);
         rows.rewards.fill(0.0);
-        rows.rewards[..pilots].iter_mut().enumerate().for_each(|(i, reward)| *reward = self.game.reward_of(i) as f32);
+        rows.rewards[..pilots]
+            .iter_mut()
+            .enumerate()
+            .for_each(|(i, reward)| *reward = self.game.reward_of(i) as f32);
         self.taught.clear();
         if setup.teacher.is_some() {
-            self.taught.extend((0..pilots).map(|place| self.game.taught(place)));
+            self.taught
+                .extend((0..pilots).map(|place| self.game.taught(place)));
         }
         self.show(setup, rows);
         self.ended = (ending != Ending::None).then(|| Finished {
@@ -322,12 +380,21 @@ impl Slot {
         self.is_shown = true;
         rows.observations.fill(0.0);
         rows.counts.fill(false);
-        for (i, observation) in rows.observations.chunks_exact_mut(size).take(self.game.pilots()).enumerate() {
+        for (i, observation) in rows
+            .observations
+            .chunks_exact_mut(size)
+            .take(self.game.pilots())
+            .enumerate()
+        {
             rows.counts[i] = self.game.observe(i, observation);
         }
         if setup.truth_size() > 0 {
             self.truth[0].clear();
-            truth::write(self.game.contest(), self.game.boats_with_actions(), &mut self.truth[0]);
+            truth::write(
+                self.game.contest(),
+                self.game.boats_with_actions(),
+                &mut self.truth[0],
+            );
         }
     }
 }

@@ -20,7 +20,9 @@ pub use game::Side;
 pub use games::{Finished, Games, Rows, Standing};
 pub use raw::{RawObservation, RawSetup};
 #[cfg(feature = "record")]
-pub use recorder::{RecordingLog, RecordingNames, Recordings, check_recording_folder, recording_name};
+pub use recorder::{
+    RecordingLog, RecordingNames, Recordings, check_recording_folder, recording_name,
+};
 pub(crate) use setup::wrong;
 pub use setup::{Control, Player, Setup, SetupError, Teacher};
 pub use vector::VectorEnvironment;

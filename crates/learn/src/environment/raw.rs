@@ -60,14 +60,23 @@ impl RawSetup {
     /// # Errors
     /// [`SetupError`]: the first invalid field, or all faults of a file.
     pub fn check(&self) -> Result<Setup, SetupError> {
-        let overrides = Overrides { sea: self.sea.clone(), ..Overrides::default() };
+        let overrides = Overrides {
+            sea: self.sea.clone(),
+            ..Overrides::default()
+        };
         let scenario = scenario::load_with(&self.game, &overrides)?;
         let helm = self.helm.as_deref().map(strategy).transpose()?;
         let opponent = |(weight, file): &(f64, Option<PathBuf>)| {
             if !(weight.is_finite() && *weight >= 0.0) {
                 return Err(wrong("an opponent's weight", weight, "0 or more"));
             }
-            Ok((*weight, file.as_deref().map(strategy).transpose()?.map_or(Player::Policy, Player::Strategy)))
+            Ok((
+                *weight,
+                file.as_deref()
+                    .map(strategy)
+                    .transpose()?
+                    .map_or(Player::Policy, Player::Strategy),
+            ))
         };
         if !(0.0..=1.0).contains(&self.discount) {
             return Err(wrong("discount", self.discount, "0 to 1"));
@@ -75,19 +84,34 @@ impl RawSetup {
         if self.starts == Some(0) {
             return Err(wrong("starts", 0, "1 or more"));
         }
-        let decisions_per_step =
-            self.decision_s.map_or(Ok(1), |decision_s| decisions_per_step(decision_s, &scenario))?;
+        let decisions_per_step = self.decision_s.map_or(Ok(1), |decision_s| {
+            decisions_per_step(decision_s, &scenario)
+        })?;
         let setup = Setup {
-            spaces: Spaces { observation: self.observation.check(&scenario)?, action: self.action },
+            spaces: Spaces {
+                observation: self.observation.check(&scenario)?,
+                action: self.action,
+            },
             control: helm.map_or(Control::Direct, Control::Helm),
             teacher: None,
             critic: self.critic,
             decisions_per_step,
-            steps_max: self.episode_max_s.map(|s| steps_max(s, &scenario, decisions_per_step)).transpose()?,
+            steps_max: self
+                .episode_max_s
+                .map(|s| steps_max(s, &scenario, decisions_per_step))
+                .transpose()?,
             starts: self.starts,
-            learner: self.team.as_deref().map(|name| team(&scenario, name)).transpose()?,
+            learner: self
+                .team
+                .as_deref()
+                .map(|name| team(&scenario, name))
+                .transpose()?,
             mates: self.mates.as_deref().map(strategy).transpose()?,
-            opponents: self.opponents.iter().map(opponent).collect::<Result<_, SetupError>>()?,
+            opponents: self
+                .opponents
+                .iter()
+                .map(opponent)
+                .collect::<Result<_, SetupError>>()?,
             rewards: match &self.rewards {
                 Some(file) => scenario::load_file::<crate::rewards::Rewards>(file)?,
                 None => Rewards::default(),
@@ -109,20 +133,41 @@ impl RawObservation {
         if frames == 0 {
             return Err(wrong("frames", 0, "1 to 255"));
         }
-        let boats = |team: usize| scenario.vehicles.iter().filter(|vehicle| vehicle.team.index() == team).count();
+        let boats = |team: usize| {
+            scenario
+                .vehicles
+                .iter()
+                .filter(|vehicle| vehicle.team.index() == team)
+                .count()
+        };
         let room = |boats: usize| u8::try_from(boats).unwrap_or(u8::MAX);
-        Ok(ObservationSpace::Squall { mates: room(boats(0).saturating_sub(1)), enemies: room(boats(1)), frames })
+        Ok(ObservationSpace::Squall {
+            mates: room(boats(0).saturating_sub(1)),
+            enemies: room(boats(1)),
+            frames,
+        })
     }
 }
 
 fn strategy(file: &Path) -> Result<Box<Strategy>, SetupError> {
-    Ok(Box::new(scenario::load_file::<scenario::strategy::Strategy>(file)?))
+    Ok(Box::new(
+        scenario::load_file::<scenario::strategy::Strategy>(file)?,
+    ))
 }
 
 fn team(scenario: &Scenario, name: &str) -> Result<TeamId, SetupError> {
     let found = scenario.teams.iter().position(|team| team.name == name);
-    let names = || scenario.teams.iter().map(|team| format!("{:?}", team.name)).collect::<Vec<_>>().join(" or ");
-    found.map(|team| TeamId(team as u8)).ok_or_else(|| wrong("team", format!("{name:?}"), &names()))
+    let names = || {
+        scenario
+            .teams
+            .iter()
+            .map(|team| format!("{:?}", team.name))
+            .collect::<Vec<_>>()
+            .join(" or ")
+    };
+    found
+        .map(|team| TeamId(team as u8))
+        .ok_or_else(|| wrong("team", format!("{name:?}"), &names()))
 }
 
 /// The number of game decisions per policy decision.
@@ -132,15 +177,24 @@ fn decisions_per_step(decision_s: f64, scenario: &Scenario) -> Result<u32, Setup
     if (1.0..=1e6).contains(&times) && (times * least_s - decision_s).abs() < 1e-6 {
         return Ok(times as u32);
     }
-    let allowed = format!("a multiple of the game's decision_s ({least_s} s), at most 1,000,000 times that");
+    let allowed =
+        format!("a multiple of the game's decision_s ({least_s} s), at most 1,000,000 times that");
     Err(wrong("decision_s", decision_s, &allowed))
 }
 
-fn steps_max(episode_max_s: f64, scenario: &Scenario, decisions_per_step: u32) -> Result<u32, SetupError> {
+fn steps_max(
+    episode_max_s: f64,
+    scenario: &Scenario,
+    decisions_per_step: u32,
+) -> Result<u32, SetupError> {
     let step_s = scenario.decision().as_s() * f64::from(decisions_per_step);
     let steps = (episode_max_s / step_s - 1e-6).ceil();
     if (1.0..=1e9).contains(&steps) {
         return Ok(steps as u32);
     }
-    Err(wrong("episode_max_s", episode_max_s, "more than 0, up to 1,000,000,000 steps"))
+    Err(wrong(
+        "episode_max_s",
+        episode_max_s,
+        "more than 0, up to 1,000,000,000 steps",
+    ))
 }

@@ -22,7 +22,10 @@ pub struct RecordingLog {
 impl RecordingLog {
     /// The newest file completed since the last call.
     pub fn take_newest(&self) -> Option<PathBuf> {
-        self.newest.lock().unwrap_or_else(PoisonError::into_inner).take()
+        self.newest
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .take()
     }
 
     /// The errors since the last call.
@@ -35,7 +38,10 @@ impl RecordingLog {
     }
 
     fn problem(&self, problem: String) {
-        self.problems.lock().unwrap_or_else(PoisonError::into_inner).push(problem);
+        self.problems
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .push(problem);
     }
 }
 
@@ -90,7 +96,9 @@ impl Recordings {
     /// Creates the file of a game.
     fn begin(&self, game: &Scenario, number: u64) -> Result<(GameRecorder, PathBuf), RecordError> {
         let file = match self.names {
-            RecordingNames::ByTime => NewFile::create_numbered(&self.folder, &recording::stem(&game.name, game.seed))?,
+            RecordingNames::ByTime => {
+                NewFile::create_numbered(&self.folder, &recording::stem(&game.name, game.seed))?
+            }
             RecordingNames::ByNumber => {
                 let path = self.folder.join(recording_name(game.seed, number));
                 match std::fs::remove_file(&path) {
@@ -100,7 +108,10 @@ impl Recordings {
             }
         };
         let path = file.path().to_owned();
-        Ok((GameRecorder::in_process(file, &game.name, &self.commit), path))
+        Ok((
+            GameRecorder::in_process(file, &game.name, &self.commit),
+            path,
+        ))
     }
 }
 
@@ -129,7 +140,10 @@ impl RecordedGame {
         self.stage = match (stage, moment) {
             (Stage::Waiting, _) => {
                 contest.keep_inputs();
-                Stage::Start(Box::new(contest.clone()), Arc::new(contest.frame(&mut self.shown)))
+                Stage::Start(
+                    Box::new(contest.clone()),
+                    Arc::new(contest.frame(&mut self.shown)),
+                )
             }
             // Each decision is recorded as it is played: one step may end a game and begin the
             // next.
@@ -143,7 +157,9 @@ impl RecordedGame {
                     Err(error) => {
                         let folder = self.recordings.folder.display();
                         let seed = contest.scenario().seed;
-                        self.log.problem(format!("cannot record the game with seed {seed} in {folder}: {error}"));
+                        self.log.problem(format!(
+                            "cannot record the game with seed {seed} in {folder}: {error}"
+                        ));
                         Stage::Ended
                     }
                 }
@@ -159,8 +175,14 @@ impl RecordedGame {
                     cut_short: !contest.is_over(),
                     ..Run::default()
                 };
-                let state = recorder.end(&Report { outcome: contest.outcome(), run });
-                state.problem().into_iter().for_each(|problem| self.log.problem(problem));
+                let state = recorder.end(&Report {
+                    outcome: contest.outcome(),
+                    run,
+                });
+                state
+                    .problem()
+                    .into_iter()
+                    .for_each(|problem| self.log.problem(problem));
                 self.log.completed(path);
                 Stage::Ended
             }
@@ -172,15 +194,21 @@ impl RecordedGame {
 impl Drop for RecordedGame {
     /// Ends the recording of an abandoned game.
     fn drop(&mut self) {
-        let Stage::Recording(recorder, path) = std::mem::replace(&mut self.stage, Stage::Ended) else { return };
+        let Stage::Recording(recorder, path) = std::mem::replace(&mut self.stage, Stage::Ended)
+        else {
+            return;
+        };
         let problem = recorder.state().problem();
         drop(recorder);
-        problem.into_iter().for_each(|problem| self.log.problem(problem));
+        problem
+            .into_iter()
+            .for_each(|problem| self.log.problem(problem));
         match self.recordings.names {
             RecordingNames::ByTime => self.log.completed(path),
             RecordingNames::ByNumber => {
                 if let Err(error) = std::fs::remove_file(&path) {
-                    self.log.problem(format!("cannot remove {}: {error}", path.display()));
+                    self.log
+                        .problem(format!("cannot remove {}: {error}", path.display()));
                 }
             }
         }

@@ -82,13 +82,17 @@ pub enum SetupError {
     #[error("the game has {0} teams, expected 2")]
     Teams(usize),
     /// Teams of different sizes.
-    #[error("the teams have {0} and {1} boats, expected teams of equal size, because policies play both sides")]
+    #[error(
+        "the teams have {0} and {1} boats, expected teams of equal size, because policies play both sides"
+    )]
     Uneven(usize, usize),
     /// No opponent can be drawn.
     #[error("no opponent can be drawn, expected at least one with a weight above 0")]
     NoOpponent,
     /// A role without a suitable policy behaviour.
-    #[error("the role {role:?} has no behaviour of kind \"policy\" {expected}: actions would have no effect")]
+    #[error(
+        "the role {role:?} has no behaviour of kind \"policy\" {expected}: actions would have no effect"
+    )]
     NoPolicy {
         /// The role.
         role: String,
@@ -128,7 +132,11 @@ pub enum SetupError {
 
 /// The error of a field with an invalid value.
 pub(crate) fn wrong(field: &'static str, found: impl ToString, allowed: &str) -> SetupError {
-    SetupError::Field { field, found: found.to_string(), allowed: allowed.to_owned() }
+    SetupError::Field {
+        field,
+        found: found.to_string(),
+        allowed: allowed.to_owned(),
+    }
 }
 
 impl Setup {
@@ -160,16 +168,34 @@ impl Setup {
     fn check_helm(&self, strategy: &Strategy) -> Result<(), SetupError> {
         let has_options = self.spaces.action == ActionSpace::Options;
         let asks = |task: &Task| matches!(task, Task::Policy(policy) if policy.model.is_none() && policy.sets.is_some() == has_options);
-        let deaf = strategy.roles.iter().find(|role| !role.behaviours.iter().any(|behaviour| asks(&behaviour.task)));
+        let deaf = strategy.roles.iter().find(|role| {
+            !role
+                .behaviours
+                .iter()
+                .any(|behaviour| asks(&behaviour.task))
+        });
         if let Some(role) = deaf {
-            let expected = if has_options { "with `sets`" } else { "for course and speed" };
-            return Err(SetupError::NoPolicy { role: role.name.clone(), expected });
+            let expected = if has_options {
+                "with `sets`"
+            } else {
+                "for course and speed"
+            };
+            return Err(SetupError::NoPolicy {
+                role: role.name.clone(),
+                expected,
+            });
         }
         let texts = |role: &Program| role.options().map(|variable| role.texts(variable).to_vec());
-        if let Some(other) = strategy.roles.iter().find(|role| has_options && texts(role) != texts(&strategy.roles[0]))
+        if let Some(other) = strategy
+            .roles
+            .iter()
+            .find(|role| has_options && texts(role) != texts(&strategy.roles[0]))
         {
             let found = texts(other).unwrap_or_default().join(", ");
-            let allowed = format!("those of the first role: {}", self.options().unwrap_or_default().join(", "));
+            let allowed = format!(
+                "those of the first role: {}",
+                self.options().unwrap_or_default().join(", ")
+            );
             return Err(wrong("sets of the second role", found, &allowed));
         }
         Ok(())
@@ -188,20 +214,32 @@ impl Setup {
 
     /// The number of discrete actions. None if actions are continuous.
     pub fn actions(&self) -> Option<usize> {
-        self.options().map(<[String]>::len).or(self.spaces.action.count())
+        self.options()
+            .map(<[String]>::len)
+            .or(self.spaces.action.count())
     }
 
     /// The number of rows per game: the boats that may receive actions.
     pub fn rows_per_game(&self) -> usize {
-        let of_team = if self.mates.is_some() { 1 } else { self.team_size() };
-        let is_self_play = self.opponents.iter().any(|(_, player)| matches!(player, Player::Policy));
+        let of_team = if self.mates.is_some() {
+            1
+        } else {
+            self.team_size()
+        };
+        let is_self_play = self
+            .opponents
+            .iter()
+            .any(|(_, player)| matches!(player, Player::Policy));
         of_team * if is_self_play { 2 } else { 1 }
     }
 
     /// The boats of a team that a policy controls in the game with this seed.
     pub fn pilots_of(&self, team: TeamId, seed: u64) -> impl Iterator<Item = VehicleId> {
         // Sides alternate with every seed, boats with every second one.
-        let one = self.mates.is_some().then(|| (seed / 2) as usize % self.team_size().max(1));
+        let one = self
+            .mates
+            .is_some()
+            .then(|| (seed / 2) as usize % self.team_size().max(1));
         self.boats_of(team)
             .enumerate()
             .filter(move |(i, _)| one.is_none_or(|one| one == *i))
@@ -222,7 +260,9 @@ impl Setup {
     /// The names of the values of an observation.
     pub fn observation_names(&self) -> Vec<String> {
         let boats = self.team_size();
-        self.spaces.observation.names(boats.saturating_sub(1), boats)
+        self.spaces
+            .observation
+            .names(boats.saturating_sub(1), boats)
     }
 
     /// The size of a critic's input.

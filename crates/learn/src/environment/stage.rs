@@ -14,7 +14,10 @@ impl Setup {
     /// [`SetupError`]: the faults of a file, or why the setup cannot be played.
     pub fn of_stage(training: &Training, stage: &Stage) -> Result<Setup, SetupError> {
         let itself = (stage.self_play > 0.0 || stage.past_selves > 0.0).then_some(None);
-        let strategies = stage.opponent.iter().map(|opponent| Some(opponent.strategy.clone()));
+        let strategies = stage
+            .opponent
+            .iter()
+            .map(|opponent| Some(opponent.strategy.clone()));
         let weighted = |(i, file): (usize, Option<PathBuf>)| (if i == 0 { 1.0 } else { 0.0 }, file);
         let raw = RawSetup {
             game: stage.game.clone(),
@@ -27,22 +30,38 @@ impl Setup {
             starts: stage.starts,
             team: None,
             mates: stage.mates.clone(),
-            opponents: itself.into_iter().chain(strategies).enumerate().map(weighted).collect(),
+            opponents: itself
+                .into_iter()
+                .chain(strategies)
+                .enumerate()
+                .map(weighted)
+                .collect(),
             rewards: Some(stage.rewards.clone()),
             discount: f64::from(training.algorithm().discount()),
             critic: training.network.critic,
         };
         let mut setup = raw.check()?;
-        setup.teacher = stage.teacher.as_ref().map(|teacher| setup.teacher_of(teacher)).transpose()?;
+        setup.teacher = stage
+            .teacher
+            .as_ref()
+            .map(|teacher| setup.teacher_of(teacher))
+            .transpose()?;
         Ok(setup)
     }
 
     /// The teacher, with its modes mapped to the options.
     fn teacher_of(&self, said: &training::Teacher) -> Result<Teacher, SetupError> {
-        let strategy = Box::new(scenario::load_file::<scenario::strategy::Strategy>(&said.strategy)?);
-        let modes: BTreeSet<String> =
-            strategy.roles.iter().flat_map(|role| role.leaves().map(|mode| role.path(mode))).collect();
-        let listed = |names: &mut dyn Iterator<Item = &String>| names.cloned().collect::<Vec<_>>().join(", ");
+        let strategy = Box::new(scenario::load_file::<scenario::strategy::Strategy>(
+            &said.strategy,
+        )?);
+        let modes: BTreeSet<String> = strategy
+            .roles
+            .iter()
+            .flat_map(|role| role.leaves().map(|mode| role.path(mode)))
+            .collect();
+        let listed = |names: &mut dyn Iterator<Item = &String>| {
+            names.cloned().collect::<Vec<_>>().join(", ")
+        };
         if let Some(unknown) = said.options.keys().find(|mode| !modes.contains(*mode)) {
             let allowed = format!("a mode of {}: {}", strategy.name, listed(&mut modes.iter()));
             return Err(wrong("a mode in the teacher's options", unknown, &allowed));
@@ -50,7 +69,11 @@ impl Setup {
         let mut options = BTreeMap::new();
         let Some(names) = self.options() else {
             if let Some(option) = said.options.values().next() {
-                return Err(wrong("the teacher's options", option, "none, because action is not \"options\""));
+                return Err(wrong(
+                    "the teacher's options",
+                    option,
+                    "none, because action is not \"options\"",
+                ));
             }
             return Ok(Teacher { strategy, options });
         };
@@ -59,7 +82,11 @@ impl Setup {
             match names.iter().position(|option| option == name) {
                 Some(option) => drop(options.insert(mode, option)),
                 None if said.options.contains_key(&mode) => {
-                    return Err(wrong("an option of the teacher", format!("{name:?}"), &listed(&mut names.iter())));
+                    return Err(wrong(
+                        "an option of the teacher",
+                        format!("{name:?}"),
+                        &listed(&mut names.iter()),
+                    ));
                 }
                 None => {}
             }

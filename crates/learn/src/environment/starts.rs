@@ -17,7 +17,11 @@ pub(super) struct Starts {
 impl Starts {
     pub(super) fn new(setup: &Setup, seed: u64, watches: Option<Watches>) -> Starts {
         let count = setup.starts.unwrap_or_default();
-        Starts { seed, made: (0..count).map(|_| OnceLock::new()).collect(), watches }
+        Starts {
+            seed,
+            made: (0..count).map(|_| OnceLock::new()).collect(),
+            watches,
+        }
     }
 
     /// Copies the starts with another first seed.
@@ -34,7 +38,11 @@ impl Starts {
         // Repeating starts must outnumber the parallel games: with 64 of each, every game always
         // had the same start, and the policy learnt nothing. A repeated start takes 0.03 ms; a new
         // one with a sea takes 0.41 ms.
-        let number = if self.made.is_empty() { number } else { number % self.made.len() as u64 };
+        let number = if self.made.is_empty() {
+            number
+        } else {
+            number % self.made.len() as u64
+        };
         let seed = self.seed.wrapping_add(number);
         let place = self.made.get(number as usize);
         let contest = match place.and_then(OnceLock::get) {
@@ -51,7 +59,11 @@ impl Starts {
         let number = seed.wrapping_sub(self.seed);
         if !self.made.is_empty() && number >= self.made.len() as u64 {
             let last = self.seed.wrapping_add(self.made.len() as u64 - 1);
-            return Err(SetupError::SeedOfStarts { seed, first: self.seed, last });
+            return Err(SetupError::SeedOfStarts {
+                seed,
+                first: self.seed,
+                last,
+            });
         }
         Ok(number)
     }

@@ -52,7 +52,9 @@ pub(super) fn size(boats: usize) -> usize {
 pub(super) fn names(mates: usize, enemies: usize) -> Vec<String> {
     let mates = (1..=mates).map(|i| format!("mate_{i}"));
     let enemies = (1..=enemies).map(|i| format!("enemy_{i}"));
-    let boats = std::iter::once("own".to_owned()).chain(mates).chain(enemies);
+    let boats = std::iter::once("own".to_owned())
+        .chain(mates)
+        .chain(enemies);
     let of_boats = boats.flat_map(|boat| BOAT.map(|name| format!("{boat}_{name}")));
     of_boats.chain(GAME.map(str::to_owned)).collect()
 }
@@ -78,13 +80,23 @@ pub(super) fn write(contest: &Contest, boats: &[VehicleId], out: &mut Vec<f32>) 
         let mut boat = |i: usize, truth: &VehicleTruth| {
             let [forward_m, port_m] = along(truth.nav.at() - field.middle());
             let turn = Rotation::from_heading(truth.nav.psi_rad);
-            let velocity = ned_from_body(turn, Body { ahead: truth.nav.surge_m_s, starboard: truth.nav.sway_m_s });
+            let velocity = ned_from_body(
+                turn,
+                Body {
+                    ahead: truth.nav.surge_m_s,
+                    starboard: truth.nav.sway_m_s,
+                },
+            );
             push(forward_m / half_m.0);
             push(port_m / half_m.1);
             along(turn.ahead()).into_iter().for_each(&mut push);
-            along(velocity).into_iter().for_each(|m_s| push(m_s / SPEED_M_S));
+            along(velocity)
+                .into_iter()
+                .for_each(|m_s| push(m_s / SPEED_M_S));
             push(truth.nav.yaw_rate_rad_s);
-            [truth.tagged, truth.carrying >= 0, truth.outside].into_iter().for_each(|is| push(f64::from(u8::from(is))));
+            [truth.tagged, truth.carrying >= 0, truth.outside]
+                .into_iter()
+                .for_each(|is| push(f64::from(u8::from(is))));
             push(waits[i]);
         };
         boat(me.index(), &frame.vehicles[me.index()]);
@@ -98,7 +110,11 @@ pub(super) fn write(contest: &Contest, boats: &[VehicleId], out: &mut Vec<f32>) 
         }
         let carried = |own: bool| {
             let of_team = |i: usize| (scenario.team_of(VehicleId::at(i)) == team) == own;
-            frame.vehicles.iter().enumerate().any(|(i, truth)| of_team(i) && truth.carrying >= 0)
+            frame
+                .vehicles
+                .iter()
+                .enumerate()
+                .any(|(i, truth)| of_team(i) && truth.carrying >= 0)
         };
         push(f64::from(u8::from(carried(true))));
         push(f64::from(u8::from(carried(false))));
@@ -107,10 +123,18 @@ pub(super) fn write(contest: &Contest, boats: &[VehicleId], out: &mut Vec<f32>) 
         let limit_s = scenario.rules.time_limit.as_s().max(1.0);
         push((1.0 - contest.now().as_s() / limit_s).max(0.0));
         let sea = frame.sea;
-        let wind = Ned { north: sea.wind_north_m_s, east: sea.wind_east_m_s };
-        let current = Ned { north: sea.current_north_m_s, east: sea.current_east_m_s };
+        let wind = Ned {
+            north: sea.wind_north_m_s,
+            east: sea.wind_east_m_s,
+        };
+        let current = Ned {
+            north: sea.current_north_m_s,
+            east: sea.current_east_m_s,
+        };
         along(wind).into_iter().for_each(|m_s| push(m_s / WIND_M_S));
-        along(current).into_iter().for_each(|m_s| push(m_s / SPEED_M_S));
+        along(current)
+            .into_iter()
+            .for_each(|m_s| push(m_s / SPEED_M_S));
     }
 }
 
@@ -119,7 +143,11 @@ fn waits(contest: &Contest) -> Vec<f64> {
     let scenario = contest.scenario();
     let now = contest.now();
     let mut waits = vec![0.0; scenario.vehicles.len()];
-    for boat in contest.last_pictures().iter().flat_map(|picture: &Picture| &picture.own) {
+    for boat in contest
+        .last_pictures()
+        .iter()
+        .flat_map(|picture: &Picture| &picture.own)
+    {
         waits[boat.vehicle.index()] = scenario.rules.tag_wait_share(boat.tag_ready_ns, now);
     }
     waits

@@ -36,8 +36,19 @@ struct Shown {
 
 impl Shown {
     fn rows(&mut self) -> Rows<'_> {
-        let Shown { observations, final_observations, rewards, counts, .. } = self;
-        Rows { observations, final_observations, rewards, counts }
+        let Shown {
+            observations,
+            final_observations,
+            rewards,
+            counts,
+            ..
+        } = self;
+        Rows {
+            observations,
+            final_observations,
+            rewards,
+            counts,
+        }
     }
 }
 
@@ -65,7 +76,11 @@ impl VectorEnvironment {
             final_states: vec![],
         };
         games.show(shown.rows());
-        let mut environment = VectorEnvironment { games, shown, actions: None };
+        let mut environment = VectorEnvironment {
+            games,
+            shown,
+            actions: None,
+        };
         environment.note_states();
         Ok(environment)
     }
@@ -83,12 +98,20 @@ impl VectorEnvironment {
 
     /// A critic's inputs, rows × [`Setup::state_size`].
     pub fn states(&self) -> &[f32] {
-        if self.setup().truth_size() == 0 { &self.shown.observations } else { &self.shown.states }
+        if self.setup().truth_size() == 0 {
+            &self.shown.observations
+        } else {
+            &self.shown.states
+        }
     }
 
     /// A critic's inputs before a new game began. Valid only for games that ended in the last step.
     pub fn final_states(&self) -> &[f32] {
-        if self.setup().truth_size() == 0 { &self.shown.final_observations } else { &self.shown.final_states }
+        if self.setup().truth_size() == 0 {
+            &self.shown.final_observations
+        } else {
+            &self.shown.final_states
+        }
     }
 
     /// The rewards of the last step, by row.
@@ -110,7 +133,9 @@ impl VectorEnvironment {
     /// If the number of actions is not the number of rows.
     pub fn step(&mut self, actions: &[Action]) -> Result<(), SetupError> {
         self.games.step(actions, self.shown.rows())?;
-        self.actions.iter_mut().for_each(|collected| collected.extend_from_slice(actions));
+        self.actions
+            .iter_mut()
+            .for_each(|collected| collected.extend_from_slice(actions));
         self.note_states();
         Ok(())
     }
@@ -124,10 +149,17 @@ impl VectorEnvironment {
         let size = self.setup().observation_size();
         let (rows, per_game) = self.rows();
         let VectorEnvironment { games, shown, .. } = self;
-        let Shown { observations, final_observations, states, final_states, .. } = shown;
-        for (states, observations, is_last) in
-            [(states, &*observations, false), (final_states, &*final_observations, true)]
-        {
+        let Shown {
+            observations,
+            final_observations,
+            states,
+            final_states,
+            ..
+        } = shown;
+        for (states, observations, is_last) in [
+            (states, &*observations, false),
+            (final_states, &*final_observations, true),
+        ] {
             states.resize(rows * (size + truth), 0.0);
             for (row, state) in states.chunks_exact_mut(size + truth).enumerate() {
                 let game = row / per_game;

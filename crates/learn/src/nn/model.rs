@@ -18,8 +18,16 @@ impl Perceptron {
     ) -> Result<Vec<u8>, NetworkError> {
         let layers = self.sizes().len() - 1;
         let mut layers: Vec<Layer> = (0..layers).map(|i| self.onnx_layer(i)).collect();
-        let last = layers.pop().map(|layer| Head { name: output.to_owned(), layer });
-        let network = onnx::Perceptron { hidden: layers, heads: last.into_iter().collect(), bounded, metadata };
+        let last = layers.pop().map(|layer| Head {
+            name: output.to_owned(),
+            layer,
+        });
+        let network = onnx::Perceptron {
+            hidden: layers,
+            heads: last.into_iter().collect(),
+            bounded,
+            metadata,
+        };
         network.onnx()
     }
 
@@ -28,7 +36,13 @@ impl Perceptron {
         let outputs = self.sizes()[i + 1];
         let (weights, biases) = self.layer(i);
         // Weights are grouped by input here and by output in ONNX files.
-        let turned = (0..outputs).flat_map(|to| (0..inputs).map(move |from| weights[from * outputs + to]));
-        Layer { inputs, outputs, weights: turned.collect(), biases: biases.to_vec() }
+        let turned =
+            (0..outputs).flat_map(|to| (0..inputs).map(move |from| weights[from * outputs + to]));
+        Layer {
+            inputs,
+            outputs,
+            weights: turned.collect(),
+            biases: biases.to_vec(),
+        }
     }
 }

@@ -46,13 +46,23 @@ impl Perceptron {
     pub fn new(sizes: &[usize], output_gain: f32, stream: &mut Stream) -> Perceptron {
         assert!(sizes.len() >= 2 && !sizes.contains(&0), "{sizes:?}");
         let count = sizes.windows(2).map(|pair| (pair[0] + 1) * pair[1]).sum();
-        let mut network = Perceptron { sizes: sizes.to_vec(), parameters: vec![0.0; count] };
+        let mut network = Perceptron {
+            sizes: sizes.to_vec(),
+            parameters: vec![0.0; count],
+        };
         let last = sizes.len() - 2;
         for (i, layer) in network.layers().enumerate().collect::<Vec<_>>() {
-            let gain = if i == last { output_gain } else { std::f32::consts::SQRT_2 };
+            let gain = if i == last {
+                output_gain
+            } else {
+                std::f32::consts::SQRT_2
+            };
             let weights = orthogonal(layer.inputs, layer.outputs, stream);
             let place = &mut network.parameters[layer.weights..layer.biases];
-            place.iter_mut().zip(weights).for_each(|(place, weight)| *place = gain * weight as f32);
+            place
+                .iter_mut()
+                .zip(weights)
+                .for_each(|(place, weight)| *place = gain * weight as f32);
         }
         network
     }
@@ -75,7 +85,10 @@ impl Perceptron {
     /// The weights of a layer, inputs × outputs, and its biases.
     pub fn layer(&self, i: usize) -> (&[f32], &[f32]) {
         let layer = self.layers().nth(i).expect("the layer exists");
-        (&self.parameters[layer.weights..layer.biases], &self.parameters[layer.biases..layer.end])
+        (
+            &self.parameters[layer.weights..layer.biases],
+            &self.parameters[layer.biases..layer.end],
+        )
     }
 
     fn layers(&self) -> impl Iterator<Item = Layer> + use<> {
@@ -87,7 +100,13 @@ impl Perceptron {
             let weights = end;
             let biases = weights + inputs * outputs;
             end = biases + outputs;
-            Layer { inputs, outputs, weights, biases, end }
+            Layer {
+                inputs,
+                outputs,
+                weights,
+                biases,
+                end,
+            }
         })
     }
 
@@ -109,10 +128,19 @@ impl Perceptron {
             (0..rows).for_each(|_| after.extend_from_slice(biases));
             // Rows are stored consecutively, so a column-major library sees every matrix
             // transposed.
-            let weights = columns(&self.parameters[layer.weights..layer.biases], layer.outputs, layer.inputs);
+            let weights = columns(
+                &self.parameters[layer.weights..layer.biases],
+                layer.outputs,
+                layer.inputs,
+            );
             // For networks of a few hundred units this is faster than JAX, torch, burn and candle,
             // each measured for one PPO update.
-            columns_mut(after, layer.outputs, rows).gemm(1.0, &weights, &columns(before, layer.inputs, rows), 1.0);
+            columns_mut(after, layer.outputs, rows).gemm(
+                1.0,
+                &weights,
+                &columns(before, layer.inputs, rows),
+                1.0,
+            );
             if i < last {
                 // The rational approximation from the model evaluator: libm's tanh would take most
                 // of the time, and a policy must compute the same values on the boat as in
@@ -137,9 +165,13 @@ impl Perceptron {
         let mut by_before = Vec::new();
         for (i, layer) in layers.iter().enumerate().rev() {
             let before = &trace.layers[i];
-            let (weights, biases) = gradient[layer.weights..layer.end].split_at_mut(layer.inputs * layer.outputs);
+            let (weights, biases) =
+                gradient[layer.weights..layer.end].split_at_mut(layer.inputs * layer.outputs);
             for row in by_output.chunks_exact(layer.outputs) {
-                biases.iter_mut().zip(row).for_each(|(sum, number)| *sum += number);
+                biases
+                    .iter_mut()
+                    .zip(row)
+                    .for_each(|(sum, number)| *sum += number);
             }
             let by = columns(by_output, layer.outputs, rows);
             // A copy, not a strided view: nalgebra 0.35's product of such a view with a matrix of
@@ -166,7 +198,10 @@ impl Perceptron {
             );
             if i > 0 {
                 // The derivative of the hyperbolic tangent.
-                by_before.iter_mut().zip(before).for_each(|(by, number)| *by *= 1.0 - number * number);
+                by_before
+                    .iter_mut()
+                    .zip(before)
+                    .for_each(|(by, number)| *by *= 1.0 - number * number);
             }
             std::mem::swap(by_output, &mut by_before);
         }
@@ -190,7 +225,11 @@ fn transposed(numbers: &[f32], width: usize) -> Vec<f32> {
     let height = numbers.len() / width;
     let mut turned = vec![0.0; numbers.len()];
     for (i, row) in numbers.chunks_exact(width).enumerate() {
-        turned[i..].iter_mut().step_by(height).zip(row).for_each(|(place, number)| *place = *number);
+        turned[i..]
+            .iter_mut()
+            .step_by(height)
+            .zip(row)
+            .for_each(|(place, number)| *place = *number);
     }
     turned
 }
@@ -205,14 +244,29 @@ fn orthogonal(rows: usize, columns: usize, stream: &mut Stream) -> Vec<f64> {
         let mut vector: Vec<f64> = (0..length).map(|_| stream.normal()).collect();
         for other in &vectors {
             let along: f64 = vector.iter().zip(other).map(|(a, b)| a * b).sum();
-            vector.iter_mut().zip(other).for_each(|(number, other)| *number -= along * other);
+            vector
+                .iter_mut()
+                .zip(other)
+                .for_each(|(number, other)| *number -= along * other);
         }
-        let size = vector.iter().map(|number| number * number).sum::<f64>().sqrt();
+        let size = vector
+            .iter()
+            .map(|number| number * number)
+            .sum::<f64>()
+            .sqrt();
         if size > 1e-6 {
             vector.iter_mut().for_each(|number| *number /= size);
             vectors.push(vector);
         }
     }
-    let at = |row: usize, column: usize| if rows <= columns { vectors[row][column] } else { vectors[column][row] };
-    (0..rows * columns).map(|i| at(i / columns, i % columns)).collect()
+    let at = |row: usize, column: usize| {
+        if rows <= columns {
+            vectors[row][column]
+        } else {
+            vectors[column][row]
+        }
+    };
+    (0..rows * columns)
+        .map(|i| at(i / columns, i % columns))
+        .collect()
 }

@@ -29,9 +29,18 @@ impl DqnLearner {
         let sizes = [&[observation], hidden, &[actions]].concat();
         // Hyperbolic tangents, unlike in the paper: boats evaluate only such networks.
         let network = Perceptron::new(&sizes, 0.01, &mut Stream::new(seed, "actor"));
-        let settings = AdamSettings { epsilon: 1e-8, norm_max: Some(10.0), ..AdamSettings::default() };
+        let settings = AdamSettings {
+            epsilon: 1e-8,
+            norm_max: Some(10.0),
+            ..AdamSettings::default()
+        };
         let optimiser = Adam::new(network.parameters().len(), settings);
-        DqnLearner { target: network.clone(), network, optimiser, steps: 0 }
+        DqnLearner {
+            target: network.clone(),
+            network,
+            optimiser,
+            steps: 0,
+        }
     }
 
     /// Takes one optimiser step on transitions drawn from a buffer, in the calling thread pool.
@@ -43,7 +52,11 @@ impl DqnLearner {
     /// Takes one optimiser step on these transitions. Returns the loss.
     pub fn step(&mut self, minibatch: &Minibatch<u16>, settings: &Dqn) -> f32 {
         let (gradient, loss) = self.gradient(minibatch, settings);
-        self.optimiser.step(self.network.parameters_mut(), &gradient, settings.learning_rate);
+        self.optimiser.step(
+            self.network.parameters_mut(),
+            &gradient,
+            settings.learning_rate,
+        );
         self.steps += 1;
         if self.steps.is_multiple_of(u64::from(settings.target_every)) {
             self.target.clone_from(&self.network);
@@ -60,7 +73,9 @@ impl DqnLearner {
             .par_chunks(SHARD * size)
             .zip(minibatch.next_observations.par_chunks(SHARD * size))
             .enumerate()
-            .map(|(i, (rows, next_rows))| self.shard(minibatch, i * SHARD, (rows, next_rows), settings))
+            .map(|(i, (rows, next_rows))| {
+                self.shard(minibatch, i * SHARD, (rows, next_rows), settings)
+            })
             .collect();
         let slope = Slope::sum(slopes);
         (slope.gradient, slope.loss)
@@ -81,21 +96,30 @@ impl DqnLearner {
         let mut then = Trace::default();
         self.network.forward(next_rows, &mut trace);
         self.target.forward(next_rows, &mut then);
-        let next = trace.output().chunks_exact(actions).zip(then.output().chunks_exact(actions));
+        let next = trace
+            .output()
+            .chunks_exact(actions)
+            .zip(then.output().chunks_exact(actions));
         let expected: Vec<f32> = next.map(|(newer, older)| older[likeliest(newer)]).collect();
         self.network.forward(rows, &mut trace);
         let mut by_values = vec![0.0; trace.output().len()];
         let mut loss = 0.0;
         for (row, expected) in expected.into_iter().enumerate() {
             let i = first + row;
-            let later = if minibatch.over[i] { 0.0 } else { settings.discount * expected };
+            let later = if minibatch.over[i] {
+                0.0
+            } else {
+                settings.discount * expected
+            };
             let place = row * actions + usize::from(minibatch.actions[i]);
-            let off = trace.output()[place] - (settings.reward_scale * minibatch.rewards[i] + later);
+            let off =
+                trace.output()[place] - (settings.reward_scale * minibatch.rewards[i] + later);
             loss += huber(off) * per_row;
             by_values[place] = off.clamp(-1.0, 1.0) * per_row;
         }
         let mut gradient = vec![0.0; self.network.parameters().len()];
-        self.network.backward(&trace, &mut by_values, &mut gradient, None);
+        self.network
+            .backward(&trace, &mut by_values, &mut gradient, None);
         Slope { gradient, loss }
     }
 }
@@ -103,10 +127,18 @@ impl DqnLearner {
 /// The Huber loss: half the square up to 1, and linear beyond.
 fn huber(off: f32) -> f32 {
     let size = off.abs();
-    if size <= 1.0 { 0.5 * off * off } else { size - 0.5 }
+    if size <= 1.0 {
+        0.5 * off * off
+    } else {
+        size - 0.5
+    }
 }
 
 /// The most valuable action or, with probability `epsilon`, a random one.
 pub fn explored(values: &[f32], epsilon: f32, stream: &mut Stream) -> usize {
-    if stream.unit() < f64::from(epsilon) { stream.below(values.len() as u64) as usize } else { likeliest(values) }
+    if stream.unit() < f64::from(epsilon) {
+        stream.below(values.len() as u64) as usize
+    } else {
+        likeliest(values)
+    }
 }

@@ -24,7 +24,10 @@ impl Slope {
         let mut all = shards.next().unwrap_or_default();
         for shard in shards {
             all.loss += shard.loss;
-            all.gradient.iter_mut().zip(&shard.gradient).for_each(|(sum, number)| *sum += number);
+            all.gradient
+                .iter_mut()
+                .zip(&shard.gradient)
+                .for_each(|(sum, number)| *sum += number);
         }
         all
     }

@@ -62,10 +62,15 @@ impl<A: Copy + Default> Replay<A> {
     /// # Panics
     /// If either is 0.
     pub fn new(size: usize, capacity: usize) -> Replay<A> {
-        // The buffer is part of a training run's saved state, about 100 MB by default. Refilling it by
-        // playing would need the games' earlier state.
+        // The buffer is part of a training run's saved state, about 100 MB by default. Refilling it
+        // by playing would need the games' earlier state.
         assert!(size > 0 && capacity > 0, "{size}, {capacity}");
-        Replay { size, capacity, oldest: 0, kept: Minibatch::default() }
+        Replay {
+            size,
+            capacity,
+            oldest: 0,
+            kept: Minibatch::default(),
+        }
     }
 
     /// The number of transitions.
@@ -83,7 +88,14 @@ impl<A: Copy + Default> Replay<A> {
     /// # Panics
     /// If an observation has the wrong size.
     pub fn push(&mut self, transition: Transition<'_, A>) {
-        let Transition { observation, action, reward, next_observation, over, counts } = transition;
+        let Transition {
+            observation,
+            action,
+            reward,
+            next_observation,
+            over,
+            counts,
+        } = transition;
         assert!(observation.len() == self.size && next_observation.len() == self.size);
         let kept = &mut self.kept;
         if kept.count() < self.capacity {
@@ -110,10 +122,14 @@ impl<A: Copy + Default> Replay<A> {
     /// If the buffer is empty.
     pub fn draw(&self, count: usize, stream: &mut Stream) -> Minibatch<A> {
         let kept = &self.kept;
-        let drawn: Vec<usize> = (0..count).map(|_| stream.below(kept.count() as u64) as usize).collect();
+        let drawn: Vec<usize> = (0..count)
+            .map(|_| stream.below(kept.count() as u64) as usize)
+            .collect();
         let rows = |from: &[f32]| -> Vec<f32> {
             let mut rows = Vec::with_capacity(count * self.size);
-            drawn.iter().for_each(|i| rows.extend_from_slice(&from[i * self.size..(i + 1) * self.size]));
+            drawn
+                .iter()
+                .for_each(|i| rows.extend_from_slice(&from[i * self.size..(i + 1) * self.size]));
             rows
         };
         Minibatch {
@@ -160,13 +176,24 @@ mod tests {
             times[usize::from(action)] += 1;
             let number = f32::from(action);
             assert_eq!(minibatch.observations[2 * i..2 * i + 2], [number, -number]);
-            assert_eq!(minibatch.next_observations[2 * i..2 * i + 2], [number + 0.5, 0.0]);
+            assert_eq!(
+                minibatch.next_observations[2 * i..2 * i + 2],
+                [number + 0.5, 0.0]
+            );
             assert_eq!(minibatch.rewards[i], 10.0 * number);
-            assert_eq!((minibatch.over[i], minibatch.counts[i]), (action.is_multiple_of(2), action.is_multiple_of(3)));
+            assert_eq!(
+                (minibatch.over[i], minibatch.counts[i]),
+                (action.is_multiple_of(2), action.is_multiple_of(3))
+            );
         }
         assert_eq!(times[..13], [0; 13]);
         // Five standard deviations of the binomial distribution.
-        assert!(times[13..].iter().all(|times| (f64::from(*times) - 5000.0).abs() < 5.0 * 66.2), "{times:?}");
+        assert!(
+            times[13..]
+                .iter()
+                .all(|times| (f64::from(*times) - 5000.0).abs() < 5.0 * 66.2),
+            "{times:?}"
+        );
     }
 
     #[test]

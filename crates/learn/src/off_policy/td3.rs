@@ -48,12 +48,26 @@ impl Td3Learner {
     /// A new policy with this number of inputs.
     pub fn new(observation: usize, hidden: &[usize], seed: u64) -> Td3Learner {
         let sizes = |from: usize, to: usize| [&[from], hidden, &[to]].concat();
-        let actor = Perceptron::new(&sizes(observation, NUMBERS), 0.01, &mut Stream::new(seed, "actor"));
-        let critic = |name| Perceptron::new(&sizes(observation + NUMBERS, 1), 1.0, &mut Stream::new(seed, name));
+        let actor = Perceptron::new(
+            &sizes(observation, NUMBERS),
+            0.01,
+            &mut Stream::new(seed, "actor"),
+        );
+        let critic = |name| {
+            Perceptron::new(
+                &sizes(observation + NUMBERS, 1),
+                1.0,
+                &mut Stream::new(seed, name),
+            )
+        };
         let critics = ["critic/one", "critic/two"].map(critic);
         let optimiser = |network: &Perceptron| {
             // No gradient clipping, as in the paper.
-            let settings = AdamSettings { epsilon: 1e-8, norm_max: None, ..AdamSettings::default() };
+            let settings = AdamSettings {
+                epsilon: 1e-8,
+                norm_max: None,
+                ..AdamSettings::default()
+            };
             Adam::new(network.parameters().len(), settings)
         };
         Td3Learner {
@@ -68,10 +82,16 @@ impl Td3Learner {
     }
 
     /// Takes one optimiser step on transitions drawn from a buffer, in the calling thread pool.
-    pub fn update(&mut self, replay: &Replay<Numbers>, settings: &Td3, stream: &mut Stream) -> Td3Losses {
+    pub fn update(
+        &mut self,
+        replay: &Replay<Numbers>,
+        settings: &Td3,
+        stream: &mut Stream,
+    ) -> Td3Losses {
         let minibatch = replay.draw(settings.minibatch, stream);
-        let noise: Vec<Numbers> =
-            (0..minibatch.count()).map(|_| [0; NUMBERS].map(|_| smoothing(settings, stream.normal()))).collect();
+        let noise: Vec<Numbers> = (0..minibatch.count())
+            .map(|_| [0; NUMBERS].map(|_| smoothing(settings, stream.normal())))
+            .collect();
         self.step(&minibatch, &noise, settings)
     }
 
@@ -80,7 +100,12 @@ impl Td3Learner {
     ///
     /// # Panics
     /// If the numbers of noise values and transitions differ.
-    pub fn step(&mut self, minibatch: &Minibatch<Numbers>, noise: &[Numbers], settings: &Td3) -> Td3Losses {
+    pub fn step(
+        &mut self,
+        minibatch: &Minibatch<Numbers>,
+        noise: &[Numbers],
+        settings: &Td3,
+    ) -> Td3Losses {
         assert_eq!(minibatch.count(), noise.len());
         let targets = self.targets(minibatch, noise, settings);
         let mut critic = 0.0;
@@ -92,20 +117,35 @@ impl Td3Learner {
         }
         self.steps += 1;
         if !self.steps.is_multiple_of(u64::from(settings.delay)) {
-            return Td3Losses { critic, actor: None };
+            return Td3Losses {
+                critic,
+                actor: None,
+            };
         }
         let (gradient, actor) = self.actor_gradient(minibatch);
-        self.actor_optimiser.step(self.actor.parameters_mut(), &gradient, settings.learning_rate);
+        self.actor_optimiser.step(
+            self.actor.parameters_mut(),
+            &gradient,
+            settings.learning_rate,
+        );
         approach(&mut self.target_actor, &self.actor, settings.target_rate);
         for (target, critic) in self.target_critics.iter_mut().zip(&self.critics) {
             approach(target, critic, settings.target_rate);
         }
-        Td3Losses { critic, actor: Some(actor) }
+        Td3Losses {
+            critic,
+            actor: Some(actor),
+        }
     }
 
     /// The target value of each step: its reward plus the smaller of the target critics' values for
     /// a noisy action of the target policy.
-    fn targets(&self, minibatch: &Minibatch<Numbers>, noise: &[Numbers], settings: &Td3) -> Vec<f32> {
+    fn targets(
+        &self,
+        minibatch: &Minibatch<Numbers>,
+        noise: &[Numbers],
+        settings: &Td3,
+    ) -> Vec<f32> {
         let size = self.actor.sizes()[0];
         let of_shard = |(first, rows): (usize, &[f32])| -> Vec<f32> {
             let mut trace = Trace::default();
@@ -113,7 +153,12 @@ impl Td3Learner {
             let noisy = |(output, noise): (&[f32], &Numbers)| {
                 std::array::from_fn(|i| (tanh(output[i]) + noise[i]).clamp(-1.0, 1.0))
             };
-            let actions: Vec<Numbers> = trace.output().chunks_exact(NUMBERS).zip(&noise[first..]).map(noisy).collect();
+            let actions: Vec<Numbers> = trace
+                .output()
+                .chunks_exact(NUMBERS)
+                .zip(&noise[first..])
+                .map(noisy)
+                .collect();
             let input = with_actions(rows, &actions, size);
             let values = [0, 1].map(|i| {
                 self.target_critics[i].forward(&input, &mut trace);
@@ -121,7 +166,11 @@ impl Td3Learner {
             });
             let target = |row: usize| {
                 let expected = values[0][row].min(values[1][row]);
-                let later = if minibatch.over[first + row] { 0.0 } else { settings.discount * expected };
+                let later = if minibatch.over[first + row] {
+                    0.0
+                } else {
+                    settings.discount * expected
+                };
                 settings.reward_scale * minibatch.rewards[first + row] + later
             };
             (0..actions.len()).map(target).collect()
@@ -144,8 +193,12 @@ impl Td3Learner {
         let of_shard = |((rows, actions), targets): ((&[f32], &[Numbers]), &[f32])| {
             let mut trace = Trace::default();
             critic.forward(&with_actions(rows, actions, size), &mut trace);
-            let mut by_values: Vec<f32> =
-                trace.output().iter().zip(targets).map(|(value, want)| value - want).collect();
+            let mut by_values: Vec<f32> = trace
+                .output()
+                .iter()
+                .zip(targets)
+                .map(|(value, want)| value - want)
+                .collect();
             let loss = by_values.iter().map(|off| 0.5 * off * off * per_row).sum();
             by_values.iter_mut().for_each(|off| *off *= per_row);
             let mut gradient = vec![0.0; critic.parameters().len()];
@@ -166,7 +219,11 @@ impl Td3Learner {
     pub fn actor_gradient(&self, minibatch: &Minibatch<Numbers>) -> (Vec<f32>, f32) {
         let critic = &self.critics[0];
         let size = self.actor.sizes()[0];
-        let counted = minibatch.observations.chunks_exact(size).zip(&minibatch.counts).filter(|(_, counts)| **counts);
+        let counted = minibatch
+            .observations
+            .chunks_exact(size)
+            .zip(&minibatch.counts)
+            .filter(|(_, counts)| **counts);
         let observations: Vec<f32> = counted.flat_map(|(row, _)| row).copied().collect();
         let per_row = 1.0 / (observations.len() / size).max(1) as f32;
         let of_shard = |rows: &[f32]| {
@@ -184,12 +241,20 @@ impl Td3Learner {
                 // The derivative of the hyperbolic tangent.
                 std::array::from_fn(|i| by[size + i] * (1.0 - action[i] * action[i]))
             };
-            let mut by_output: Vec<f32> = by_input.chunks_exact(size + NUMBERS).zip(&actions).flat_map(slope).collect();
+            let mut by_output: Vec<f32> = by_input
+                .chunks_exact(size + NUMBERS)
+                .zip(&actions)
+                .flat_map(slope)
+                .collect();
             let mut gradient = vec![0.0; self.actor.parameters().len()];
-            self.actor.backward(&chosen, &mut by_output, &mut gradient, None);
+            self.actor
+                .backward(&chosen, &mut by_output, &mut gradient, None);
             Slope { gradient, loss }
         };
-        let shards: Vec<Slope> = observations.par_chunks(SHARD * size).map(of_shard).collect();
+        let shards: Vec<Slope> = observations
+            .par_chunks(SHARD * size)
+            .map(of_shard)
+            .collect();
         let mut slope = Slope::sum(shards);
         slope.gradient.resize(self.actor.parameters().len(), 0.0);
         (slope.gradient, slope.loss)

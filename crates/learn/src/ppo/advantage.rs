@@ -19,16 +19,29 @@ pub struct Steps {
 }
 
 impl Steps {
-    /// The advantage of every step, steps × rows. Added to `values`, they give the returns to learn.
+    /// The advantage of every step, steps × rows. Added to `values`, they give the returns to
+    /// learn.
     pub fn advantages(&self, discount: f32, lambda: f32) -> Vec<f32> {
-        let Steps { rows, rewards, values, next_values, over, ended } = self;
+        let Steps {
+            rows,
+            rewards,
+            values,
+            next_values,
+            over,
+            ended,
+        } = self;
         let mut advantages = vec![0.0; rewards.len()];
         for row in 0..*rows {
             let mut later = 0.0;
             for i in (row..rewards.len()).step_by(*rows).rev() {
                 let next = if over[i] { 0.0 } else { next_values[i] };
                 let surprise = rewards[i] + discount * next - values[i];
-                later = surprise + if ended[i] { 0.0 } else { discount * lambda * later };
+                later = surprise
+                    + if ended[i] {
+                        0.0
+                    } else {
+                        discount * lambda * later
+                    };
                 advantages[i] = later;
             }
         }
@@ -62,14 +75,21 @@ mod tests {
             let mut want = 0.0_f64;
             let mut weight = 1.0_f64;
             for i in (first..rows * count).step_by(rows) {
-                let next = if steps.over[i] { 0.0 } else { steps.next_values[i] };
+                let next = if steps.over[i] {
+                    0.0
+                } else {
+                    steps.next_values[i]
+                };
                 want += weight * f64::from(steps.rewards[i] + discount * next - steps.values[i]);
                 weight *= f64::from(discount * lambda);
                 if steps.ended[i] {
                     break;
                 }
             }
-            assert!((f64::from(got) - want).abs() < 1e-5, "{first}: got {got}, want {want}");
+            assert!(
+                (f64::from(got) - want).abs() < 1e-5,
+                "{first}: got {got}, want {want}"
+            );
         }
     }
 }

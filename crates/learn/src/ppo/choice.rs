@@ -5,7 +5,9 @@ pub fn log_probabilities(logits: &[f32], out: &mut [f32]) {
     let most = logits.iter().copied().fold(f32::NEG_INFINITY, f32::max);
     let sum: f32 = logits.iter().map(|logit| libm::expf(logit - most)).sum();
     let less = most + libm::logf(sum);
-    out.iter_mut().zip(logits).for_each(|(out, logit)| *out = logit - less);
+    out.iter_mut()
+        .zip(logits)
+        .for_each(|(out, logit)| *out = logit - less);
 }
 
 /// The action that a uniform random number from 0 to 1 selects.
@@ -33,13 +35,19 @@ mod tests {
         let mut logs = [0.0; 5];
         log_probabilities(&logits, &mut logs);
         let sum: f64 = logs.iter().map(|log| libm::exp(f64::from(*log))).sum();
-        assert!((sum - 1.0).abs() < 1e-5 && (logs[3] - logs[4] - 1.0).abs() < 1e-5, "{logs:?}");
+        assert!(
+            (sum - 1.0).abs() < 1e-5 && (logs[3] - logs[4] - 1.0).abs() < 1e-5,
+            "{logs:?}"
+        );
         assert_eq!(likeliest(&logits), 3);
         let counts = (0..10_000).fold([0_u32; 5], |mut counts, i| {
             counts[drawn(&logs, (f64::from(i) + 0.5) / 10_000.0)] += 1;
             counts
         });
-        assert!((i64::from(counts[3]) - 7311).abs() <= 1 && counts[..3] == [0; 3], "{counts:?}");
+        assert!(
+            (i64::from(counts[3]) - 7311).abs() <= 1 && counts[..3] == [0; 3],
+            "{counts:?}"
+        );
         assert_eq!(drawn(&logs, 1.0), 3);
     }
 }

@@ -38,7 +38,11 @@ pub struct Scale {
 impl Scale {
     /// The standard deviation; 1 without returns so far.
     pub fn deviation(&self) -> f32 {
-        if self.count < 2.0 { 1.0 } else { (self.squares / self.count).sqrt().max(1e-3) as f32 }
+        if self.count < 2.0 {
+            1.0
+        } else {
+            (self.squares / self.count).sqrt().max(1e-3) as f32
+        }
     }
 
     /// Adds returns. Older ones count less.
@@ -89,16 +93,30 @@ pub enum Lesson {
 
 impl ActorCritic {
     /// A new policy with these numbers of inputs and actions, and a critic with `state` inputs.
-    pub fn new(observation: usize, state: usize, hidden: &[usize], actions: usize, seed: u64) -> ActorCritic {
+    pub fn new(
+        observation: usize,
+        state: usize,
+        hidden: &[usize],
+        actions: usize,
+        seed: u64,
+    ) -> ActorCritic {
         let sizes = |from: usize, to: usize| [&[from], hidden, &[to]].concat();
-        let actor = Perceptron::new(&sizes(observation, actions), 0.01, &mut Stream::new(seed, "actor"));
+        let actor = Perceptron::new(
+            &sizes(observation, actions),
+            0.01,
+            &mut Stream::new(seed, "actor"),
+        );
         let critic = Perceptron::new(&sizes(state, 1), 1.0, &mut Stream::new(seed, "critic"));
         ActorCritic {
             actor_optimiser: Adam::new(actor.parameters().len(), AdamSettings::default()),
             critic_optimiser: Adam::new(critic.parameters().len(), AdamSettings::default()),
             actor,
             critic,
-            scale: Scale { count: 0.0, mean: 0.0, squares: 0.0 },
+            scale: Scale {
+                count: 0.0,
+                mean: 0.0,
+                squares: 0.0,
+            },
         }
     }
 
@@ -106,12 +124,24 @@ impl ActorCritic {
     ///
     /// # Panics
     /// If the length of a list does not match.
-    pub fn update(&mut self, batch: &Batch, settings: &Ppo, rate: f32, stream: &mut Stream) -> Learnt {
+    pub fn update(
+        &mut self,
+        batch: &Batch,
+        settings: &Ppo,
+        rate: f32,
+        stream: &mut Stream,
+    ) -> Learnt {
         let count = batch.actions.len();
         let observation = self.actor.sizes()[0];
         let state = self.critic.sizes()[0];
-        assert!(batch.observations.len() == count * observation && batch.states.len() == count * state);
-        assert!([&batch.log_probabilities, &batch.advantages, &batch.returns].iter().all(|list| list.len() == count));
+        assert!(
+            batch.observations.len() == count * observation && batch.states.len() == count * state
+        );
+        assert!(
+            [&batch.log_probabilities, &batch.advantages, &batch.returns]
+                .iter()
+                .all(|list| list.len() == count)
+        );
         assert_eq!(batch.counts.len(), count);
         self.scale.see(&batch.returns);
         let mut order: Vec<u32> = (0..count as u32).collect();
@@ -122,7 +152,11 @@ impl ActorCritic {
             stream.shuffle(&mut order);
             for minibatch in order.chunks(settings.minibatch) {
                 let part = self.step(batch, minibatch, settings, rate * settings.learning_rate);
-                let samples = minibatch.iter().filter(|i| batch.counts[**i as usize]).count().max(1) as f32;
+                let samples = minibatch
+                    .iter()
+                    .filter(|i| batch.counts[**i as usize])
+                    .count()
+                    .max(1) as f32;
                 let is_far = part.divergence / samples > settings.divergence_max;
                 sums.add(&part);
                 seen += samples;
@@ -145,22 +179,43 @@ impl ActorCritic {
     }
 
     /// One step of both optimisers.
-    fn step(&mut self, batch: &Batch, minibatch: &[u32], settings: &Ppo, learning_rate: f32) -> Sums {
-        let counted = || minibatch.iter().map(|i| *i as usize).filter(|i| batch.counts[*i]);
+    fn step(
+        &mut self,
+        batch: &Batch,
+        minibatch: &[u32],
+        settings: &Ppo,
+        learning_rate: f32,
+    ) -> Sums {
+        let counted = || {
+            minibatch
+                .iter()
+                .map(|i| *i as usize)
+                .filter(|i| batch.counts[*i])
+        };
         let samples = (counted().count(), minibatch.len());
         let advantages = Normal::of(counted().map(|i| batch.advantages[i]));
         let of_shard = |shard: &[u32]| self.shard(batch, shard, samples, advantages, settings);
         // Shards of a fixed size, summed in order, give the same bits on any number of threads.
         let shards: Vec<Shard> = minibatch.par_chunks(SHARD).map(of_shard).collect();
         let mut shards = shards.into_iter();
-        let Some(mut all) = shards.next() else { return Sums::default() };
+        let Some(mut all) = shards.next() else {
+            return Sums::default();
+        };
         for shard in shards {
             all.sums.add(&shard.sums);
-            all.actor.iter_mut().zip(&shard.actor).for_each(|(sum, number)| *sum += number);
-            all.critic.iter_mut().zip(&shard.critic).for_each(|(sum, number)| *sum += number);
+            all.actor
+                .iter_mut()
+                .zip(&shard.actor)
+                .for_each(|(sum, number)| *sum += number);
+            all.critic
+                .iter_mut()
+                .zip(&shard.critic)
+                .for_each(|(sum, number)| *sum += number);
         }
-        self.actor_optimiser.step(self.actor.parameters_mut(), &all.actor, learning_rate);
-        self.critic_optimiser.step(self.critic.parameters_mut(), &all.critic, learning_rate);
+        self.actor_optimiser
+            .step(self.actor.parameters_mut(), &all.actor, learning_rate);
+        self.critic_optimiser
+            .step(self.critic.parameters_mut(), &all.critic, learning_rate);
         all.sums
     }
 
@@ -174,17 +229,27 @@ impl ActorCritic {
         settings: &Ppo,
     ) -> Shard {
         let rows = |from: &[f32], size: usize| -> Vec<f32> {
-            shard.iter().flat_map(|i| &from[*i as usize * size..(*i as usize + 1) * size]).copied().collect()
+            shard
+                .iter()
+                .flat_map(|i| &from[*i as usize * size..(*i as usize + 1) * size])
+                .copied()
+                .collect()
         };
         let per_counted = 1.0 / counted.max(1) as f32;
         let per_sample = 1.0 / samples as f32;
         let mut sums = Sums::default();
         let mut trace = Trace::default();
-        self.actor.forward(&rows(&batch.observations, self.actor.sizes()[0]), &mut trace);
+        self.actor.forward(
+            &rows(&batch.observations, self.actor.sizes()[0]),
+            &mut trace,
+        );
         let actions = trace.output().len() / shard.len();
         let mut by_logits = vec![0.0; trace.output().len()];
         let mut logs = vec![0.0; actions];
-        let of_rows = shard.iter().zip(trace.output().chunks_exact(actions)).zip(by_logits.chunks_exact_mut(actions));
+        let of_rows = shard
+            .iter()
+            .zip(trace.output().chunks_exact(actions))
+            .zip(by_logits.chunks_exact_mut(actions));
         for ((i, logits), by) in of_rows {
             let i = *i as usize;
             // A tagged boat's actions have no effect; policies that learnt from them drove out of
@@ -199,7 +264,9 @@ impl ActorCritic {
             let action = usize::from(batch.actions[i]);
             let was = batch.log_probabilities[i];
             match batch.lesson {
-                Lesson::Reinforcement => policy_gradient(&logs, action, (was, advantage), settings, by, &mut sums),
+                Lesson::Reinforcement => {
+                    policy_gradient(&logs, action, (was, advantage), settings, by, &mut sums)
+                }
                 // Without imitation, a million samples did not reach the level of a hundred
                 // thousand with it.
                 Lesson::Imitation => imitation_gradient(&logs, action, by, &mut sums),
@@ -207,8 +274,10 @@ impl ActorCritic {
             by.iter_mut().for_each(|number| *number *= per_counted);
         }
         let mut actor = vec![0.0; self.actor.parameters().len()];
-        self.actor.backward(&trace, &mut by_logits, &mut actor, None);
-        self.critic.forward(&rows(&batch.states, self.critic.sizes()[0]), &mut trace);
+        self.actor
+            .backward(&trace, &mut by_logits, &mut actor, None);
+        self.critic
+            .forward(&rows(&batch.states, self.critic.sizes()[0]), &mut trace);
         let deviation = self.scale.deviation();
         // In standard deviations of returns, so that Adam learns rewards of any scale at its pace.
         let off = |(i, value): (&u32, &f32)| value - batch.returns[*i as usize] / deviation;
@@ -216,8 +285,13 @@ impl ActorCritic {
         sums.value = by_values.iter().map(|off| 0.5 * off * off).sum();
         by_values.iter_mut().for_each(|off| *off *= per_sample);
         let mut critic = vec![0.0; self.critic.parameters().len()];
-        self.critic.backward(&trace, &mut by_values, &mut critic, None);
-        Shard { actor, critic, sums }
+        self.critic
+            .backward(&trace, &mut by_values, &mut critic, None);
+        Shard {
+            actor,
+            critic,
+            sums,
+        }
     }
 }
 
@@ -259,8 +333,14 @@ impl Normal {
     fn of(numbers: impl Iterator<Item = f32> + Clone) -> Normal {
         let count = numbers.clone().count().max(1) as f64;
         let mean = numbers.clone().map(f64::from).sum::<f64>() / count;
-        let square = numbers.map(|number| (f64::from(number) - mean) * (f64::from(number) - mean)).sum::<f64>() / count;
-        Normal { mean: mean as f32, deviation: square.sqrt() as f32 }
+        let square = numbers
+            .map(|number| (f64::from(number) - mean) * (f64::from(number) - mean))
+            .sum::<f64>()
+            / count;
+        Normal {
+            mean: mean as f32,
+            deviation: square.sqrt() as f32,
+        }
     }
 
     fn normalised(self, number: f32) -> f32 {
@@ -291,7 +371,11 @@ fn policy_gradient(
     let held = limited * advantage;
     let entropy = -logs.iter().map(|log| libm::expf(*log) * log).sum::<f32>();
     // Where the clipped term is smaller, the gradient is zero.
-    let by_log = if free <= held { -ratio * advantage } else { 0.0 };
+    let by_log = if free <= held {
+        -ratio * advantage
+    } else {
+        0.0
+    };
     for (i, (by, log)) in by.iter_mut().zip(logs).enumerate() {
         let probability = libm::expf(*log);
         let is_chosen = if i == action { 1.0 } else { 0.0 };
@@ -332,7 +416,11 @@ mod tests {
     }
 
     /// Compares a gradient with finite differences of its loss.
-    fn assert_slopes<const N: usize>(by: [f32; N], logits: [f64; N], loss: impl Fn(&[f64; N]) -> f64) {
+    fn assert_slopes<const N: usize>(
+        by: [f32; N],
+        logits: [f64; N],
+        loss: impl Fn(&[f64; N]) -> f64,
+    ) {
         const STEP: f64 = 1e-5;
         const TOLERANCE: f64 = 1e-5;
         for i in 0..N {
@@ -342,7 +430,11 @@ mod tests {
                 loss(&logits)
             };
             let want = (at(STEP) - at(-STEP)) / (2.0 * STEP);
-            assert!((f64::from(by[i]) - want).abs() < TOLERANCE, "{i}: got {}, want {want}", by[i]);
+            assert!(
+                (f64::from(by[i]) - want).abs() < TOLERANCE,
+                "{i}: got {}, want {want}",
+                by[i]
+            );
         }
     }
 
@@ -350,8 +442,16 @@ mod tests {
     fn a_critic_explains_all_nothing_or_less_than_nothing() {
         let returns = [1.0, 2.0, 4.0, 5.0];
         // Values equal to the returns, constant, and opposite to them.
-        for (values, want) in [(returns, 1.0), ([3.0; 4], 0.0), (returns.map(|value| -value), -3.0)] {
-            let advantages: Vec<f32> = returns.iter().zip(values).map(|(all, value)| all - value).collect();
+        for (values, want) in [
+            (returns, 1.0),
+            ([3.0; 4], 0.0),
+            (returns.map(|value| -value), -3.0),
+        ] {
+            let advantages: Vec<f32> = returns
+                .iter()
+                .zip(values)
+                .map(|(all, value)| all - value)
+                .collect();
             let got = explained_variance(&advantages, &returns).expect("unequal returns");
             assert!((got - want).abs() < 1e-5, "{values:?}: {got}, want {want}");
         }
@@ -360,21 +460,48 @@ mod tests {
 
     #[test]
     fn the_policy_gradient_is_the_slope_of_the_clipped_loss() {
-        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/training/first.toml");
-        let training = scenario::load_file::<crate::training::Training>(&file).expect("a training file");
-        let settings = Ppo { entropy: 0.05, ..training.ppo };
+        let file =
+            Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/training/first.toml");
+        let training =
+            scenario::load_file::<crate::training::Training>(&file).expect("a training file");
+        let settings = Ppo {
+            entropy: 0.05,
+            ..training.ppo
+        };
         let logits = [0.3_f64, -1.1, 0.8, 0.1, -0.4];
         let mut logs = [0.0; 5];
         log_probabilities(&logits.map(|logit| logit as f32), &mut logs);
         // Within the limits; beyond them with more to gain; and beyond them where the policy must
         // return.
-        for (change, advantage) in [(0.05, 1.3), (0.05, -0.7), (0.5, 1.0), (-0.5, -1.0), (0.5, -1.0), (-0.5, 1.0)] {
+        for (change, advantage) in [
+            (0.05, 1.3),
+            (0.05, -0.7),
+            (0.5, 1.0),
+            (-0.5, -1.0),
+            (0.5, -1.0),
+            (-0.5, 1.0),
+        ] {
             let action = 2;
             let was = logs[action] - change;
             let mut by = [0.0; 5];
             let mut sums = Sums::default();
-            policy_gradient(&logs, action, (was, advantage), &settings, &mut by, &mut sums);
-            assert_slopes(by, logits, |logits| loss(logits, action, f64::from(was), f64::from(advantage), &settings));
+            policy_gradient(
+                &logs,
+                action,
+                (was, advantage),
+                &settings,
+                &mut by,
+                &mut sums,
+            );
+            assert_slopes(by, logits, |logits| {
+                loss(
+                    logits,
+                    action,
+                    f64::from(was),
+                    f64::from(advantage),
+                    &settings,
+                )
+            });
         }
     }
 
@@ -386,17 +513,31 @@ mod tests {
         let mut by = [0.0; 4];
         let mut sums = Sums::default();
         imitation_gradient(&logs, 1, &mut by, &mut sums);
-        let entropy = |logits: &[f64; 4]| libm::log(logits.iter().map(|logit| libm::exp(*logit)).sum()) - logits[1];
-        assert!((f64::from(sums.policy) - entropy(&logits)).abs() < 1e-5, "{}", sums.policy);
+        let entropy = |logits: &[f64; 4]| {
+            libm::log(logits.iter().map(|logit| libm::exp(*logit)).sum()) - logits[1]
+        };
+        assert!(
+            (f64::from(sums.policy) - entropy(&logits)).abs() < 1e-5,
+            "{}",
+            sums.policy
+        );
         assert_slopes(by, logits, entropy);
     }
 
     #[test]
     fn the_scale_is_the_standard_deviation_of_returns() {
-        let mut scale = Scale { count: 0.0, mean: 0.0, squares: 0.0 };
+        let mut scale = Scale {
+            count: 0.0,
+            mean: 0.0,
+            squares: 0.0,
+        };
         assert_eq!(scale.deviation(), 1.0);
         scale.see(&[1.0, 2.0, 3.0]);
         scale.see(&[4.0]);
-        assert!((scale.deviation() - 1.118_034).abs() < 1e-5, "{}", scale.deviation());
+        assert!(
+            (scale.deviation() - 1.118_034).abs() < 1e-5,
+            "{}",
+            scale.deviation()
+        );
     }
 }

@@ -140,7 +140,12 @@ impl Place {
         }
         let among = &boat.among;
         let near = |away: f64| (1.0 - away).max(0.0);
-        self.flag * if boat.carrying { 1.0 } else { near(boat.from_flag) }
+        self.flag
+            * if boat.carrying {
+                1.0
+            } else {
+                near(boat.from_flag)
+            }
             + self.home * near(boat.from_home)
             + self.intruder * among.at_intruder
             + self.guard * among.on_guard
@@ -165,12 +170,26 @@ impl Potential {
 impl Rewards {
     /// Whether the positions of other boats matter; see [`Among`].
     pub fn mind_others(&self) -> bool {
-        let Place { intruder, guard, shield, clear, .. } = self.place;
-        [intruder, guard, shield, clear].iter().any(|worth| *worth != 0.0)
+        let Place {
+            intruder,
+            guard,
+            shield,
+            clear,
+            ..
+        } = self.place;
+        [intruder, guard, shield, clear]
+            .iter()
+            .any(|worth| *worth != 0.0)
     }
 
     /// Adds the rewards for events. `carrying` states whether each boat carried a flag before them.
-    pub fn add_events(&self, scenario: &Scenario, events: &[Logged], carrying: &[bool], rewards: &mut [f64]) {
+    pub fn add_events(
+        &self,
+        scenario: &Scenario,
+        events: &[Logged],
+        carrying: &[bool],
+        rewards: &mut [f64],
+    ) {
         let team_of = |vehicle: VehicleId| scenario.team_of(vehicle);
         let mut add = |vehicle: VehicleId, worth: fn(&Worth) -> f64| {
             for (i, reward) in rewards.iter_mut().enumerate() {
@@ -178,14 +197,21 @@ impl Rewards {
                 if other == vehicle {
                     *reward += worth(&self.boat);
                 }
-                *reward += worth(if team_of(other) == team_of(vehicle) { &self.team } else { &self.enemy });
+                *reward += worth(if team_of(other) == team_of(vehicle) {
+                    &self.team
+                } else {
+                    &self.enemy
+                });
             }
         };
         for logged in events {
             match logged.event {
                 Event::Grabbed { vehicle, .. } => add(vehicle, |worth| worth.grab),
                 Event::Captured { vehicle, .. } => add(vehicle, |worth| worth.capture),
-                Event::Tagged { vehicle, cause: TagCause::Opponent(by) } => {
+                Event::Tagged {
+                    vehicle,
+                    cause: TagCause::Opponent(by),
+                } => {
                     if carrying[vehicle.index()] {
                         add(by, |worth| worth.tag_carrier);
                         add(vehicle, |worth| worth.tagged_carrying);
@@ -220,13 +246,52 @@ mod tests {
 
     #[test]
     fn a_place_is_worth_the_sum_of_its_parts_and_nothing_to_a_tagged_boat() {
-        let place = Place { flag: 0.1, home: 1.0, intruder: 1e4, guard: 10.0, shield: 100.0, clear: 1000.0 };
-        let among = Among { at_intruder: 0.5, on_guard: 0.5, at_shield: 0.25, clear: 0.75 };
-        let boat = BoatProgress { from_flag: 0.5, from_home: 0.25, among, ..BoatProgress::default() };
+        let place = Place {
+            flag: 0.1,
+            home: 1.0,
+            intruder: 1e4,
+            guard: 10.0,
+            shield: 100.0,
+            clear: 1000.0,
+        };
+        let among = Among {
+            at_intruder: 0.5,
+            on_guard: 0.5,
+            at_shield: 0.25,
+            clear: 0.75,
+        };
+        let boat = BoatProgress {
+            from_flag: 0.5,
+            from_home: 0.25,
+            among,
+            ..BoatProgress::default()
+        };
         assert_eq!(place.of(&boat), 0.05 + 0.75 + 5e3 + 5.0 + 25.0 + 750.0);
-        assert_eq!(place.of(&BoatProgress { carrying: true, ..boat }), 0.1 + 0.75 + 5e3 + 5.0 + 25.0 + 750.0);
-        assert_eq!(place.of(&BoatProgress { tagged: true, ..boat }), 0.0);
-        assert_eq!(Place { home: 1.0, ..Place::default() }.of(&BoatProgress { from_home: 1.5, ..boat }), 0.0);
+        assert_eq!(
+            place.of(&BoatProgress {
+                carrying: true,
+                ..boat
+            }),
+            0.1 + 0.75 + 5e3 + 5.0 + 25.0 + 750.0
+        );
+        assert_eq!(
+            place.of(&BoatProgress {
+                tagged: true,
+                ..boat
+            }),
+            0.0
+        );
+        assert_eq!(
+            Place {
+                home: 1.0,
+                ..Place::default()
+            }
+            .of(&BoatProgress {
+                from_home: 1.5,
+                ..boat
+            }),
+            0.0
+        );
     }
 
     #[test]

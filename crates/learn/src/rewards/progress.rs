@@ -53,13 +53,31 @@ pub struct Among {
 /// others.
 pub fn progress(contest: &Contest, among_others: bool) -> Vec<BoatProgress> {
     let scenario = contest.scenario();
-    let placed = |team: TeamId| Placed { at: Ned::default(), team, tagged: false, carrying: false };
-    let mut boats: Vec<Placed> = scenario.vehicles.iter().map(|vehicle| placed(vehicle.team)).collect();
-    for boat in contest.last_pictures().iter().flat_map(|picture| &picture.own) {
+    let placed = |team: TeamId| Placed {
+        at: Ned::default(),
+        team,
+        tagged: false,
+        carrying: false,
+    };
+    let mut boats: Vec<Placed> = scenario
+        .vehicles
+        .iter()
+        .map(|vehicle| placed(vehicle.team))
+        .collect();
+    for boat in contest
+        .last_pictures()
+        .iter()
+        .flat_map(|picture| &picture.own)
+    {
         let at = boat.nav.at();
         let tagged = boat.tagged;
         let carrying = boat.carried_flag().is_some();
-        boats[boat.vehicle.index()] = Placed { at, tagged, carrying, team: scenario.team_of(boat.vehicle) };
+        boats[boat.vehicle.index()] = Placed {
+            at,
+            tagged,
+            carrying,
+            team: scenario.team_of(boat.vehicle),
+        };
     }
     of_boats(&scenario.field, &boats, among_others)
 }
@@ -67,10 +85,24 @@ pub fn progress(contest: &Contest, among_others: bool) -> Vec<BoatProgress> {
 fn of_boats(field: &Field, boats: &[Placed], among_others: bool) -> Vec<BoatProgress> {
     let posts = among_others.then(|| Posts::of(field, boats));
     let progress = |(i, boat): (usize, &Placed)| {
-        let away = |team: TeamId| boat.at.distance(flag_near(field, team, boat.at)) / field.plan.width_m;
-        let Placed { tagged, carrying, team, .. } = *boat;
-        let among = posts.as_ref().map_or_else(Among::default, |posts| posts.among(field, boats, i));
-        BoatProgress { tagged, carrying, from_flag: away(TeamId(1 - team.0)), from_home: away(team), among }
+        let away =
+            |team: TeamId| boat.at.distance(flag_near(field, team, boat.at)) / field.plan.width_m;
+        let Placed {
+            tagged,
+            carrying,
+            team,
+            ..
+        } = *boat;
+        let among = posts
+            .as_ref()
+            .map_or_else(Among::default, |posts| posts.among(field, boats, i));
+        BoatProgress {
+            tagged,
+            carrying,
+            from_flag: away(TeamId(1 - team.0)),
+            from_home: away(team),
+            among,
+        }
     };
     boats.iter().enumerate().map(progress).collect()
 }
@@ -90,50 +122,80 @@ impl Posts {
         let stand_off_m = STAND_OFF * field.plan.width_m;
         let flag = [0, 1].map(|team: u8| {
             let team = TeamId(team);
-            let threats = field.own_flags(team).filter_map(|(_, home)| Some((home, nearest_enemy(boats, team, home)?)));
+            let threats = field
+                .own_flags(team)
+                .filter_map(|(_, home)| Some((home, nearest_enemy(boats, team, home)?)));
             let worst = threats.min_by(|a, b| a.0.distance(a.1).total_cmp(&b.0.distance(b.1)));
             worst.map(|(home, enemy)| between(home, enemy, stand_off_m))
         });
-        let abroad = |boat: &Placed| !boat.tagged && field.is_own_side(TeamId(1 - boat.team.0), boat.at);
+        let abroad =
+            |boat: &Placed| !boat.tagged && field.is_own_side(TeamId(1 - boat.team.0), boat.at);
         let post = |(i, boat): (usize, &Placed)| {
             let enemy = nearest_enemy(boats, boat.team, boat.at)?;
-            Some((i, boat.at.distance(enemy), between(boat.at, enemy, stand_off_m)))
+            Some((
+                i,
+                boat.at.distance(enemy),
+                between(boat.at, enemy, stand_off_m),
+            ))
         };
-        let mates = boats.iter().enumerate().filter(|(_, boat)| abroad(boat)).filter_map(post).collect();
+        let mates = boats
+            .iter()
+            .enumerate()
+            .filter(|(_, boat)| abroad(boat))
+            .filter_map(post)
+            .collect();
         Posts { flag, mates }
     }
 
     fn among(&self, field: &Field, boats: &[Placed], i: usize) -> Among {
         let width_m = field.plan.width_m;
         let me = &boats[i];
-        let near = |place: Ned, reach: f64| (1.0 - me.at.distance(place) / (reach * width_m)).max(0.0);
-        let intruders =
-            boats.iter().filter(|boat| boat.team != me.team && !boat.tagged && field.is_own_side(me.team, boat.at));
-        let of_team = self.mates.iter().filter(|(mate, ..)| *mate != i && boats[*mate].team == me.team);
+        let near =
+            |place: Ned, reach: f64| (1.0 - me.at.distance(place) / (reach * width_m)).max(0.0);
+        let intruders = boats.iter().filter(|boat| {
+            boat.team != me.team && !boat.tagged && field.is_own_side(me.team, boat.at)
+        });
+        let of_team = self
+            .mates
+            .iter()
+            .filter(|(mate, ..)| *mate != i && boats[*mate].team == me.team);
         Among {
             at_intruder: intruders.map(|boat| near(boat.at, 1.0)).fold(0.0, f64::max),
             on_guard: self.flag[me.team.index()].map_or(0.0, |post| near(post, REACH)),
-            at_shield: of_team.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0.0, |(.., post)| near(*post, REACH)),
-            clear: nearest_enemy(boats, me.team, me.at).map_or(1.0, |enemy| 1.0 - near(enemy, REACH)),
+            at_shield: of_team
+                .min_by(|a, b| a.1.total_cmp(&b.1))
+                .map_or(0.0, |(.., post)| near(*post, REACH)),
+            clear: nearest_enemy(boats, me.team, me.at)
+                .map_or(1.0, |enemy| 1.0 - near(enemy, REACH)),
         }
     }
 }
 
 /// The home of the team's nearest flag.
 fn flag_near(field: &Field, team: TeamId, at: Ned) -> Ned {
-    field.nearest_own_flag(team, at).expect("each team has a flag")
+    field
+        .nearest_own_flag(team, at)
+        .expect("each team has a flag")
 }
 
 /// The position of the team's nearest untagged enemy.
 fn nearest_enemy(boats: &[Placed], team: TeamId, to: Ned) -> Option<Ned> {
-    let enemies = boats.iter().filter(|boat| boat.team != team && !boat.tagged);
-    enemies.map(|boat| boat.at).min_by(|a, b| a.distance(to).total_cmp(&b.distance(to)))
+    let enemies = boats
+        .iter()
+        .filter(|boat| boat.team != team && !boat.tagged);
+    enemies
+        .map(|boat| boat.at)
+        .min_by(|a, b| a.distance(to).total_cmp(&b.distance(to)))
 }
 
 /// The point at distance `off_m` from `from` towards `to`, or `to` if it is nearer.
 fn between(from: Ned, to: Ned, off_m: f64) -> Ned {
     let away_m = from.distance(to);
-    if away_m <= off_m { to } else { from + (to - from).scaled(off_m / away_m) }
+    if away_m <= off_m {
+        to
+    } else {
+        from + (to - from).scaled(off_m / away_m)
+    }
 }
 
 #[cfg(test)]
@@ -147,7 +209,10 @@ mod tests {
     fn field() -> Field {
         Field::new(Plan {
             name: "test".to_owned(),
-            datum: LatLon { lat_deg: 41.0, lon_deg: -74.0 },
+            datum: LatLon {
+                lat_deg: 41.0,
+                lon_deg: -74.0,
+            },
             corner: primitives::frame::Ned::default(),
             along_deg: 90.0,
             width_m: 160.0,
@@ -167,7 +232,12 @@ mod tests {
             .enumerate()
             .map(|(i, (along_m, across_m, tagged))| {
                 let team = TeamId(u8::from(i >= 2));
-                Placed { at: field.at(*along_m, *across_m), team, tagged: *tagged, carrying: false }
+                Placed {
+                    at: field.at(*along_m, *across_m),
+                    team,
+                    tagged: *tagged,
+                    carrying: false,
+                }
             })
             .collect();
         of_boats(&field, &boats, true)
@@ -179,7 +249,12 @@ mod tests {
 
     #[test]
     fn distances_are_told_in_widths_of_the_field() {
-        let boats = seen([(60.0, 40.0, false), (20.0, 40.0, true), (140.0, 0.0, false), (100.0, 40.0, false)]);
+        let boats = seen([
+            (60.0, 40.0, false),
+            (20.0, 40.0, true),
+            (140.0, 0.0, false),
+            (100.0, 40.0, false),
+        ]);
         close(boats[0].from_home, 0.25);
         close(boats[0].from_flag, 0.5);
         close(boats[2].from_home, 0.25);
@@ -190,7 +265,12 @@ mod tests {
     #[test]
     fn the_nearest_untagged_enemy_on_the_own_side_is_an_intruder() {
         // One of the two on the first team's side is tagged. The other is 32 m and 40 m away.
-        let boats = seen([(70.0, 72.0, false), (30.0, 40.0, false), (70.0, 40.0, false), (70.0, 72.0, true)]);
+        let boats = seen([
+            (70.0, 72.0, false),
+            (30.0, 40.0, false),
+            (70.0, 40.0, false),
+            (70.0, 72.0, true),
+        ]);
         close(boats[0].among.at_intruder, 0.8);
         close(boats[1].among.at_intruder, 0.75);
         close(boats[2].among.at_intruder, 0.0);
@@ -200,9 +280,13 @@ mod tests {
     fn a_flag_is_guarded_from_an_eighth_of_the_field_before_it_towards_the_nearest_enemy() {
         // The enemy nearest to the flag at (20, 40) is straight ahead, so the place is (40, 40), or
         // the enemy's position.
-        for (enemy_along_m, boat_along_m, want) in
-            [(90.0, 40.0, 1.0), (90.0, 50.0, 0.75), (90.0, 85.0, 0.0), (30.0, 40.0, 0.75), (30.0, 30.0, 1.0)]
-        {
+        for (enemy_along_m, boat_along_m, want) in [
+            (90.0, 40.0, 1.0),
+            (90.0, 50.0, 0.75),
+            (90.0, 85.0, 0.0),
+            (30.0, 40.0, 0.75),
+            (30.0, 30.0, 1.0),
+        ] {
             let boats = seen([
                 (boat_along_m, 40.0, false),
                 (20.0, 70.0, false),
@@ -211,14 +295,25 @@ mod tests {
             ]);
             close(boats[0].among.on_guard, want);
         }
-        let tagged = seen([(40.0, 40.0, false), (20.0, 70.0, false), (90.0, 40.0, true), (21.0, 40.0, true)]);
+        let tagged = seen([
+            (40.0, 40.0, false),
+            (20.0, 70.0, false),
+            (90.0, 40.0, true),
+            (21.0, 40.0, true),
+        ]);
         close(tagged[0].among.on_guard, 0.0);
     }
 
     #[test]
     fn a_mate_abroad_is_shielded_from_the_enemy_nearest_to_it() {
-        let shield =
-            |mate: (f64, f64, bool)| seen([(110.0, 40.0, false), mate, (150.0, 40.0, false), (20.0, 40.0, false)]);
+        let shield = |mate: (f64, f64, bool)| {
+            seen([
+                (110.0, 40.0, false),
+                mate,
+                (150.0, 40.0, false),
+                (20.0, 40.0, false),
+            ])
+        };
         // From (100, 40) 20 m towards (150, 40) is (120, 40), 10 m from the boat at (110, 40).
         close(shield((100.0, 40.0, false))[0].among.at_shield, 0.75);
         // A boat does not shield itself. The other mate's only target is the boat at (110, 40), so
@@ -231,11 +326,18 @@ mod tests {
 
     #[test]
     fn a_boat_is_clear_of_enemies_from_a_quarter_of_the_field_on() {
-        for (enemy_along_m, tagged, want) in
-            [(80.0, false, 0.5), (100.0, false, 1.0), (60.0, false, 0.0), (60.0, true, 1.0)]
-        {
-            let boats =
-                seen([(60.0, 40.0, false), (20.0, 70.0, false), (enemy_along_m, 40.0, tagged), (159.0, 1.0, false)]);
+        for (enemy_along_m, tagged, want) in [
+            (80.0, false, 0.5),
+            (100.0, false, 1.0),
+            (60.0, false, 0.0),
+            (60.0, true, 1.0),
+        ] {
+            let boats = seen([
+                (60.0, 40.0, false),
+                (20.0, 70.0, false),
+                (enemy_along_m, 40.0, tagged),
+                (159.0, 1.0, false),
+            ]);
             close(boats[0].among.clear, want);
         }
     }
@@ -244,7 +346,10 @@ mod tests {
     fn of_several_flags_the_nearest_counts_and_the_one_in_most_danger_is_guarded() {
         let mut plan = field().plan;
         for (team, along_m) in [(0, 20.0), (1, 140.0)] {
-            plan.extra_flags.push(Flag { team: TeamId(team), home: field().at(along_m, 10.0) });
+            plan.extra_flags.push(Flag {
+                team: TeamId(team),
+                home: field().at(along_m, 10.0),
+            });
         }
         let field = Field::new(plan);
         let boat = |along_m, across_m, team| Placed {
@@ -255,7 +360,11 @@ mod tests {
         };
         // The enemy at (70, 10) is 50 m from the flag at (20, 10), which is guarded from (40, 10),
         // and 58 m from the flag at (20, 40).
-        let boats = [boat(60.0, 10.0, 0), boat(40.0, 10.0, 0), boat(70.0, 10.0, 1)];
+        let boats = [
+            boat(60.0, 10.0, 0),
+            boat(40.0, 10.0, 0),
+            boat(70.0, 10.0, 1),
+        ];
         let out = of_boats(&field, &boats, true);
         close(out[0].from_home, 0.25);
         close(out[0].from_flag, 0.5);
@@ -265,8 +374,16 @@ mod tests {
     #[test]
     fn what_is_not_asked_for_is_0() {
         let field = field();
-        let boat = Placed { at: field.at(20.0, 40.0), team: TeamId(0), tagged: false, carrying: true };
+        let boat = Placed {
+            at: field.at(20.0, 40.0),
+            team: TeamId(0),
+            tagged: false,
+            carrying: true,
+        };
         let seen = of_boats(&field, &[boat], false)[0];
-        assert!(seen.among == Among::default() && seen.carrying && seen.from_home < 1e-12, "{seen:?}");
+        assert!(
+            seen.among == Among::default() && seen.carrying && seen.from_home < 1e-12,
+            "{seen:?}"
+        );
     }
 }

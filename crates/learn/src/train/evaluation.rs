@@ -60,7 +60,9 @@ pub fn evaluate(
         let observations = environment.observations();
         let logits = pool.install(|| outputs(actor, observations));
         // Greedy rather than sampled, as on board a boat.
-        let chosen = logits.chunks_exact(logits.len() / rows).map(|output| greedy(is_discrete, output));
+        let chosen = logits
+            .chunks_exact(logits.len() / rows)
+            .map(|output| greedy(is_discrete, output));
         let actions: Vec<Action> = chosen.collect();
         environment.step(&actions)?;
         for one in environment.finished() {

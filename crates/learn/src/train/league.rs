@@ -75,7 +75,9 @@ impl League {
 
     pub(super) fn see(&mut self, finished: &[Finished]) {
         for one in finished {
-            let Some(record) = self.records.get_mut(one.standing.side.opponent) else { continue };
+            let Some(record) = self.records.get_mut(one.standing.side.opponent) else {
+                continue;
+            };
             let [own, theirs] = one.standing.score;
             let lost = match own.cmp(&theirs) {
                 Ordering::Greater => 0.0,
@@ -93,17 +95,30 @@ impl League {
         let strategies = usize::from(plays_itself)..self.fixed;
         let past = self.fixed + self.kept - self.past.len()..self.fixed + self.kept;
         let mut weights = vec![0.0; self.records.len()];
-        for (range, total) in [(strategies, stage.strategies), (past.clone(), stage.past_selves)] {
+        for (range, total) in [
+            (strategies, stage.strategies),
+            (past.clone(), stage.past_selves),
+        ] {
             // Prioritised fictitious self-play (Vinyals and others, Nature 2019). Past policies
             // play from their ONNX files, as boats do.
-            let urgencies: Vec<f64> = self.records[range.clone()].iter().map(|r| r.urgency(league.priority)).collect();
+            let urgencies: Vec<f64> = self.records[range.clone()]
+                .iter()
+                .map(|r| r.urgency(league.priority))
+                .collect();
             let sum: f64 = urgencies.iter().sum();
             let parts = weights[range].iter_mut().zip(urgencies);
-            parts.for_each(|(weight, urgency)| *weight = total * urgency / sum.max(f64::MIN_POSITIVE));
+            parts.for_each(|(weight, urgency)| {
+                *weight = total * urgency / sum.max(f64::MIN_POSITIVE)
+            });
         }
         if plays_itself {
             // Without past policies, the current one takes their weight.
-            weights[0] = stage.self_play + if past.is_empty() { stage.past_selves } else { 0.0 };
+            weights[0] = stage.self_play
+                + if past.is_empty() {
+                    stage.past_selves
+                } else {
+                    0.0
+                };
         }
         weights
     }

@@ -30,18 +30,30 @@ impl Learner {
         let seed = training.seed;
         let observation = setup.observation_size();
         match training.algorithm() {
-            Algorithm::Ppo(_) => {
-                Learner::Ppo(Box::new(ActorCritic::new(observation, setup.state_size(), hidden, actions, seed)))
-            }
+            Algorithm::Ppo(_) => Learner::Ppo(Box::new(ActorCritic::new(
+                observation,
+                setup.state_size(),
+                hidden,
+                actions,
+                seed,
+            ))),
             Algorithm::Td3(settings) => {
                 let learner = Td3Learner::new(observation, hidden, seed);
                 let replay = Replay::new(observation, settings.buffer);
-                Learner::Td3(Box::new(OffPolicy { learner, settings, replay }))
+                Learner::Td3(Box::new(OffPolicy {
+                    learner,
+                    settings,
+                    replay,
+                }))
             }
             Algorithm::Dqn(settings) => {
                 let learner = DqnLearner::new(observation, hidden, actions, seed);
                 let replay = Replay::new(observation, settings.buffer);
-                Learner::Dqn(Box::new(OffPolicy { learner, settings, replay }))
+                Learner::Dqn(Box::new(OffPolicy {
+                    learner,
+                    settings,
+                    replay,
+                }))
             }
         }
     }
@@ -76,5 +88,9 @@ impl Learner {
 /// Converts a policy's output to an action without exploration: the likeliest or most valuable
 /// discrete action, or the continuous one.
 pub(super) fn greedy(is_discrete: bool, output: &[f32]) -> Action {
-    if is_discrete { Action::likeliest(output) } else { Action::Continuous(action(output)) }
+    if is_discrete {
+        Action::likeliest(output)
+    } else {
+        Action::Continuous(action(output))
+    }
 }

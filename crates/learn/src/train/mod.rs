@@ -95,36 +95,63 @@ impl Trainer {
         Trainer::with(training, threads, None)
     }
 
-    /// Resumes a training run from [`Trainer::state`]. The results are those without an interruption.
+    /// Resumes a training run from [`Trainer::state`]. The results are those without an
+    /// interruption.
     ///
     /// # Errors
-    /// [`StateError`] if the state belongs to another training run or version, or a file cannot be used.
+    /// [`StateError`] if the state belongs to another training run or version, or a file cannot be
+    /// used.
     pub fn resume(training: Training, threads: usize, state: &[u8]) -> Result<Trainer, StateError> {
         let state = State::read(state, &training)?;
         Ok(Trainer::with(training, threads, Some(state))?)
     }
 
-    fn with(training: Training, threads: usize, state: Option<State>) -> Result<Trainer, SetupError> {
-        let setups: Vec<Setup> =
-            training.stage.iter().map(|stage| Setup::of_stage(&training, stage)).collect::<Result<_, _>>()?;
+    fn with(
+        training: Training,
+        threads: usize,
+        state: Option<State>,
+    ) -> Result<Trainer, SetupError> {
+        let setups: Vec<Setup> = training
+            .stage
+            .iter()
+            .map(|stage| Setup::of_stage(&training, stage))
+            .collect::<Result<_, _>>()?;
         let first = &setups[0];
         let last = &setups[setups.len() - 1];
         let judges = judges(&training, last)?;
         let size = first.observation_size();
-        if let Some(other) = setups.iter().map(Setup::observation_size).find(|other| *other != size) {
-            return Err(wrong("the observation size of a stage", other, &format!("{size}, as in the first stage")));
+        if let Some(other) = setups
+            .iter()
+            .map(Setup::observation_size)
+            .find(|other| *other != size)
+        {
+            return Err(wrong(
+                "the observation size of a stage",
+                other,
+                &format!("{size}, as in the first stage"),
+            ));
         }
-        if let Some(other) = setups.iter().find(|other| other.options() != first.options()) {
+        if let Some(other) = setups
+            .iter()
+            .find(|other| other.options() != first.options())
+        {
             let list = |setup: &Setup| setup.options().unwrap_or_default().join(", ");
             let allowed = format!("those of the first stage: {}", list(first));
             return Err(wrong("the options of a stage", list(other), &allowed));
         }
         let state = state.unwrap_or_else(|| {
-            let mut state = State::new(Learner::new(&training, first, last.actions().unwrap_or_default()));
+            let mut state = State::new(Learner::new(
+                &training,
+                first,
+                last.actions().unwrap_or_default(),
+            ));
             state.league.begin(first.opponents.len());
             state
         });
-        let updates_per_epoch = setups.iter().map(|setup| updates_per_epoch(&training, setup)).collect();
+        let updates_per_epoch = setups
+            .iter()
+            .map(|setup| updates_per_epoch(&training, setup))
+            .collect();
         let environment = environment(&training, &setups, &state, threads, None)?;
         let pool = pool(threads);
         let (watches, is_behind) = (None, !state.played.is_empty());
@@ -143,8 +170,8 @@ impl Trainer {
     }
 
     /// Adds watches for all episodes from now on except those of evaluations. Numbers count up
-    /// through a training run as if games were played to the end; where games end early, a number may
-    /// recur with another seed. Watches do not affect learning.
+    /// through a training run as if games were played to the end; where games end early, a number
+    /// may recur with another seed. Watches do not affect learning.
     ///
     /// # Errors
     /// [`SetupError::NoStart`] if a game cannot begin.
@@ -152,9 +179,18 @@ impl Trainer {
     /// # Panics
     /// After an update since the training was started or resumed: games would restart.
     pub fn watch(&mut self, watches: Watches) -> Result<(), SetupError> {
-        assert!(self.state.updates_of_epoch == 0 || self.is_behind, "watches must be added before the first update");
+        assert!(
+            self.state.updates_of_epoch == 0 || self.is_behind,
+            "watches must be added before the first update"
+        );
         self.watches = Some(watches);
-        self.environment = environment(&self.training, &self.setups, &self.state, self.threads, self.watches.as_ref())?;
+        self.environment = environment(
+            &self.training,
+            &self.setups,
+            &self.state,
+            self.threads,
+            self.watches.as_ref(),
+        )?;
         Ok(())
     }
 
@@ -170,7 +206,10 @@ impl Trainer {
 
     /// The number of samples learnt so far, and of all stages.
     pub fn samples(&self) -> (u64, u64) {
-        (self.state.samples, self.training.stage.iter().map(|stage| stage.samples).sum())
+        (
+            self.state.samples,
+            self.training.stage.iter().map(|stage| stage.samples).sum(),
+        )
     }
 
     /// The best policy so far.
@@ -201,14 +240,28 @@ impl Trainer {
             (SAMPLES.to_owned(), self.state.samples.to_string()),
             ("squall.version".to_owned(), primitives::VERSION.to_owned()),
         ]);
-        metadata.extend(self.setups.last().and_then(Setup::options).map(options_metadata));
+        metadata.extend(
+            self.setups
+                .last()
+                .and_then(Setup::options)
+                .map(options_metadata),
+        );
         self.state.learner.onnx(metadata)
     }
 
     /// The policy's spaces and period.
     pub fn spec(&self) -> PolicySpec {
-        let Training { observation, action, period_s, .. } = self.training;
-        PolicySpec { observation, action, period_s }
+        let Training {
+            observation,
+            action,
+            period_s,
+            ..
+        } = self.training;
+        PolicySpec {
+            observation,
+            action,
+            period_s,
+        }
     }
 
     /// Plays and learns once.
@@ -224,7 +277,10 @@ impl Trainer {
             play_again(&mut self.environment, &self.state.played)?;
         }
         let stage = self.state.stage;
-        let mut stream = Stream::new(self.training.seed.wrapping_add(self.state.updates), "update");
+        let mut stream = Stream::new(
+            self.training.seed.wrapping_add(self.state.updates),
+            "update",
+        );
         let of_stage = &self.training.stage[stage];
         let weights = self.state.league.weights(of_stage, &self.training.league);
         self.environment.games.set_weights(weights.iter().copied());
@@ -233,28 +289,68 @@ impl Trainer {
         }
         let (done, all) = self.samples();
         let done = (done, done as f32 / all.max(1) as f32);
-        let Trainer { environment, pool, state, training, .. } = self;
+        let Trainer {
+            environment,
+            pool,
+            state,
+            training,
+            ..
+        } = self;
         let update = match &mut state.learner {
-            Learner::Ppo(learner) => update_by_ppo(learner, environment, pool, &training.ppo, done.1, &mut stream)?,
+            Learner::Ppo(learner) => update_by_ppo(
+                learner,
+                environment,
+                pool,
+                &training.ppo,
+                done.1,
+                &mut stream,
+            )?,
             Learner::Td3(of) => of.update(environment, pool, stage == 0, &mut stream)?,
             Learner::Dqn(of) => of.update(environment, pool, done.0, &mut stream)?,
         };
-        let Update { counted, reward, finished, learnt, .. } = update;
+        let Update {
+            counted,
+            reward,
+            finished,
+            learnt,
+            ..
+        } = update;
         let actions = environment.actions.replace(vec![]).unwrap_or_default();
-        state.played.push(PlayedUpdate { weights, actions, kept: None });
+        state.played.push(PlayedUpdate {
+            weights,
+            actions,
+            kept: None,
+        });
         state.updates += 1;
         state.updates_of_epoch += 1;
         state.samples += counted;
         state.samples_of_stage += counted;
         state.league.see(&finished);
         let first = first_number(training, state.epoch);
-        let numbered = |one: Finished| Finished { number: one.number.wrapping_add(first), ..one };
-        let name = |one: Finished| (numbered(one), self.opponent_name(stage, one.standing.side.opponent));
+        let numbered = |one: Finished| Finished {
+            number: one.number.wrapping_add(first),
+            ..one
+        };
+        let name = |one: Finished| {
+            (
+                numbered(one),
+                self.opponent_name(stage, one.standing.side.opponent),
+            )
+        };
         let finished = finished.into_iter().map(name).collect();
         let (evaluated, is_best) = self.after_update()?;
         let games_restart = self.begin_anew(evaluated.as_ref())?;
         let samples = self.state.samples;
-        Ok(Progress { samples, stage, learnt, reward, finished, evaluated, is_best, games_restart })
+        Ok(Progress {
+            samples,
+            stage,
+            learnt,
+            reward,
+            finished,
+            evaluated,
+            is_best,
+            games_restart,
+        })
     }
 
     fn opponent_name(&self, stage: usize, opponent: usize) -> String {
@@ -268,15 +364,23 @@ impl Trainer {
 
     /// Evaluates the policy and adds it to the league if due.
     fn after_update(&mut self) -> Result<(Option<Evaluated>, bool), SetupError> {
-        let Training { league, evaluation, .. } = &self.training;
+        let Training {
+            league, evaluation, ..
+        } = &self.training;
         let plays_past = self.training.stage[self.state.stage].past_selves > 0.0;
         let diverged = |error: onnx::NetworkError| SetupError::Diverged(error.to_string());
         if plays_past && self.state.samples >= self.state.league.newest() + league.every_samples {
             let model = self.model().map_err(diverged)?;
-            let kept = self.state.league.keep(self.state.samples, model, league.most);
-            kept.into_iter().for_each(|model| self.environment.games.add_opponent(Player::Model(model)));
+            let kept = self
+                .state
+                .league
+                .keep(self.state.samples, model, league.most);
+            kept.into_iter()
+                .for_each(|model| self.environment.games.add_opponent(Player::Model(model)));
             let played = self.state.played.last_mut();
-            played.into_iter().for_each(|played| played.kept = self.state.league.past().last().cloned());
+            played
+                .into_iter()
+                .for_each(|played| played.kept = self.state.league.past().last().cloned());
         }
         let last = self.state.evaluations.last().map_or(0, |last| last.samples);
         let is_last = self.state.samples_of_stage >= self.training.stage[self.state.stage].samples;
@@ -287,14 +391,25 @@ impl Trainer {
         for (name, setup) in &self.judges {
             let actor = self.state.learner.actor();
             let games = evaluation.games.next_multiple_of(2) as usize;
-            played.push((name.clone(), evaluate(actor, setup.clone(), games, self.threads, EVALUATION_SEED)?));
+            played.push((
+                name.clone(),
+                evaluate(actor, setup.clone(), games, self.threads, EVALUATION_SEED)?,
+            ));
         }
-        let evaluated = Evaluated { samples: self.state.samples, stage: self.state.stage, played };
+        let evaluated = Evaluated {
+            samples: self.state.samples,
+            stage: self.state.stage,
+            played,
+        };
         let won = evaluated.won();
         // By evaluation games with the same seeds each time, since returns of self-play say little.
         let is_best = self.state.best.as_ref().is_none_or(|best| won >= best.won);
         if is_best {
-            self.state.best = Some(Best { samples: self.state.samples, won, onnx: self.model().map_err(diverged)? });
+            self.state.best = Some(Best {
+                samples: self.state.samples,
+                won,
+                onnx: self.model().map_err(diverged)?,
+            });
         }
         self.state.evaluations.push(evaluated.clone());
         Ok((Some(evaluated), is_best))
@@ -305,13 +420,16 @@ impl Trainer {
     fn begin_anew(&mut self, evaluated: Option<&Evaluated>) -> Result<bool, SetupError> {
         let state = &mut self.state;
         let stage: &Stage = &self.training.stage[state.stage];
-        let is_won = stage.until_won.zip(evaluated).is_some_and(|(least, evaluated)| evaluated.won() >= least);
+        let is_won = stage
+            .until_won
+            .zip(evaluated)
+            .is_some_and(|(least, evaluated)| evaluated.won() >= least);
         let is_over = state.samples_of_stage >= stage.samples || is_won;
         if !is_over && state.updates_of_epoch < self.updates_per_epoch[state.stage] {
             return Ok(false);
         }
-        // Elsewhere, a state would need every helm in every game: it holds the actions since the last
-        // restart instead. After a restart, it is only the learner and the opponents.
+        // Elsewhere, a state would need every helm in every game: it holds the actions since the
+        // last restart instead. After a restart, it is only the learner and the opponents.
         (state.epoch, state.updates_of_epoch) = (state.epoch + 1, 0);
         (state.past_at_restart, state.played) = (vec![], vec![]);
         if is_over {
@@ -323,7 +441,13 @@ impl Trainer {
             Some(_) => state.league.compact(),
             None => return Ok(true),
         }
-        self.environment = environment(&self.training, &self.setups, &self.state, self.threads, self.watches.as_ref())?;
+        self.environment = environment(
+            &self.training,
+            &self.setups,
+            &self.state,
+            self.threads,
+            self.watches.as_ref(),
+        )?;
         Ok(true)
     }
 }
@@ -339,13 +463,26 @@ fn update_by_ppo(
 ) -> Result<Update, SetupError> {
     let rollout = Rollout::play(environment, pool, learner, ppo.steps, stream)?;
     let is_taught = environment.setup().teacher.is_some();
-    let batch = rollout.batch(ppo, if is_taught { Lesson::Imitation } else { Lesson::Reinforcement });
+    let batch = rollout.batch(
+        ppo,
+        if is_taught {
+            Lesson::Imitation
+        } else {
+            Lesson::Reinforcement
+        },
+    );
     let rate = 1.0 - (1.0 - ppo.learning_rate_end) * done.min(1.0);
     let learnt = pool.install(|| learner.update(&batch, ppo, rate, stream));
     let counted = batch.counts.iter().filter(|counts| **counts).count() as u64;
     let transitions = batch.actions.len() as u64;
     let reward = rollout.rewards().sum::<f32>() / transitions.max(1) as f32;
-    Ok(Update { counted, transitions, reward, finished: rollout.finished, learnt })
+    Ok(Update {
+        counted,
+        transitions,
+        reward,
+        finished: rollout.finished,
+        learnt,
+    })
 }
 
 /// Starts the games of the current stage.
@@ -358,25 +495,49 @@ fn environment(
 ) -> Result<VectorEnvironment, SetupError> {
     // Nothing is played after the last stage.
     let mut setup = setups[state.stage.min(setups.len() - 1)].clone();
-    let past: &[PastSelf] = if state.played.is_empty() { state.league.past() } else { &state.past_at_restart };
-    setup.opponents.extend(past.iter().filter_map(PastSelf::model).map(|model| (0.0, Player::Model(model))));
+    let past: &[PastSelf] = if state.played.is_empty() {
+        state.league.past()
+    } else {
+        &state.past_at_restart
+    };
+    setup.opponents.extend(
+        past.iter()
+            .filter_map(PastSelf::model)
+            .map(|model| (0.0, Player::Model(model))),
+    );
     let stage = &training.stage[state.stage.min(setups.len() - 1)];
     let at_restart = state.played.first().map(|played| played.weights.clone());
     let weights = at_restart.unwrap_or_else(|| state.league.weights(stage, &training.league));
-    setup.opponents.iter_mut().zip(weights).for_each(|((weight, _), drawn)| *weight = drawn);
-    let seed = (training.seed << (2 * SEEDS_BITS)).wrapping_add(state.epoch << SEEDS_BITS) % EVALUATION_SEED;
+    setup
+        .opponents
+        .iter_mut()
+        .zip(weights)
+        .for_each(|((weight, _), drawn)| *weight = drawn);
+    let seed = (training.seed << (2 * SEEDS_BITS)).wrapping_add(state.epoch << SEEDS_BITS)
+        % EVALUATION_SEED;
     let first = first_number(training, state.epoch);
-    let watches = watches.cloned().map(|watches| -> Watches { Arc::new(move |number| watches(first + number)) });
-    let mut environment = VectorEnvironment::new(setup, training.games as usize, threads, seed, watches)?;
+    let watches = watches
+        .cloned()
+        .map(|watches| -> Watches { Arc::new(move |number| watches(first + number)) });
+    let mut environment =
+        VectorEnvironment::new(setup, training.games as usize, threads, seed, watches)?;
     environment.actions = Some(vec![]);
     Ok(environment)
 }
 
 /// Brings games at their restart to the state after these updates.
-fn play_again(environment: &mut VectorEnvironment, updates: &[PlayedUpdate]) -> Result<(), SetupError> {
+fn play_again(
+    environment: &mut VectorEnvironment,
+    updates: &[PlayedUpdate],
+) -> Result<(), SetupError> {
     for update in updates {
-        environment.games.set_weights(update.weights.iter().copied());
-        update.actions.chunks(environment.rows().0).try_for_each(|actions| environment.step(actions))?;
+        environment
+            .games
+            .set_weights(update.weights.iter().copied());
+        update
+            .actions
+            .chunks(environment.rows().0)
+            .try_for_each(|actions| environment.step(actions))?;
         let kept = update.kept.iter().filter_map(PastSelf::model);
         kept.for_each(|model| environment.games.add_opponent(Player::Model(model)));
     }
@@ -391,12 +552,24 @@ fn first_number(training: &Training, epoch: u64) -> u64 {
 /// The evaluation games: those of the last stage, against each opponent of the evaluation. They
 /// need neither a teacher nor the truth for a critic.
 fn judges(training: &Training, last: &Setup) -> Result<Vec<(String, Setup)>, SetupError> {
-    let base = Setup { teacher: None, critic: CriticInput::Observation, starts: None, steps_max: None, ..last.clone() };
+    let base = Setup {
+        teacher: None,
+        critic: CriticInput::Observation,
+        starts: None,
+        steps_max: None,
+        ..last.clone()
+    };
     let judge = |path: &PathBuf| {
         let strategy = scenario::load_file::<scenario::strategy::Strategy>(path)?;
         let name = strategy.name.clone();
         let player = Player::Strategy(Box::new(strategy));
-        Ok((name, Setup { opponents: vec![(1.0, player)], ..base.clone() }))
+        Ok((
+            name,
+            Setup {
+                opponents: vec![(1.0, player)],
+                ..base.clone()
+            },
+        ))
     };
     training.evaluation.opponents.iter().map(judge).collect()
 }
@@ -404,13 +577,20 @@ fn judges(training: &Training, last: &Setup) -> Result<Vec<(String, Setup)>, Set
 fn updates_per_epoch(training: &Training, setup: &Setup) -> u64 {
     let step = setup.scenario.decision() * i64::from(setup.decisions_per_step);
     let update = step * training.algorithm().steps() as i64;
-    let game = setup.steps_max.map_or(setup.scenario.rules.time_limit, |steps| step * i64::from(steps));
+    let game = setup
+        .steps_max
+        .map_or(setup.scenario.rules.time_limit, |steps| {
+            step * i64::from(steps)
+        });
     (LENGTHS * game.0 / update.0.max(1)).max(1) as u64
 }
 
 /// A thread pool for work on networks.
 fn pool(threads: usize) -> rayon::ThreadPool {
-    rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be started")
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .expect("threads can be started")
 }
 
 /// The network's output for every row of the input, in the calling thread pool.
@@ -419,12 +599,12 @@ fn outputs(network: &Perceptron, input: &[f32]) -> Vec<f32> {
     let from = sizes[0];
     let to = sizes[sizes.len() - 1];
     let mut out = vec![0.0; input.len() / from * to];
-    input.par_chunks(SHARD * from).zip(out.par_chunks_mut(SHARD * to)).for_each_init(
-        Trace::default,
-        |trace, (rows, out)| {
+    input
+        .par_chunks(SHARD * from)
+        .zip(out.par_chunks_mut(SHARD * to))
+        .for_each_init(Trace::default, |trace, (rows, out)| {
             network.forward(rows, trace);
             out.copy_from_slice(trace.output());
-        },
-    );
+        });
     out
 }

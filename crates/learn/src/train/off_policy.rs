@@ -33,7 +33,11 @@ impl OffPolicy<Td3Learner, Td3, Numbers> {
         is_new: bool,
         stream: &mut Stream,
     ) -> Result<Update, SetupError> {
-        let OffPolicy { learner, settings, replay } = self;
+        let OffPolicy {
+            learner,
+            settings,
+            replay,
+        } = self;
         let actor = &learner.actor;
         let choose = |observations: &[f32], counts: &[bool], known: usize| -> Vec<Numbers> {
             // Entries of the 2023 games used TD3 and double DQN; with both, their paper's results
@@ -51,9 +55,19 @@ impl OffPolicy<Td3Learner, Td3, Numbers> {
                     td3::drawn(stream)
                 }
             };
-            outputs.chunks_exact(NUMBERS).zip(counts).map(explored).collect()
+            outputs
+                .chunks_exact(NUMBERS)
+                .zip(counts)
+                .map(explored)
+                .collect()
         };
-        let mut update = play(environment, settings.steps, replay, choose, Action::Continuous)?;
+        let mut update = play(
+            environment,
+            settings.steps,
+            replay,
+            choose,
+            Action::Continuous,
+        )?;
         if replay.count() < settings.warm_up {
             return Ok(update);
         }
@@ -86,7 +100,11 @@ impl OffPolicy<DqnLearner, Dqn, u16> {
         samples: u64,
         stream: &mut Stream,
     ) -> Result<Update, SetupError> {
-        let OffPolicy { learner, settings, replay } = self;
+        let OffPolicy {
+            learner,
+            settings,
+            replay,
+        } = self;
         let network = &learner.network;
         let epsilon = settings.epsilon_after(samples);
         let choose = |observations: &[f32], counts: &[bool], _: usize| -> Vec<u16> {
@@ -96,7 +114,11 @@ impl OffPolicy<DqnLearner, Dqn, u16> {
                 // this for every action.
                 dqn::explored(values, if *counts { epsilon } else { 1.0 }, stream) as u16
             };
-            outputs.chunks_exact(outputs.len() / counts.len()).zip(counts).map(explored).collect()
+            outputs
+                .chunks_exact(outputs.len() / counts.len())
+                .zip(counts)
+                .map(explored)
+                .collect()
         };
         let discrete = |action: u16| Action::Discrete(usize::from(action));
         let mut update = play(environment, settings.steps, replay, choose, discrete)?;
@@ -128,19 +150,34 @@ fn play<A: Copy + Default>(
 ) -> Result<Update, SetupError> {
     let (rows, per_game) = environment.rows();
     let size = environment.setup().observation_size();
-    let mut update = Update { counted: 0, transitions: 0, reward: 0.0, finished: vec![], learnt: Learnt::default() };
+    let mut update = Update {
+        counted: 0,
+        transitions: 0,
+        reward: 0.0,
+        finished: vec![],
+        learnt: Learnt::default(),
+    };
     for _ in 0..steps {
         let before = environment.observations().to_vec();
         let counts = environment.counts().to_vec();
-        let boats: Vec<usize> = (0..rows / per_game).map(|game| environment.boats(game).len()).collect();
+        let boats: Vec<usize> = (0..rows / per_game)
+            .map(|game| environment.boats(game).len())
+            .collect();
         let chosen = choose(&before, &counts, replay.count());
         environment.step(&chosen.iter().copied().map(&action).collect::<Vec<Action>>())?;
         let mut ended: Vec<Option<bool>> = vec![None; boats.len()];
-        environment.finished().iter().for_each(|one| ended[one.game] = Some(!one.cut_off));
+        environment
+            .finished()
+            .iter()
+            .for_each(|one| ended[one.game] = Some(!one.cut_off));
         for row in (0..rows).filter(|row| row % per_game < boats[row / per_game]) {
             let numbers = row * size..(row + 1) * size;
             let ended = ended[row / per_game];
-            let shown = if ended.is_some() { environment.final_observations() } else { environment.observations() };
+            let shown = if ended.is_some() {
+                environment.final_observations()
+            } else {
+                environment.observations()
+            };
             replay.push(Transition {
                 observation: &before[numbers.clone()],
                 action: chosen[row],

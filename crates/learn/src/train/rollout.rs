@@ -31,19 +31,32 @@ impl Rollout {
         stream: &mut Stream,
     ) -> Result<Rollout, SetupError> {
         let (rows, per_game) = environment.rows();
-        let mut rollout = Rollout { steps: Steps { rows, ..Steps::default() }, ..Rollout::default() };
+        let mut rollout = Rollout {
+            steps: Steps {
+                rows,
+                ..Steps::default()
+            },
+            ..Rollout::default()
+        };
         let expected = |states: &[f32]| {
             let deviation = learner.scale.deviation();
             let values = pool.install(|| outputs(&learner.critic, states));
-            values.into_iter().map(|value| value * deviation).collect::<Vec<f32>>()
+            values
+                .into_iter()
+                .map(|value| value * deviation)
+                .collect::<Vec<f32>>()
         };
         let mut values = expected(environment.states());
         for _ in 0..steps {
-            rollout.observations.extend_from_slice(environment.observations());
+            rollout
+                .observations
+                .extend_from_slice(environment.observations());
             rollout.states.extend_from_slice(environment.states());
             rollout.counts.extend_from_slice(environment.counts());
             let boats = (0..rows / per_game).map(|game| environment.boats(game).len());
-            rollout.sailed.extend(boats.flat_map(|boats| (0..per_game).map(move |row| row < boats)));
+            rollout
+                .sailed
+                .extend(boats.flat_map(|boats| (0..per_game).map(move |row| row < boats)));
             rollout.steps.values.extend_from_slice(&values);
             let actions = if environment.setup().teacher.is_some() {
                 vec![Action::Discrete(0); rows]
@@ -54,7 +67,10 @@ impl Rollout {
             if environment.setup().teacher.is_some() {
                 rollout.take_taught(environment);
             }
-            rollout.steps.rewards.extend_from_slice(environment.rewards());
+            rollout
+                .steps
+                .rewards
+                .extend_from_slice(environment.rewards());
             values = expected(environment.states());
             let mut next = values.clone();
             let mut over = vec![false; rows];
@@ -81,7 +97,11 @@ impl Rollout {
         let (rows, per_game) = environment.rows();
         let first = self.counts.len() - rows;
         for row in 0..rows {
-            let taught = environment.taught(row / per_game).get(row % per_game).copied().flatten();
+            let taught = environment
+                .taught(row / per_game)
+                .get(row % per_game)
+                .copied()
+                .flatten();
             let Some(Action::Discrete(action)) = taught else {
                 self.counts[first + row] = false;
                 self.actions.push(0);
@@ -128,14 +148,20 @@ impl Rollout {
         let of = |numbers: &[f32]| self.sailed().map(|i| numbers[i]).collect();
         let rows_of = |numbers: &[f32]| -> Vec<f32> {
             let size = numbers.len() / self.actions.len();
-            self.sailed().flat_map(|i| &numbers[i * size..(i + 1) * size]).copied().collect()
+            self.sailed()
+                .flat_map(|i| &numbers[i * size..(i + 1) * size])
+                .copied()
+                .collect()
         };
         Batch {
             observations: rows_of(&self.observations),
             states: rows_of(&self.states),
             actions: self.sailed().map(|i| self.actions[i]).collect(),
             log_probabilities: of(&self.log_probabilities),
-            returns: self.sailed().map(|i| advantages[i] + self.steps.values[i]).collect(),
+            returns: self
+                .sailed()
+                .map(|i| advantages[i] + self.steps.values[i])
+                .collect(),
             advantages: of(&advantages),
             lesson,
             counts: self.sailed().map(|i| self.counts[i]).collect(),

@@ -56,7 +56,11 @@ pub struct Evaluated {
 impl Evaluated {
     /// The share of all games won; a draw counts half.
     pub fn won(&self) -> f64 {
-        self.played.iter().map(|(_, played)| played.won()).sum::<f64>() / self.played.len().max(1) as f64
+        self.played
+            .iter()
+            .map(|(_, played)| played.won())
+            .sum::<f64>()
+            / self.played.len().max(1) as f64
     }
 }
 
@@ -82,7 +86,10 @@ struct Head {
 impl Head {
     fn of(training: &Training) -> Head {
         let training = serde_json::to_string(training).expect("numbers and lists can be written");
-        Head { version: primitives::VERSION.to_owned(), training }
+        Head {
+            version: primitives::VERSION.to_owned(),
+            training,
+        }
     }
 }
 
@@ -125,7 +132,8 @@ impl State {
     }
 
     pub(super) fn write(&self, training: &Training) -> Vec<u8> {
-        let mut bytes = postcard::to_stdvec(&(Head::of(training), self)).expect("numbers and lists can be written");
+        let mut bytes = postcard::to_stdvec(&(Head::of(training), self))
+            .expect("numbers and lists can be written");
         let sum = xxh3_64(&bytes);
         bytes.extend(sum.to_le_bytes());
         bytes
@@ -133,7 +141,8 @@ impl State {
 
     pub(super) fn read(bytes: &[u8], training: &Training) -> Result<State, StateError> {
         // Read first, because other versions may use another format after it.
-        let (version, _) = postcard::take_from_bytes::<String>(bytes).map_err(|_| StateError::Damaged)?;
+        let (version, _) =
+            postcard::take_from_bytes::<String>(bytes).map_err(|_| StateError::Damaged)?;
         if version != primitives::VERSION {
             return Err(StateError::Version { found: version });
         }
@@ -143,7 +152,8 @@ impl State {
         if xxh3_64(bytes) != u64::from_le_bytes(*sum) {
             return Err(StateError::Damaged);
         }
-        let (head, state): (Head, State) = postcard::from_bytes(bytes).map_err(|_| StateError::Damaged)?;
+        let (head, state): (Head, State) =
+            postcard::from_bytes(bytes).map_err(|_| StateError::Damaged)?;
         if head != Head::of(training) {
             return Err(StateError::Other);
         }

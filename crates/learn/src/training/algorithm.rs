@@ -108,8 +108,8 @@ pub struct Td3 {
     /// Transitions per optimiser step, drawn from the replay buffer.
     #[schemars(range(min = 1, max = 1_000_000), extend("default" = 512))]
     pub minibatch: usize,
-    /// Newest transitions in the replay buffer. Each takes 8 bytes per value of the observation plus
-    /// about 20, in memory and in `state.bin`.
+    /// Newest transitions in the replay buffer. Each takes 8 bytes per value of the observation
+    /// plus about 20, in memory and in `state.bin`.
     #[schemars(range(min = 1000, max = 10_000_000), extend("default" = 250_000))]
     pub buffer: usize,
     /// Transitions in the replay buffer before learning starts; until then, actions in the first
@@ -155,8 +155,8 @@ pub struct Dqn {
     /// Transitions per optimiser step, drawn from the replay buffer.
     #[schemars(range(min = 1, max = 1_000_000), extend("default" = 512))]
     pub minibatch: usize,
-    /// Newest transitions in the replay buffer. Each takes 8 bytes per value of the observation plus
-    /// about 10, in memory and in `state.bin`.
+    /// Newest transitions in the replay buffer. Each takes 8 bytes per value of the observation
+    /// plus about 10, in memory and in `state.bin`.
     #[schemars(range(min = 1000, max = 10_000_000), extend("default" = 250_000))]
     pub buffer: usize,
     /// Transitions in the replay buffer before learning starts.

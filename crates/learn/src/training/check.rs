@@ -6,7 +6,10 @@ use scenario::sea::Sea;
 use scenario::{Diagnostics, Document, Scenario, StrategyFiles};
 use std::path::PathBuf;
 
-pub(super) fn training(diagnostics: &mut Diagnostics, document: &Document<Training>) -> Option<Training> {
+pub(super) fn training(
+    diagnostics: &mut Diagnostics,
+    document: &Document<Training>,
+) -> Option<Training> {
     let mut training = document.raw.clone();
     let mut strategies = StrategyFiles::default();
     let mut strategy = |diagnostics: &mut Diagnostics, key: &str, path: &mut PathBuf| {
@@ -23,13 +26,21 @@ pub(super) fn training(diagnostics: &mut Diagnostics, document: &Document<Traini
             strategy(diagnostics, &format!("{at}.helm"), helm);
         }
         if let Some(teacher) = &mut stage.teacher {
-            strategy(diagnostics, &format!("{at}.teacher.strategy"), &mut teacher.strategy);
+            strategy(
+                diagnostics,
+                &format!("{at}.teacher.strategy"),
+                &mut teacher.strategy,
+            );
         }
         if let Some(mates) = &mut stage.mates {
             strategy(diagnostics, &format!("{at}.mates"), mates);
         }
         for (k, opponent) in stage.opponent.iter_mut().enumerate() {
-            strategy(diagnostics, &format!("{at}.opponent.{k}.strategy"), &mut opponent.strategy);
+            strategy(
+                diagnostics,
+                &format!("{at}.opponent.{k}.strategy"),
+                &mut opponent.strategy,
+            );
         }
         scenarios.push(files(diagnostics, document, &at, stage));
         check_opponents(diagnostics, document, &at, stage, i);
@@ -39,7 +50,9 @@ pub(super) fn training(diagnostics: &mut Diagnostics, document: &Document<Traini
         check_teams(diagnostics, document, &format!("stage.{i}.game"), scenario);
         let decision_s = scenario.decision().as_s();
         let times = (training.period_s / decision_s).round();
-        if document.is_sound("period_s") && (times < 1.0 || (times * decision_s - training.period_s).abs() > 1e-9) {
+        if document.is_sound("period_s")
+            && (times < 1.0 || (times * decision_s - training.period_s).abs() > 1e-9)
+        {
             let message = format!(
                 "period_s is {}, expected a multiple of {decision_s}, which is decision_s of {}",
                 training.period_s, scenario.name
@@ -71,27 +84,52 @@ fn files(
     game
 }
 
-fn check_opponents(diagnostics: &mut Diagnostics, document: &Document<Training>, at: &str, stage: &Stage, i: usize) {
+fn check_opponents(
+    diagnostics: &mut Diagnostics,
+    document: &Document<Training>,
+    at: &str,
+    stage: &Stage,
+    i: usize,
+) {
     if !document.is_sound(at) {
         return;
     }
     let has_strategies = stage.strategies > 0.0 && !stage.opponent.is_empty();
     // The first stage may start without past policies; the policy then plays against itself.
     if !has_strategies && stage.self_play == 0.0 && stage.past_selves == 0.0 {
-        let message = format!("stage {:?} has no opponents, expected opponent, self_play or past_selves", stage.name);
+        let message = format!(
+            "stage {:?} has no opponents, expected opponent, self_play or past_selves",
+            stage.name
+        );
         diagnostics.note(document.at(at), message);
     }
     let names = &document.raw.stage[..i];
     if names.iter().any(|other| other.name == stage.name) {
-        let message = format!("name {:?} is used twice, expected a unique name for each stage", stage.name);
+        let message = format!(
+            "name {:?} is used twice, expected a unique name for each stage",
+            stage.name
+        );
         diagnostics.note(document.at(&format!("{at}.name")), message);
     }
 }
 
-fn check_teams(diagnostics: &mut Diagnostics, document: &Document<Training>, at: &str, scenario: &Scenario) {
-    let count = |team: usize| scenario.vehicles.iter().filter(|vehicle| vehicle.team.index() == team).count();
+fn check_teams(
+    diagnostics: &mut Diagnostics,
+    document: &Document<Training>,
+    at: &str,
+    scenario: &Scenario,
+) {
+    let count = |team: usize| {
+        scenario
+            .vehicles
+            .iter()
+            .filter(|vehicle| vehicle.team.index() == team)
+            .count()
+    };
     if scenario.teams.len() != 2 || count(0) != count(1) {
-        let sizes: Vec<String> = (0..scenario.teams.len()).map(|team| count(team).to_string()).collect();
+        let sizes: Vec<String> = (0..scenario.teams.len())
+            .map(|team| count(team).to_string())
+            .collect();
         let message = format!(
             "game {} has teams of {} boats, expected two teams of equal size, because policies play both sides",
             scenario.name,

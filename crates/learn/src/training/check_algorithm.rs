@@ -10,8 +10,10 @@ pub(super) fn check(diagnostics: &mut Diagnostics, document: &Document<Training>
     let training = &document.raw;
     let mut said = TABLES.into_iter().filter(|table| document.has(table));
     if let (Some(one), Some(other)) = (said.next(), said.next()) {
-        let message =
-            format!("{other} is a second algorithm besides {one}, expected only one of {}", TABLES.join(", "));
+        let message = format!(
+            "{other} is a second algorithm besides {one}, expected only one of {}",
+            TABLES.join(", ")
+        );
         diagnostics.note(document.at(other), message);
         return;
     }
@@ -19,10 +21,21 @@ pub(super) fn check(diagnostics: &mut Diagnostics, document: &Document<Training>
     let name = algorithm.name();
     let action = training.action;
     if document.is_sound("action") && algorithm.is_discrete() != action.is_discrete() {
-        let expected = if algorithm.is_discrete() { "\"pyquaticus\" or \"options\"" } else { "\"continuous\"" };
-        let place = if document.has("action") { "action" } else { name };
+        let expected = if algorithm.is_discrete() {
+            "\"pyquaticus\" or \"options\""
+        } else {
+            "\"continuous\""
+        };
+        let place = if document.has("action") {
+            "action"
+        } else {
+            name
+        };
         let found = serde_json::to_string(&action).unwrap_or_default();
-        diagnostics.note(document.at(place), format!("action is {found}, expected {expected} with {name}"));
+        diagnostics.note(
+            document.at(place),
+            format!("action is {found}, expected {expected} with {name}"),
+        );
     }
     if !matches!(algorithm, Algorithm::Ppo(_)) {
         check_ppo_alone(diagnostics, document, name);
@@ -46,7 +59,8 @@ fn check_ppo_alone(diagnostics: &mut Diagnostics, document: &Document<Training>,
     for i in 0..document.raw.stage.len() {
         let teacher = format!("stage.{i}.teacher");
         if document.has(&teacher) {
-            let message = format!("teacher is set, expected none with {name}: only ppo imitates a teacher");
+            let message =
+                format!("teacher is set, expected none with {name}: only ppo imitates a teacher");
             diagnostics.note(document.at(&teacher), message);
         }
     }

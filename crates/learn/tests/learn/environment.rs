@@ -11,42 +11,82 @@ use primitives::{TeamId, VehicleId};
 use std::collections::BTreeMap;
 
 const SPACES: Spaces = Spaces {
-    observation: ObservationSpace::Squall { mates: 1, enemies: 2, frames: 2 },
+    observation: ObservationSpace::Squall {
+        mates: 1,
+        enemies: 2,
+        frames: 2,
+    },
     action: ActionSpace::Pyquaticus,
 };
 
 fn setup(game: &str, opponents: Vec<(f64, Player)>) -> Setup {
-    let worth = Worth { grab: 1.0, capture: 2.0, tag: 0.5, left_field: -1.0, ..Worth::default() };
-    let rewards = Rewards { boat: worth, potential: Potential { attack: 1.0, untag: 0.5 }, ..Rewards::default() };
+    let worth = Worth {
+        grab: 1.0,
+        capture: 2.0,
+        tag: 0.5,
+        left_field: -1.0,
+        ..Worth::default()
+    };
+    let rewards = Rewards {
+        boat: worth,
+        potential: Potential {
+            attack: 1.0,
+            untag: 0.5,
+        },
+        ..Rewards::default()
+    };
     let game = file(&format!("games/{game}.toml"));
-    let setup = checked(&RawSetup { game, episode_max_s: None, ..raw() });
+    let setup = checked(&RawSetup {
+        game,
+        episode_max_s: None,
+        ..raw()
+    });
     assert_eq!(setup.spaces, SPACES);
-    Setup { opponents, rewards, ..setup }
+    Setup {
+        opponents,
+        rewards,
+        ..setup
+    }
 }
 
 /// An action that depends on the observation.
 fn chosen(observation: &[f32]) -> Action {
-    let sum: u32 = observation.iter().fold(7, |sum, number| sum.wrapping_mul(31).wrapping_add(number.to_bits()));
+    let sum: u32 = observation.iter().fold(7, |sum, number| {
+        sum.wrapping_mul(31).wrapping_add(number.to_bits())
+    });
     Action::Discrete(sum as usize % 17)
 }
 
 /// Plays a step with these actions.
 fn act(environment: &mut VectorEnvironment) {
     let size = environment.setup().observation_size();
-    let actions: Vec<Action> = environment.observations().chunks_exact(size).map(chosen).collect();
+    let actions: Vec<Action> = environment
+        .observations()
+        .chunks_exact(size)
+        .map(chosen)
+        .collect();
     environment.step(&actions).unwrap();
 }
 
 fn played(threads: usize) -> (Vec<u32>, Vec<learn::environment::Finished>) {
-    let opponents = vec![(1.0, Player::Policy), (1.0, Player::Strategy(strategy("pav01")))];
-    let setup = Setup { steps_max: Some(120), ..setup("surveyor_2v2", opponents) };
+    let opponents = vec![
+        (1.0, Player::Policy),
+        (1.0, Player::Strategy(strategy("pav01"))),
+    ];
+    let setup = Setup {
+        steps_max: Some(120),
+        ..setup("surveyor_2v2", opponents)
+    };
     let mut environment = begun(setup, 6, threads, 11);
     let mut numbers = vec![];
     let mut finished = vec![];
     for _ in 0..300 {
         act(&mut environment);
-        let shown =
-            environment.observations().iter().chain(environment.rewards()).chain(environment.final_observations());
+        let shown = environment
+            .observations()
+            .iter()
+            .chain(environment.rewards())
+            .chain(environment.final_observations());
         numbers.extend(shown.map(|number| number.to_bits()));
         numbers.extend(environment.counts().iter().map(|counts| u32::from(*counts)));
         finished.extend_from_slice(environment.finished());
@@ -57,7 +97,10 @@ fn played(threads: usize) -> (Vec<u32>, Vec<learn::environment::Finished>) {
 #[test]
 fn a_critic_is_given_the_truth_that_sensors_do_not_tell() {
     let opponents = vec![(1.0, Player::Policy)];
-    let setup = Setup { critic: CriticInput::Truth, ..setup("surveyor_2v2", opponents) };
+    let setup = Setup {
+        critic: CriticInput::Truth,
+        ..setup("surveyor_2v2", opponents)
+    };
     let mut environment = begun(setup, 2, 1, 3);
     let observation = environment.setup().observation_size();
     let state = environment.setup().state_size();
@@ -65,8 +108,11 @@ fn a_critic_is_given_the_truth_that_sensors_do_not_tell() {
         environment.step(&[Action::Discrete(3); 8]).unwrap();
     }
     let mut off_m = 0.0_f64;
-    for (row, (state, observed)) in
-        environment.states().chunks_exact(state).zip(environment.observations().chunks_exact(observation)).enumerate()
+    for (row, (state, observed)) in environment
+        .states()
+        .chunks_exact(state)
+        .zip(environment.observations().chunks_exact(observation))
+        .enumerate()
     {
         assert_eq!(&state[..observation], observed);
         let contest = environment.contest(row / 4);
@@ -74,9 +120,17 @@ fn a_critic_is_given_the_truth_that_sensors_do_not_tell() {
         let me = VehicleId::at((row + if row / 4 == 0 { 2 } else { 0 }) % 4);
         let scenario = contest.scenario();
         let field = &scenario.field;
-        let sign = if scenario.team_of(me).index() == 0 { 1.0 } else { -1.0 };
-        let truth = contest.frame(&mut rules::event::EventCursor::default()).vehicles[me.index()].nav;
-        let ahead = sign * (truth.at() - field.middle()).dot(field.along) / (0.5 * field.plan.width_m);
+        let sign = if scenario.team_of(me).index() == 0 {
+            1.0
+        } else {
+            -1.0
+        };
+        let truth = contest
+            .frame(&mut rules::event::EventCursor::default())
+            .vehicles[me.index()]
+        .nav;
+        let ahead =
+            sign * (truth.at() - field.middle()).dot(field.along) / (0.5 * field.plan.width_m);
         assert!(
             (f64::from(state[observation]) - ahead).abs() < 1e-6,
             "row {row}: got {}, want {ahead}",
@@ -90,12 +144,25 @@ fn a_critic_is_given_the_truth_that_sensors_do_not_tell() {
 #[test]
 fn games_are_the_same_bytes_on_any_number_of_threads() {
     let (numbers, finished) = played(1);
-    assert!(finished.len() >= 12 && finished.iter().all(|one| one.cut_off), "{finished:?}");
-    let sides = |team| finished.iter().any(|one| one.standing.side.learner == TeamId(team));
-    assert!(sides(0) && sides(1) && finished.iter().any(|one| one.standing.side.opponent == 0), "{finished:?}");
+    assert!(
+        finished.len() >= 12 && finished.iter().all(|one| one.cut_off),
+        "{finished:?}"
+    );
+    let sides = |team| {
+        finished
+            .iter()
+            .any(|one| one.standing.side.learner == TeamId(team))
+    };
+    assert!(
+        sides(0) && sides(1) && finished.iter().any(|one| one.standing.side.opponent == 0),
+        "{finished:?}"
+    );
     assert!(finished.iter().any(|one| one.standing.side.opponent == 1));
     for threads in [2, 3] {
-        assert!(played(threads) == (numbers.clone(), finished.clone()), "{threads} threads");
+        assert!(
+            played(threads) == (numbers.clone(), finished.clone()),
+            "{threads} threads"
+        );
     }
 }
 
@@ -126,7 +193,13 @@ fn goes_on(contest: &mut sim::Contest) -> bool {
 #[test]
 fn a_game_is_the_one_that_the_arena_plays() {
     for control in [Control::Direct, Control::Helm(strategy("teleop"))] {
-        let setup = Setup { control, ..setup("surveyor_2v2", vec![(1.0, Player::Strategy(strategy("strategy_2")))]) };
+        let setup = Setup {
+            control,
+            ..setup(
+                "surveyor_2v2",
+                vec![(1.0, Player::Strategy(strategy("strategy_2")))],
+            )
+        };
         let seed = 4;
         let mut environment = begun(setup.clone(), 1, 1, seed);
         (0..200).for_each(|_| act(&mut environment));
@@ -138,11 +211,17 @@ fn a_game_is_the_one_that_the_arena_plays() {
             }
             let pilot = match &setup.control {
                 Control::Direct => Pilot::direct(&scenario, vehicle, SPACES),
-                Control::Helm(strategy) => {
-                    Pilot::helm(&scenario, vehicle, agent::roles::role_in(&scenario, vehicle, strategy), SPACES)
-                }
+                Control::Helm(strategy) => Pilot::helm(
+                    &scenario,
+                    vehicle,
+                    agent::roles::role_in(&scenario, vehicle, strategy),
+                    SPACES,
+                ),
             };
-            Box::new(Scripted { pilot, decisions: 0 })
+            Box::new(Scripted {
+                pilot,
+                decisions: 0,
+            })
         };
         let minds = (0..4).map(|i| mind(VehicleId::at(i))).collect();
         let outcome = arena::play_watched(&setup.scenario, minds, seed, goes_on).unwrap();
@@ -152,9 +231,15 @@ fn a_game_is_the_one_that_the_arena_plays() {
 
 #[test]
 fn a_teacher_plays_as_its_strategy_does_and_shows_actions_that_ask_for_it() {
-    let teacher = Teacher { strategy: strategy("strategy_2"), options: BTreeMap::new() };
+    let teacher = Teacher {
+        strategy: strategy("strategy_2"),
+        options: BTreeMap::new(),
+    };
     let base = setup("surveyor_2v2", vec![(1.0, Player::Policy)]);
-    let setup = Setup { teacher: Some(teacher), ..base };
+    let setup = Setup {
+        teacher: Some(teacher),
+        ..base
+    };
     let mut environment = begun(setup.clone(), 1, 1, 4);
     let mut taught = vec![];
     for _ in 0..200 {
@@ -163,48 +248,97 @@ fn a_teacher_plays_as_its_strategy_does_and_shows_actions_that_ask_for_it() {
     }
     let scenario = setup.scenario.of_seed(4).unwrap();
     let mind = |i| agent::mind_by(&scenario, VehicleId::at(i), &strategy("strategy_2"));
-    let outcome = arena::play_watched(&setup.scenario, (0..4).map(mind).collect(), 4, goes_on).unwrap();
+    let outcome =
+        arena::play_watched(&setup.scenario, (0..4).map(mind).collect(), 4, goes_on).unwrap();
     assert_eq!(environment.contest(0).outcome().digest, outcome.digest);
     // Set-points nearly always; straight ahead at full speed more often than by chance; turns of
     // every kind.
-    let times = |action| taught.iter().filter(|one| **one == Action::Discrete(action)).count();
+    let times = |action| {
+        taught
+            .iter()
+            .filter(|one| **one == Action::Discrete(action))
+            .count()
+    };
     let kinds = (0..17).filter(|action| times(*action) > 0).count();
-    assert!(taught.len() > 700 && times(4) > 100 && kinds > 10, "{} of {}, {kinds} kinds", times(4), taught.len());
+    assert!(
+        taught.len() > 700 && times(4) > 100 && kinds > 10,
+        "{} of {}, {kinds} kinds",
+        times(4),
+        taught.len()
+    );
 }
 
 #[test]
 fn rewards_are_what_events_say_and_potentials_cancel_out() {
     let opponents = vec![(1.0, Player::Strategy(strategy("pav01")))];
-    let base = Setup { discount: 1.0, ..setup("surveyor_2v2", opponents) };
+    let base = Setup {
+        discount: 1.0,
+        ..setup("surveyor_2v2", opponents)
+    };
     let total = |rewards: Rewards| {
-        let mut environment = begun(Setup { rewards, ..base.clone() }, 1, 1, 5);
+        let mut environment = begun(
+            Setup {
+                rewards,
+                ..base.clone()
+            },
+            1,
+            1,
+            5,
+        );
         let size = environment.setup().observation_size();
         let mut stream = Stream::new(3, "actions");
         let mut sum = [0.0_f64; 2];
         while environment.finished().is_empty() {
             let rows = environment.observations().len() / size;
-            let actions: Vec<Action> = (0..rows).map(|_| Action::Discrete(stream.below(17) as usize)).collect();
+            let actions: Vec<Action> = (0..rows)
+                .map(|_| Action::Discrete(stream.below(17) as usize))
+                .collect();
             environment.step(&actions).unwrap();
-            sum.iter_mut().zip(environment.rewards()).for_each(|(sum, reward)| *sum += f64::from(*reward));
+            sum.iter_mut()
+                .zip(environment.rewards())
+                .for_each(|(sum, reward)| *sum += f64::from(*reward));
         }
         (sum, environment.finished()[0].standing.score)
     };
     // Points of both teams under the rules of the game.
-    let points = Worth { grab: 1.0, capture: 2.0, ..Worth::default() };
-    let minus = Worth { grab: -1.0, capture: -2.0, ..Worth::default() };
-    let (sum, score) = total(Rewards { team: points, enemy: minus, ..Rewards::default() });
+    let points = Worth {
+        grab: 1.0,
+        capture: 2.0,
+        ..Worth::default()
+    };
+    let minus = Worth {
+        grab: -1.0,
+        capture: -2.0,
+        ..Worth::default()
+    };
+    let (sum, score) = total(Rewards {
+        team: points,
+        enemy: minus,
+        ..Rewards::default()
+    });
     let ahead = f64::from(score[0]) - f64::from(score[1]);
-    assert!(score[1] > 0 && sum.iter().all(|sum| (sum - ahead).abs() < 1e-4), "{sum:?}, {score:?}");
+    assert!(
+        score[1] > 0 && sum.iter().all(|sum| (sum - ahead).abs() < 1e-4),
+        "{sum:?}, {score:?}"
+    );
     // Undiscounted, a potential sums to minus its initial value, whatever the actions.
-    let potential = Potential { attack: 1.0, untag: 0.5 };
-    let (sum, _) = total(Rewards { potential, ..Rewards::default() });
+    let potential = Potential {
+        attack: 1.0,
+        untag: 0.5,
+    };
+    let (sum, _) = total(Rewards {
+        potential,
+        ..Rewards::default()
+    });
     let first: Vec<f64> = {
         let environment = begun(base.clone(), 1, 1, 5);
         let contest = environment.contest(0);
         let team = environment.standing(0).side.learner;
         let flag = contest.scenario().field.flags[1 - team.index()].home;
         let boats = contest.last_pictures()[team.index()].own.iter();
-        boats.map(|boat| boat.nav.at().distance(flag) / contest.scenario().field.plan.width_m - 1.0).collect()
+        boats
+            .map(|boat| boat.nav.at().distance(flag) / contest.scenario().field.plan.width_m - 1.0)
+            .collect()
     };
     for (sum, first) in sum.iter().zip(first) {
         assert!((sum - first).abs() < 1e-3, "{sum}, {first}");
@@ -215,7 +349,11 @@ fn rewards_are_what_events_say_and_potentials_cancel_out() {
 fn starts_come_round_again_and_are_those_of_their_seeds() {
     let of = |starts| {
         let opponents = vec![(1.0, Player::Policy)];
-        let setup = Setup { starts, steps_max: Some(20), ..setup("surveyor_2v2", opponents) };
+        let setup = Setup {
+            starts,
+            steps_max: Some(20),
+            ..setup("surveyor_2v2", opponents)
+        };
         begun(setup, 2, 2, 30)
     };
     let mut new = of(None);
@@ -223,7 +361,9 @@ fn starts_come_round_again_and_are_those_of_their_seeds() {
     let size = new.setup().observation_size();
     let mut seeds = vec![];
     for step in 0..100 {
-        let same_start = |environment: &VectorEnvironment, game: usize| environment.contest(game).scenario().seed;
+        let same_start = |environment: &VectorEnvironment, game: usize| {
+            environment.contest(game).scenario().seed
+        };
         for game in 0..2 {
             if same_start(&new, game) == same_start(&again, game) {
                 let of_game = 4 * game * size..4 * (game + 1) * size;

@@ -1,7 +1,9 @@
 //! Shared by the tests: shipped files, setups of environments, and short training runs.
 
 use agent::ActionSpace;
-use learn::environment::{CriticInput, Games, RawObservation, RawSetup, Rows, Setup, VectorEnvironment};
+use learn::environment::{
+    CriticInput, Games, RawObservation, RawSetup, Rows, Setup, VectorEnvironment,
+};
 use learn::train::{Progress, Trainer};
 use learn::training::{Dqn, Evaluation, Layers, League, Opponent, Ppo, Stage, Td3, Training};
 use scenario::Scenario;
@@ -9,15 +11,20 @@ use scenario::strategy::Strategy;
 use std::path::{Path, PathBuf};
 
 pub(crate) fn file(path: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(path)
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../scenarios")
+        .join(path)
 }
 
 pub(crate) fn game(name: &str) -> Scenario {
-    scenario::load(&file(&format!("games/{name}.toml"))).unwrap_or_else(|problems| panic!("{problems}"))
+    scenario::load(&file(&format!("games/{name}.toml")))
+        .unwrap_or_else(|problems| panic!("{problems}"))
 }
 
 pub(crate) fn strategy(name: &str) -> Box<Strategy> {
-    let strategy = scenario::load_file::<scenario::strategy::Strategy>(&file(&format!("strategies/{name}.toml")));
+    let strategy = scenario::load_file::<scenario::strategy::Strategy>(&file(&format!(
+        "strategies/{name}.toml"
+    )));
     Box::new(strategy.unwrap_or_else(|problems| panic!("{problems}")))
 }
 
@@ -32,11 +39,17 @@ pub(crate) fn ppo() -> Ppo {
 }
 
 pub(crate) fn td3() -> Td3 {
-    Td3 { reward_scale: 1.0, ..training("paper_2023_td3").td3.unwrap() }
+    Td3 {
+        reward_scale: 1.0,
+        ..training("paper_2023_td3").td3.unwrap()
+    }
 }
 
 pub(crate) fn dqn() -> Dqn {
-    Dqn { discount: 0.995, ..training("options_dqn").dqn.unwrap() }
+    Dqn {
+        discount: 0.995,
+        ..training("options_dqn").dqn.unwrap()
+    }
 }
 
 /// A setup against Pav01, with episodes of 5 s.
@@ -64,7 +77,8 @@ pub(crate) fn checked(raw: &RawSetup) -> Setup {
 }
 
 pub(crate) fn begun(setup: Setup, games: usize, threads: usize, seed: u64) -> VectorEnvironment {
-    VectorEnvironment::new(setup, games, threads, seed, None).unwrap_or_else(|error| panic!("{error}"))
+    VectorEnvironment::new(setup, games, threads, seed, None)
+        .unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Lets `work` write the rows of games. Returns the observations; those not written are 9.
@@ -95,7 +109,9 @@ pub(crate) fn stage(name: &str, game: &str, helm: Option<&str>) -> Stage {
         self_play: 1.0,
         past_selves: 1.0,
         strategies: 1.0,
-        opponent: vec![Opponent { strategy: file("strategies/pav01.toml") }],
+        opponent: vec![Opponent {
+            strategy: file("strategies/pav01.toml"),
+        }],
         starts: Some(8),
         episode_max_s: Some(20.0),
         samples: 4_000,
@@ -108,9 +124,20 @@ pub(crate) fn short(base: Training, stage: Vec<Stage>) -> Training {
     let opponents = vec![file("strategies/pav01.toml")];
     Training {
         games: 8,
-        network: Layers { hidden: vec![16], ..base.network },
-        league: League { every_samples: 1_000, most: 2, priority: 1.0 },
-        evaluation: Evaluation { every_samples: 3_000, games: 2, opponents },
+        network: Layers {
+            hidden: vec![16],
+            ..base.network
+        },
+        league: League {
+            every_samples: 1_000,
+            most: 2,
+            priority: 1.0,
+        },
+        evaluation: Evaluation {
+            every_samples: 3_000,
+            games: 2,
+            opponents,
+        },
         stage,
         ..base
     }

@@ -12,7 +12,11 @@ use scenario::strategy::{Program, Strategy, Task};
 use std::collections::BTreeMap;
 
 const SPEC: PolicySpec = PolicySpec {
-    observation: ObservationSpace::Squall { mates: 1, enemies: 2, frames: 2 },
+    observation: ObservationSpace::Squall {
+        mates: 1,
+        enemies: 2,
+        frames: 2,
+    },
     action: ActionSpace::Pyquaticus,
     period_s: 0.7,
 };
@@ -22,7 +26,10 @@ fn model(spec: PolicySpec) -> PolicyModel {
     let mut stream = primitives::stream::Stream::new(8, "test/model");
     let inputs = spec.observation.size(1, 2);
     let outputs = spec.action.outputs();
-    model_of(&Perceptron::new(&[inputs, 32, outputs], 3.0, &mut stream), spec)
+    model_of(
+        &Perceptron::new(&[inputs, 32, outputs], 3.0, &mut stream),
+        spec,
+    )
 }
 
 fn model_of(network: &Perceptron, spec: PolicySpec) -> PolicyModel {
@@ -32,7 +39,10 @@ fn model_of(network: &Perceptron, spec: PolicySpec) -> PolicyModel {
 }
 
 fn with_model(mut strategy: Strategy, model: &PolicyModel) -> Strategy {
-    let behaviours = strategy.roles.iter_mut().flat_map(|role| &mut role.behaviours);
+    let behaviours = strategy
+        .roles
+        .iter_mut()
+        .flat_map(|role| &mut role.behaviours);
     for behaviour in behaviours {
         if let Task::Policy(policy) = &mut behaviour.task {
             policy.model = Some(model.clone());
@@ -73,11 +83,27 @@ fn a_model_in_a_strategy_plays_the_game_that_it_was_trained_in() {
     let played = |is_loaded: bool| {
         let mind = |vehicle: VehicleId| -> Box<dyn Mind> {
             if is_loaded {
-                return Box::new(HelmMind::new(&scenario, vehicle, &program(&scenario, &loaded, vehicle)));
+                return Box::new(HelmMind::new(
+                    &scenario,
+                    vehicle,
+                    &program(&scenario, &loaded, vehicle),
+                ));
             }
-            let spaces = Spaces { observation: SPEC.observation, action: SPEC.action };
-            let pilot = Pilot::helm(&scenario, vehicle, &program(&scenario, &strategy, vehicle), spaces);
-            Box::new(Driven { pilot, network: model.network(), decisions: 0 })
+            let spaces = Spaces {
+                observation: SPEC.observation,
+                action: SPEC.action,
+            };
+            let pilot = Pilot::helm(
+                &scenario,
+                vehicle,
+                &program(&scenario, &strategy, vehicle),
+                spaces,
+            );
+            Box::new(Driven {
+                pilot,
+                network: model.network(),
+                decisions: 0,
+            })
         };
         let minds = (0..4).map(|i| mind(VehicleId::at(i))).collect();
         arena::play_watched(&scenario, minds, 3, |contest| contest.decision() < 2000).unwrap()
@@ -86,8 +112,11 @@ fn a_model_in_a_strategy_plays_the_game_that_it_was_trained_in() {
     let training = played(false);
     assert_eq!(boat.digest, training.digest);
     let still = with_model(strategy.clone(), &model_of_nan());
-    let minds = (0..4).map(|i| agent::mind_by(&scenario, VehicleId::at(i), &still)).collect();
-    let held = arena::play_watched(&scenario, minds, 3, |contest| contest.decision() < 2000).unwrap();
+    let minds = (0..4)
+        .map(|i| agent::mind_by(&scenario, VehicleId::at(i), &still))
+        .collect();
+    let held =
+        arena::play_watched(&scenario, minds, 3, |contest| contest.decision() < 2000).unwrap();
     assert_ne!(held.digest, boat.digest);
 }
 
@@ -95,17 +124,27 @@ fn a_model_in_a_strategy_plays_the_game_that_it_was_trained_in() {
 fn model_of_nan() -> PolicyModel {
     let mut stream = primitives::stream::Stream::new(8, "test/model");
     let mut network = Perceptron::new(&[SPEC.observation.size(1, 2), 4, 17], 1.0, &mut stream);
-    network.parameters_mut().iter_mut().for_each(|number| *number = 3e38);
+    network
+        .parameters_mut()
+        .iter_mut()
+        .for_each(|number| *number = 3e38);
     model_of(&network, SPEC)
 }
 
 #[test]
 fn what_a_policy_cannot_do_its_helm_says_and_safety_is_left() {
     let scenario = game("surveyor_2v2");
-    let for_one = model(PolicySpec { observation: ObservationSpace::Pyquaticus, ..SPEC });
+    let for_one = model(PolicySpec {
+        observation: ObservationSpace::Pyquaticus,
+        ..SPEC
+    });
     let large = game("fleet_20v20");
     for (scenario, model, want) in [
-        (&scenario, model_of_nan(), "the model output a non-finite value"),
+        (
+            &scenario,
+            model_of_nan(),
+            "the model output a non-finite value",
+        ),
         (
             &large,
             for_one,
@@ -119,7 +158,8 @@ fn what_a_policy_cannot_do_its_helm_says_and_safety_is_left() {
         let mut contest = sim::Contest::new(scenario, 1).unwrap();
         contest.pictures();
         let order = mind.decide(contest.picture_of(vehicle));
-        let safety_alone = agent::mind_by(scenario, vehicle, &without).decide(contest.picture_of(vehicle));
+        let safety_alone =
+            agent::mind_by(scenario, vehicle, &without).decide(contest.picture_of(vehicle));
         assert_eq!(order, safety_alone);
         let report = mind.report().expect("it has a helm");
         assert_eq!(report.policies[0].fault.as_deref(), Some(want));
@@ -134,6 +174,8 @@ fn a_model_goes_to_agents_with_the_scenario() {
     let back: Strategy = serde_json::from_str(&text).unwrap();
     assert_eq!(back, strategy);
     let damaged = text.replacen("\"onnx\":\"", "\"onnx\":\"AAAA", 1);
-    let error = serde_json::from_str::<Strategy>(&damaged).unwrap_err().to_string();
+    let error = serde_json::from_str::<Strategy>(&damaged)
+        .unwrap_err()
+        .to_string();
     assert!(error.contains("not an ONNX file"), "{error}");
 }

@@ -22,18 +22,48 @@ pub(crate) fn short(algorithm: Algorithm) -> Training {
     };
     let stages = vec![
         // Options belong to a strategy, so a stage with options needs a helm.
-        stage("first", "games/pav01_afloat.toml", dqn.is_some().then_some(helm)),
+        stage(
+            "first",
+            "games/pav01_afloat.toml",
+            dqn.is_some().then_some(helm),
+        ),
         stage("helm", "games/surveyor_2v2.toml", Some(helm)),
     ];
-    Training { td3, dqn, ..fixture::short(base, stages) }
+    Training {
+        td3,
+        dqn,
+        ..fixture::short(base, stages)
+    }
 }
 
 /// Each algorithm with a buffer that overflows. Games restart after a number of optimiser steps
 /// that is not a multiple of 7, so that a resumed training depends on that number.
 pub(crate) fn algorithms() -> [Algorithm; 2] {
-    let td3 = Td3 { steps: 8, minibatches: 8, minibatch: 300, buffer: 2_000, warm_up: 500, delay: 7, ..fixture::td3() };
-    let dqn = Dqn { steps: 8, minibatches: 3, minibatch: 300, buffer: 2_000, warm_up: 500, ..fixture::dqn() };
-    [Algorithm::Td3(td3), Algorithm::Dqn(Dqn { target_every: 7, epsilon_samples: 4_000, ..dqn })]
+    let td3 = Td3 {
+        steps: 8,
+        minibatches: 8,
+        minibatch: 300,
+        buffer: 2_000,
+        warm_up: 500,
+        delay: 7,
+        ..fixture::td3()
+    };
+    let dqn = Dqn {
+        steps: 8,
+        minibatches: 3,
+        minibatch: 300,
+        buffer: 2_000,
+        warm_up: 500,
+        ..fixture::dqn()
+    };
+    [
+        Algorithm::Td3(td3),
+        Algorithm::Dqn(Dqn {
+            target_every: 7,
+            epsilon_samples: 4_000,
+            ..dqn
+        }),
+    ]
 }
 
 #[test]
@@ -51,8 +81,14 @@ fn a_stage_begins_with_an_empty_buffer_and_statistics_are_those_of_the_algorithm
             let progress = updated(&mut trainer);
             let learnt = progress.learnt;
             assert_eq!(learnt.value_loss.is_some(), learnt.epochs.is_some());
-            assert_eq!(learnt.policy_loss.is_some(), learnt.epochs.is_some() && algorithm.name() == "td3");
-            assert_eq!((learnt.entropy, learnt.divergence, learnt.clipped), (None, None, None));
+            assert_eq!(
+                learnt.policy_loss.is_some(),
+                learnt.epochs.is_some() && algorithm.name() == "td3"
+            );
+            assert_eq!(
+                (learnt.entropy, learnt.divergence, learnt.clipped),
+                (None, None, None)
+            );
             // At least twelve rows per step; those of tagged boats count only for values.
             assert!(progress.samples - before <= 8 * 8 * 4 && known(&trainer) <= 2_000);
             if progress.samples > 5_000 && progress.stage == 0 {
@@ -71,22 +107,34 @@ fn a_policy_of_td3_plays_from_its_file_as_it_was_trained() {
     while trainer.samples().0 < 2_000 {
         updated(&mut trainer);
     }
-    let model = PolicyModel::read("td3.onnx", &trainer.model().unwrap(), PartialSpec::default()).unwrap();
+    let model = PolicyModel::read(
+        "td3.onnx",
+        &trainer.model().unwrap(),
+        PartialSpec::default(),
+    )
+    .unwrap();
     assert_eq!(model.spec, trainer.spec());
     let mut network = model.network();
     let mut trace = Trace::default();
     let stream = &mut Stream::new(1, "test/observation");
     for size in [0.3, 1.0, 10.0, 1000.0] {
         for _ in 0..50 {
-            let observation: Vec<f32> = (0..model.input_size()).map(|_| (size * stream.normal()) as f32).collect();
+            let observation: Vec<f32> = (0..model.input_size())
+                .map(|_| (size * stream.normal()) as f32)
+                .collect();
             trainer.learner().actor().forward(&observation, &mut trace);
             network.evaluate(&observation);
             let got = network.output(model.output());
             let want = td3::action(trace.output());
-            assert!(got.iter().all(|number| (-1.0..=1.0).contains(number)), "{got:?}");
+            assert!(
+                got.iter().all(|number| (-1.0..=1.0).contains(number)),
+                "{got:?}"
+            );
             // The sums of a layer have another order.
             assert!(
-                got.iter().zip(want).all(|(got, want)| (got - want).abs() < TOLERANCE),
+                got.iter()
+                    .zip(want)
+                    .all(|(got, want)| (got - want).abs() < TOLERANCE),
                 "got {got:?}, want {want:?}"
             );
         }

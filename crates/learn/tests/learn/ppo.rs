@@ -19,13 +19,23 @@ fn gradients_are_the_slopes_of_the_output() {
     let loss = |network: &Perceptron, input: &[f32]| -> f32 {
         let mut trace = Trace::default();
         network.forward(input, &mut trace);
-        trace.output().iter().zip(&weights).map(|(output, weight)| output * weight).sum()
+        trace
+            .output()
+            .iter()
+            .zip(&weights)
+            .map(|(output, weight)| output * weight)
+            .sum()
     };
     let mut trace = Trace::default();
     let mut by_input = vec![];
     network.forward(&input, &mut trace);
     let mut gradient = vec![0.0; network.parameters().len()];
-    network.backward(&trace, &mut weights.clone(), &mut gradient, Some(&mut by_input));
+    network.backward(
+        &trace,
+        &mut weights.clone(),
+        &mut gradient,
+        Some(&mut by_input),
+    );
     for (i, slope) in gradient.iter().enumerate() {
         let mut at = |by: f32| {
             network.parameters_mut()[i] += by;
@@ -34,7 +44,10 @@ fn gradients_are_the_slopes_of_the_output() {
             loss
         };
         let want = (at(STEP) - at(-STEP)) / (2.0 * STEP);
-        assert!((slope - want).abs() < TOLERANCE, "parameter {i}: got {slope}, want {want}");
+        assert!(
+            (slope - want).abs() < TOLERANCE,
+            "parameter {i}: got {slope}, want {want}"
+        );
     }
     for (i, slope) in by_input.iter().enumerate() {
         let at = |by: f32| {
@@ -43,7 +56,10 @@ fn gradients_are_the_slopes_of_the_output() {
             loss(&network, &input)
         };
         let want = (at(STEP) - at(-STEP)) / (2.0 * STEP);
-        assert!((slope - want).abs() < TOLERANCE, "input {i}: got {slope}, want {want}");
+        assert!(
+            (slope - want).abs() < TOLERANCE,
+            "input {i}: got {slope}, want {want}"
+        );
     }
 }
 
@@ -54,9 +70,14 @@ fn first_weights_are_orthogonal_with_their_gain() {
         let (weights, biases) = network.layer(i);
         assert!(biases.iter().all(|bias| *bias == 0.0));
         for (a, b) in (0..outputs).flat_map(|a| (0..outputs).map(move |b| (a, b))) {
-            let product: f32 = (0..inputs).map(|row| weights[row * outputs + a] * weights[row * outputs + b]).sum();
+            let product: f32 = (0..inputs)
+                .map(|row| weights[row * outputs + a] * weights[row * outputs + b])
+                .sum();
             let want = if a == b { gain } else { 0.0 };
-            assert!((product - want).abs() < 1e-5 * gain, "{a} {b}: got {product}, want {want}");
+            assert!(
+                (product - want).abs() < 1e-5 * gain,
+                "{a} {b}: got {product}, want {want}"
+            );
         }
     }
 }
@@ -64,25 +85,39 @@ fn first_weights_are_orthogonal_with_their_gain() {
 #[test]
 fn adam_goes_as_its_authors_say() {
     // The first step is the learning rate against the sign; the second was computed by hand.
-    let settings = AdamSettings { epsilon: 0.0, norm_max: None, ..AdamSettings::default() };
+    let settings = AdamSettings {
+        epsilon: 0.0,
+        norm_max: None,
+        ..AdamSettings::default()
+    };
     let mut adam = Adam::new(2, settings);
     let mut parameters = [1.0_f32, -1.0];
     let norm = adam.step(&mut parameters, &[3.0, -4.0], 0.1);
-    assert!((norm - 5.0).abs() < 1e-6 && (parameters[0] - 0.9).abs() < 1e-6 && (parameters[1] + 0.9).abs() < 1e-6);
+    assert!(
+        (norm - 5.0).abs() < 1e-6
+            && (parameters[0] - 0.9).abs() < 1e-6
+            && (parameters[1] + 0.9).abs() < 1e-6
+    );
     adam.step(&mut parameters, &[0.0, -4.0], 0.1);
     // mean 0.9 * 0.3 = 0.27 of 0.19, square 0.999 * 0.009 = 0.008991 of 0.001999.
     let want = 0.9 - 0.1 * (0.27 / 0.19) / libm::sqrtf(0.008_991 / 0.001_999);
-    assert!((parameters[0] - want).abs() < 1e-4, "got {parameters:?}, want {want}");
+    assert!(
+        (parameters[0] - want).abs() < 1e-4,
+        "got {parameters:?}, want {want}"
+    );
     assert!((parameters[1] + 0.8).abs() < 1e-6, "{parameters:?}");
     // A gradient that is too long is scaled to the limit. Of the first step only the reported norm
     // changes.
     let mut adam = Adam::new(1, AdamSettings::default());
     let mut parameters = [0.0_f32];
-    assert!((adam.step(&mut parameters, &[1e6], 0.1) - 1e6).abs() < 1.0 && (parameters[0] + 0.1).abs() < 1e-4);
+    assert!(
+        (adam.step(&mut parameters, &[1e6], 0.1) - 1e6).abs() < 1.0
+            && (parameters[0] + 0.1).abs() < 1e-4
+    );
 }
 
-/// Samples of a one-step game: in each of eight observations, one action has a reward of 1. A teacher's
-/// action has no reward.
+/// Samples of a one-step game: in each of eight observations, one action has a reward of 1. A
+/// teacher's action has no reward.
 fn sampled(learner: &ActorCritic, lesson: Lesson, stream: &mut Stream) -> Batch {
     let mut observations = vec![];
     let mut actions = vec![];
@@ -97,55 +132,111 @@ fn sampled(learner: &ActorCritic, lesson: Lesson, stream: &mut Stream) -> Batch 
         choice::log_probabilities(trace.output(), &mut all);
         let action = choice::drawn(&all, stream.unit());
         observations.extend(observation);
-        actions.push(if lesson == Lesson::Imitation { ((picture * 3 + 1) % 4) as u16 } else { action as u16 });
+        actions.push(if lesson == Lesson::Imitation {
+            ((picture * 3 + 1) % 4) as u16
+        } else {
+            action as u16
+        });
         log_probabilities.push(all[action]);
-        rewards.push(if action as u64 == picture * 3 % 4 { 1.0 } else { 0.0 });
+        rewards.push(if action as u64 == picture * 3 % 4 {
+            1.0
+        } else {
+            0.0
+        });
     }
     let states = observations.clone();
     let returns = rewards.clone();
     let counts = vec![true; rewards.len()];
-    Batch { observations, states, actions, log_probabilities, advantages: rewards, returns, lesson, counts }
+    Batch {
+        observations,
+        states,
+        actions,
+        log_probabilities,
+        advantages: rewards,
+        returns,
+        lesson,
+        counts,
+    }
 }
 
 fn observation(picture: usize) -> [f32; 3] {
     [0, 1, 2].map(|bit| if picture >> bit & 1 == 1 { 1.0 } else { -1.0 })
 }
 
-fn trained(lesson: Lesson, updates: usize, threads: usize, mut learner: ActorCritic) -> ActorCritic {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-    let settings = Ppo { learning_rate: 3e-3, minibatch: 600, divergence_max: 1e9, ..fixture::ppo() };
+fn trained(
+    lesson: Lesson,
+    updates: usize,
+    threads: usize,
+    mut learner: ActorCritic,
+) -> ActorCritic {
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .expect("threads");
+    let settings = Ppo {
+        learning_rate: 3e-3,
+        minibatch: 600,
+        divergence_max: 1e9,
+        ..fixture::ppo()
+    };
     for i in 0..updates {
         let mut stream = Stream::new(i as u64, "samples");
         let batch = sampled(&learner, lesson, &mut stream);
         let learnt = pool.install(|| learner.update(&batch, &settings, 1.0, &mut stream));
-        assert!(learnt.divergence >= Some(0.0) && learnt.entropy > Some(0.0), "{learnt:?}");
+        assert!(
+            learnt.divergence >= Some(0.0) && learnt.entropy > Some(0.0),
+            "{learnt:?}"
+        );
     }
     learner
 }
 
 #[test]
 fn a_policy_learns_which_action_is_worth_most() {
-    let learner = trained(Lesson::Reinforcement, 40, 2, ActorCritic::new(3, 3, &[32], 4, 1));
+    let learner = trained(
+        Lesson::Reinforcement,
+        40,
+        2,
+        ActorCritic::new(3, 3, &[32], 4, 1),
+    );
     let mut trace = Trace::default();
     let mut value = Trace::default();
     for picture in 0..8_usize {
         let observation = observation(picture);
         learner.actor.forward(&observation, &mut trace);
-        assert_eq!(choice::likeliest(trace.output()), picture * 3 % 4, "picture {picture}: {:?}", trace.output());
+        assert_eq!(
+            choice::likeliest(trace.output()),
+            picture * 3 % 4,
+            "picture {picture}: {:?}",
+            trace.output()
+        );
         // The critic expects the actual reward, nearly always 1.
         learner.critic.forward(&observation, &mut value);
         let expected = value.output()[0] * learner.scale.deviation();
-        assert!((expected - 1.0).abs() < 0.2, "picture {picture}: {expected}");
+        assert!(
+            (expected - 1.0).abs() < 0.2,
+            "picture {picture}: {expected}"
+        );
     }
 }
 
 #[test]
 fn a_policy_imitates_its_teacher_whatever_comes_of_it() {
-    let learner = trained(Lesson::Imitation, 20, 2, ActorCritic::new(3, 3, &[32], 4, 1));
+    let learner = trained(
+        Lesson::Imitation,
+        20,
+        2,
+        ActorCritic::new(3, 3, &[32], 4, 1),
+    );
     let mut trace = Trace::default();
     for picture in 0..8_usize {
         learner.actor.forward(&observation(picture), &mut trace);
-        assert_eq!(choice::likeliest(trace.output()), (picture * 3 + 1) % 4, "picture {picture}: {:?}", trace.output());
+        assert_eq!(
+            choice::likeliest(trace.output()),
+            (picture * 3 + 1) % 4,
+            "picture {picture}: {:?}",
+            trace.output()
+        );
     }
 }
 

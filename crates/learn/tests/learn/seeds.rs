@@ -22,7 +22,9 @@ fn shown(games: &mut Games) -> Vec<f32> {
 }
 
 fn seeds(games: &Games) -> Vec<u64> {
-    (0..games.rows().0 / games.rows().1).map(|game| games.standing(game).seed).collect()
+    (0..games.rows().0 / games.rows().1)
+        .map(|game| games.standing(game).seed)
+        .collect()
 }
 
 #[test]
@@ -37,7 +39,14 @@ fn seeds_count_up_and_can_be_chosen_anew() {
     games.restart_game(2, None).unwrap();
     assert_eq!(seeds(&games), [4, 2, 9]);
     (0..10).for_each(|_| step(&mut games, 3));
-    assert_eq!(games.finished().iter().map(|one| one.standing.seed).collect::<Vec<_>>(), [4, 2, 9]);
+    assert_eq!(
+        games
+            .finished()
+            .iter()
+            .map(|one| one.standing.seed)
+            .collect::<Vec<_>>(),
+        [4, 2, 9]
+    );
     assert_eq!(seeds(&games), [7, 5, 12]);
 }
 
@@ -65,7 +74,14 @@ fn a_game_that_goes_on_is_not_observed_again() {
 
 #[test]
 fn a_seed_beyond_the_starts_is_refused() {
-    let mut games = games(&RawSetup { starts: Some(3), ..raw() }, 1, 5);
+    let mut games = games(
+        &RawSetup {
+            starts: Some(3),
+            ..raw()
+        },
+        1,
+        5,
+    );
     games.restart_game(0, Some(7)).unwrap();
     let error = games.restart_game(0, Some(8)).unwrap_err().to_string();
     assert!(error.starts_with("seed is 8, expected 5 to 7"), "{error}");
@@ -73,30 +89,61 @@ fn a_seed_beyond_the_starts_is_refused() {
 
 #[test]
 fn a_policy_of_one_boat_has_each_boat_by_turns() {
-    let raw = RawSetup { mates: Some(file("strategies/strategy_2.toml")), ..raw() };
+    let raw = RawSetup {
+        mates: Some(file("strategies/strategy_2.toml")),
+        ..raw()
+    };
     let one = games(&raw, 8, 0);
     assert_eq!(one.rows(), (8, 1));
     let boats: Vec<usize> = (0..8).map(|game| one.boats(game)[0].index()).collect();
     assert_eq!(boats, [0, 2, 1, 3, 0, 2, 1, 3]);
-    let both = games(&RawSetup { opponents: vec![(1.0, None)], ..raw }, 2, 0);
+    let both = games(
+        &RawSetup {
+            opponents: vec![(1.0, None)],
+            ..raw
+        },
+        2,
+        0,
+    );
     assert_eq!((both.rows(), both.boats(1).len()), ((4, 2), 2));
 }
 
 #[test]
 fn a_side_that_is_named_learns() {
-    let games = games(&RawSetup { team: Some("red".to_owned()), ..raw() }, 4, 0);
+    let games = games(
+        &RawSetup {
+            team: Some("red".to_owned()),
+            ..raw()
+        },
+        4,
+        0,
+    );
     assert!((0..4).all(|game| games.standing(game).side.learner == TeamId(1)));
 }
 
 #[test]
 fn standings_are_what_the_outcome_says() {
-    let mut games = games(&RawSetup { episode_max_s: None, opponents: vec![(1.0, None)], ..raw() }, 1, 3);
+    let mut games = games(
+        &RawSetup {
+            episode_max_s: None,
+            opponents: vec![(1.0, None)],
+            ..raw()
+        },
+        1,
+        3,
+    );
     // Full ahead until every boat has left the field.
     (0..300).for_each(|_| step(&mut games, 4));
     let standing = games.standing(0);
     let outcome = games.contest(0).outcome();
     assert_eq!(standing.steps, 300);
-    for (place, team) in [standing.side.learner.index(), 1 - standing.side.learner.index()].into_iter().enumerate() {
+    for (place, team) in [
+        standing.side.learner.index(),
+        1 - standing.side.learner.index(),
+    ]
+    .into_iter()
+    .enumerate()
+    {
         let name = &games.setup().scenario.teams[team].name;
         assert_eq!(standing.counts[place], outcome.counts.teams[name]);
         assert_eq!(standing.score[place], outcome.score.teams[name]);
@@ -109,30 +156,113 @@ fn what_is_wrong_with_a_setup_is_said() {
     let nowhere = || Some(file("strategies/nowhere.toml"));
     for (raw, message) in [
         (
-            RawSetup { decision_s: Some(0.25), ..raw() },
+            RawSetup {
+                decision_s: Some(0.25),
+                ..raw()
+            },
             "decision_s is 0.25, expected a multiple of the game's decision_s (0.1 s)",
         ),
-        (RawSetup { decision_s: Some(-0.5), ..raw() }, "decision_s is -0.5"),
-        (RawSetup { episode_max_s: Some(f64::NAN), ..raw() }, "episode_max_s is NaN, expected more than 0"),
-        (RawSetup { starts: Some(0), ..raw() }, "starts is 0"),
-        (RawSetup { discount: 1.5, ..raw() }, "discount is 1.5, expected 0 to 1"),
-        (RawSetup { team: Some("green".to_owned()), ..raw() }, "team is \"green\", expected \"blue\" or \"red\""),
-        (RawSetup { opponents: vec![(-1.0, None)], ..raw() }, "an opponent's weight is -1"),
-        (RawSetup { opponents: vec![(1.0, nowhere())], ..raw() }, "nowhere.toml"),
-        (RawSetup { mates: nowhere(), ..raw() }, "nowhere.toml"),
-        (RawSetup { helm: Some(file("strategies/pav01.toml")), ..raw() }, "has no behaviour of kind"),
-        (RawSetup { game: file("games/uneven_3v2.toml"), ..raw() }, "the teams have 3 and 2 boats"),
+        (
+            RawSetup {
+                decision_s: Some(-0.5),
+                ..raw()
+            },
+            "decision_s is -0.5",
+        ),
+        (
+            RawSetup {
+                episode_max_s: Some(f64::NAN),
+                ..raw()
+            },
+            "episode_max_s is NaN, expected more than 0",
+        ),
+        (
+            RawSetup {
+                starts: Some(0),
+                ..raw()
+            },
+            "starts is 0",
+        ),
+        (
+            RawSetup {
+                discount: 1.5,
+                ..raw()
+            },
+            "discount is 1.5, expected 0 to 1",
+        ),
+        (
+            RawSetup {
+                team: Some("green".to_owned()),
+                ..raw()
+            },
+            "team is \"green\", expected \"blue\" or \"red\"",
+        ),
+        (
+            RawSetup {
+                opponents: vec![(-1.0, None)],
+                ..raw()
+            },
+            "an opponent's weight is -1",
+        ),
+        (
+            RawSetup {
+                opponents: vec![(1.0, nowhere())],
+                ..raw()
+            },
+            "nowhere.toml",
+        ),
+        (
+            RawSetup {
+                mates: nowhere(),
+                ..raw()
+            },
+            "nowhere.toml",
+        ),
+        (
+            RawSetup {
+                helm: Some(file("strategies/pav01.toml")),
+                ..raw()
+            },
+            "has no behaviour of kind",
+        ),
+        (
+            RawSetup {
+                game: file("games/uneven_3v2.toml"),
+                ..raw()
+            },
+            "the teams have 3 and 2 boats",
+        ),
     ] {
-        let error = raw.check().map(|_| ()).map_err(|error: SetupError| error.to_string());
-        assert!(error.as_ref().is_err_and(|error| error.contains(message)), "{message}: {error:?}");
+        let error = raw
+            .check()
+            .map(|_| ())
+            .map_err(|error: SetupError| error.to_string());
+        assert!(
+            error.as_ref().is_err_and(|error| error.contains(message)),
+            "{message}: {error:?}"
+        );
     }
     let observation = RawObservation::Squall { frames: 0 };
-    assert!(RawSetup { observation, ..raw() }.check().is_err());
+    assert!(
+        RawSetup {
+            observation,
+            ..raw()
+        }
+        .check()
+        .is_err()
+    );
 }
 
 #[test]
 fn room_for_other_boats_is_that_of_the_game() {
     let setup = raw().check().unwrap();
     assert_eq!(setup.observation_names().len(), setup.observation_size());
-    assert_eq!((setup.observation_size(), setup.decisions_per_step, setup.steps_max), (2 * 92, 5, Some(10)));
+    assert_eq!(
+        (
+            setup.observation_size(),
+            setup.decisions_per_step,
+            setup.steps_max
+        ),
+        (2 * 92, 5, Some(10))
+    );
 }

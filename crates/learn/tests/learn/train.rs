@@ -10,30 +10,66 @@ use std::sync::{Arc, Mutex};
 
 #[test]
 fn a_policy_learns_to_beat_an_idle_team_and_to_score_against_pav01() {
-    let opponents = ["strategies/pav01.toml", "strategies/idle.toml"].map(file).into();
-    let training =
-        Training { evaluation: Evaluation { every_samples: 100_000, games: 20, opponents }, ..training("first") };
+    let opponents = ["strategies/pav01.toml", "strategies/idle.toml"]
+        .map(file)
+        .into();
+    let training = Training {
+        evaluation: Evaluation {
+            every_samples: 100_000,
+            games: 20,
+            opponents,
+        },
+        ..training("first")
+    };
     let mut trainer = trainer(training, 2);
     let mut seen = vec![];
     while trainer.samples().0 < 310_000 {
         seen.extend(updated(&mut trainer).evaluated);
     }
-    let points: Vec<f64> = seen.iter().map(|evaluated| evaluated.played[0].1.points[0]).collect();
-    let [first, .., last] = points[..] else { panic!("{points:?}") };
-    assert!(last > 3.0 && last > first, "points per game against pav01: {points:?}");
-    let idle = seen.last().map_or(0.0, |evaluated| evaluated.played[1].1.won());
-    assert!(idle >= 0.9, "won a share of {idle} of the games against an idle team");
+    let points: Vec<f64> = seen
+        .iter()
+        .map(|evaluated| evaluated.played[0].1.points[0])
+        .collect();
+    let [first, .., last] = points[..] else {
+        panic!("{points:?}")
+    };
+    assert!(
+        last > 3.0 && last > first,
+        "points per game against pav01: {points:?}"
+    );
+    let idle = seen
+        .last()
+        .map_or(0.0, |evaluated| evaluated.played[1].1.won());
+    assert!(
+        idle >= 0.9,
+        "won a share of {idle} of the games against an idle team"
+    );
 }
 
 /// Short stages that use a helm, a teacher, a strategy and past policies.
 fn short() -> Training {
     let direct = stage("direct", "games/pav01_afloat.toml", None);
-    let teacher = Some(Teacher { strategy: file("strategies/strategy_2.toml"), options: BTreeMap::new() });
-    let taught = Stage { name: "taught".to_owned(), teacher, ..direct.clone() };
-    let helm = stage("helm", "games/surveyor_2v2.toml", Some("strategies/policy.toml"));
+    let teacher = Some(Teacher {
+        strategy: file("strategies/strategy_2.toml"),
+        options: BTreeMap::new(),
+    });
+    let taught = Stage {
+        name: "taught".to_owned(),
+        teacher,
+        ..direct.clone()
+    };
+    let helm = stage(
+        "helm",
+        "games/surveyor_2v2.toml",
+        Some("strategies/policy.toml"),
+    );
     let mut training = fixture::short(training("first"), vec![direct, taught, helm]);
     training.network.critic = CriticInput::Truth;
-    training.ppo = Ppo { steps: 32, minibatch: 256, ..fixture::ppo() };
+    training.ppo = Ppo {
+        steps: 32,
+        minibatch: 256,
+        ..fixture::ppo()
+    };
     training
 }
 
@@ -43,17 +79,41 @@ fn the_same_file_trains_the_same_weights_on_any_number_of_threads_and_resumed() 
     for (name, training) in [("ppo", short()), ("td3", td3), ("dqn", dqn)] {
         let run = |threads| trained(trainer(training.clone(), threads));
         let (state, progress) = run(1);
-        let opponents: BTreeSet<&str> =
-            progress.iter().flat_map(|one| &one.finished).map(|(_, name)| name.as_str()).collect();
-        assert!(opponents.contains("itself") && opponents.contains("pav01"), "{name}: {opponents:?}");
-        assert!(opponents.iter().any(|name| name.starts_with("after ")), "{name}: {opponents:?}");
-        let learnt = progress.iter().filter(|one| one.learnt.epochs.is_some()).count();
+        let opponents: BTreeSet<&str> = progress
+            .iter()
+            .flat_map(|one| &one.finished)
+            .map(|(_, name)| name.as_str())
+            .collect();
+        assert!(
+            opponents.contains("itself") && opponents.contains("pav01"),
+            "{name}: {opponents:?}"
+        );
+        assert!(
+            opponents.iter().any(|name| name.starts_with("after ")),
+            "{name}: {opponents:?}"
+        );
+        let learnt = progress
+            .iter()
+            .filter(|one| one.learnt.epochs.is_some())
+            .count();
         let is_off_policy = name != "ppo";
-        assert!(!is_off_policy || learnt > 20, "{name}: {learnt} of {} updates learnt", progress.len());
-        assert_eq!(learnt < progress.len(), is_off_policy, "{name}: only a buffer has to fill first");
-        assert!(run(3) == (state.clone(), progress), "{name}: 3 threads gave other results");
+        assert!(
+            !is_off_policy || learnt > 20,
+            "{name}: {learnt} of {} updates learnt",
+            progress.len()
+        );
+        assert_eq!(
+            learnt < progress.len(),
+            is_off_policy,
+            "{name}: only a buffer has to fill first"
+        );
+        assert!(
+            run(3) == (state.clone(), progress),
+            "{name}: 3 threads gave other results"
+        );
 
-        // Resumed whenever games restart, and at every fifth update, where games and past policies go on.
+        // Resumed whenever games restart, and at every fifth update, where games and past policies
+        // go on.
         let mut trainer = trainer(training.clone(), 2);
         let mut taken_up = [0; 2];
         for update in 0.. {
@@ -67,8 +127,14 @@ fn the_same_file_trains_the_same_weights_on_any_number_of_threads_and_resumed() 
                 taken_up[usize::from(restart)] += 1;
             }
         }
-        assert!(taken_up.iter().all(|times| *times > 1), "{name}: {taken_up:?}");
-        assert!(trainer.state() == state, "{name}: other results after resuming {taken_up:?} times");
+        assert!(
+            taken_up.iter().all(|times| *times > 1),
+            "{name}: {taken_up:?}"
+        );
+        assert!(
+            trainer.state() == state,
+            "{name}: other results after resuming {taken_up:?} times"
+        );
     }
 }
 
@@ -82,7 +148,9 @@ fn episodes_that_are_seen_have_the_numbers_that_are_told_and_change_nothing() {
             let kept = Arc::clone(&kept);
             Box::new(move |contest, moment| {
                 if moment == Moment::End {
-                    kept.lock().expect("no thread has panicked").insert((contest.scenario().seed, number));
+                    kept.lock()
+                        .expect("no thread has panicked")
+                        .insert((contest.scenario().seed, number));
                 }
             })
         })
@@ -91,35 +159,62 @@ fn episodes_that_are_seen_have_the_numbers_that_are_told_and_change_nothing() {
     trainer.watch(Arc::new(watches)).unwrap();
     let (state, progress) = trained(trainer);
     assert!(state == plain, "watching changed the training");
-    let told = progress.iter().flat_map(|one| &one.finished).map(|(one, _)| (one.standing.seed, one.number));
-    let told: BTreeSet<(u64, u64)> = told.filter(|(_, number)| number.is_multiple_of(3)).collect();
+    let told = progress
+        .iter()
+        .flat_map(|one| &one.finished)
+        .map(|(one, _)| (one.standing.seed, one.number));
+    let told: BTreeSet<(u64, u64)> = told
+        .filter(|(_, number)| number.is_multiple_of(3))
+        .collect();
     assert!(told.len() > 10, "{told:?}");
     assert_eq!(told, *ended.lock().expect("no thread has panicked"));
 }
 
 /// Imitates strategy 2 with the options of another strategy.
 fn imitation(options: &[(&str, &str)]) -> Training {
-    let options = options.iter().map(|(mode, option)| ((*mode).to_owned(), (*option).to_owned())).collect();
-    let teacher = Some(Teacher { strategy: file("strategies/strategy_5.toml"), options });
+    let options = options
+        .iter()
+        .map(|(mode, option)| ((*mode).to_owned(), (*option).to_owned()))
+        .collect();
+    let teacher = Some(Teacher {
+        strategy: file("strategies/strategy_5.toml"),
+        options,
+    });
     let helm = Some(file("strategies/options.toml"));
-    let stage = Stage { teacher, helm, samples: 40_000, ..short().stage.remove(0) };
+    let stage = Stage {
+        teacher,
+        helm,
+        samples: 40_000,
+        ..short().stage.remove(0)
+    };
     Training {
         stage: vec![stage],
         action: training("options").action,
         period_s: 1.0,
-        ppo: Ppo { learning_rate: 3e-3, ..short().ppo },
+        ppo: Ppo {
+            learning_rate: 3e-3,
+            ..short().ppo
+        },
         ..short()
     }
 }
 
-const OPTIONS: [(&str, &str); 5] =
-    [("raiding", "attack"), ("intercepting", "pursue"), ("keeping", "hold"), ("waiting", "wait"), ("chasing", "chase")];
+const OPTIONS: [(&str, &str); 5] = [
+    ("raiding", "attack"),
+    ("intercepting", "pursue"),
+    ("keeping", "hold"),
+    ("waiting", "wait"),
+    ("chasing", "chase"),
+];
 
 #[test]
 fn a_policy_learns_to_choose_what_its_teacher_is_at() {
     let (_, progress) = trained(trainer(imitation(&OPTIONS), 2));
     assert!(progress.iter().all(|one| one.learnt.clipped == Some(0.0)));
-    let losses: Vec<f32> = progress.iter().filter_map(|one| one.learnt.policy_loss).collect();
+    let losses: Vec<f32> = progress
+        .iter()
+        .filter_map(|one| one.learnt.policy_loss)
+        .collect();
     // Ten options, initially.
     let first = losses[0];
     let last = losses[losses.len() - 1];
@@ -134,7 +229,10 @@ fn a_teacher_whose_modes_are_no_options_is_refused() {
     };
     for (options, want) in [
         (&[("raiding", "fly")][..], "\"fly\", expected attack, rush"),
-        (&[("flying", "attack")], "flying, expected a mode of strategy_5: "),
+        (
+            &[("flying", "attack")],
+            "flying, expected a mode of strategy_5: ",
+        ),
         (&[("flying", "attack")], "raiding"),
         (&[], "strategy_5, whose modes match no option"),
     ] {
@@ -147,9 +245,18 @@ fn a_teacher_whose_modes_are_no_options_is_refused() {
 fn a_state_of_another_training_is_refused() {
     let state = trainer(short(), 1).state();
     let other = Training { seed: 2, ..short() };
-    assert!(matches!(Trainer::resume(other, 1, &state), Err(StateError::Other)));
-    assert!(matches!(Trainer::resume(short(), 1, &state[..100]), Err(StateError::Damaged)));
+    assert!(matches!(
+        Trainer::resume(other, 1, &state),
+        Err(StateError::Other)
+    ));
+    assert!(matches!(
+        Trainer::resume(short(), 1, &state[..100]),
+        Err(StateError::Damaged)
+    ));
     let mut newer = state.clone();
     newer[1] = b'9';
-    assert!(matches!(Trainer::resume(short(), 1, &newer), Err(StateError::Version { .. })));
+    assert!(matches!(
+        Trainer::resume(short(), 1, &newer),
+        Err(StateError::Version { .. })
+    ));
 }

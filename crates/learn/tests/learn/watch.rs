@@ -25,8 +25,10 @@ impl Seen {
         contest.keep_inputs();
         match moment {
             Moment::Decision => {
-                self.scenario.get_or_insert_with(|| contest.scenario().clone());
-                self.decisions.push((contest.take_inputs(), contest.frame(&mut self.cursor)));
+                self.scenario
+                    .get_or_insert_with(|| contest.scenario().clone());
+                self.decisions
+                    .push((contest.take_inputs(), contest.frame(&mut self.cursor)));
             }
             Moment::End => self.outcome = Some(contest.outcome()),
         }
@@ -36,7 +38,8 @@ impl Seen {
     fn check(&self) {
         let scenario = self.scenario.as_ref().expect("the game has begun");
         let seed = scenario.seed;
-        let mut contest = Contest::new(scenario, seed).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
+        let mut contest =
+            Contest::new(scenario, seed).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
         let mut cursor = EventCursor::default();
         for (inputs, frame) in &self.decisions {
             inputs.iter().for_each(|input| contest.give(*input));
@@ -49,7 +52,12 @@ impl Seen {
 }
 
 /// Plays this many steps of 2 s games in wind and waves. Returns the watched ones.
-fn seen(starts: Option<u32>, steps: usize, every: u64, play: impl Fn(&mut Games, usize)) -> Vec<Arc<Mutex<Seen>>> {
+fn seen(
+    starts: Option<u32>,
+    steps: usize,
+    every: u64,
+    play: impl Fn(&mut Games, usize),
+) -> Vec<Arc<Mutex<Seen>>> {
     let raw = RawSetup {
         game: file("games/surveyor_2v2.toml"),
         observation: RawObservation::Space(ObservationSpace::Pyquaticus),
@@ -62,9 +70,18 @@ fn seen(starts: Option<u32>, steps: usize, every: u64, play: impl Fn(&mut Games,
     let kept = Arc::clone(&all);
     let watches = move |number: u64| {
         number.is_multiple_of(every).then(|| -> Watch {
-            let seen = Arc::new(Mutex::new(Seen { number, ..Seen::default() }));
-            kept.lock().expect("no thread has panicked").push(Arc::clone(&seen));
-            Box::new(move |contest, moment| seen.lock().expect("no thread has panicked").see(contest, moment))
+            let seen = Arc::new(Mutex::new(Seen {
+                number,
+                ..Seen::default()
+            }));
+            kept.lock()
+                .expect("no thread has panicked")
+                .push(Arc::clone(&seen));
+            Box::new(move |contest, moment| {
+                seen.lock()
+                    .expect("no thread has panicked")
+                    .see(contest, moment)
+            })
         })
     };
     let games = Games::new(checked(&raw), 2, 2, 5, Some(Arc::new(watches)));
@@ -76,7 +93,9 @@ fn seen(starts: Option<u32>, steps: usize, every: u64, play: impl Fn(&mut Games,
 
 fn step(games: &mut Games, step: usize) {
     written(games, |games, rows| {
-        let actions: Vec<Action> = (0..games.rows().0).map(|row| Action::Discrete((3 * step + row) % 17)).collect();
+        let actions: Vec<Action> = (0..games.rows().0)
+            .map(|row| Action::Discrete((3 * step + row) % 17))
+            .collect();
         games.step(&actions, rows).expect("new games begin");
     });
 }
@@ -85,12 +104,19 @@ fn step(games: &mut Games, step: usize) {
 fn games_are_seen_from_their_first_moment_to_their_end() {
     for starts in [None, Some(3)] {
         let games = seen(starts, 9, 1, step);
-        assert_eq!(games.len(), 6, "two complete games in each of two slots, and two that have begun");
+        assert_eq!(
+            games.len(),
+            6,
+            "two complete games in each of two slots, and two that have begun"
+        );
         for game in &games {
             let game = game.lock().expect("no thread has panicked");
             game.check();
             let is_whole = game.number < 4;
-            assert_eq!((game.outcome.is_some(), game.decisions.len()), (is_whole, if is_whole { 21 } else { 6 }));
+            assert_eq!(
+                (game.outcome.is_some(), game.decisions.len()),
+                (is_whole, if is_whole { 21 } else { 6 })
+            );
         }
     }
 }
@@ -98,7 +124,10 @@ fn games_are_seen_from_their_first_moment_to_their_end() {
 #[test]
 fn only_the_chosen_games_are_seen() {
     let numbers = |games: &[Arc<Mutex<Seen>>]| -> Vec<u64> {
-        games.iter().map(|game| game.lock().expect("no thread has panicked").number).collect()
+        games
+            .iter()
+            .map(|game| game.lock().expect("no thread has panicked").number)
+            .collect()
     };
     assert_eq!(numbers(&seen(None, 12, 4, step)), [0, 4]);
 }
@@ -117,6 +146,10 @@ fn a_game_that_is_given_up_is_seen_up_to_there_and_nothing_after_the_watches_end
     for game in &games {
         let game = game.lock().expect("no thread has panicked");
         game.check();
-        assert_eq!((game.outcome.is_none(), game.decisions.len()), (true, 11), "two steps of five decisions");
+        assert_eq!(
+            (game.outcome.is_none(), game.decisions.len()),
+            (true, 11),
+            "two steps of five decisions"
+        );
     }
 }

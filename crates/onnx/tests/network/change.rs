@@ -10,7 +10,10 @@ fn try_file(bytes: &[u8]) {
         Ok(mut network) => network.evaluate(&vec![0.5; network.input_size()]),
         Err(error) => {
             let text = error.to_string();
-            assert!(text.len() < 2_000 && !text.chars().any(char::is_control), "{text:?}");
+            assert!(
+                text.len() < 2_000 && !text.chars().any(char::is_control),
+                "{text:?}"
+            );
         }
     }
 }

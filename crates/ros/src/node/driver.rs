@@ -31,7 +31,9 @@ impl RequestCell {
 
     fn newest(&self) -> Option<Numbered> {
         let newest = self.0.visit(|newest| *newest);
-        newest.filter(|(_, at)| clock::since(*at) < WALL_MAX).map(|(newest, _)| newest)
+        newest
+            .filter(|(_, at)| clock::since(*at) < WALL_MAX)
+            .map(|(newest, _)| newest)
     }
 }
 
@@ -58,13 +60,21 @@ pub(super) fn subscribe(
     };
     let name = &node.name;
     let asked = take(cell, refusals);
-    graph.subscribe(node, &format!("/{name}/cmd_vel"), move |twist: Option<Twist>| {
-        asked(twist.as_ref().map(SetPoint::of_twist));
-    })?;
+    graph.subscribe(
+        node,
+        &format!("/{name}/cmd_vel"),
+        move |twist: Option<Twist>| {
+            asked(twist.as_ref().map(SetPoint::of_twist));
+        },
+    )?;
     let asked = take(cell, refusals);
-    graph.subscribe(node, &format!("/{name}/order"), move |order: Option<VehicleOrder>| {
-        asked(order.as_ref().map(|order| SetPoint::of_order(boat, order)));
-    })
+    graph.subscribe(
+        node,
+        &format!("/{name}/order"),
+        move |order: Option<VehicleOrder>| {
+            asked(order.as_ref().map(|order| SetPoint::of_order(boat, order)));
+        },
+    )
 }
 
 /// The mind of a boat that ROS 2 drives.
@@ -78,8 +88,14 @@ pub(super) struct Driver {
 
 impl Mind for Driver {
     fn decide(&mut self, picture: &Picture) -> Order {
-        self.incoming.put(1 + usize::from(picture.team), Incoming::Picture(Box::new(picture.clone())));
-        let Some(own) = picture.own(self.boat) else { return Order::Hold };
-        self.follower.order(picture.stamp.valid_ns, &own.nav, self.cell.newest())
+        self.incoming.put(
+            1 + usize::from(picture.team),
+            Incoming::Picture(Box::new(picture.clone())),
+        );
+        let Some(own) = picture.own(self.boat) else {
+            return Order::Hold;
+        };
+        self.follower
+            .order(picture.stamp.valid_ns, &own.nav, self.cell.newest())
     }
 }

@@ -28,7 +28,12 @@ pub(super) struct Topic<M> {
 impl Graph {
     /// Connects to the router at this endpoint, or becomes it.
     pub(super) fn open(router: &str, domain: u32) -> Result<Graph, BusError> {
-        Ok(Graph { session: RosSession::open(router)?, domain, next: 0, declarations: Vec::new() })
+        Ok(Graph {
+            session: RosSession::open(router)?,
+            domain,
+            next: 0,
+            declarations: Vec::new(),
+        })
     }
 
     /// Whether this process is the router.
@@ -38,16 +43,33 @@ impl Graph {
 
     /// Adds a node.
     pub(super) fn node(&mut self, name: &str) -> Result<Node, BusError> {
-        let node = Node { domain: self.domain, session: self.session.id(), id: self.number(), name: name.to_owned() };
-        self.declarations.push(self.session.show_alive(node.token())?);
+        let node = Node {
+            domain: self.domain,
+            session: self.session.id(),
+            id: self.number(),
+            name: name.to_owned(),
+        };
+        self.declarations
+            .push(self.session.show_alive(node.token())?);
         Ok(node)
     }
 
     /// Adds a topic that `node` publishes.
-    pub(super) fn publisher<M: RosMessage>(&mut self, node: &Node, topic: &str) -> Result<Topic<M>, BusError> {
-        let publisher = self.session.publisher(name::key(self.domain, topic, M::TYPE))?;
+    pub(super) fn publisher<M: RosMessage>(
+        &mut self,
+        node: &Node,
+        topic: &str,
+    ) -> Result<Topic<M>, BusError> {
+        let publisher = self
+            .session
+            .publisher(name::key(self.domain, topic, M::TYPE))?;
         let gid = self.declare(node, Kind::Publisher, topic, M::TYPE)?;
-        Ok(Topic { publisher, gid, sent: 0, message: PhantomData })
+        Ok(Topic {
+            publisher,
+            gid,
+            sent: 0,
+            message: PhantomData,
+        })
     }
 
     /// Calls `receive` with every message on `topic`, or with none if it cannot be decoded.
@@ -63,7 +85,8 @@ impl Graph {
             false,
             Box::new(take),
         )?);
-        self.declare(node, Kind::Subscription, topic, M::TYPE).map(drop)
+        self.declare(node, Kind::Subscription, topic, M::TYPE)
+            .map(drop)
     }
 
     /// Calls `receive` with every request to a service.
@@ -73,12 +96,22 @@ impl Graph {
         (service, type_name): (&str, &str),
         receive: impl Fn(Parcel, Box<dyn PendingQuery>) + Send + Sync + 'static,
     ) -> Result<(), BusError> {
-        self.declarations.push(self.session.serve(name::key(self.domain, service, type_name), receive)?);
-        self.declare(node, Kind::Service, service, type_name).map(drop)
+        self.declarations.push(
+            self.session
+                .serve(name::key(self.domain, service, type_name), receive)?,
+        );
+        self.declare(node, Kind::Service, service, type_name)
+            .map(drop)
     }
 
     /// Shows the token of an endpoint, and returns its global identifier.
-    fn declare(&mut self, node: &Node, kind: Kind, topic: &str, type_name: &str) -> Result<[u8; 16], BusError> {
+    fn declare(
+        &mut self,
+        node: &Node,
+        kind: Kind,
+        topic: &str,
+        type_name: &str,
+    ) -> Result<[u8; 16], BusError> {
         let token = node.endpoint_token(self.number(), kind, topic, type_name);
         let gid = name::gid(&token);
         self.declarations.push(self.session.show_alive(token)?);
@@ -100,12 +133,19 @@ impl Drop for Graph {
 impl<M: RosMessage + Serialize> Topic<M> {
     /// Sends the message that `make` returns, if anybody subscribes.
     pub(super) fn send(&mut self, make: impl FnOnce() -> M) -> Result<(), BusError> {
-        if self.publisher.is_heard() { self.send_bytes(codec::encode_plain(&make())) } else { Ok(()) }
+        if self.publisher.is_heard() {
+            self.send_bytes(codec::encode_plain(&make()))
+        } else {
+            Ok(())
+        }
     }
 
     /// Sends an encoded message.
     pub(super) fn send_bytes(&mut self, bytes: Vec<u8>) -> Result<(), BusError> {
         self.sent += 1;
-        self.publisher.send(bytes, name::attachment(self.sent, clock::unix_ns(), self.gid))
+        self.publisher.send(
+            bytes,
+            name::attachment(self.sent, clock::unix_ns(), self.gid),
+        )
     }
 }

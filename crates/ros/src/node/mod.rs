@@ -13,7 +13,9 @@ use crate::set_point::Follower;
 use agent::Mind;
 use agent::node::{News as AgentNews, NodeError, Settings as AgentSettings};
 use bus::game_search::{GameSearch, NotFound};
-use bus::{Bus, BusError, Declaration, Latest, NodeThread, Patience, Place, SimWatch, Watched, clock};
+use bus::{
+    Bus, BusError, Declaration, Latest, NodeThread, Patience, Place, SimWatch, Watched, clock,
+};
 use driver::{Driver, RequestCell};
 use graph::Graph;
 use messages::refusal::Refusals;
@@ -137,16 +139,25 @@ struct Shared {
 /// [`RosError`], including the loss of the sim.
 pub fn serve(settings: &Settings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), RosError> {
     let mut graph = Graph::open(&settings.router, settings.domain)?;
-    tell(News::OnRos { is_router: graph.is_router() });
+    tell(News::OnRos {
+        is_router: graph.is_router(),
+    });
     let mut search = GameSearch::new(settings.wait, &settings.stop);
     let mut report = |reason: &str| tell(News::Looking { reason });
     let (bus, game, info) = search.game(&mut report, &settings.place, settings.game.as_ref())?;
     let scenario = Arc::new(info.scenario);
-    let mut names = scenario.vehicles.iter().map(|boat| &boat.name).chain(scenario.teams.iter().map(|team| &team.name));
+    let mut names = scenario
+        .vehicles
+        .iter()
+        .map(|boat| &boat.name)
+        .chain(scenario.teams.iter().map(|team| &team.name));
     if let Some(name) = names.find(|name| !is_ros_name(name)) {
         return Err(RosError::Name(name.clone()));
     }
-    let driven = settings.vehicles.iter().map(|name| scenario.vehicle_named(name));
+    let driven = settings
+        .vehicles
+        .iter()
+        .map(|name| scenario.vehicle_named(name));
     let driven: Vec<VehicleId> = driven.collect::<Result<_, _>>()?;
     let shared = Shared {
         incoming: Arc::new(Latest::new(1 + scenario.teams.len())),
@@ -157,7 +168,11 @@ pub fn serve(settings: &Settings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), 
         agent_end: Arc::default(),
     };
     let squall = graph.node("squall")?;
-    let nodes = scenario.vehicles.iter().map(|boat| graph.node(&boat.name)).collect::<Result<Vec<_>, _>>()?;
+    let nodes = scenario
+        .vehicles
+        .iter()
+        .map(|boat| graph.node(&boat.name))
+        .collect::<Result<Vec<_>, _>>()?;
     let publisher = Publisher::open(
         &mut graph,
         (&squall, &nodes),
@@ -165,14 +180,31 @@ pub fn serve(settings: &Settings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), 
         &driven,
         settings.shows_truth,
     )?;
-    let operator = Operator { bus: bus.clone(), game: game.clone(), may_all: settings.is_operator };
-    let services = services::open(&mut graph, &squall, operator, &shared.refusals, &shared.ended)?;
+    let operator = Operator {
+        bus: bus.clone(),
+        game: game.clone(),
+        may_all: settings.is_operator,
+    };
+    let services = services::open(
+        &mut graph,
+        &squall,
+        operator,
+        &shared.refusals,
+        &shared.ended,
+    )?;
     let agent = drive(&mut graph, &nodes, &driven, settings, (&game, &shared))?;
     let watch = SimWatch::open(&bus, &game, Patience::of_player(SILENCE))?;
     let _declarations = observe(&bus, &game, &scenario, &shared)?;
-    tell(News::Showing { game: game.as_str() });
-    let mut bridge =
-        Bridge { publisher, shared: shared.clone(), watch, missing_since: None, told: Refusals::default() };
+    tell(News::Showing {
+        game: game.as_str(),
+    });
+    let mut bridge = Bridge {
+        publisher,
+        shared: shared.clone(),
+        watch,
+        missing_since: None,
+        told: Refusals::default(),
+    };
     let shown = bridge.run(&settings.stop, tell);
     shared.ended.store(true, Ordering::Relaxed);
     drop((services, agent));
@@ -181,11 +213,20 @@ pub fn serve(settings: &Settings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), 
 }
 
 /// Subscribes to frames and gateways.
-fn observe(bus: &Bus, game: &GameName, scenario: &Scenario, shared: &Shared) -> Result<Vec<Declaration>, BusError> {
+fn observe(
+    bus: &Bus,
+    game: &GameName,
+    scenario: &Scenario,
+    shared: &Shared,
+) -> Result<Vec<Declaration>, BusError> {
     let incoming = Arc::clone(&shared.incoming);
     let keep = move |bytes: &[u8]| incoming.put(0, Incoming::Frame(bytes.to_vec()));
     let mut declarations = vec![bus.subscribe(topic::frame(game), keep)?];
-    for boat in scenario.vehicles.iter().filter(|boat| boat.source == Source::External) {
+    for boat in scenario
+        .vehicles
+        .iter()
+        .filter(|boat| boat.source == Source::External)
+    {
         let (statuses, name) = (Arc::clone(&shared.statuses), boat.name.clone());
         declarations.push(bus.subscribe_status(game, &boat.name, move |status| {
             statuses.visit(|statuses| statuses.insert(name.clone(), (status, clock::now())));
@@ -215,7 +256,12 @@ fn drive(
     let driver = move |boat: VehicleId| {
         // The agent asks only for the boats that it was given.
         let cell = cells.get(&boat).map(Arc::clone).unwrap_or_default();
-        Driver { boat, cell, follower: Follower::new(ttl), incoming: Arc::clone(&incoming) }
+        Driver {
+            boat,
+            cell,
+            follower: Follower::new(ttl),
+            incoming: Arc::clone(&incoming),
+        }
     };
     let agent = AgentSettings {
         game: Some(game.clone()),
@@ -223,20 +269,29 @@ fn drive(
         vehicles: settings.vehicles.clone(),
         wait: settings.wait,
         silence: SILENCE,
-        mind: Some(Box::new(move |_: &Scenario, boat| -> Box<dyn Mind> { Box::new(driver(boat)) })),
+        mind: Some(Box::new(move |_: &Scenario, boat| -> Box<dyn Mind> {
+            Box::new(driver(boat))
+        })),
         policy_wait: Duration::ZERO,
         stop: Arc::clone(&shared.ended),
     };
     let shared = shared.clone();
     let body = move || {
         let end = agent::node::serve(&agent, &mut |news: AgentNews<'_>| match news {
-            AgentNews::Looking { reason } => shared.agent_news.visit(|news| *news = Some(reason.to_owned())),
-            AgentNews::Left { refused } => shared.refusals.visit(|refusals| *refusals = *refusals + refused),
+            AgentNews::Looking { reason } => shared
+                .agent_news
+                .visit(|news| *news = Some(reason.to_owned())),
+            AgentNews::Left { refused } => shared
+                .refusals
+                .visit(|refusals| *refusals = *refusals + refused),
             AgentNews::Joined { .. } => {}
         });
         shared.agent_end.visit(|slot| *slot = Some(end));
     };
-    let failed = |e: std::io::Error| BusError::Open { what: "an agent's thread".to_owned(), reason: e.to_string() };
+    let failed = |e: std::io::Error| BusError::Open {
+        what: "an agent's thread".to_owned(),
+        reason: e.to_string(),
+    };
     Ok(Some(NodeThread::start(body).map_err(failed)?))
 }
 
@@ -264,8 +319,14 @@ impl Bridge {
                 return Ok(end?);
             }
             let is_missing = self.watch.is_lost(Duration::ZERO);
-            self.missing_since = self.missing_since.or_else(|| Some(clock::now())).filter(|_| is_missing);
-            if self.missing_since.is_some_and(|since| clock::since(since) > MISSING_MAX) {
+            self.missing_since = self
+                .missing_since
+                .or_else(|| Some(clock::now()))
+                .filter(|_| is_missing);
+            if self
+                .missing_since
+                .is_some_and(|since| clock::since(since) > MISSING_MAX)
+            {
                 return Err(RosError::SimGone);
             }
         }
@@ -276,7 +337,10 @@ impl Bridge {
     fn send(&mut self, incoming: Incoming) -> Result<bool, BusError> {
         match incoming {
             Incoming::Frame(bytes) => {
-                let frame = self.shared.refusals.visit(|refusals| refusals.decode::<Frame>(&bytes));
+                let frame = self
+                    .shared
+                    .refusals
+                    .visit(|refusals| refusals.decode::<Frame>(&bytes));
                 let Some(frame) = frame else { return Ok(false) };
                 self.publisher.send_frame(bytes, &frame)?;
                 Ok(frame.over)

@@ -2,7 +2,9 @@
 
 use super::graph::{Graph, Topic};
 use crate::convert::Motion;
-use crate::message::{Clock, DiagnosticArray, Imu, MarkerArray, NavSatFix, Odometry, TfMessage, TwistStamped};
+use crate::message::{
+    Clock, DiagnosticArray, Imu, MarkerArray, NavSatFix, Odometry, TfMessage, TwistStamped,
+};
 use crate::name::Node;
 use crate::{diagnostics, markers};
 use bus::{BusError, Watched, clock};
@@ -49,7 +51,8 @@ impl MotionTopics {
         self.odom.send(|| motion.odometry(base_link))?;
         self.imu.send(|| motion.imu(base_link))?;
         self.velocity.send(|| motion.velocity())?;
-        self.fix.send(|| motion.fix(base_link, map.lat_lon(motion.nav.at())))
+        self.fix
+            .send(|| motion.fix(base_link, map.lat_lon(motion.nav.at())))
     }
 }
 
@@ -87,7 +90,9 @@ impl Publisher {
         shows_truth: bool,
     ) -> Result<Publisher, BusError> {
         let true_nodes = if shows_truth { nodes } else { &[] };
-        let truth = true_nodes.iter().map(|node| MotionTopics::open(graph, node, &format!("{}/truth", node.name)));
+        let truth = true_nodes
+            .iter()
+            .map(|node| MotionTopics::open(graph, node, &format!("{}/truth", node.name)));
         let truth = truth.collect::<Result<_, _>>()?;
         let (mut measured, mut pictures) = (BTreeMap::new(), BTreeMap::new());
         for boat in driven {
@@ -102,7 +107,10 @@ impl Publisher {
         Ok(Publisher {
             map: LocalFrame::new(scenario.field.plan.datum),
             game: game.to_owned(),
-            driven: driven.iter().map(|boat| nodes[boat.index()].name.clone()).collect(),
+            driven: driven
+                .iter()
+                .map(|boat| nodes[boat.index()].name.clone())
+                .collect(),
             clock: graph.publisher(squall, "/clock")?,
             tf: graph.publisher(squall, "/tf")?,
             field: graph.publisher(squall, "/squall/field")?,
@@ -124,7 +132,9 @@ impl Publisher {
             return Ok(());
         }
         self.now = stamp.valid_ns;
-        self.clock.send(|| Clock { clock: stamp.valid_ns.into() })
+        self.clock.send(|| Clock {
+            clock: stamp.valid_ns.into(),
+        })
     }
 
     /// The truth. `bytes` are those of the frame.
@@ -134,39 +144,61 @@ impl Publisher {
             return Ok(());
         }
         self.frame.send_bytes(bytes)?;
-        let motions: Vec<Motion> = frame.vehicles.iter().map(|boat| Motion::truth(frame.stamp, boat)).collect();
+        let motions: Vec<Motion> = frame
+            .vehicles
+            .iter()
+            .map(|boat| Motion::truth(frame.stamp, boat))
+            .collect();
         let truth = &self.truth;
         self.tf.send(|| TfMessage {
-            transforms: truth.iter().zip(&motions).map(|(boat, motion)| motion.transform(&boat.base_link)).collect(),
+            transforms: truth
+                .iter()
+                .zip(&motions)
+                .map(|(boat, motion)| motion.transform(&boat.base_link))
+                .collect(),
         })?;
         for (topics, motion) in self.truth.iter_mut().zip(&motions) {
             topics.send(motion, &self.map)?;
         }
-        self.game_markers.send(|| markers::game(&self.scenario, frame))
+        self.game_markers
+            .send(|| markers::game(&self.scenario, frame))
     }
 
     /// What a team's driven boats have measured.
     pub(super) fn send_picture(&mut self, picture: &Picture) -> Result<(), BusError> {
         self.tick(picture.stamp)?;
         for boat in &picture.own {
-            let Some(topics) = self.measured.get_mut(&boat.vehicle) else { continue };
+            let Some(topics) = self.measured.get_mut(&boat.vehicle) else {
+                continue;
+            };
             let motion = Motion::measured(picture.stamp, boat);
             topics.send(&motion, &self.map)?;
-            self.tf.send(|| TfMessage { transforms: vec![motion.transform(&topics.base_link)] })?;
+            self.tf.send(|| TfMessage {
+                transforms: vec![motion.transform(&topics.base_link)],
+            })?;
         }
-        self.pictures.get_mut(&picture.team).map_or(Ok(()), |topic| topic.send(|| picture.clone()))
+        self.pictures
+            .get_mut(&picture.team)
+            .map_or(Ok(()), |topic| topic.send(|| picture.clone()))
     }
 
     /// Diagnostics and the field, once a second.
-    pub(super) fn send_seldom(&mut self, statuses: &Statuses, refused: Refusals) -> Result<(), BusError> {
+    pub(super) fn send_seldom(
+        &mut self,
+        statuses: &Statuses,
+        refused: Refusals,
+    ) -> Result<(), BusError> {
         if self.seldom_at.is_some_and(|at| clock::since(at) < SELDOM) {
             return Ok(());
         }
         self.seldom_at = Some(clock::now());
-        self.field.send(|| markers::field(&self.scenario, self.now))?;
+        self.field
+            .send(|| markers::field(&self.scenario, self.now))?;
         self.diagnostics.send(|| {
             let gateways = statuses.visit(|statuses| statuses.clone());
-            let gateways = gateways.values().map(|(status, at)| diagnostics::gateway(status, clock::since(*at)));
+            let gateways = gateways
+                .values()
+                .map(|(status, at)| diagnostics::gateway(status, clock::since(*at)));
             let own = diagnostics::bridge(&self.game, &self.driven, refused);
             diagnostics::array(self.now, std::iter::once(own).chain(gateways).collect())
         })

@@ -22,7 +22,11 @@ const SET_BOOL: &str = "std_srvs/srv/SetBool";
 const TRIGGER: &str = "std_srvs/srv/Trigger";
 /// The services: name, type, and the commands of `true` and `false`. A trigger has only the first.
 const SERVICES: [(&str, &str, [Control; 2]); 5] = [
-    ("/squall/e_stop", SET_BOOL, [Control::EStop, Control::Release]),
+    (
+        "/squall/e_stop",
+        SET_BOOL,
+        [Control::EStop, Control::Release],
+    ),
     ("/squall/halt", SET_BOOL, [Control::Halt, Control::GoOn]),
     ("/squall/pause", SET_BOOL, [Control::Pause, Control::Resume]),
     ("/squall/step", TRIGGER, [Control::Step, Control::Step]),
@@ -64,18 +68,28 @@ pub(super) fn open(
     let (others, others_asked) = inbox::<Asked>(REQUESTS);
     for (service, type_name, commands) in SERVICES {
         let (stops, others, refusals) = (stops.clone(), others.clone(), Arc::clone(refusals));
-        graph.serve(node, (service, type_name), move |request: Parcel, client| {
-            let asked =
-                codec::decode_plain::<Request>(&request.bytes).filter(|asked| asked.data <= 1 || type_name == TRIGGER);
-            let Some(asked) = asked.filter(|_| name::answer_attachment(&request.attachment, 0).is_some()) else {
-                return refusals.visit(|refusals| refusals.count(Refusal::Garbage));
-            };
-            let control = commands[usize::from(asked.data == 0)];
-            let queue = if control.stops() { &stops } else { &others };
-            if !queue.offer(Asked { control, attachment: request.attachment, client }) {
-                refusals.visit(|refusals| refusals.count(Refusal::Flood));
-            }
-        })?;
+        graph.serve(
+            node,
+            (service, type_name),
+            move |request: Parcel, client| {
+                let asked = codec::decode_plain::<Request>(&request.bytes)
+                    .filter(|asked| asked.data <= 1 || type_name == TRIGGER);
+                let Some(asked) =
+                    asked.filter(|_| name::answer_attachment(&request.attachment, 0).is_some())
+                else {
+                    return refusals.visit(|refusals| refusals.count(Refusal::Garbage));
+                };
+                let control = commands[usize::from(asked.data == 0)];
+                let queue = if control.stops() { &stops } else { &others };
+                if !queue.offer(Asked {
+                    control,
+                    attachment: request.attachment,
+                    client,
+                }) {
+                    refusals.visit(|refusals| refusals.count(Refusal::Flood));
+                }
+            },
+        )?;
     }
     let operator = Arc::new(operator);
     let worker = |requests: Inbox<Asked>| {
@@ -87,24 +101,45 @@ pub(super) fn open(
                 }
             }
         })
-        .map_err(|e| BusError::Open { what: "services".to_owned(), reason: e.to_string() })
+        .map_err(|e| BusError::Open {
+            what: "services".to_owned(),
+            reason: e.to_string(),
+        })
     };
     Ok([worker(stops_asked)?, worker(others_asked)?])
 }
 
 impl Operator {
-    fn answer(&self, Asked { control, attachment, client }: Asked) {
+    fn answer(
+        &self,
+        Asked {
+            control,
+            attachment,
+            client,
+        }: Asked,
+    ) {
         let done = match self.command(control) {
-            Ok(()) => Done { success: true, message: String::new() },
-            Err(message) => Done { success: false, message },
+            Ok(()) => Done {
+                success: true,
+                message: String::new(),
+            },
+            Err(message) => Done {
+                success: false,
+                message,
+            },
         };
         let attachment = name::answer_attachment(&attachment, clock::unix_ns()).unwrap_or_default();
-        client.answer(Parcel { bytes: codec::encode_plain(&done), attachment });
+        client.answer(Parcel {
+            bytes: codec::encode_plain(&done),
+            attachment,
+        });
     }
 
     fn command(&self, control: Control) -> Result<(), String> {
         if !control.stops() && !self.may_all {
-            return Err("the bridge only stops boats: start it with --operator for this command".to_owned());
+            return Err(
+                "the bridge only stops boats: start it with --operator for this command".to_owned(),
+            );
         }
         bus::control(&self.bus, &self.game, control).map_err(|e| e.to_string())
     }

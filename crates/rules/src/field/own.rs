@@ -8,14 +8,18 @@ impl Field {
     /// Whether `at` is on `team`'s own side; the scrimmage line is on both.
     #[inline]
     pub fn is_own_side(&self, team: TeamId, at: Ned) -> bool {
-        self.zones.get(team.index()).is_some_and(|zone| zone.contains(at))
+        self.zones
+            .get(team.index())
+            .is_some_and(|zone| zone.contains(at))
     }
 
     /// The homes of `team`'s own flags.
     #[inline]
     pub fn own_flags(&self, team: TeamId) -> impl Iterator<Item = (FlagId, Ned)> {
         let flags = self.flags.iter().enumerate();
-        flags.filter(move |(_, flag)| flag.team == team).map(|(i, flag)| (FlagId(i as u8), flag.home))
+        flags
+            .filter(move |(_, flag)| flag.team == team)
+            .map(|(i, flag)| (FlagId(i as u8), flag.home))
     }
 
     /// The nearest of `team`'s own flags' homes; none without flags.
@@ -26,6 +30,8 @@ impl Field {
     /// The corners of `team`'s own end.
     #[inline]
     pub fn own_corners(&self, team: TeamId) -> &[Ned] {
-        self.own_corners.get(team.index()).map_or(&[], |corners| corners)
+        self.own_corners
+            .get(team.index())
+            .map_or(&[], |corners| corners)
     }
 }

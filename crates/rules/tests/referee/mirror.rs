@@ -60,7 +60,10 @@ impl Mirror {
     pub(crate) fn fleet(&self, fleet: &[Leg]) -> Vec<Leg> {
         let leg = |i| {
             let Leg { from, to } = fleet[self.vehicle(VehicleId::at(i)).index()];
-            Leg { from: Mirror::position(from), to: Mirror::position(to) }
+            Leg {
+                from: Mirror::position(from),
+                to: Mirror::position(to),
+            }
         };
         (0..fleet.len()).map(leg).collect()
     }
@@ -69,17 +72,25 @@ impl Mirror {
         let source = |i: usize| self.vehicle(VehicleId::at(i)).index();
         let boat = |i: usize| {
             let boat = standing.vehicles[source(i)].clone();
-            VehicleStanding { carrying: boat.carrying.map(Mirror::flag), ..boat }
+            VehicleStanding {
+                carrying: boat.carrying.map(Mirror::flag),
+                ..boat
+            }
         };
         let mut mirrored = standing.clone();
         mirrored.vehicles = (0..standing.vehicles.len()).map(boat).collect();
-        mirrored.disabled = (0..standing.vehicles.len()).map(|i| standing.disabled[source(i)]).collect();
+        mirrored.disabled = (0..standing.vehicles.len())
+            .map(|i| standing.disabled[source(i)])
+            .collect();
         for (i, flag) in mirrored.flags.iter_mut().enumerate() {
             *flag = standing.flags[i ^ 1].clone();
             flag.carrier = flag.carrier.map(|vehicle| self.vehicle(vehicle));
         }
         mirrored.score.reverse();
-        mirrored.touching.iter_mut().for_each(|(a, b)| (*a, *b) = self.pair(*a, *b));
+        mirrored
+            .touching
+            .iter_mut()
+            .for_each(|(a, b)| (*a, *b) = self.pair(*a, *b));
         mirrored.touching.sort_unstable();
         mirrored
     }

@@ -13,8 +13,14 @@ fn disabled(vehicle: u16) -> Event {
 /// The drawn windows in time order: from, until, vehicle.
 fn windows(scene: &Scene, seed: u64) -> Vec<(SimTime, SimTime, usize)> {
     let standing = scene.referee.start(&mut Stream::new(seed, "rules"));
-    let drawn = standing.disabled.iter().enumerate().filter(|(_, (from, _))| *from < SimTime::NEVER);
-    let mut drawn: Vec<_> = drawn.map(|(vehicle, (from, until))| (*from, *until, vehicle)).collect();
+    let drawn = standing
+        .disabled
+        .iter()
+        .enumerate()
+        .filter(|(_, (from, _))| *from < SimTime::NEVER);
+    let mut drawn: Vec<_> = drawn
+        .map(|(vehicle, (from, until))| (*from, *until, vehicle))
+        .collect();
     drawn.sort_unstable();
     drawn
 }
@@ -26,15 +32,26 @@ fn one_boat_of_each_team_is_drawn_and_never_two_at_once() {
     let mut first_team_first = 0;
     for seed in 0..600 {
         let windows = windows(&scene, seed);
-        let [(from_a, until_a, a), (from_b, until_b, b)] = windows[..] else { panic!("seed {seed}: {windows:?}") };
-        assert!(SimTime::ZERO <= from_a && until_a <= from_b && until_b <= SimTime::from_s(600.0), "seed {seed}");
-        assert_eq!((until_a - from_a, until_b - from_b), (SimTime::from_s(120.0), SimTime::from_s(120.0)));
+        let [(from_a, until_a, a), (from_b, until_b, b)] = windows[..] else {
+            panic!("seed {seed}: {windows:?}")
+        };
+        assert!(
+            SimTime::ZERO <= from_a && until_a <= from_b && until_b <= SimTime::from_s(600.0),
+            "seed {seed}"
+        );
+        assert_eq!(
+            (until_a - from_a, until_b - from_b),
+            (SimTime::from_s(120.0), SimTime::from_s(120.0))
+        );
         assert_ne!(a / 3, b / 3, "seed {seed}");
         drawn[a] += 1;
         drawn[b] += 1;
         first_team_first += u32::from(a < 3);
     }
-    assert!(drawn.iter().all(|count| (150..250).contains(count)), "{drawn:?}");
+    assert!(
+        drawn.iter().all(|count| (150..250).contains(count)),
+        "{drawn:?}"
+    );
     assert!((250..350).contains(&first_team_first), "{first_team_first}");
 }
 
@@ -43,8 +60,17 @@ fn the_same_stream_draws_the_same_and_a_short_game_is_shared_out() {
     let scene = Scene::new(mctf_2026(), 3);
     assert_eq!(windows(&scene, 5), windows(&scene, 5));
     assert_ne!(windows(&scene, 5), windows(&scene, 6));
-    let short = Scene::new(Rules { time_limit: SimTime::from_s(100.0), ..mctf_2026() }, 3);
-    let seconds: Vec<_> = windows(&short, 5).iter().map(|(from, until, _)| (from.as_s(), until.as_s())).collect();
+    let short = Scene::new(
+        Rules {
+            time_limit: SimTime::from_s(100.0),
+            ..mctf_2026()
+        },
+        3,
+    );
+    let seconds: Vec<_> = windows(&short, 5)
+        .iter()
+        .map(|(from, until, _)| (from.as_s(), until.as_s()))
+        .collect();
     assert_eq!(seconds, [(0.0, 50.0), (50.0, 100.0)]);
 }
 

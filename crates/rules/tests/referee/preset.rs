@@ -14,11 +14,23 @@ static SHIPPED: LazyLock<[Rules; 4]> = LazyLock::new(|| {
     ["aquaticus_2023", "pyquaticus", "mctf_2025", "mctf_2026"].map(|name| {
         let base = "games/pav01_vs_pav01.toml";
         let rules = format!("rules/{name}.toml");
-        let text = format!("base = {:?}\nrules = {:?}\n", scenarios.join(base), scenarios.join(rules));
+        let text = format!(
+            "base = {:?}\nrules = {:?}\n",
+            scenarios.join(base),
+            scenarios.join(rules)
+        );
         std::fs::write(folder.path().join("game.toml"), text).expect("a file in it");
-        let scenario = scenario::load(&folder.path().join("game.toml")).unwrap_or_else(|e| panic!("{e}"));
-        let looks = Rules { tag_look_period: SimTime::ZERO, flag_look_period: SimTime::ZERO, ..scenario.rules };
-        Rules { collision_distance_m: 0.5, ..looks }
+        let scenario =
+            scenario::load(&folder.path().join("game.toml")).unwrap_or_else(|e| panic!("{e}"));
+        let looks = Rules {
+            tag_look_period: SimTime::ZERO,
+            flag_look_period: SimTime::ZERO,
+            ..scenario.rules
+        };
+        Rules {
+            collision_distance_m: 0.5,
+            ..looks
+        }
     })
 });
 
@@ -39,12 +51,26 @@ pub(crate) fn mctf_2026() -> Rules {
 #[test]
 fn only_pyquaticus_keeps_defenders_from_their_flag_and_only_2026_has_power_play() {
     for (rules, (keepout_m, power_plays)) in
-        all().into_iter().zip([(None, 0), (Some(5.0), 0), (Some(5.0), 0), (None, 2)])
+        all()
+            .into_iter()
+            .zip([(None, 0), (Some(5.0), 0), (Some(5.0), 0), (None, 2)])
     {
         let scene = Scene::new(rules, 2);
-        let circle = scene.referee.keepout(&scene.standing, VehicleId(0), Ned::from_xy(50.0, 40.0));
-        assert_eq!(circle, keepout_m.map(|radius_m| (Ned::from_xy(20.0, 40.0), radius_m)), "{}", scene.name());
-        let drawn = scene.standing.disabled.iter().filter(|(from, _)| *from < SimTime::NEVER).count();
+        let circle = scene
+            .referee
+            .keepout(&scene.standing, VehicleId(0), Ned::from_xy(50.0, 40.0));
+        assert_eq!(
+            circle,
+            keepout_m.map(|radius_m| (Ned::from_xy(20.0, 40.0), radius_m)),
+            "{}",
+            scene.name()
+        );
+        let drawn = scene
+            .standing
+            .disabled
+            .iter()
+            .filter(|(from, _)| *from < SimTime::NEVER)
+            .count();
         assert_eq!(drawn, power_plays, "{}", scene.name());
     }
 }
@@ -52,7 +78,14 @@ fn only_pyquaticus_keeps_defenders_from_their_flag_and_only_2026_has_power_play(
 #[test]
 fn the_reach_covers_tags_and_collisions() {
     for (tag_radius_m, collision_distance_m, want_m) in [(10.0, 4.0, 10.0), (1.0, 4.0, 4.0)] {
-        let scene = Scene::new(Rules { tag_radius_m, collision_distance_m, ..aquaticus_2023() }, 1);
+        let scene = Scene::new(
+            Rules {
+                tag_radius_m,
+                collision_distance_m,
+                ..aquaticus_2023()
+            },
+            1,
+        );
         assert_eq!(scene.referee.rules.reach_m(), want_m);
     }
 }

@@ -27,17 +27,32 @@ pub(crate) fn field(extra_flags: Vec<Flag>) -> Field {
 }
 
 fn rectangle(x_m: f64, width_m: f64, extra_flags: Vec<Flag>) -> Field {
-    let plan = Plan { along_deg: 90.0, depth_m: 80.0, flag_inset_m: 20.0, ..Plan::default() };
-    Field::new(Plan { corner: Ned::from_xy(x_m, 0.0), width_m, extra_flags, ..plan })
+    let plan = Plan {
+        along_deg: 90.0,
+        depth_m: 80.0,
+        flag_inset_m: 20.0,
+        ..Plan::default()
+    };
+    Field::new(Plan {
+        corner: Ned::from_xy(x_m, 0.0),
+        width_m,
+        extra_flags,
+        ..plan
+    })
 }
 
 pub(crate) fn flag(team: u8, x: f64, y: f64) -> Flag {
-    Flag { team: TeamId(team), home: Ned::from_xy(x, y) }
+    Flag {
+        team: TeamId(team),
+        home: Ned::from_xy(x, y),
+    }
 }
 
 /// The first `boats` vehicles play for the first team, the next `boats` for the second, and so on.
 pub(crate) fn teams_of(boats: usize, teams: usize) -> Vec<TeamId> {
-    (0..boats * teams).map(|i| TeamId((i / boats) as u8)).collect()
+    (0..boats * teams)
+        .map(|i| TeamId((i / boats) as u8))
+        .collect()
 }
 
 /// Three sides of 64 m each, side by side, with one flag each.
@@ -58,15 +73,38 @@ impl Scene {
 
     /// Every boat waits on its own side, 12 m from its neighbours, out of reach of everything.
     pub(crate) fn on(rules: Rules, field: Field, team_of: Vec<TeamId>) -> Scene {
-        let referee = Referee { rules, field, team_of };
+        let referee = Referee {
+            rules,
+            field,
+            team_of,
+        };
         let standing = referee.start(&mut Stream::new(1, "rules"));
         let start_position = |(i, team): (usize, &TeamId)| {
-            let before = referee.team_of[..i].iter().filter(|other| *other == team).count();
-            still(if team.0 == 0 { 45.0 } else { 115.0 }, 5.0 + 12.0 * before as f64)
+            let before = referee.team_of[..i]
+                .iter()
+                .filter(|other| *other == team)
+                .count();
+            still(
+                if team.0 == 0 { 45.0 } else { 115.0 },
+                5.0 + 12.0 * before as f64,
+            )
         };
-        let fleet = referee.team_of.iter().enumerate().map(start_position).collect();
+        let fleet = referee
+            .team_of
+            .iter()
+            .enumerate()
+            .map(start_position)
+            .collect();
         let asks = vec![Asks::default(); referee.team_of.len()];
-        Scene { standing, fleet, asks, referee, notes: Notes::default(), near: Near::default(), now: SimTime::ZERO }
+        Scene {
+            standing,
+            fleet,
+            asks,
+            referee,
+            notes: Notes::default(),
+            near: Near::default(),
+            now: SimTime::ZERO,
+        }
     }
 
     pub(crate) fn name(&self) -> &str {
@@ -93,16 +131,30 @@ impl Scene {
     /// Advances one tick and returns its events.
     pub(crate) fn look(&mut self) -> Vec<Event> {
         self.now = self.now + TICK;
-        let near = self.near.pairs(|i| self.fleet[i].to, self.fleet.len(), self.referee.rules.reach_m());
+        let near = self.near.pairs(
+            |i| self.fleet[i].to,
+            self.fleet.len(),
+            self.referee.rules.reach_m(),
+        );
         let mut events = vec![];
-        let look = Look { legs: &self.fleet, asks: &self.asks, near, now: self.now };
-        self.referee.advance(&mut self.standing, &mut self.notes, &look, &mut events);
+        let look = Look {
+            legs: &self.fleet,
+            asks: &self.asks,
+            near,
+            now: self.now,
+        };
+        self.referee
+            .advance(&mut self.standing, &mut self.notes, &look, &mut events);
         self.fleet.iter_mut().for_each(|leg| leg.from = leg.to);
         events
     }
 
     pub(crate) fn directive(&self, vehicle: usize) -> Directive {
-        self.referee.directive(&self.standing, VehicleId::at(vehicle), self.fleet[vehicle].to)
+        self.referee.directive(
+            &self.standing,
+            VehicleId::at(vehicle),
+            self.fleet[vehicle].to,
+        )
     }
 }
 
@@ -113,7 +165,10 @@ fn still(x: f64, y: f64) -> Leg {
 }
 
 pub(crate) fn tagged(vehicle: u16, by: u16) -> Event {
-    Event::Tagged { vehicle: VehicleId(vehicle), cause: TagCause::Opponent(VehicleId(by)) }
+    Event::Tagged {
+        vehicle: VehicleId(vehicle),
+        cause: TagCause::Opponent(VehicleId(by)),
+    }
 }
 
 pub(crate) fn freed(vehicle: u16) -> Event {
@@ -121,9 +176,15 @@ pub(crate) fn freed(vehicle: u16) -> Event {
 }
 
 pub(crate) fn grabbed(vehicle: u16, flag: u8) -> Event {
-    Event::Grabbed { vehicle: VehicleId(vehicle), flag: FlagId(flag) }
+    Event::Grabbed {
+        vehicle: VehicleId(vehicle),
+        flag: FlagId(flag),
+    }
 }
 
 pub(crate) fn lost(vehicle: u16, flag: u8) -> Event {
-    Event::FlagReturned { vehicle: VehicleId(vehicle), flag: FlagId(flag) }
+    Event::FlagReturned {
+        vehicle: VehicleId(vehicle),
+        flag: FlagId(flag),
+    }
 }

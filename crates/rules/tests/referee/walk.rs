@@ -24,13 +24,27 @@ struct Walk {
 }
 
 fn walks(boats: impl Strategy<Value = usize>) -> impl Strategy<Value = Walk> {
-    let variants = (0..4_usize, any::<bool>(), 0..3_u32, prop_oneof![Just(None), (1..30_u32).prop_map(Some)]);
+    let variants = (
+        0..4_usize,
+        any::<bool>(),
+        0..3_u32,
+        prop_oneof![Just(None), (1..30_u32).prop_map(Some)],
+    );
     (variants, boats, any::<bool>(), any::<u64>()).prop_map(
         |((book, capture_needs_own_flag, tag_points, win_score), boats, extra_flags, seed)| {
             let mut rules = hurried(preset::all()[book].clone());
             rules.points.tag = tag_points;
             rules.tag_cooldown = SimTime(rules.tag_cooldown.0 / 20);
-            Walk { rules: Rules { capture_needs_own_flag, win_score, ..rules }, boats, extra_flags, seed }
+            Walk {
+                rules: Rules {
+                    capture_needs_own_flag,
+                    win_score,
+                    ..rules
+                },
+                boats,
+                extra_flags,
+                seed,
+            }
         },
     )
 }
@@ -38,13 +52,26 @@ fn walks(boats: impl Strategy<Value = usize>) -> impl Strategy<Value = Walk> {
 /// The rules of a short game.
 fn hurried(rules: Rules) -> Rules {
     let power_play = SimTime(rules.power_play.0.min(8_000_000_000));
-    Rules { time_limit: SimTime::from_s(35.0), power_play, collision_distance_m: 4.0, ..rules }
+    Rules {
+        time_limit: SimTime::from_s(35.0),
+        power_play,
+        collision_distance_m: 4.0,
+        ..rules
+    }
 }
 
 impl Walk {
     fn referee(&self) -> Referee {
-        let extra = if self.extra_flags { vec![flag(0, 62.0, 70.0), flag(1, 98.0, 10.0)] } else { vec![] };
-        Referee { rules: self.rules.clone(), field: field(extra), team_of: teams_of(self.boats, 2) }
+        let extra = if self.extra_flags {
+            vec![flag(0, 62.0, 70.0), flag(1, 98.0, 10.0)]
+        } else {
+            vec![]
+        };
+        Referee {
+            rules: self.rules.clone(),
+            field: field(extra),
+            team_of: teams_of(self.boats, 2),
+        }
     }
 
     /// The motion of every boat, look by look, from one interesting place to the next.
@@ -63,7 +90,11 @@ impl Walk {
                     *target = place(&mut stream);
                 }
             }
-            before.into_iter().zip(&fleet).map(|(from, to)| Leg { from, to: *to }).collect()
+            before
+                .into_iter()
+                .zip(&fleet)
+                .map(|(from, to)| Leg { from, to: *to })
+                .collect()
         };
         (0..LOOKS).map(&mut look).collect()
     }
@@ -75,10 +106,19 @@ fn place(stream: &mut Stream) -> Ned {
     let (x, y) = match stream.below(8) {
         0 | 1 => (20.0, 40.0),
         2 | 3 => (140.0, 40.0),
-        4 => (4.0 + 152.0 * stream.below(2) as f64, 6.0 + 68.0 * stream.below(2) as f64),
+        4 => (
+            4.0 + 152.0 * stream.below(2) as f64,
+            6.0 + 68.0 * stream.below(2) as f64,
+        ),
         5 => (80.0, grain(stream.between(0.0, 80.0))),
-        6 => (grain(stream.between(0.0, 160.0)), -3.0 + 86.0 * stream.below(2) as f64),
-        _ => (grain(stream.between(-2.0, 162.0)), grain(stream.between(-2.0, 82.0))),
+        6 => (
+            grain(stream.between(0.0, 160.0)),
+            -3.0 + 86.0 * stream.below(2) as f64,
+        ),
+        _ => (
+            grain(stream.between(-2.0, 162.0)),
+            grain(stream.between(-2.0, 82.0)),
+        ),
     };
     Ned::from_xy(x, y)
 }
@@ -86,8 +126,12 @@ fn place(stream: &mut Stream) -> Ned {
 /// A step of up to 3 m that mostly reduces `way` towards 0.
 fn stepwise(way: f64, stream: &mut Stream) -> f64 {
     let step = GRAIN_M * stream.below(193) as f64;
-    if stream.below(8) == 0 { step * way.signum() * -0.5 } else { step.min(way.abs()).copysign(way) }
-        .div_euclid(GRAIN_M)
+    if stream.below(8) == 0 {
+        step * way.signum() * -0.5
+    } else {
+        step.min(way.abs()).copysign(way)
+    }
+    .div_euclid(GRAIN_M)
         * GRAIN_M
 }
 
@@ -95,14 +139,30 @@ fn stepwise(way: f64, stream: &mut Stream) -> f64 {
 fn generous(fleet: &[Leg], reach_m: f64) -> Vec<Pair> {
     let reach_m = 1.5 * reach_m;
     let pairs = (0..fleet.len()).flat_map(|a| (a + 1..fleet.len()).map(move |b| (a, b)));
-    let pairs = pairs.map(|(a, b)| (a as u16, b as u16, fleet[a].to.distance_squared(fleet[b].to)));
+    let pairs = pairs.map(|(a, b)| {
+        (
+            a as u16,
+            b as u16,
+            fleet[a].to.distance_squared(fleet[b].to),
+        )
+    });
     let near = pairs.filter(|(_, _, distance_squared)| *distance_squared < reach_m * reach_m);
-    near.map(|(a, b, distance_squared)| Pair { a, b, distance_squared }).collect()
+    near.map(|(a, b, distance_squared)| Pair {
+        a,
+        b,
+        distance_squared,
+    })
+    .collect()
 }
 
 /// A look at boats that need no requests.
 fn look<'a>(legs: &'a [Leg], near: &'a [Pair], now: SimTime) -> Look<'a> {
-    Look { legs, asks: &[], near, now }
+    Look {
+        legs,
+        asks: &[],
+        near,
+        now,
+    }
 }
 
 /// Plays a walk; calls `each` with every look's (before, after, fleet, events).
@@ -116,7 +176,12 @@ fn play(walk: &Walk, mut each: impl FnMut(&Referee, &Standing, &Standing, &[Leg]
         let before = standing.clone();
         let mut events = vec![];
         let pairs = near.pairs(|i| fleet[i].to, fleet.len(), referee.rules.reach_m());
-        referee.advance(&mut standing, &mut notes, &look(&fleet, pairs, now), &mut events);
+        referee.advance(
+            &mut standing,
+            &mut notes,
+            &look(&fleet, pairs, now),
+            &mut events,
+        );
         each(&referee, &before, &standing, &fleet, &events);
         now = now + TICK;
     }
@@ -127,63 +192,112 @@ fn assert_consistent(referee: &Referee, before: &Standing, after: &Standing) {
         if let Some(flag) = boat.carrying {
             assert_eq!(after.flags[flag.index()].carrier, Some(VehicleId::at(i)));
             assert_ne!(referee.field.flags[flag.index()].team, referee.team_of[i]);
-            assert!(!boat.tagged && !boat.outside, "vehicle {i} carries a flag: {boat:?}");
+            assert!(
+                !boat.tagged && !boat.outside,
+                "vehicle {i} carries a flag: {boat:?}"
+            );
         }
-        assert!(!boat.outside || boat.tagged, "vehicle {i} is outside and not tagged");
+        assert!(
+            !boat.outside || boat.tagged,
+            "vehicle {i} is outside and not tagged"
+        );
     }
     for (i, flag) in after.flags.iter().enumerate() {
         if let Some(carrier) = flag.carrier {
-            assert_eq!(after.vehicles[carrier.index()].carrying, Some(FlagId(i as u8)));
+            assert_eq!(
+                after.vehicles[carrier.index()].carrying,
+                Some(FlagId(i as u8))
+            );
         }
     }
     for team in 0..2 {
-        assert!(after.score[team] >= before.score[team], "team {team} lost points");
+        assert!(
+            after.score[team] >= before.score[team],
+            "team {team} lost points"
+        );
         assert!(!after.touching.iter().any(|(a, b)| a >= b));
     }
     assert!(after.touching.is_sorted());
-    assert!(after.vehicles.iter().filter(|boat| boat.disabled).count() <= 1, "two power plays at once");
+    assert!(
+        after.vehicles.iter().filter(|boat| boat.disabled).count() <= 1,
+        "two power plays at once"
+    );
 }
 
-fn assert_lawful(referee: &Referee, before: &Standing, after: &Standing, fleet: &[Leg], event: Event) {
+fn assert_lawful(
+    referee: &Referee,
+    before: &Standing,
+    after: &Standing,
+    fleet: &[Leg],
+    event: Event,
+) {
     let rules = &referee.rules;
     let field = &referee.field;
     let team = |vehicle: VehicleId| referee.team_of[vehicle.index()];
     let at = |vehicle: VehicleId| fleet[vehicle.index()].to;
     let on_own_side = |vehicle: VehicleId| {
         let Leg { from, to } = fleet[vehicle.index()];
-        field.zones[team(vehicle).index()].contains(if rules.side_judged == SideJudged::AfterMove { to } else { from })
+        field.zones[team(vehicle).index()].contains(if rules.side_judged == SideJudged::AfterMove {
+            to
+        } else {
+            from
+        })
     };
     let in_turn = rules.resolution == Resolution::InTurn;
     let carrier = |flag: FlagId| before.flags[flag.index()].carrier;
     match event {
-        Event::Tagged { vehicle, cause: TagCause::Opponent(by) } => {
+        Event::Tagged {
+            vehicle,
+            cause: TagCause::Opponent(by),
+        } => {
             assert_ne!(team(vehicle), team(by));
             assert!(on_own_side(by) && !on_own_side(vehicle));
             assert!(field.contains(at(by)) && field.contains(at(vehicle)));
             assert!(at(by).distance(at(vehicle)) < rules.tag_radius_m);
-            assert!(before.vehicles[by.index()].tag_ready <= after.now && !before.vehicles[by.index()].tagged);
-            assert!(!after.vehicles[by.index()].disabled && after.vehicles[by.index()].tag_ready > after.now);
-            assert!(!before.vehicles[vehicle.index()].tagged && after.vehicles[vehicle.index()].tagged);
+            assert!(
+                before.vehicles[by.index()].tag_ready <= after.now
+                    && !before.vehicles[by.index()].tagged
+            );
+            assert!(
+                !after.vehicles[by.index()].disabled
+                    && after.vehicles[by.index()].tag_ready > after.now
+            );
+            assert!(
+                !before.vehicles[vehicle.index()].tagged && after.vehicles[vehicle.index()].tagged
+            );
         }
-        Event::Tagged { vehicle, cause: TagCause::Boundary } => assert!(!field.contains(at(vehicle))),
+        Event::Tagged {
+            vehicle,
+            cause: TagCause::Boundary,
+        } => assert!(!field.contains(at(vehicle))),
         Event::Grabbed { vehicle, flag } => {
             let boat = &after.vehicles[vehicle.index()];
             // In turn, a boat may be tagged after its grab, and a flag grabbed that the boundary
             // has just brought home.
-            assert!(!before.vehicles[vehicle.index()].tagged && !boat.disabled && (!boat.tagged || in_turn));
+            assert!(
+                !before.vehicles[vehicle.index()].tagged
+                    && !boat.disabled
+                    && (!boat.tagged || in_turn)
+            );
             assert!(field.contains(at(vehicle)));
             assert!(at(vehicle).distance(field.flags[flag.index()].home) < rules.grab_radius_m);
             assert!(carrier(flag).is_none() || in_turn);
         }
         Event::Captured { vehicle, flag } => {
             assert_eq!(carrier(flag), Some(vehicle));
-            assert!(field.contains(at(vehicle)) && on_own_side(vehicle) && !after.vehicles[vehicle.index()].disabled);
+            assert!(
+                field.contains(at(vehicle))
+                    && on_own_side(vehicle)
+                    && !after.vehicles[vehicle.index()].disabled
+            );
         }
         Event::FlagReturned { vehicle, flag } => {
             assert!(carrier(flag) == Some(vehicle) || in_turn);
             assert!(after.vehicles[vehicle.index()].tagged);
         }
-        Event::Untagged(vehicle) => assert!(before.vehicles[vehicle.index()].tagged && field.contains(at(vehicle))),
+        Event::Untagged(vehicle) => {
+            assert!(before.vehicles[vehicle.index()].tagged && field.contains(at(vehicle)))
+        }
         _ => {}
     }
 }
@@ -193,11 +307,17 @@ fn points(referee: &Referee, events: &[Event], team: TeamId) -> u32 {
     let worth = |event: &Event| match event {
         Event::Grabbed { vehicle, .. } => Some((*vehicle, points.grab)),
         Event::Captured { vehicle, .. } => Some((*vehicle, points.capture)),
-        Event::Tagged { cause: TagCause::Opponent(by), .. } => Some((*by, points.tag)),
+        Event::Tagged {
+            cause: TagCause::Opponent(by),
+            ..
+        } => Some((*by, points.tag)),
         _ => None,
     };
     let scored = events.iter().filter_map(worth);
-    scored.filter(|(vehicle, _)| referee.team_of[vehicle.index()] == team).map(|(_, points)| points).sum()
+    scored
+        .filter(|(vehicle, _)| referee.team_of[vehicle.index()] == team)
+        .map(|(_, points)| points)
+        .sum()
 }
 
 /// Events of one look, independent of the order of teams.
@@ -263,11 +383,21 @@ fn the_walks_lead_to_everything_that_can_happen() {
     for (book, rules) in preset::all().into_iter().enumerate() {
         let rules = hurried(rules);
         for seed in 0..16 {
-            let walk = Walk { rules: rules.clone(), boats: 4, extra_flags: seed % 2 == 0, seed };
+            let walk = Walk {
+                rules: rules.clone(),
+                boats: 4,
+                extra_flags: seed % 2 == 0,
+                seed,
+            };
             play(&walk, |_, _, _, _, events| {
                 for event in events {
-                    let name = format!("{event:?}").split([' ', '(']).next().map(str::to_owned);
-                    *counts.entry(format!("{book} {}", name.unwrap_or_default())).or_default() += 1;
+                    let name = format!("{event:?}")
+                        .split([' ', '('])
+                        .next()
+                        .map(str::to_owned);
+                    *counts
+                        .entry(format!("{book} {}", name.unwrap_or_default()))
+                        .or_default() += 1;
                 }
             });
         }

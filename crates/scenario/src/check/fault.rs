@@ -20,20 +20,34 @@ pub(super) fn faults(
         if !document.is_sound(&path) {
             continue;
         }
-        let mut fault = Fault { name: name.clone(), ..fault.clone() };
+        let mut fault = Fault {
+            name: name.clone(),
+            ..fault.clone()
+        };
         check_keys(diagnostics, document, &path, &fault);
         for (i, boat) in fault.boats.iter().enumerate() {
             if !vehicles.iter().any(|vehicle| vehicle.name == *boat) {
-                let known: Vec<&str> = vehicles.iter().map(|vehicle| vehicle.name.as_str()).collect();
+                let known: Vec<&str> = vehicles
+                    .iter()
+                    .map(|vehicle| vehicle.name.as_str())
+                    .collect();
                 let message = format!("boats has {boat:?}, expected any of {}", known.join(", "));
                 diagnostics.note(document.at(&format!("{path}.boats.{i}")), message);
             }
         }
-        let is_hit = |vehicle: &Vehicle| fault.boats.is_empty() || fault.boats.contains(&vehicle.name);
-        let hit = vehicles.iter().enumerate().filter(|(_, vehicle)| is_hit(vehicle));
+        let is_hit =
+            |vehicle: &Vehicle| fault.boats.is_empty() || fault.boats.contains(&vehicle.name);
+        let hit = vehicles
+            .iter()
+            .enumerate()
+            .filter(|(_, vehicle)| is_hit(vehicle));
         fault.vehicles = hit.map(|(i, _)| VehicleId::at(i)).collect();
         for vehicle in &fault.vehicles {
-            let Vehicle { name: vehicle, boat, .. } = &vehicles[vehicle.index()];
+            let Vehicle {
+                name: vehicle,
+                boat,
+                ..
+            } = &vehicles[vehicle.index()];
             if let Some(lacks) = lacks(fault.kind, &boats[*boat]) {
                 let message = format!(
                     "{name} affects {vehicle}, whose boat {} has no {lacks}, which this fault requires",
@@ -48,14 +62,30 @@ pub(super) fn faults(
     faults
 }
 
-fn check_keys(diagnostics: &mut Diagnostics, document: &Document<raw::Game>, path: &str, fault: &Fault) {
+fn check_keys(
+    diagnostics: &mut Diagnostics,
+    document: &Document<raw::Game>,
+    path: &str,
+    fault: &Fault,
+) {
     if fault.at_s.is_some() == fault.every_s.is_some() {
-        let found = if fault.at_s.is_some() { "both at_s and every_s" } else { "neither at_s nor every_s" };
-        diagnostics.note(document.at(path), format!("{path} has {found}, expected one of them"));
+        let found = if fault.at_s.is_some() {
+            "both at_s and every_s"
+        } else {
+            "neither at_s nor every_s"
+        };
+        diagnostics.note(
+            document.at(path),
+            format!("{path} has {found}, expected one of them"),
+        );
     }
     for (key, kind, is_given) in [
         ("offset_m", FaultKind::GpsOffset, fault.offset_m.is_some()),
-        ("offset_deg", FaultKind::CompassOffset, fault.offset_deg.is_some()),
+        (
+            "offset_deg",
+            FaultKind::CompassOffset,
+            fault.offset_deg.is_some(),
+        ),
     ] {
         if is_given != (fault.kind == kind) {
             let message = match is_given {
@@ -71,7 +101,9 @@ fn check_keys(diagnostics: &mut Diagnostics, document: &Document<raw::Game>, pat
 fn lacks(kind: FaultKind, boat: &Boat) -> Option<&'static str> {
     match kind {
         FaultKind::AgentLost | FaultKind::LinkLost => None,
-        FaultKind::GpsFrozen | FaultKind::GpsLost | FaultKind::GpsOffset => boat.sensors.gps.is_none().then_some("gps"),
+        FaultKind::GpsFrozen | FaultKind::GpsLost | FaultKind::GpsOffset => {
+            boat.sensors.gps.is_none().then_some("gps")
+        }
         FaultKind::CompassOffset => boat.sensors.compass.is_none().then_some("compass"),
         _ => matches!(boat.drive, Drive::Kinematic(_)).then_some("thrusters"),
     }

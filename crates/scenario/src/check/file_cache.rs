@@ -22,16 +22,32 @@ pub(super) struct FileCache<T> {
 
 impl<T> FileCache<T> {
     pub(super) fn new(load: LoadFile<T>) -> FileCache<T> {
-        FileCache { items: vec![], path_of: BTreeMap::new(), index_of: BTreeMap::new(), is_by_owner: false, load }
+        FileCache {
+            items: vec![],
+            path_of: BTreeMap::new(),
+            index_of: BTreeMap::new(),
+            is_by_owner: false,
+            load,
+        }
     }
 
     /// Files with a separate version for each owner.
     pub(super) fn by_owner(load: LoadFile<T>) -> FileCache<T> {
-        FileCache { is_by_owner: true, ..FileCache::new(load) }
+        FileCache {
+            is_by_owner: true,
+            ..FileCache::new(load)
+        }
     }
 
     fn key(&self, path: PathBuf, owner: &str) -> (PathBuf, String) {
-        (path, if self.is_by_owner { owner.to_owned() } else { String::new() })
+        (
+            path,
+            if self.is_by_owner {
+                owner.to_owned()
+            } else {
+                String::new()
+            },
+        )
     }
 
     /// The index of `owner`'s version of the file that `given`, at `place`, refers to.
@@ -45,9 +61,20 @@ impl<T> FileCache<T> {
         let path = diagnostics.resolve(place, given);
         let is_new = !self.index_of.contains_key(&self.key(path.clone(), owner));
         let index = self.index_at(diagnostics, &path, Some(place), owner)?;
-        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        if is_new && *self.path_of.entry(name.clone()).or_insert_with(|| path.clone()) != path {
-            let message = format!("{given} is the second file named {name:?}, expected different names");
+        let name = path
+            .file_stem()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned();
+        if is_new
+            && *self
+                .path_of
+                .entry(name.clone())
+                .or_insert_with(|| path.clone())
+                != path
+        {
+            let message =
+                format!("{given} is the second file named {name:?}, expected different names");
             diagnostics.note(place, message);
         }
         Some(index)

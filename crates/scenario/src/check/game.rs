@@ -70,7 +70,12 @@ impl ScenarioFile for Scenario {
         check_tick(diagnostics, document, tick, &fleet.boats.items);
         check_looks(diagnostics, document, tick, rules.as_ref());
         check_reseed(diagnostics, document);
-        let Fleet { boats, strategies, entries, .. } = fleet;
+        let Fleet {
+            boats,
+            strategies,
+            entries,
+            ..
+        } = fleet;
         let field = field?;
         let mut rules = rules?;
         let sea = sea?;
@@ -78,18 +83,27 @@ impl ScenarioFile for Scenario {
             return None;
         }
         let start_positions = start_position::all(&entries, &field);
-        start_position::check_clear(diagnostics, &entries, &start_positions, &boats.items, &field);
+        start_position::check_clear(
+            diagnostics,
+            &entries,
+            &start_positions,
+            &boats.items,
+            &field,
+        );
         check_models(diagnostics, &entries, &strategies.items);
         check_duration(diagnostics, document);
         rules.time_limit = raw.duration_s.map_or(rules.time_limit, SimTime::from_s);
-        let vehicles = entries.into_iter().zip(start_positions).map(|(entry, start_position)| Vehicle {
-            name: entry.name,
-            team: entry.team,
-            boat: entry.boat,
-            strategy: entry.strategy,
-            start_position,
-            source: entry.source,
-        });
+        let vehicles = entries
+            .into_iter()
+            .zip(start_positions)
+            .map(|(entry, start_position)| Vehicle {
+                name: entry.name,
+                team: entry.team,
+                boat: entry.boat,
+                strategy: entry.strategy,
+                start_position,
+                source: entry.source,
+            });
         let vehicles: Vec<Vehicle> = vehicles.collect();
         let faults = super::fault::faults(diagnostics, document, &vehicles, &boats.items);
         let link = link(document, &field);
@@ -105,7 +119,13 @@ impl ScenarioFile for Scenario {
             field,
             rules,
             sea,
-            teams: raw.team.iter().map(|team| Team { name: team.name.0.clone() }).collect(),
+            teams: raw
+                .team
+                .iter()
+                .map(|team| Team {
+                    name: team.name.0.clone(),
+                })
+                .collect(),
             boats: boats.items,
             strategies: strategies.items,
             vehicles,
@@ -128,7 +148,11 @@ impl ScenarioFile for Scenario {
 fn link(document: &Document<raw::Game>, field: &Field) -> Option<Link> {
     let mut link = document.raw.link.clone();
     if !document.has("link.station") {
-        let middle = field.seen_from(TeamId(0), 0.5 * field.plan.width_m, 0.5 * field.plan.depth_m);
+        let middle = field.seen_from(
+            TeamId(0),
+            0.5 * field.plan.width_m,
+            0.5 * field.plan.depth_m,
+        );
         link.iter_mut().for_each(|link| link.station = middle);
     }
     link
@@ -136,9 +160,16 @@ fn link(document: &Document<raw::Game>, field: &Field) -> Option<Link> {
 
 /// Reports a setting that the game overrides.
 fn check_duration(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) {
-    let is_set = |key: &str| diagnostics.overrides.settings.iter().any(|setting| setting.key == key);
+    let is_set = |key: &str| {
+        diagnostics
+            .overrides
+            .settings
+            .iter()
+            .any(|setting| setting.key == key)
+    };
     if document.raw.duration_s.is_some() && is_set("rules.time_limit_s") {
-        let message = "duration_s of the game overrides rules.time_limit_s; set game.duration_s instead";
+        let message =
+            "duration_s of the game overrides rules.time_limit_s; set game.duration_s instead";
         diagnostics.note(document.at("duration_s"), message);
     }
 }
@@ -148,8 +179,10 @@ fn check_reseed(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) {
     for (i, pair) in document.raw.reseed.windows(2).enumerate() {
         if pair[1].after_s <= pair[0].after_s {
             let place = document.at(&format!("reseed.{}", i + 1));
-            let message =
-                format!("after_s is {}, expected more than {} of the previous entry", pair[1].after_s, pair[0].after_s);
+            let message = format!(
+                "after_s is {}, expected more than {} of the previous entry",
+                pair[1].after_s, pair[0].after_s
+            );
             diagnostics.note(place, message);
         }
     }
@@ -164,7 +197,8 @@ fn sea(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) -> Option<
         Some(given) => diagnostics.referenced::<Sea, _>(document, "sea", &given.0),
         None if diagnostics.overrides.has_settings(Sea::NAME) => {
             let path = Path::new("at_rest.toml");
-            let document = read::document_of_text(diagnostics, Kind::SEA, path, "water_density_kg_m3 = 1000")?;
+            let document =
+                read::document_of_text(diagnostics, Kind::SEA, path, "water_density_kg_m3 = 1000")?;
             Sea::check(diagnostics, &document)
         }
         None => Some(Sea::at_rest()),
@@ -173,18 +207,32 @@ fn sea(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) -> Option<
 
 /// The physics tick, and the number of ticks per decision.
 fn clock(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) -> (SimTime, u32) {
-    let raw::Game { tick_s, decision_s, .. } = document.raw;
+    let raw::Game {
+        tick_s, decision_s, ..
+    } = document.raw;
     let tick = SimTime::from_s(tick_s);
     let decision = SimTime::from_s(decision_s);
     if decision.0 % tick.0 != 0 {
-        let place = document.at(if document.has("decision_s") { "decision_s" } else { "tick_s" });
-        diagnostics.note(place, format!("decision_s is {decision_s}, expected a multiple of tick_s, {tick_s}"));
+        let place = document.at(if document.has("decision_s") {
+            "decision_s"
+        } else {
+            "tick_s"
+        });
+        diagnostics.note(
+            place,
+            format!("decision_s is {decision_s}, expected a multiple of tick_s, {tick_s}"),
+        );
     }
     (tick, (decision.0 / tick.0) as u32)
 }
 
 /// A boat that is stable at the default tick may be unstable at a longer one.
-fn check_tick(diagnostics: &mut Diagnostics, document: &Document<raw::Game>, tick: SimTime, boats: &[Boat]) {
+fn check_tick(
+    diagnostics: &mut Diagnostics,
+    document: &Document<raw::Game>,
+    tick: SimTime,
+    boats: &[Boat],
+) {
     for boat in boats.iter().filter(|_| document.has("tick_s")) {
         let (motion, rate_per_s) = fastest_decay(boat);
         if rate_per_s * tick.as_s() > FASTEST_PER_TICK {
@@ -200,15 +248,24 @@ fn check_tick(diagnostics: &mut Diagnostics, document: &Document<raw::Game>, tic
 }
 
 /// The referee checks only at whole ticks.
-fn check_looks(diagnostics: &mut Diagnostics, document: &Document<raw::Game>, tick: SimTime, rules: Option<&Rules>) {
+fn check_looks(
+    diagnostics: &mut Diagnostics,
+    document: &Document<raw::Game>,
+    tick: SimTime,
+    rules: Option<&Rules>,
+) {
     let Some(rules) = rules else { return };
-    for (key, period) in [("tag_look_period_s", rules.tag_look_period), ("flag_look_period_s", rules.flag_look_period)]
-    {
+    for (key, period) in [
+        ("tag_look_period_s", rules.tag_look_period),
+        ("flag_look_period_s", rules.flag_look_period),
+    ] {
         if period.0 % tick.0 != 0 {
             let name = &rules.name;
             let period_s = period.as_s();
             let tick_s = tick.as_s();
-            let message = format!("{key} of rules {name} is {period_s}, expected a multiple of tick_s, {tick_s}");
+            let message = format!(
+                "{key} of rules {name} is {period_s}, expected a multiple of tick_s, {tick_s}"
+            );
             diagnostics.note(document.at("rules"), message);
         }
     }
@@ -216,7 +273,14 @@ fn check_looks(diagnostics: &mut Diagnostics, document: &Document<raw::Game>, ti
 
 /// Models have a fixed team size, unless they have spare slots.
 fn check_models(diagnostics: &mut Diagnostics, entries: &[Entry], strategies: &[Strategy]) {
-    for Entry { name, place, team, strategy, .. } in entries {
+    for Entry {
+        name,
+        place,
+        team,
+        strategy,
+        ..
+    } in entries
+    {
         let mates = entries.iter().filter(|other| other.team == *team).count() - 1;
         let enemies = entries.len() - 1 - mates;
         for model in strategies[*strategy].models() {
@@ -234,27 +298,50 @@ fn check_models(diagnostics: &mut Diagnostics, entries: &[Entry], strategies: &[
 }
 
 fn check_teams(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) {
-    let teams: Vec<&str> = document.raw.team.iter().map(|team| team.name.0.as_str()).collect();
+    let teams: Vec<&str> = document
+        .raw
+        .team
+        .iter()
+        .map(|team| team.name.0.as_str())
+        .collect();
     for (i, name) in teams.iter().enumerate() {
         if !name.is_empty() && teams[..i].contains(name) {
             let place = document.at(&format!("team.{i}.name"));
-            diagnostics.note(place, format!("name {name:?} is used twice, expected a unique name for each team"));
+            diagnostics.note(
+                place,
+                format!("name {name:?} is used twice, expected a unique name for each team"),
+            );
         }
     }
     let is_unknown = |team: &&str| !teams.contains(team);
     let overrides = &diagnostics.overrides;
     let names = teams.join(", ");
-    let replaced = overrides.strategies.keys().map(String::as_str).find(is_unknown);
+    let replaced = overrides
+        .strategies
+        .keys()
+        .map(String::as_str)
+        .find(is_unknown);
     let replaced = replaced.map(|team| {
         let option = PathBuf::from(format!("--strategy {team}"));
-        (option, format!("unknown team {team:?}, expected one of {names}"))
+        (
+            option,
+            format!("unknown team {team:?}, expected one of {names}"),
+        )
     });
     let unknown = replaced.or_else(|| {
-        let changed = overrides.settings.iter().find(|setting| setting.team().as_ref().is_some_and(is_unknown))?;
-        let message = format!("{}: unknown team, expected one of {names} after strategy", changed.key);
+        let changed = overrides
+            .settings
+            .iter()
+            .find(|setting| setting.team().as_ref().is_some_and(is_unknown))?;
+        let message = format!(
+            "{}: unknown team, expected one of {names} after strategy",
+            changed.key
+        );
         Some((changed.path.clone(), message))
     });
-    if let Some((path, message)) = unknown.filter(|_| !diagnostics.sources.is_broken_file(document.at(""))) {
+    if let Some((path, message)) =
+        unknown.filter(|_| !diagnostics.sources.is_broken_file(document.at("")))
+    {
         diagnostics.note_file(path, message);
     }
 }
@@ -268,7 +355,10 @@ impl Fleet<'_> {
         for (i, fleet) in document.raw.fleet.iter().enumerate() {
             self.add_fleet(diagnostics, &format!("fleet.{i}"), fleet);
         }
-        if document.raw.vehicle.is_empty() && document.raw.fleet.is_empty() && document.is_sound("vehicle") {
+        if document.raw.vehicle.is_empty()
+            && document.raw.fleet.is_empty()
+            && document.is_sound("vehicle")
+        {
             let message = "vehicle is missing, expected at least one [[vehicle]] or [[fleet]]";
             diagnostics.note_if_intact(document.at(""), message);
         }
@@ -284,24 +374,36 @@ impl Fleet<'_> {
         let team = self.team(diagnostics, path, &raw.team);
         let boat = self.boat(diagnostics, path, raw.boat.as_ref(), &raw.name.0);
         let strategy = self.strategy(diagnostics, path, raw.strategy.as_ref(), team);
-        let stated = team
-            .zip(self.field)
-            .map(|(team, field)| start_position::stated(diagnostics, self.document, path, raw, team, field));
+        let stated = team.zip(self.field).map(|(team, field)| {
+            start_position::stated(diagnostics, self.document, path, raw, team, field)
+        });
         let place = self.document.at(path);
         if self.document.is_sound(&format!("{path}.name"))
-            && self.is_new_name(diagnostics, self.document.at(&format!("{path}.name")), &raw.name.0)
+            && self.is_new_name(
+                diagnostics,
+                self.document.at(&format!("{path}.name")),
+                &raw.name.0,
+            )
             && is_room(diagnostics, place, self.entries.len() + 1)
             && let (Some(team), Some(boat), Some(strategy)) = (team, boat, strategy)
         {
             self.entries.push(Entry {
                 name: raw.name.0.clone(),
-                place: if raw.at.is_some() { self.document.at(&format!("{path}.at")) } else { place },
+                place: if raw.at.is_some() {
+                    self.document.at(&format!("{path}.at"))
+                } else {
+                    place
+                },
                 team,
                 boat,
                 strategy,
                 start_position: stated.flatten(),
                 heading_deg: raw.heading_deg,
-                source: if diagnostics.overrides.simulate_all { Source::Simulated } else { raw.source },
+                source: if diagnostics.overrides.simulate_all {
+                    Source::Simulated
+                } else {
+                    raw.source
+                },
             });
         }
     }
@@ -310,17 +412,41 @@ impl Fleet<'_> {
         let team = self.team(diagnostics, path, &raw.team);
         let strategy = self.strategy(diagnostics, path, raw.strategy.as_ref(), team);
         let spawn_path = format!("{path}.spawn");
-        let start_position = raw.spawn.as_ref().zip(self.field).and_then(|(spawn, field)| {
-            start_position::somewhere(diagnostics, self.document, &spawn_path, spawn, raw.count, field)
-        });
-        let pattern = raw.name.clone().unwrap_or_else(|| format!("{}_{{}}", raw.team));
-        let boat = self.boat(diagnostics, path, raw.boat.as_ref(), &pattern.replace("{}", "1"));
-        let (Some(team), Some(boat), Some(strategy)) = (team, boat, strategy) else { return };
+        let start_position = raw
+            .spawn
+            .as_ref()
+            .zip(self.field)
+            .and_then(|(spawn, field)| {
+                start_position::somewhere(
+                    diagnostics,
+                    self.document,
+                    &spawn_path,
+                    spawn,
+                    raw.count,
+                    field,
+                )
+            });
+        let pattern = raw
+            .name
+            .clone()
+            .unwrap_or_else(|| format!("{}_{{}}", raw.team));
+        let boat = self.boat(
+            diagnostics,
+            path,
+            raw.boat.as_ref(),
+            &pattern.replace("{}", "1"),
+        );
+        let (Some(team), Some(boat), Some(strategy)) = (team, boat, strategy) else {
+            return;
+        };
         let place = self.document.at(path);
         let name_path = format!("{path}.name");
         let name_place = self.document.at(&name_path);
         if !pattern.contains("{}") {
-            diagnostics.note(name_place, format!("name is {pattern:?}, expected {{}} in place of the number"));
+            diagnostics.note(
+                name_place,
+                format!("name is {pattern:?}, expected {{}} in place of the number"),
+            );
             return;
         }
         if !self.document.is_sound(&format!("{path}.count"))
@@ -337,10 +463,21 @@ impl Fleet<'_> {
                 1 => Some(boat),
                 _ => self.boat(diagnostics, path, raw.boat.as_ref(), &name),
             };
-            let (Some(boat), start_position) = (boat, start_position.clone()) else { return };
+            let (Some(boat), start_position) = (boat, start_position.clone()) else {
+                return;
+            };
             let heading_deg = None;
             let source = Source::Simulated;
-            self.entries.push(Entry { name, place, team, boat, strategy, start_position, heading_deg, source });
+            self.entries.push(Entry {
+                name,
+                place,
+                team,
+                boat,
+                strategy,
+                start_position,
+                heading_deg,
+                source,
+            });
         }
     }
 
@@ -350,7 +487,10 @@ impl Fleet<'_> {
         }
         let is_new = self.names.insert(name.to_owned());
         if !is_new {
-            diagnostics.note(place, format!("name {name:?} is used twice, expected a unique name for each vehicle"));
+            diagnostics.note(
+                place,
+                format!("name {name:?} is used twice, expected a unique name for each vehicle"),
+            );
         }
         is_new
     }
@@ -361,8 +501,15 @@ impl Fleet<'_> {
         let teams = &self.document.raw.team;
         let index = teams.iter().position(|team| team.name.0 == name);
         if index.is_none() && self.document.is_sound(&path) {
-            let names = teams.iter().map(|team| team.name.0.as_str()).collect::<Vec<_>>().join(", ");
-            diagnostics.note_if_intact(self.document.at(&path), format!("team is {name:?}, expected one of {names}"));
+            let names = teams
+                .iter()
+                .map(|team| team.name.0.as_str())
+                .collect::<Vec<_>>()
+                .join(", ");
+            diagnostics.note_if_intact(
+                self.document.at(&path),
+                format!("team is {name:?}, expected one of {names}"),
+            );
         }
         index.map(|index| TeamId(index as u8))
     }
@@ -380,11 +527,16 @@ impl Fleet<'_> {
             (Some(given), _) => (given, own_path.as_str()),
             (None, Some(given)) => (given, "boat"),
             (None, None) => {
-                self.document.note_missing(diagnostics, &own_path, "the path of a boat file here or for the game");
+                self.document.note_missing(
+                    diagnostics,
+                    &own_path,
+                    "the path of a boat file here or for the game",
+                );
                 return None;
             }
         };
-        self.boats.index(diagnostics, &given.0, self.document.at(path), name)
+        self.boats
+            .index(diagnostics, &given.0, self.document.at(path), name)
     }
 
     /// The strategy of the vehicle or fleet at `path`.
@@ -402,22 +554,37 @@ impl Fleet<'_> {
         };
         let given = given.filter(|_| !is_replaced(diagnostics, team));
         if let (Some(given), true) = (given, diagnostics.overrides.exchange_strategies) {
-            let message = format!("strategy is {}, expected none here because the teams exchange strategies", given.0);
+            let message = format!(
+                "strategy is {}, expected none here because the teams exchange strategies",
+                given.0
+            );
             diagnostics.note(self.document.at(&path), message);
             return None;
         }
         let team = team.map(|team| self.whose_strategy(diagnostics, team));
-        let owner = team
-            .map_or("", |team| diagnostics.overrides.owner_of_strategy(&self.document.raw.team[team.index()].name.0));
+        let owner = team.map_or("", |team| {
+            diagnostics
+                .overrides
+                .owner_of_strategy(&self.document.raw.team[team.index()].name.0)
+        });
         let is_replaced = is_replaced(diagnostics, team);
         let states_one = |team: TeamId| self.document.raw.team[team.index()].strategy.is_some();
         match (given, team) {
-            (Some(given), _) => {
-                self.strategies.index(diagnostics, &strategy_path(&given.0), self.document.at(&path), owner)
+            (Some(given), _) => self.strategies.index(
+                diagnostics,
+                &strategy_path(&given.0),
+                self.document.at(&path),
+                owner,
+            ),
+            (None, Some(team)) if is_replaced || states_one(team) => {
+                self.strategy_of_team(diagnostics, team.index())
             }
-            (None, Some(team)) if is_replaced || states_one(team) => self.strategy_of_team(diagnostics, team.index()),
             (None, Some(_)) => {
-                self.document.note_missing(diagnostics, &path, "the path of a strategy file here or for the team");
+                self.document.note_missing(
+                    diagnostics,
+                    &path,
+                    "the path of a strategy file here or for the team",
+                );
                 None
             }
             (None, None) => None,
@@ -426,8 +593,13 @@ impl Fleet<'_> {
 
     /// The team whose strategy the boats of a team follow.
     fn whose_strategy(&self, diagnostics: &Diagnostics, team: TeamId) -> TeamId {
-        let is_exchanged = diagnostics.overrides.exchange_strategies && self.document.raw.team.len() == 2;
-        if is_exchanged { TeamId(1 - team.0) } else { team }
+        let is_exchanged =
+            diagnostics.overrides.exchange_strategies && self.document.raw.team.len() == 2;
+        if is_exchanged {
+            TeamId(1 - team.0)
+        } else {
+            team
+        }
     }
 
     /// The strategy of a team's file, or its override.
@@ -438,14 +610,22 @@ impl Fleet<'_> {
             return self.strategies.index_at(diagnostics, &path, None, owner);
         }
         let place = self.document.at(&format!("team.{team}.strategy"));
-        self.strategies.index(diagnostics, &strategy_path(&strategy.as_ref()?.0), place, owner)
+        self.strategies.index(
+            diagnostics,
+            &strategy_path(&strategy.as_ref()?.0),
+            place,
+            owner,
+        )
     }
 }
 
 /// Whether a game may have this many vehicles.
 fn is_room(diagnostics: &mut Diagnostics, place: usize, total: usize) -> bool {
     if total > VEHICLES_MAX {
-        diagnostics.note(place, format!("there are {total} vehicles up to this one, expected at most {VEHICLES_MAX}"));
+        diagnostics.note(
+            place,
+            format!("there are {total} vehicles up to this one, expected at most {VEHICLES_MAX}"),
+        );
     }
     total <= VEHICLES_MAX
 }
@@ -453,5 +633,9 @@ fn is_room(diagnostics: &mut Diagnostics, place: usize, total: usize) -> bool {
 /// The path of a strategy given by path, or by name in the folder of strategies.
 fn strategy_path(given: &str) -> String {
     let is_name = !given.contains(['/', '\\', '.']);
-    if is_name { format!("../{}/{given}.toml", Kind::STRATEGY.folder()) } else { given.to_owned() }
+    if is_name {
+        format!("../{}/{given}.toml", Kind::STRATEGY.folder())
+    } else {
+        given.to_owned()
+    }
 }

@@ -12,7 +12,10 @@ pub fn check_corners(corners: &[Ned]) -> Result<(), (usize, String)> {
     let side = |i: usize| (corners[i], corners[(i + 1) % count]);
     for i in 0..count {
         if corners[i] == side(i).1 {
-            return Err((i, "polygon has two corners at the same position, expected distinct corners".into()));
+            return Err((
+                i,
+                "polygon has two corners at the same position, expected distinct corners".into(),
+            ));
         }
         // Neighbours share a corner; they must not fold back onto one another.
         let crossing = (i + 1..count).find(|&j| {
@@ -25,7 +28,14 @@ pub fn check_corners(corners: &[Ned]) -> Result<(), (usize, String)> {
             }
         });
         if let Some(j) = crossing {
-            return Err((j, format!("polygon's side {} meets its side {}, expected no crossing", i + 1, j + 1)));
+            return Err((
+                j,
+                format!(
+                    "polygon's side {} meets its side {}, expected no crossing",
+                    i + 1,
+                    j + 1
+                ),
+            ));
         }
     }
     Ok(())

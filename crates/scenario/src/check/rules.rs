@@ -13,17 +13,30 @@ impl ScenarioFile for Rules {
     fn check(diagnostics: &mut Diagnostics, document: &Document<Rules>) -> Option<Rules> {
         let mut rules = document.raw.clone();
         rules.win_score = rules.win_score.filter(|win_score| *win_score > 0);
-        rules.sharing.view_rad = rules.sharing.view_rad.filter(|view_rad| *view_rad < f64::to_radians(360.0));
-        // Inside a keep-out circle, boats must still be able to grab, capture and untag at their own
-        // flag.
+        rules.sharing.view_rad = rules
+            .sharing
+            .view_rad
+            .filter(|view_rad| *view_rad < f64::to_radians(360.0));
+        // Inside a keep-out circle, boats must still be able to grab, capture and untag at their
+        // own flag.
         let needed = [
-            (rules.untag_at == UntagAt::OwnFlag, "untag_radius_m", rules.untag_radius_m),
-            (rules.capture_at == CaptureAt::OwnFlag, "capture_radius_m", rules.capture_radius_m),
+            (
+                rules.untag_at == UntagAt::OwnFlag,
+                "untag_radius_m",
+                rules.untag_radius_m,
+            ),
+            (
+                rules.capture_at == CaptureAt::OwnFlag,
+                "capture_radius_m",
+                rules.capture_radius_m,
+            ),
         ];
         for (applies, key, radius_m) in needed {
             let found_m = rules.flag_keepout_m;
             if applies && found_m >= radius_m && document.is_sound("") {
-                let message = format!("flag_keepout_m is {found_m}, expected less than {key}, which is {radius_m}");
+                let message = format!(
+                    "flag_keepout_m is {found_m}, expected less than {key}, which is {radius_m}"
+                );
                 diagnostics.note(document.at("flag_keepout_m"), message);
             }
         }

@@ -33,12 +33,25 @@ pub(super) fn stated(
     let place = |key: &str| document.at(&format!("{path}.{key}"));
     if let Some(spawn) = &raw.spawn {
         if raw.at.is_some() {
-            diagnostics.note(place("at"), "vehicle has at and spawn, expected one of them");
+            diagnostics.note(
+                place("at"),
+                "vehicle has at and spawn, expected one of them",
+            );
         }
         if raw.heading_deg.is_some() {
-            diagnostics.note(place("heading_deg"), "heading_deg is given with spawn, expected only with at");
+            diagnostics.note(
+                place("heading_deg"),
+                "heading_deg is given with spawn, expected only with at",
+            );
         }
-        return somewhere(diagnostics, document, &format!("{path}.spawn"), spawn, 1, field);
+        return somewhere(
+            diagnostics,
+            document,
+            &format!("{path}.spawn"),
+            spawn,
+            1,
+            field,
+        );
     }
     let at = match raw.at.as_ref()? {
         raw::Position::At([x, y]) => Ned::from_xy(*x, *y),
@@ -49,7 +62,10 @@ pub(super) fn stated(
     };
     is_inside(diagnostics, field, place("at"), at);
     let heading_deg = raw.heading_deg.unwrap_or(field.facing_deg(team));
-    Some(StartPosition::At(Pose { at, psi_rad: rad_from_compass_deg(heading_deg) }))
+    Some(StartPosition::At(Pose {
+        at,
+        psi_rad: rad_from_compass_deg(heading_deg),
+    }))
 }
 
 /// The rectangle of the `spawn` at `path`, if `count` boats fit into it.
@@ -65,14 +81,25 @@ pub(super) fn somewhere(
     let depth_m = field.plan.depth_m;
     let gap_m = raw.gap_m;
     let mut bounds = |key: &str, given: Option<[f64; 2]>, whole_m: f64, usual_m: f64| {
-        let Some([from_m, to_m]) = given else { return Some((MARGIN_M, usual_m - MARGIN_M)) };
+        let Some([from_m, to_m]) = given else {
+            return Some((MARGIN_M, usual_m - MARGIN_M));
+        };
         let place = document.at(&format!("{path}.{key}"));
-        if let Some(beyond_m) = [from_m, to_m].into_iter().find(|bound_m| *bound_m > whole_m) {
-            diagnostics.note(place, format!("{key} is {beyond_m}, expected 0 to {whole_m}"));
+        if let Some(beyond_m) = [from_m, to_m]
+            .into_iter()
+            .find(|bound_m| *bound_m > whole_m)
+        {
+            diagnostics.note(
+                place,
+                format!("{key} is {beyond_m}, expected 0 to {whole_m}"),
+            );
             return None;
         }
         if from_m >= to_m {
-            diagnostics.note(place, format!("{key} is [{from_m}, {to_m}], expected the smaller value first"));
+            diagnostics.note(
+                place,
+                format!("{key} is [{from_m}, {to_m}], expected the smaller value first"),
+            );
             return None;
         }
         Some((from_m, to_m))
@@ -91,7 +118,11 @@ pub(super) fn somewhere(
         diagnostics.note(document.at(path), message);
         return None;
     }
-    Some(StartPosition::Somewhere { along_m, across_m, gap_m })
+    Some(StartPosition::Somewhere {
+        along_m,
+        across_m,
+        gap_m,
+    })
 }
 
 /// The start positions of all entries, in order. Those without a given one are on their team's
@@ -100,7 +131,12 @@ pub(super) fn somewhere(
 pub(super) fn all(entries: &[Entry], field: &Field) -> Vec<StartPosition> {
     let plan = &field.plan;
     let along_m = (plan.flag_inset_m + plan.width_m / 2.0) / 2.0;
-    let in_line = |team: TeamId| entries.iter().filter(|e| e.team == team && e.start_position.is_none()).count();
+    let in_line = |team: TeamId| {
+        entries
+            .iter()
+            .filter(|e| e.team == team && e.start_position.is_none())
+            .count()
+    };
     let in_line: Vec<usize> = (0..2).map(|team| in_line(TeamId(team))).collect();
     let mut placed = [0_usize; 2];
     let mut start_position_of = |entry: &Entry| {
@@ -115,7 +151,10 @@ pub(super) fn all(entries: &[Entry], field: &Field) -> Vec<StartPosition> {
             _ => field.at(plan.width_m - along_m, from_port_m),
         };
         let heading_deg = entry.heading_deg.unwrap_or(field.facing_deg(entry.team));
-        StartPosition::At(Pose { at, psi_rad: rad_from_compass_deg(heading_deg) })
+        StartPosition::At(Pose {
+            at,
+            psi_rad: rad_from_compass_deg(heading_deg),
+        })
     };
     entries.iter().map(&mut start_position_of).collect()
 }
@@ -130,17 +169,30 @@ pub(super) fn check_clear(
 ) {
     let mut placed: Vec<(&Entry, Ned, f64)> = vec![];
     for (entry, start_position) in entries.iter().zip(start_positions) {
-        let StartPosition::At(pose) = start_position else { continue };
+        let StartPosition::At(pose) = start_position else {
+            continue;
+        };
         let length_m = boats[entry.boat].length_m;
-        if field.plan.obstacles.iter().any(|obstacle| obstacle.distance(pose.at) <= length_m / 2.0) {
+        if field
+            .plan
+            .obstacles
+            .iter()
+            .any(|obstacle| obstacle.distance(pose.at) <= length_m / 2.0)
+        {
             let x = pose.at.east;
             let y = pose.at.north;
-            let message = format!("{} starts at [{x}, {y}], on an obstacle, expected open water", entry.name);
+            let message = format!(
+                "{} starts at [{x}, {y}], on an obstacle, expected open water",
+                entry.name
+            );
             diagnostics.note(entry.place, message);
         }
         placed.push((entry, pose.at, length_m));
     }
-    let longest_m = placed.iter().map(|(_, _, length_m)| *length_m).fold(0.1, f64::max);
+    let longest_m = placed
+        .iter()
+        .map(|(_, _, length_m)| *length_m)
+        .fold(0.1, f64::max);
     let mut near = Near::default();
     let mut last = usize::MAX;
     for pair in near.pairs(|i| placed[i].1, placed.len(), longest_m) {
@@ -168,7 +220,10 @@ fn is_point(diagnostics: &mut Diagnostics, at: usize, key: &str, name: &str) -> 
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
         let points = names.join(" ");
         let guess = did_you_mean(name, &names);
-        diagnostics.note(at, format!("{key} is {name:?}, expected a named point, one of {points}{guess}"));
+        diagnostics.note(
+            at,
+            format!("{key} is {name:?}, expected a named point, one of {points}{guess}"),
+        );
     }
     is_known
 }

@@ -39,8 +39,14 @@ impl ObservationSpace {
     /// The number of values for a boat with this many mates and enemies.
     pub fn size(self, mates: usize, enemies: usize) -> usize {
         match self {
-            ObservationSpace::Pyquaticus => pyquaticus::OWN_NAMES.len() + (mates + enemies) * pyquaticus::OTHER,
-            ObservationSpace::Squall { mates, enemies, frames } => {
+            ObservationSpace::Pyquaticus => {
+                pyquaticus::OWN_NAMES.len() + (mates + enemies) * pyquaticus::OTHER
+            }
+            ObservationSpace::Squall {
+                mates,
+                enemies,
+                frames,
+            } => {
                 let others = usize::from(mates) + usize::from(enemies);
                 usize::from(frames) * (squall::OWN_NAMES.len() + others * squall::OTHER)
             }
@@ -51,10 +57,25 @@ impl ObservationSpace {
     /// decisions: `t-1.speed`.
     pub fn names(self, mates: usize, enemies: usize) -> Vec<String> {
         match self {
-            ObservationSpace::Pyquaticus => names_of(&pyquaticus::OWN_NAMES, &pyquaticus::OTHER_NAMES, mates, enemies),
-            ObservationSpace::Squall { mates, enemies, frames } => {
-                let newest = names_of(&squall::OWN_NAMES, &squall::OTHER_NAMES, mates.into(), enemies.into());
-                let older = (1..frames).flat_map(|ago| newest.iter().map(move |name| format!("t-{ago}.{name}")));
+            ObservationSpace::Pyquaticus => names_of(
+                &pyquaticus::OWN_NAMES,
+                &pyquaticus::OTHER_NAMES,
+                mates,
+                enemies,
+            ),
+            ObservationSpace::Squall {
+                mates,
+                enemies,
+                frames,
+            } => {
+                let newest = names_of(
+                    &squall::OWN_NAMES,
+                    &squall::OTHER_NAMES,
+                    mates.into(),
+                    enemies.into(),
+                );
+                let older = (1..frames)
+                    .flat_map(|ago| newest.iter().map(move |name| format!("t-{ago}.{name}")));
                 newest.iter().cloned().chain(older).collect()
             }
         }
@@ -66,7 +87,10 @@ fn names_of(own: &[&str], other: &[&str], mates: usize, enemies: usize) -> Vec<S
     let mates = (1..=mates).map(|i| format!("mate_{i}"));
     let others = mates.chain((1..=enemies).map(|i| format!("enemy_{i}")));
     let of_others = others.flat_map(|boat| other.iter().map(move |name| format!("{boat}_{name}")));
-    own.iter().map(|name| (*name).to_owned()).chain(of_others).collect()
+    own.iter()
+        .map(|name| (*name).to_owned())
+        .chain(of_others)
+        .collect()
 }
 
 #[cfg(test)]
@@ -76,7 +100,11 @@ mod tests {
 
     #[test]
     fn every_number_has_a_name_of_its_own() {
-        let squall = |frames| ObservationSpace::Squall { mates: 2, enemies: 3, frames };
+        let squall = |frames| ObservationSpace::Squall {
+            mates: 2,
+            enemies: 3,
+            frames,
+        };
         for (space, mates, enemies) in [
             (ObservationSpace::Pyquaticus, 1, 2),
             (ObservationSpace::Pyquaticus, 0, 1),
@@ -85,9 +113,16 @@ mod tests {
         ] {
             let names = space.names(mates, enemies);
             assert_eq!(names.len(), space.size(mates, enemies), "{space:?}");
-            assert_eq!(names.iter().collect::<BTreeSet<_>>().len(), names.len(), "{space:?}: {names:?}");
+            assert_eq!(
+                names.iter().collect::<BTreeSet<_>>().len(),
+                names.len(),
+                "{space:?}: {names:?}"
+            );
         }
         assert_eq!(squall(2).names(2, 3)[0], "position_ahead");
-        assert_eq!(ObservationSpace::Pyquaticus.names(1, 2)[21], "mate_1_bearing");
+        assert_eq!(
+            ObservationSpace::Pyquaticus.names(1, 2)[21],
+            "mate_1_bearing"
+        );
     }
 }

@@ -29,5 +29,13 @@ pub(super) const OWN_NAMES: [&str; 21] = [
     "score",
     "enemy_score",
 ];
-pub(super) const OTHER_NAMES: [&str; OTHER] =
-    ["bearing", "distance", "relative_heading", "speed", "has_flag", "on_own_side", "time_since_tag", "tagged"];
+pub(super) const OTHER_NAMES: [&str; OTHER] = [
+    "bearing",
+    "distance",
+    "relative_heading",
+    "speed",
+    "has_flag",
+    "on_own_side",
+    "time_since_tag",
+    "tagged",
+];

@@ -128,10 +128,17 @@ impl JsonSchema for Behaviour {
             common["properties"][moment.name()] = values;
         }
         let tasks = Task::json_schema(generator).to_value();
-        let tasks = tasks["oneOf"].as_array().into_iter().flatten().filter_map(|task| task["properties"].as_object());
+        let tasks = tasks["oneOf"]
+            .as_array()
+            .into_iter()
+            .flatten()
+            .filter_map(|task| task["properties"].as_object());
         let mut kinds = vec![];
         for (kind, reference) in tasks.flatten() {
-            let name = reference["$ref"].as_str().and_then(|name| name.rsplit('/').next()).unwrap_or_default();
+            let name = reference["$ref"]
+                .as_str()
+                .and_then(|name| name.rsplit('/').next())
+                .unwrap_or_default();
             complete(&mut generator.definitions_mut()[name], kind, &common);
             kinds.push(reference.clone());
         }
@@ -151,8 +158,14 @@ fn complete(definition: &mut Json, kind: &str, common: &Json) {
     for about in [common, &*definition] {
         required.extend(about["required"].as_array().cloned().unwrap_or_default());
     }
-    let own = definition["properties"].as_object().cloned().unwrap_or_default();
-    properties.as_object_mut().into_iter().for_each(|properties| properties.extend(own.clone()));
+    let own = definition["properties"]
+        .as_object()
+        .cloned()
+        .unwrap_or_default();
+    properties
+        .as_object_mut()
+        .into_iter()
+        .for_each(|properties| properties.extend(own.clone()));
     definition["properties"] = properties;
     definition["required"] = required.into();
 }

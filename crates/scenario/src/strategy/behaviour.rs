@@ -18,8 +18,8 @@ pub struct Behaviour {
     /// It runs only while this holds. Default: always.
     #[schemars(with = "Option<String>")]
     pub when: Option<Expression>,
-    /// Weight, at most that of the modes' op_region and avoid_collision. Safety behaviours default to
-    /// 300.
+    /// Weight, at most that of the modes' op_region and avoid_collision. Safety behaviours default
+    /// to 300.
     #[schemars(range(min = 0, max = 1000), extend("default" = 100))]
     pub weight: Parameter,
     /// It completes after running this long, s. Default: never.
@@ -48,7 +48,18 @@ pub struct Post {
 }
 
 /// A moment of a behaviour's life, named by the key for assignments then, such as `on_run`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, VariantArray, IntoStaticStr, EnumMessage)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    Serialize,
+    Deserialize,
+    VariantArray,
+    IntoStaticStr,
+    EnumMessage,
+)]
 #[strum(serialize_all = "snake_case", prefix = "on_")]
 pub enum Moment {
     /// It begins to run.

@@ -35,7 +35,18 @@ pub enum Expression {
 }
 
 /// How two values are joined.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, VariantArray, IntoStaticStr, EnumMessage)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    Serialize,
+    Deserialize,
+    VariantArray,
+    IntoStaticStr,
+    EnumMessage,
+)]
 pub enum Join {
     /// Both are true; the second is evaluated only if the first is true.
     #[strum(serialize = "&&")]
@@ -133,7 +144,11 @@ impl Expression {
             },
             Expression::Choose(parts) => {
                 let (condition, then, otherwise) = &**parts;
-                if condition.is_true(values) { then.value(values) } else { otherwise.value(values) }
+                if condition.is_true(values) {
+                    then.value(values)
+                } else {
+                    otherwise.value(values)
+                }
             }
         };
         if value.is_nan() { 0.0 } else { value }
@@ -154,21 +169,34 @@ impl Expression {
     /// Whether it refers directly to the game or to a variable.
     pub fn asks(&self) -> bool {
         use Expression::{Between, Fact, Mates, Measure, Variable};
-        matches!(self, Variable(_) | Fact(_) | Measure(..) | Between(..) | Mates(_))
+        matches!(
+            self,
+            Variable(_) | Fact(_) | Measure(..) | Between(..) | Mates(_)
+        )
     }
 
     /// The variable, if the expression is one.
     pub fn as_variable(&self) -> Option<u16> {
-        if let Expression::Variable(index) = self { Some(*index) } else { None }
+        if let Expression::Variable(index) = self {
+            Some(*index)
+        } else {
+            None
+        }
     }
 
     /// Calls `visit` with this expression and all its parts.
     pub fn walk<'a>(&'a self, visit: &mut impl FnMut(&'a Expression)) {
         visit(self);
         match self {
-            Expression::Mates(inner) | Expression::Not(inner) | Expression::Minus(inner) => inner.walk(visit),
-            Expression::Join(_, sides) => [&sides.0, &sides.1].into_iter().for_each(|side| side.walk(visit)),
-            Expression::Choose(parts) => [&parts.0, &parts.1, &parts.2].into_iter().for_each(|part| part.walk(visit)),
+            Expression::Mates(inner) | Expression::Not(inner) | Expression::Minus(inner) => {
+                inner.walk(visit)
+            }
+            Expression::Join(_, sides) => [&sides.0, &sides.1]
+                .into_iter()
+                .for_each(|side| side.walk(visit)),
+            Expression::Choose(parts) => [&parts.0, &parts.1, &parts.2]
+                .into_iter()
+                .for_each(|part| part.walk(visit)),
             Expression::Constant(_) | Expression::Variable(_) | Expression::Fact(_) => {}
             Expression::Measure(..) | Expression::Between(..) => {}
         }
@@ -178,7 +206,10 @@ impl Expression {
 impl Join {
     /// Whether the result is true or false.
     pub fn is_truth(self) -> bool {
-        !matches!(self, Join::Plus | Join::Minus | Join::Times | Join::Over | Join::Least | Join::Greatest)
+        !matches!(
+            self,
+            Join::Plus | Join::Minus | Join::Times | Join::Over | Join::Least | Join::Greatest
+        )
     }
 
     /// Joins two values.

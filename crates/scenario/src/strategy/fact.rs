@@ -31,7 +31,18 @@ impl Kind {
 }
 
 /// A value of the game, as the own boat knows it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, VariantArray, IntoStaticStr, EnumMessage)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    Serialize,
+    Deserialize,
+    VariantArray,
+    IntoStaticStr,
+    EnumMessage,
+)]
 #[strum(serialize_all = "snake_case")]
 pub enum Fact {
     /// The boat is tagged.
@@ -84,7 +95,18 @@ pub enum Fact {
 }
 
 /// A property of a place or a boat.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, VariantArray, IntoStaticStr, EnumMessage)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    Serialize,
+    Deserialize,
+    VariantArray,
+    IntoStaticStr,
+    EnumMessage,
+)]
 #[strum(serialize_all = "snake_case")]
 pub enum Measure {
     /// Distance from the own boat, or between two places, m; 1e9 if unknown.
@@ -107,22 +129,33 @@ impl Fact {
     /// Whether it is a truth rather than a number.
     pub fn is_truth(self) -> bool {
         use Fact::{
-            CanTag, Disabled, EnemyFlagTaken, EnemyInZone, FlagTaken, HasFlag, MateHasFlag, Outside, OwnSide, Tagged,
+            CanTag, Disabled, EnemyFlagTaken, EnemyInZone, FlagTaken, HasFlag, MateHasFlag,
+            Outside, OwnSide, Tagged,
         };
-        let is_own = matches!(self, Tagged | HasFlag | OwnSide | Outside | Disabled | CanTag);
+        let is_own = matches!(
+            self,
+            Tagged | HasFlag | OwnSide | Outside | Disabled | CanTag
+        );
         is_own || matches!(self, FlagTaken | EnemyFlagTaken | MateHasFlag | EnemyInZone)
     }
 
     /// Whether it is a count.
     pub fn is_whole(self) -> bool {
-        !self.is_truth() && !matches!(self, Fact::TimeS | Fact::TimeLeftS | Fact::ModeS | Fact::StepS | Fact::SpeedMS)
+        !self.is_truth()
+            && !matches!(
+                self,
+                Fact::TimeS | Fact::TimeLeftS | Fact::ModeS | Fact::StepS | Fact::SpeedMS
+            )
     }
 }
 
 impl Measure {
     /// Whether it is a truth rather than a number.
     pub fn is_truth(self) -> bool {
-        matches!(self, Measure::Known | Measure::OnOwnSide | Measure::IsTagged)
+        matches!(
+            self,
+            Measure::Known | Measure::OnOwnSide | Measure::IsTagged
+        )
     }
 
     /// Whether it is a count.

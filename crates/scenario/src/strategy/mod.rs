@@ -19,9 +19,9 @@ pub use parameter::Parameter;
 pub use place::{Boat, Mark, Place};
 pub use policy::{Policy, Proposer};
 pub use task::{
-    Attractor, AvoidCollision, AvoidObstacle, BeyondHalt, ConstantHeading, ConstantSpeed, Contacts, CutRange, Ellipse,
-    FullStop, Grade, Intercept, Loiter, MaxSpeed, MemoryTurnLimit, OpRegion, Shape, Shield, StationKeep, Task, Timer,
-    Trail, Turn, Waypoint,
+    Attractor, AvoidCollision, AvoidObstacle, BeyondHalt, ConstantHeading, ConstantSpeed, Contacts,
+    CutRange, Ellipse, FullStop, Grade, Intercept, Loiter, MaxSpeed, MemoryTurnLimit, OpRegion,
+    Shape, Shield, StationKeep, Task, Timer, Trail, Turn, Waypoint,
 };
 
 use crate::policy::PolicyModel;
@@ -149,7 +149,18 @@ pub struct Trigger {
 }
 
 /// The boat that an event affects.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, VariantArray, IntoStaticStr, EnumMessage)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    Serialize,
+    Deserialize,
+    VariantArray,
+    IntoStaticStr,
+    EnumMessage,
+)]
 #[strum(serialize_all = "snake_case")]
 pub enum Who {
     /// The own boat.
@@ -161,7 +172,18 @@ pub enum Who {
 }
 
 /// The kind of event.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, VariantArray, IntoStaticStr, EnumMessage)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    Serialize,
+    Deserialize,
+    VariantArray,
+    IntoStaticStr,
+    EnumMessage,
+)]
 #[strum(serialize_all = "snake_case")]
 #[expect(missing_docs, reason = "each says it itself")]
 pub enum What {
@@ -184,33 +206,43 @@ impl Strategy {
 
     /// Whether a person may steer boats with this strategy.
     pub fn is_steered(&self) -> bool {
-        self.roles.iter().any(|role| role.proposer() == Some(Proposer::Person))
+        self.roles
+            .iter()
+            .any(|role| role.proposer() == Some(Proposer::Person))
     }
 }
 
 impl Program {
     /// The models that it uses.
     pub fn models(&self) -> impl Iterator<Item = &PolicyModel> {
-        self.behaviours.iter().filter_map(|behaviour| match &behaviour.task {
-            Task::Policy(policy) => policy.model.as_ref(),
-            _ => None,
-        })
+        self.behaviours
+            .iter()
+            .filter_map(|behaviour| match &behaviour.task {
+                Task::Policy(policy) => policy.model.as_ref(),
+                _ => None,
+            })
     }
 
     /// The accepted external source of courses and speeds, if any.
     pub fn proposer(&self) -> Option<Proposer> {
-        self.behaviours.iter().find_map(|behaviour| match &behaviour.task {
-            Task::Policy(policy) if policy.model.is_none() && policy.sets.is_none() => Some(policy.by),
-            _ => None,
-        })
+        self.behaviours
+            .iter()
+            .find_map(|behaviour| match &behaviour.task {
+                Task::Policy(policy) if policy.model.is_none() && policy.sets.is_none() => {
+                    Some(policy.by)
+                }
+                _ => None,
+            })
     }
 
     /// Index of the variable whose text an external source sets, if the program has options.
     pub fn options(&self) -> Option<u16> {
-        self.behaviours.iter().find_map(|behaviour| match &behaviour.task {
-            Task::Policy(policy) if policy.model.is_none() => policy.sets,
-            _ => None,
-        })
+        self.behaviours
+            .iter()
+            .find_map(|behaviour| match &behaviour.task {
+                Task::Policy(policy) if policy.model.is_none() => policy.sets,
+                _ => None,
+            })
     }
 
     /// The texts of a variable; empty for other kinds.
@@ -234,7 +266,10 @@ impl Program {
     /// The mode's name after those of its parents, outermost first: `defending:intercepting`.
     pub fn path(&self, mode: usize) -> String {
         let name = &self.modes[mode].name;
-        self.modes[mode].parent.map_or_else(|| name.clone(), |parent| format!("{}:{name}", self.path(parent)))
+        self.modes[mode].parent.map_or_else(
+            || name.clone(),
+            |parent| format!("{}:{name}", self.path(parent)),
+        )
     }
 
     /// The active leaf according to the conditions.
@@ -245,7 +280,10 @@ impl Program {
         let mut within = None;
         loop {
             let holds = |mode: &Mode| mode.when.as_ref().is_none_or(|when| when.is_true(values));
-            let part = self.modes.iter().position(|mode| mode.parent == within && holds(mode));
+            let part = self
+                .modes
+                .iter()
+                .position(|mode| mode.parent == within && holds(mode));
             match part {
                 Some(part) if self.is_leaf(part) => return part,
                 Some(part) => within = Some(part),
@@ -275,7 +313,10 @@ pub trait Named: Copy + Into<&'static str> + VariantArray + EnumMessage {
 
     /// The variant with this name.
     fn by_name(name: &str) -> Option<Self> {
-        Self::all().iter().copied().find(|variant| variant.name() == name)
+        Self::all()
+            .iter()
+            .copied()
+            .find(|variant| variant.name() == name)
     }
 
     /// All names, in the same order.

@@ -18,12 +18,16 @@ pub struct Parameter {
 impl Parameter {
     /// Its value now.
     pub fn value(&self, values: &impl Values) -> f64 {
-        self.expression.value(values).clamp(self.range.0, self.range.1)
+        self.expression
+            .value(values)
+            .clamp(self.range.0, self.range.1)
     }
 
     /// Its value, if constant.
     pub fn constant(&self) -> Option<f64> {
-        self.expression.constant().map(|value| value.clamp(self.range.0, self.range.1))
+        self.expression
+            .constant()
+            .map(|value| value.clamp(self.range.0, self.range.1))
     }
 }
 

@@ -23,7 +23,18 @@ pub enum Place {
 }
 
 /// A place that depends on the game, other than a boat.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, VariantArray, IntoStaticStr, EnumMessage)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    Serialize,
+    Deserialize,
+    VariantArray,
+    IntoStaticStr,
+    EnumMessage,
+)]
 #[strum(serialize_all = "snake_case")]
 pub enum Mark {
     /// Home of the own flag.
@@ -37,7 +48,18 @@ pub enum Mark {
 }
 
 /// A boat by its present role.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, VariantArray, IntoStaticStr, EnumMessage)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    Serialize,
+    Deserialize,
+    VariantArray,
+    IntoStaticStr,
+    EnumMessage,
+)]
 #[strum(serialize_all = "snake_case")]
 pub enum Boat {
     /// Nearest untagged enemy.
@@ -64,13 +86,24 @@ pub enum Boat {
 impl Place {
     /// The mark, boat or named point with this name.
     pub fn by_name(name: &str) -> Option<Place> {
-        let point = || Field::point_names().into_iter().find(|point| point == name).map(Place::Point);
-        Mark::by_name(name).map(Place::Mark).or_else(|| Boat::by_name(name).map(Place::Boat)).or_else(point)
+        let point = || {
+            Field::point_names()
+                .into_iter()
+                .find(|point| point == name)
+                .map(Place::Point)
+        };
+        Mark::by_name(name)
+            .map(Place::Mark)
+            .or_else(|| Boat::by_name(name).map(Place::Boat))
+            .or_else(point)
     }
 
     /// All names of places.
     pub fn names() -> Vec<String> {
-        let fixed = [Mark::names(), Boat::names()].concat().into_iter().map(str::to_owned);
+        let fixed = [Mark::names(), Boat::names()]
+            .concat()
+            .into_iter()
+            .map(str::to_owned);
         fixed.chain(Field::point_names()).collect()
     }
 

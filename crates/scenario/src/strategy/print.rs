@@ -22,7 +22,9 @@ impl Program {
             Expression::Constant(_) | Expression::Mates(_) | Expression::Minus(_) => Kind::Number,
             Expression::Variable(index) => self.variables[usize::from(*index)].kind.clone(),
             Expression::Fact(fact) => Kind::of(fact.is_truth()),
-            Expression::Measure(measure, _) | Expression::Between(measure, _) => Kind::of(measure.is_truth()),
+            Expression::Measure(measure, _) | Expression::Between(measure, _) => {
+                Kind::of(measure.is_truth())
+            }
             Expression::Not(_) => Kind::Truth,
             Expression::Join(join, _) => Kind::of(join.is_truth()),
             Expression::Choose(parts) => match self.kind_of(&parts.1) {
@@ -44,7 +46,11 @@ impl Program {
 
     /// A value for a variable of this program, as typed.
     pub fn value_text(&self, variable: u16, expression: &Expression) -> String {
-        self.text(expression, &self.variables[usize::from(variable)].kind, Precedence::Choice)
+        self.text(
+            expression,
+            &self.variables[usize::from(variable)].kind,
+            Precedence::Choice,
+        )
     }
 
     /// An expression in the place of a value of `kind`; parts looser than `around` need brackets.
@@ -55,34 +61,63 @@ impl Program {
                 Kind::Number if *value < 0.0 => (kind.text_of(*value), Precedence::Sign),
                 _ => (kind.text_of(*value), Precedence::Atom),
             },
-            Expression::Variable(index) => (self.variables[usize::from(*index)].name.clone(), Precedence::Atom),
+            Expression::Variable(index) => (
+                self.variables[usize::from(*index)].name.clone(),
+                Precedence::Atom,
+            ),
             Expression::Fact(fact) => (fact.name().to_owned(), Precedence::Atom),
-            Expression::Measure(measure, place) => (format!("{}({})", measure.name(), place.text()), Precedence::Atom),
-            Expression::Between(measure, places) => {
-                (format!("{}({}, {})", measure.name(), places.0.text(), places.1.text()), Precedence::Atom)
-            }
-            Expression::Mates(condition) => (format!("mates({})", self.condition_text(condition)), Precedence::Atom),
-            Expression::Not(inner) => {
-                (format!("!{}", self.text(inner, &Kind::Truth, Precedence::Sign)), Precedence::Sign)
-            }
+            Expression::Measure(measure, place) => (
+                format!("{}({})", measure.name(), place.text()),
+                Precedence::Atom,
+            ),
+            Expression::Between(measure, places) => (
+                format!(
+                    "{}({}, {})",
+                    measure.name(),
+                    places.0.text(),
+                    places.1.text()
+                ),
+                Precedence::Atom,
+            ),
+            Expression::Mates(condition) => (
+                format!("mates({})", self.condition_text(condition)),
+                Precedence::Atom,
+            ),
+            Expression::Not(inner) => (
+                format!("!{}", self.text(inner, &Kind::Truth, Precedence::Sign)),
+                Precedence::Sign,
+            ),
             // Two signs in a row cancel out, and a sign before a digit belongs to it.
-            Expression::Minus(inner) => (format!("-({})", self.number_text(inner)), Precedence::Sign),
+            Expression::Minus(inner) => {
+                (format!("-({})", self.number_text(inner)), Precedence::Sign)
+            }
             Expression::Join(join, sides) => self.joined(*join, &sides.0, &sides.1),
             Expression::Choose(parts) => {
                 let condition = self.text(&parts.0, &Kind::Truth, Precedence::Or);
                 let then = self.text(&parts.1, kind, Precedence::Or);
                 let otherwise = self.text(&parts.2, kind, Precedence::Choice);
-                (format!("{condition} ? {then} : {otherwise}"), Precedence::Choice)
+                (
+                    format!("{condition} ? {then} : {otherwise}"),
+                    Precedence::Choice,
+                )
             }
         };
-        if binds < around { format!("({text})") } else { text }
+        if binds < around {
+            format!("({text})")
+        } else {
+            text
+        }
     }
 
     fn joined(&self, join: Join, left: &Expression, right: &Expression) -> (String, Precedence) {
         let sign = join.name();
         let binds = match join {
             Join::Least | Join::Greatest => {
-                let text = format!("{sign}({}, {})", self.number_text(left), self.number_text(right));
+                let text = format!(
+                    "{sign}({}, {})",
+                    self.number_text(left),
+                    self.number_text(right)
+                );
                 return (text, Precedence::Atom);
             }
             Join::Or => Precedence::Or,
@@ -106,7 +141,14 @@ impl Program {
             Join::Plus | Join::Minus => (binds, Precedence::Product),
             _ => (binds, Precedence::Sign),
         };
-        (format!("{} {sign} {}", self.text(left, &kind, at_left), self.text(right, &kind, at_right)), binds)
+        (
+            format!(
+                "{} {sign} {}",
+                self.text(left, &kind, at_left),
+                self.text(right, &kind, at_right)
+            ),
+            binds,
+        )
     }
 }
 

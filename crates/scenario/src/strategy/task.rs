@@ -43,7 +43,10 @@ impl Task {
 
     /// Whether it is a safety behaviour, which has a greater default weight.
     pub fn is_safety(&self) -> bool {
-        matches!(self, Task::OpRegion(_) | Task::AvoidCollision(_) | Task::AvoidObstacle(_))
+        matches!(
+            self,
+            Task::OpRegion(_) | Task::AvoidCollision(_) | Task::AvoidObstacle(_)
+        )
     }
 }
 

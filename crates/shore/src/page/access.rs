@@ -26,7 +26,11 @@ pub(super) struct Tokens {
 impl AccessControl {
     /// The rules for a server at this address.
     pub(super) fn new(bound: SocketAddr, hosts: &[String], tokens: Tokens) -> AccessControl {
-        AccessControl { bound, hosts: hosts.iter().map(|host| host.to_ascii_lowercase()).collect(), tokens }
+        AccessControl {
+            bound,
+            hosts: hosts.iter().map(|host| host.to_ascii_lowercase()).collect(),
+            tokens,
+        }
     }
 
     /// Checks that a request with this `Host` header is for this server.
@@ -34,10 +38,17 @@ impl AccessControl {
     /// # Errors
     /// The reason, and a remedy.
     pub(super) fn check_host(&self, host: Option<&str>) -> Result<(), String> {
-        let Some(host) = host else { return Err("The request has no Host header.\n".to_owned()) };
+        let Some(host) = host else {
+            return Err("The request has no Host header.\n".to_owned());
+        };
         let host = host.to_ascii_lowercase();
         let name = name_of(&host);
-        if self.hosts.iter().any(|known| *known == host || *known == name) || self.is_own(name) {
+        if self
+            .hosts
+            .iter()
+            .any(|known| *known == host || *known == name)
+            || self.is_own(name)
+        {
             return Ok(());
         }
         Err(format!(
@@ -64,14 +75,20 @@ impl AccessControl {
         let site = origin.split_once("://").map(|(_, site)| site);
         match (site, host) {
             (Some(site), Some(host)) if site.eq_ignore_ascii_case(host) => Ok(()),
-            _ => Err(format!("Pages from {origin:?} may not connect to this server.\n")),
+            _ => Err(format!(
+                "Pages from {origin:?} may not connect to this server.\n"
+            )),
         }
     }
 
     /// The access that a page's address grants by its query.
     pub(super) fn access(&self, query: Option<&str>) -> Access {
         let shown = value(query, "token");
-        let is_shown = |token: &String| shown.as_ref().is_some_and(|shown| is_same(shown, token.as_bytes()));
+        let is_shown = |token: &String| {
+            shown
+                .as_ref()
+                .is_some_and(|shown| is_same(shown, token.as_bytes()))
+        };
         match &self.tokens {
             Tokens { operate, .. } if is_shown(operate) => Access::Operate,
             Tokens { control, .. } if control.as_ref().is_none_or(is_shown) => Access::Control,
@@ -82,8 +99,14 @@ impl AccessControl {
 
 /// The value of a parameter in a query.
 pub(super) fn value(query: Option<&str>, name: &str) -> Option<Vec<u8>> {
-    let pairs = query.unwrap_or_default().split('&').filter_map(|pair| pair.split_once('='));
-    pairs.into_iter().find(|(given, _)| *given == name).map(|(_, value)| decoded(value))
+    let pairs = query
+        .unwrap_or_default()
+        .split('&')
+        .filter_map(|pair| pair.split_once('='));
+    pairs
+        .into_iter()
+        .find(|(given, _)| *given == name)
+        .map(|(_, value)| decoded(value))
 }
 
 /// The host without its port, and an IPv6 address without its brackets.
@@ -96,7 +119,10 @@ fn name_of(host: &str) -> &str {
 
 /// Compares byte strings in constant time.
 fn is_same(a: &[u8], b: &[u8]) -> bool {
-    let differences = a.iter().zip(b).fold(0, |all, (a, b)| std::hint::black_box(all | (a ^ b)));
+    let differences = a
+        .iter()
+        .zip(b)
+        .fold(0, |all, (a, b)| std::hint::black_box(all | (a ^ b)));
     a.len() == b.len() && differences == 0
 }
 
@@ -112,7 +138,10 @@ mod tests {
 
     fn guard(bound: &str, hosts: &[&str]) -> AccessControl {
         let hosts: Vec<String> = hosts.iter().map(|host| (*host).to_owned()).collect();
-        let tokens = Tokens { control: None, operate: "of operators".to_owned() };
+        let tokens = Tokens {
+            control: None,
+            operate: "of operators".to_owned(),
+        };
         AccessControl::new(bound.parse().expect("an address"), &hosts, tokens)
     }
 
@@ -121,9 +150,13 @@ mod tests {
     fn cases(check: &str) -> Vec<([Option<String>; 2], bool)> {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/src/page/access_cases.csv");
         let text = std::fs::read_to_string(file).expect("the cases");
-        let rows = text.lines().map(|line| line.split(',').map(str::to_owned).collect::<Vec<_>>());
+        let rows = text
+            .lines()
+            .map(|line| line.split(',').map(str::to_owned).collect::<Vec<_>>());
         let given = |cell: &String| (cell != "none").then(|| cell.clone());
-        let cases = rows.filter(|row| row[0] == check).map(|row| ([given(&row[1]), given(&row[2])], row[3] == "yes"));
+        let cases = rows
+            .filter(|row| row[0] == check)
+            .map(|row| ([given(&row[1]), given(&row[2])], row[3] == "yes"));
         cases.collect()
     }
 
@@ -131,7 +164,8 @@ mod tests {
     fn only_its_own_names_lead_to_it() {
         for ([bound, host], good) in cases("host") {
             let bound = bound.expect("an address");
-            let checked = guard(&bound, &["boat.local", "tug.local:81"]).check_host(host.as_deref());
+            let checked =
+                guard(&bound, &["boat.local", "tug.local:81"]).check_host(host.as_deref());
             assert_eq!(checked.is_ok(), good, "{host:?} at {bound}: {checked:?}");
         }
     }
@@ -147,12 +181,22 @@ mod tests {
     #[test]
     fn the_token_gives_rights() {
         for ([control, query], rights) in cases("token") {
-            let tokens = Tokens { control, operate: "of operators".to_owned() };
-            let guard = AccessControl { tokens, ..guard("127.0.0.1:1", &[]) };
+            let tokens = Tokens {
+                control,
+                operate: "of operators".to_owned(),
+            };
+            let guard = AccessControl {
+                tokens,
+                ..guard("127.0.0.1:1", &[])
+            };
             let access = guard.access(query.as_deref());
             assert_eq!(
                 access,
-                if rights { Access::Control } else { Access::Watch },
+                if rights {
+                    Access::Control
+                } else {
+                    Access::Watch
+                },
                 "{query:?} with {:?}",
                 guard.tokens
             );
@@ -161,14 +205,38 @@ mod tests {
 
     #[test]
     fn nobody_operates_real_boats_without_the_token() {
-        for control in [None, Some("a b+c%".to_owned()), Some("of operators".to_owned())] {
-            let tokens = Tokens { control, operate: "of operators".to_owned() };
-            let guard = AccessControl { tokens, ..guard("127.0.0.1:1", &[]) };
-            assert_eq!(guard.access(Some("token=of%20operators")), Access::Operate, "{:?}", guard.tokens);
-            for query in
-                [None, Some(""), Some("token="), Some("token=of"), Some("token=a+b%2Bc%25"), Some("x=of%20operators")]
-            {
-                assert!(guard.access(query) < Access::Operate, "{query:?} with {:?}", guard.tokens);
+        for control in [
+            None,
+            Some("a b+c%".to_owned()),
+            Some("of operators".to_owned()),
+        ] {
+            let tokens = Tokens {
+                control,
+                operate: "of operators".to_owned(),
+            };
+            let guard = AccessControl {
+                tokens,
+                ..guard("127.0.0.1:1", &[])
+            };
+            assert_eq!(
+                guard.access(Some("token=of%20operators")),
+                Access::Operate,
+                "{:?}",
+                guard.tokens
+            );
+            for query in [
+                None,
+                Some(""),
+                Some("token="),
+                Some("token=of"),
+                Some("token=a+b%2Bc%25"),
+                Some("x=of%20operators"),
+            ] {
+                assert!(
+                    guard.access(query) < Access::Operate,
+                    "{query:?} with {:?}",
+                    guard.tokens
+                );
             }
         }
     }

@@ -18,7 +18,10 @@ const HEADERS: [(HeaderName, &str); 5] = [
     (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
     (header::REFERRER_POLICY, "no-referrer"),
     (header::CACHE_CONTROL, "no-cache"),
-    (HeaderName::from_static("cross-origin-resource-policy"), "same-origin"),
+    (
+        HeaderName::from_static("cross-origin-resource-policy"),
+        "same-origin",
+    ),
 ];
 
 pub(super) fn answer(path: &str) -> Response<Body> {
@@ -39,12 +42,18 @@ pub(super) fn own(name: &str, contents: Body) -> Response<Body> {
 
 pub(super) fn elsewhere(path: &'static str) -> Response<Body> {
     let mut response = text(StatusCode::TEMPORARY_REDIRECT, "Redirecting.\n");
-    response.headers_mut().insert(header::LOCATION, HeaderValue::from_static(path));
+    response
+        .headers_mut()
+        .insert(header::LOCATION, HeaderValue::from_static(path));
     response
 }
 
 pub(super) fn text(status: StatusCode, words: &str) -> Response<Body> {
-    plain(status, "text/plain; charset=utf-8", Body::from(words.to_owned()))
+    plain(
+        status,
+        "text/plain; charset=utf-8",
+        Body::from(words.to_owned()),
+    )
 }
 
 /// Adds the headers of every response.
@@ -57,7 +66,9 @@ pub(super) fn add_security_headers(headers: &mut HeaderMap) {
 pub(super) fn plain(status: StatusCode, kind: &'static str, body: Body) -> Response<Body> {
     let mut response = Response::new(body);
     *response.status_mut() = status;
-    response.headers_mut().insert(header::CONTENT_TYPE, HeaderValue::from_static(kind));
+    response
+        .headers_mut()
+        .insert(header::CONTENT_TYPE, HeaderValue::from_static(kind));
     response
 }
 
@@ -79,8 +90,13 @@ mod tests {
 
     #[test]
     fn what_the_page_asks_for_is_served() {
-        let page = WEB.get_file("index.html").and_then(include_dir::File::contents_utf8).expect("a page");
-        let words = ["href=\"", "src=\""].iter().flat_map(|word| page.split(word).skip(1));
+        let page = WEB
+            .get_file("index.html")
+            .and_then(include_dir::File::contents_utf8)
+            .expect("a page");
+        let words = ["href=\"", "src=\""]
+            .iter()
+            .flat_map(|word| page.split(word).skip(1));
         let asked: Vec<&str> = words.filter_map(|rest| rest.split('"').next()).collect();
         assert!(asked.len() >= 3, "{asked:?}");
         for path in asked {

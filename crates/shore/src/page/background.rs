@@ -48,8 +48,8 @@ impl Background {
     /// Reads an image (PNG or JPEG) with its world file, or GeoJSON.
     ///
     /// # Errors
-    /// [`BackgroundError`] if the file cannot be read, is too large, or has an unknown format or invalid
-    /// coordinates.
+    /// [`BackgroundError`] if the file cannot be read, is too large, or has an unknown format or
+    /// invalid coordinates.
     pub fn read(path: &Path) -> Result<Background, BackgroundError> {
         let bytes = read(path, BYTES_MAX)?;
         let bad = |problem| BackgroundError::of(path, problem);
@@ -62,38 +62,53 @@ impl Background {
                 let areas = shoreline.areas;
                 let lines = shoreline.lines;
                 let points = shoreline.points;
-                let json = json!({"name": name, "areas": areas, "lines": lines, "points": points}).to_string();
+                let json = json!({"name": name, "areas": areas, "lines": lines, "points": points})
+                    .to_string();
                 return Ok(Background { json, image: None });
             }
             _ => {
-                return Err(
-                    bad("has an unknown format, expected PNG or JPEG with a world file, or GeoJSON".to_owned()),
-                );
+                return Err(bad(
+                    "has an unknown format, expected PNG or JPEG with a world file, or GeoJSON"
+                        .to_owned(),
+                ));
             }
         };
         let size = imagesize::blob_size(&bytes).map_err(|e| bad(format!("is damaged: {e}")))?;
         let width = size.width;
         let height = size.height;
         if !(1..=SIDE_MAX).contains(&width) || !(1..=SIDE_MAX).contains(&height) {
-            return Err(bad(format!("has {width} x {height} pixels, expected 1 to {SIDE_MAX} on each side")));
+            return Err(bad(format!(
+                "has {width} x {height} pixels, expected 1 to {SIDE_MAX} on each side"
+            )));
         }
         let (world_path, world) = world_file(path)?;
         let world = world_matrix(&world, [width as f64, height as f64])
             .map_err(|problem| BackgroundError::of(&world_path, problem))?;
-        let json = json!({"name": name, "image": {"width": width, "height": height, "world": world}}).to_string();
-        Ok(Background { json, image: Some((kind, bytes)) })
+        let json =
+            json!({"name": name, "image": {"width": width, "height": height, "world": world}})
+                .to_string();
+        Ok(Background {
+            json,
+            image: Some((kind, bytes)),
+        })
     }
 }
 
 fn read(path: &Path, bytes_max: u64) -> Result<Vec<u8>, BackgroundError> {
-    input_file::read(path, bytes_max).map_err(|e| BackgroundError(format!("cannot read {}: {e}", path.display())))
+    input_file::read(path, bytes_max)
+        .map_err(|e| BackgroundError(format!("cannot read {}: {e}", path.display())))
 }
 
 fn world_file(image: &Path) -> Result<(PathBuf, String), BackgroundError> {
-    let found = WORLD_FILES.iter().map(|end| image.with_extension(end)).find(|path| path.exists());
+    let found = WORLD_FILES
+        .iter()
+        .map(|end| image.with_extension(end))
+        .find(|path| path.exists());
     let Some(path) = found else {
-        let names: Vec<String> =
-            WORLD_FILES.iter().map(|end| image.with_extension(end).display().to_string()).collect();
+        let names: Vec<String> = WORLD_FILES
+            .iter()
+            .map(|end| image.with_extension(end).display().to_string())
+            .collect();
         let problem = format!(
             "has no world file beside it, expected one of {} (GIS programs write it \
              when they export an image in WGS 84)",
@@ -111,9 +126,15 @@ fn world_matrix(text: &str, [width, height]: [f64; 2]) -> Result<[f64; 6], Strin
     let mut numbers = [0.0; 6];
     let mut words = text.split_ascii_whitespace();
     for (at, number) in numbers.iter_mut().enumerate() {
-        let word = words.next().ok_or_else(|| format!("has {at} numbers, expected 6, one per line"))?;
+        let word = words
+            .next()
+            .ok_or_else(|| format!("has {at} numbers, expected 6, one per line"))?;
         // Some programs write decimal commas.
-        let parsed = word.replace(',', ".").parse().ok().filter(|number: &f64| number.is_finite());
+        let parsed = word
+            .replace(',', ".")
+            .parse()
+            .ok()
+            .filter(|number: &f64| number.is_finite());
         *number = parsed.ok_or_else(|| format!("line {}: {word:?} is not a number", at + 1))?;
     }
     if words.next().is_some() {
@@ -124,9 +145,16 @@ fn world_matrix(text: &str, [width, height]: [f64; 2]) -> Result<[f64; 6], Strin
         return Err("lines 1 to 4 describe pixels of zero size".to_owned());
     }
     let mut extent = Extent::default();
-    for [column, row] in [[-0.5, -0.5], [width - 0.5, -0.5], [width - 0.5, height - 0.5], [-0.5, height - 0.5]] {
+    for [column, row] in [
+        [-0.5, -0.5],
+        [width - 0.5, -0.5],
+        [width - 0.5, height - 0.5],
+        [-0.5, height - 0.5],
+    ] {
         let corner = [a * column + b * row + c, d * column + e * row + f];
-        extent.add(corner).map_err(|problem| format!("a corner of the image {problem}"))?;
+        extent
+            .add(corner)
+            .map_err(|problem| format!("a corner of the image {problem}"))?;
     }
     extent.check()?;
     Ok(numbers)
@@ -144,12 +172,17 @@ impl Extent {
             ));
         }
         let [low, high] = self.0.get_or_insert([[lon, lat]; 2]);
-        (*low, *high) = ([low[0].min(lon), low[1].min(lat)], [high[0].max(lon), high[1].max(lat)]);
+        (*low, *high) = (
+            [low[0].min(lon), low[1].min(lat)],
+            [high[0].max(lon), high[1].max(lat)],
+        );
         Ok(())
     }
 
     fn check(&self) -> Result<(), String> {
-        let Some([low, high]) = self.0 else { return Ok(()) };
+        let Some([low, high]) = self.0 else {
+            return Ok(());
+        };
         let wide = high[0] - low[0];
         let tall = high[1] - low[1];
         if wide.max(tall) <= EXTENT_MAX_DEG {
@@ -175,7 +208,8 @@ struct Shoreline {
 
 impl Shoreline {
     fn parse(bytes: &[u8]) -> Result<Shoreline, String> {
-        let value: Value = serde_json::from_slice(bytes).map_err(|e| format!("is not JSON: {e}"))?;
+        let value: Value =
+            serde_json::from_slice(bytes).map_err(|e| format!("is not JSON: {e}"))?;
         let mut shoreline = Shoreline::default();
         shoreline.check_reference_system(&value)?;
         shoreline.object(&value, "")?;
@@ -188,18 +222,24 @@ impl Shoreline {
 
     /// Files from before RFC 7946 may use another reference system.
     fn check_reference_system(&self, value: &Value) -> Result<(), String> {
-        let Some(name) = value["crs"]["properties"]["name"].as_str() else { return Ok(()) };
+        let Some(name) = value["crs"]["properties"]["name"].as_str() else {
+            return Ok(());
+        };
         if name.ends_with("CRS84") || name.ends_with(":4326") {
             return Ok(());
         }
-        Err(format!("crs is {name:?}, expected WGS 84 (EPSG:4326): export it in WGS 84"))
+        Err(format!(
+            "crs is {name:?}, expected WGS 84 (EPSG:4326): export it in WGS 84"
+        ))
     }
 
     fn object(&mut self, value: &Value, at: &str) -> Result<(), String> {
         check_object(value, at)?;
         match value["type"].as_str() {
             Some("FeatureCollection") => {
-                each(&value["features"], &within(at, "features"), |it, at| self.object(it, at))
+                each(&value["features"], &within(at, "features"), |it, at| {
+                    self.object(it, at)
+                })
             }
             Some("Feature") if value["geometry"].is_null() => Ok(()),
             Some("Feature") => {
@@ -223,7 +263,9 @@ impl Shoreline {
             "Polygon" => self.area(coordinates, &place),
             "MultiPolygon" => each(coordinates, &place, |it, at| self.area(it, at)),
             "GeometryCollection" => {
-                each(&value["geometries"], &within(at, "geometries"), |it, at| self.geometry(it, at, ""))
+                each(&value["geometries"], &within(at, "geometries"), |it, at| {
+                    self.geometry(it, at, "")
+                })
             }
             _ => Err(format!(
                 "{} is {kind}, expected a GeoJSON type such as \"FeatureCollection\" or \"Polygon\"",
@@ -234,7 +276,8 @@ impl Shoreline {
 
     fn point(&mut self, value: &Value, at: &str, name: &str) -> Result<(), String> {
         let [lon, lat] = self.position(value, at)?;
-        self.points.push((lon, lat, name.chars().take(NAME_MAX).collect()));
+        self.points
+            .push((lon, lat, name.chars().take(NAME_MAX).collect()));
         Ok(())
     }
 
@@ -257,20 +300,31 @@ impl Shoreline {
     fn position(&mut self, value: &Value, at: &str) -> Result<[f64; 2], String> {
         self.positions += 1;
         if self.positions > POSITIONS_MAX {
-            return Err(format!("has more than {POSITIONS_MAX} positions: simplify it, or crop it to the site"));
+            return Err(format!(
+                "has more than {POSITIONS_MAX} positions: simplify it, or crop it to the site"
+            ));
         }
-        let numbers = list(value, at)?.iter().map(Value::as_f64).collect::<Option<Vec<f64>>>();
+        let numbers = list(value, at)?
+            .iter()
+            .map(Value::as_f64)
+            .collect::<Option<Vec<f64>>>();
         // The third number is a height.
         let [lon, lat, ..] = numbers.unwrap_or_default()[..] else {
-            return Err(format!("{at} is not a position, expected [longitude, latitude]"));
+            return Err(format!(
+                "{at} is not a position, expected [longitude, latitude]"
+            ));
         };
-        self.extent.add([lon, lat]).map_err(|problem| format!("{at} {problem}"))?;
+        self.extent
+            .add([lon, lat])
+            .map_err(|problem| format!("{at} {problem}"))?;
         Ok([lon, lat])
     }
 }
 
 fn list<'a>(value: &'a Value, at: &str) -> Result<&'a Vec<Value>, String> {
-    value.as_array().ok_or_else(|| format!("{at} is not a list"))
+    value
+        .as_array()
+        .ok_or_else(|| format!("{at} is not a list"))
 }
 
 /// Calls `take` with every item of a list and its place.
@@ -279,16 +333,28 @@ fn each<C: FromIterator<T>, T>(
     at: &str,
     mut take: impl FnMut(&Value, &str) -> Result<T, String>,
 ) -> Result<C, String> {
-    list(value, at)?.iter().enumerate().map(|(i, item)| take(item, &format!("{at}[{i}]"))).collect()
+    list(value, at)?
+        .iter()
+        .enumerate()
+        .map(|(i, item)| take(item, &format!("{at}[{i}]")))
+        .collect()
 }
 
 fn check_object(value: &Value, at: &str) -> Result<(), String> {
     let named = if at.is_empty() { "the file" } else { at };
-    if value.is_object() { Ok(()) } else { Err(format!("{named} is not an object")) }
+    if value.is_object() {
+        Ok(())
+    } else {
+        Err(format!("{named} is not an object"))
+    }
 }
 
 fn within(at: &str, key: &str) -> String {
-    if at.is_empty() { key.to_owned() } else { format!("{at}.{key}") }
+    if at.is_empty() {
+        key.to_owned()
+    } else {
+        format!("{at}.{key}")
+    }
 }
 
 #[cfg(test)]
@@ -312,22 +378,39 @@ mod tests {
     #[test]
     fn an_image_is_placed_by_its_world_file() {
         let world = b"0.001\n0\n0\n-0.001\n-73.9\n41.3\n";
-        let background = read_in(&[("site.png", PNG), ("site.pgw", world)]).expect("the background is valid");
+        let background =
+            read_in(&[("site.png", PNG), ("site.pgw", world)]).expect("the background is valid");
         let json: Value = serde_json::from_str(&background.json).expect("the message is JSON");
-        let image = json!({"width": 1, "height": 1, "world": [0.001, 0.0, 0.0, -0.001, -73.9, 41.3]});
+        let image =
+            json!({"width": 1, "height": 1, "world": [0.001, 0.0, 0.0, -0.001, -73.9, 41.3]});
         assert_eq!(json, json!({"name": "site.png", "image": image}));
         assert_eq!(background.image, Some(("image/png", PNG.to_vec())));
         for (files, want) in [
             (vec![("site.png", PNG)], "has no world file beside it"),
-            (vec![("site.png", PNG), ("site.wld", b"1 2 3".as_slice())], "/site.wld: has 3 numbers, expected 6"),
-            (vec![("site.png", PNG), ("site.wld", b"1 0 0 x 5 6")], "line 4: \"x\" is not a number"),
-            (vec![("site.png", PNG), ("site.wld", b"0 0 0 0 5 6")], "describe pixels of zero size"),
+            (
+                vec![("site.png", PNG), ("site.wld", b"1 2 3".as_slice())],
+                "/site.wld: has 3 numbers, expected 6",
+            ),
+            (
+                vec![("site.png", PNG), ("site.wld", b"1 0 0 x 5 6")],
+                "line 4: \"x\" is not a number",
+            ),
+            (
+                vec![("site.png", PNG), ("site.wld", b"0 0 0 0 5 6")],
+                "describe pixels of zero size",
+            ),
             (
                 vec![("site.png", PNG), ("site.wld", b"1 0 0 -1 712345 4512345")],
                 "a corner of the image is at [712344.5, ",
             ),
-            (vec![("site.png", PNG), ("site.wld", b"9 0 0 -1 5 6")], "expected at most 5 degrees each way"),
-            (vec![("site.png", PNG), ("site.wld", b"1 0 0 -1 5 6 7")], "more than 6 numbers"),
+            (
+                vec![("site.png", PNG), ("site.wld", b"9 0 0 -1 5 6")],
+                "expected at most 5 degrees each way",
+            ),
+            (
+                vec![("site.png", PNG), ("site.wld", b"1 0 0 -1 5 6 7")],
+                "more than 6 numbers",
+            ),
             (vec![("site.png", &PNG[..20])], "is damaged"),
         ] {
             let error = read_in(&files).expect_err(want);
@@ -335,9 +418,18 @@ mod tests {
         }
         let mut huge = PNG.to_vec();
         huge[16..20].copy_from_slice(&100_000_u32.to_be_bytes());
-        assert!(read_in(&[("site.png", &huge)]).expect_err("huge").contains("100000 x 1 pixels, expected 1 to 8192"));
+        assert!(
+            read_in(&[("site.png", &huge)])
+                .expect_err("huge")
+                .contains("100000 x 1 pixels, expected 1 to 8192")
+        );
         let svg = read_in(&[("site.svg", b"<svg onload='alert(1)'/>")]).expect_err("no SVG");
-        assert!(svg.contains("has an unknown format, expected PNG or JPEG with a world file, or GeoJSON"), "{svg}");
+        assert!(
+            svg.contains(
+                "has an unknown format, expected PNG or JPEG with a world file, or GeoJSON"
+            ),
+            "{svg}"
+        );
     }
 
     fn geojson(value: &Value) -> Result<Value, String> {
@@ -356,8 +448,8 @@ mod tests {
                 {"type": "MultiLineString", "coordinates": [[[-73.9, 41.3], [-73.8, 41.3]]]},
             ]}},
         ]);
-        let shown =
-            geojson(&json!({"type": "FeatureCollection", "features": features})).expect("the shoreline is valid");
+        let shown = geojson(&json!({"type": "FeatureCollection", "features": features}))
+            .expect("the shoreline is valid");
         let want = json!({"name": "site.geojson", "areas": [[ring, ring]], "points": [[-73.9, 41.3, "Dock"]],
             "lines": [[[-73.9, 41.3], [-73.8, 41.3]]]});
         assert_eq!(shown, want);
@@ -375,23 +467,45 @@ mod tests {
                 line(json!([[0, 1], [712_345.5, 4_512_345]])),
                 format!("{place} is at [712345.5, 4512345], expected [longitude"),
             ),
-            (line(json!([[0, 1], ["0", 1]])), format!("{place} is not a position, expected [longitude, latitude]")),
+            (
+                line(json!([[0, 1], ["0", 1]])),
+                format!("{place} is not a position, expected [longitude, latitude]"),
+            ),
             (line(json!([[0, 1], 3])), format!("{place} is not a list")),
-            (line(json!([[0, 1], [10, 1]])), "extends from [0, 1] to [10, 1], expected at most 5 degrees".to_owned()),
+            (
+                line(json!([[0, 1], [10, 1]])),
+                "extends from [0, 1] to [10, 1], expected at most 5 degrees".to_owned(),
+            ),
             (line(json!([])), "has no positions".to_owned()),
-            (json!({"type": "Topology"}), "type is \"Topology\", expected a GeoJSON type".to_owned()),
-            (json!({"type": "FeatureCollection"}), "features is not a list".to_owned()),
+            (
+                json!({"type": "Topology"}),
+                "type is \"Topology\", expected a GeoJSON type".to_owned(),
+            ),
+            (
+                json!({"type": "FeatureCollection"}),
+                "features is not a list".to_owned(),
+            ),
             (
                 json!({"type": "Point", "coordinates": [1, 2], "crs": {"properties": {"name": "urn:ogc:def:crs:EPSG::3857"}}}),
                 "crs is \"urn:ogc:def:crs:EPSG::3857\", expected WGS 84".to_owned(),
             ),
-            (line(json!(vec![[1.0, 2.0]; POSITIONS_MAX + 1])), "more than 200000 positions".to_owned()),
+            (
+                line(json!(vec![[1.0, 2.0]; POSITIONS_MAX + 1])),
+                "more than 200000 positions".to_owned(),
+            ),
         ] {
             let error = geojson(&file).expect_err(&want);
             assert!(error.contains(&want), "{error}");
         }
-        let deep = format!("{{\"type\":\"Polygon\",\"coordinates\":{}", "[".repeat(100_000));
-        assert!(read_in(&[("site.geojson", deep.as_bytes())]).expect_err("deep").contains("is not JSON"));
+        let deep = format!(
+            "{{\"type\":\"Polygon\",\"coordinates\":{}",
+            "[".repeat(100_000)
+        );
+        assert!(
+            read_in(&[("site.geojson", deep.as_bytes())])
+                .expect_err("deep")
+                .contains("is not JSON")
+        );
     }
 
     proptest! {

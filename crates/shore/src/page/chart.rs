@@ -55,7 +55,10 @@ fn vehicle(scenario: &Scenario, vehicle: &Vehicle) -> Value {
 fn field(field: &Field) -> Value {
     let plan = &field.plan;
     let zones = field.zones.iter().enumerate();
-    let flags = field.flags.iter().map(|flag| (flag.team.index(), flag.home));
+    let flags = field
+        .flags
+        .iter()
+        .map(|flag| (flag.team.index(), flag.home));
     json!({
         "name": plan.name,
         "datum": [plan.datum.lat_deg, plan.datum.lon_deg],
@@ -71,7 +74,9 @@ fn field(field: &Field) -> Value {
 
 fn obstacle(obstacle: &Obstacle) -> Value {
     match obstacle {
-        Obstacle::Circle { centre, radius_m } => json!({"circle": [centre.east, centre.north, radius_m]}),
+        Obstacle::Circle { centre, radius_m } => {
+            json!({"circle": [centre.east, centre.north, radius_m]})
+        }
         Obstacle::Polygon { corners } => json!({"polygon": places(corners)}),
     }
 }
@@ -97,7 +102,9 @@ mod tests {
     use super::*;
 
     fn chart(file: &str, water: &Water) -> Value {
-        let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games").join(file);
+        let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("../../scenarios/games")
+            .join(file);
         let scenario = scenario::load(&file).unwrap_or_else(|e| panic!("{e}"));
         super::chart(&scenario, water)
     }
@@ -111,15 +118,36 @@ mod tests {
             omega_rad_s: 1.7,
             phase_rad: 0.4,
         };
-        let chart = chart("mixed_2v2.toml", &Water { waves: vec![eastward] });
+        let chart = chart(
+            "mixed_2v2.toml",
+            &Water {
+                waves: vec![eastward],
+            },
+        );
         assert_eq!(chart["name"], "mixed_2v2");
         assert_eq!(chart["teams"], json!([{"name": "blue"}, {"name": "red"}]));
         assert_eq!(chart["decision_s"], 0.1);
         let first = &chart["vehicles"][0];
-        assert_eq!((&first["team"], &first["teleop"]), (&json!(0), &json!(false)));
-        assert!(first["speed_max_m_s"].as_f64().is_some_and(|speed| speed > 0.5), "{first}");
-        let kinds: Vec<&Value> = chart["vehicles"].as_array().expect("a list").iter().map(|v| &v["external"]).collect();
-        assert!(kinds.contains(&&json!(true)) && kinds.contains(&&json!(false)), "real boats among others: {kinds:?}");
+        assert_eq!(
+            (&first["team"], &first["teleop"]),
+            (&json!(0), &json!(false))
+        );
+        assert!(
+            first["speed_max_m_s"]
+                .as_f64()
+                .is_some_and(|speed| speed > 0.5),
+            "{first}"
+        );
+        let kinds: Vec<&Value> = chart["vehicles"]
+            .as_array()
+            .expect("a list")
+            .iter()
+            .map(|v| &v["external"])
+            .collect();
+        assert!(
+            kinds.contains(&&json!(true)) && kinds.contains(&&json!(false)),
+            "real boats among others: {kinds:?}"
+        );
         let wave = &chart["waves"][0];
         assert!((wave["k_x"].as_f64().expect("a number") - 0.3).abs() < 1e-12);
         assert!(wave["k_y"].as_f64().expect("a number").abs() < 1e-12);
@@ -130,7 +158,10 @@ mod tests {
         let chart = chart("pav01_vs_pav01.toml", &Water::default());
         let field = &chart["field"];
         assert_eq!(field["name"], "aquaticus_160x80");
-        assert_eq!(field["corners"], json!([[0.0, 0.0], [0.0, 80.0], [160.0, 80.0], [160.0, 0.0]]));
+        assert_eq!(
+            field["corners"],
+            json!([[0.0, 0.0], [0.0, 80.0], [160.0, 80.0], [160.0, 0.0]])
+        );
         assert_eq!(field["scrimmage"], json!([[80.0, 0.0], [80.0, 80.0]]));
         assert_eq!(field["flags"][0], json!({"team": 0, "x": 20.0, "y": 40.0}));
         assert_eq!(field["walls"], false);
@@ -143,6 +174,11 @@ mod tests {
         let chart = chart("harbour_2v2.toml", &Water::default());
         let obstacles = chart["field"]["obstacles"].as_array().expect("a list");
         assert!(!obstacles.is_empty());
-        assert!(obstacles.iter().all(|one| one["circle"].is_array() || one["polygon"].is_array()), "{obstacles:?}");
+        assert!(
+            obstacles
+                .iter()
+                .all(|one| one["circle"].is_array() || one["polygon"].is_array()),
+            "{obstacles:?}"
+        );
     }
 }

@@ -179,7 +179,17 @@ impl PageMessage<'_> {
         let definitions = messages::ros::DEFINITIONS.into_iter().collect();
         let rights = access >= Access::Control;
         let operates = access >= Access::Operate;
-        PageMessage::Hello { protocol: PROTOCOL, version, mode, rights, operates, game, about, definitions, chart }
+        PageMessage::Hello {
+            protocol: PROTOCOL,
+            version,
+            mode,
+            rights,
+            operates,
+            game,
+            about,
+            definitions,
+            chart,
+        }
     }
 
     /// A boat's estimated position.
@@ -223,8 +233,10 @@ mod tests {
         };
         let tagged = event("tagged");
         let failsafe = event("failsafe");
-        let tell =
-            PageMessage::Events { reset: true, events: vec![EventMessage::new(&tagged), EventMessage::new(&failsafe)] };
+        let tell = PageMessage::Events {
+            reset: true,
+            events: vec![EventMessage::new(&tagged), EventMessage::new(&failsafe)],
+        };
         let want = json!({"tick": 7, "at_s": 0.35, "event": "tagged", "vehicle": "a", "other": "b",
             "text": "a is tagged by b"});
         assert_eq!(value(&tell)["kind"], "events");
@@ -234,10 +246,18 @@ mod tests {
 
     #[test]
     fn what_is_not_known_is_null_and_not_left_out() {
-        let tell = value(&PageMessage::Drive { vehicle: "a", by: None });
+        let tell = value(&PageMessage::Drive {
+            vehicle: "a",
+            by: None,
+        });
         assert_eq!(tell, json!({"kind": "drive", "vehicle": "a", "by": null}));
-        let tell =
-            value(&PageMessage::Helm { vehicle: "a", report: None, reason: Some("x"), computed: true, agrees: None });
+        let tell = value(&PageMessage::Helm {
+            vehicle: "a",
+            report: None,
+            reason: Some("x"),
+            computed: true,
+            agrees: None,
+        });
         assert_eq!(tell["report"], Value::Null);
         assert_eq!(tell["agrees"], Value::Null);
     }

@@ -121,12 +121,26 @@ impl Page {
     /// [`PageError`] if it cannot or must not listen on the address.
     pub fn open(settings: PageSettings) -> Result<Page, PageError> {
         let (listener, address) = listener(&settings)?;
-        let PageSettings { token, hosts, background, stop, .. } = settings;
+        let PageSettings {
+            token,
+            hosts,
+            background,
+            stop,
+            ..
+        } = settings;
         // One thread besides the game's: a page must never take a processor from the game.
-        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(PageError::Begin)?;
+        let runtime = tokio::runtime::Builder::new_current_thread()
+            .enable_all()
+            .build()
+            .map_err(PageError::Begin)?;
         let (shown, to_show) = watch::channel(None);
-        let operator_token = token.clone().unwrap_or_else(|| Token::random().hex()[..OPERATOR_TOKEN_DIGITS].to_owned());
-        let tokens = Tokens { control: token, operate: operator_token.clone() };
+        let operator_token = token
+            .clone()
+            .unwrap_or_else(|| Token::random().hex()[..OPERATOR_TOKEN_DIGITS].to_owned());
+        let tokens = Tokens {
+            control: token,
+            operate: operator_token.clone(),
+        };
         let ended = Arc::new(AtomicBool::new(false));
         let end = Arc::clone(&ended);
         let report = Arc::new(OnceLock::new());
@@ -147,8 +161,18 @@ impl Page {
             runtime.block_on(async { tokio::time::sleep(GOODBYE).await });
             runtime.shutdown_timeout(GOODBYE);
         };
-        let thread = std::thread::Builder::new().name("page".to_owned()).spawn(serve).map_err(PageError::Begin)?;
-        Ok(Page { address, operator_token, shown: Some(shown), report, ended, thread: Some(thread) })
+        let thread = std::thread::Builder::new()
+            .name("page".to_owned())
+            .spawn(serve)
+            .map_err(PageError::Begin)?;
+        Ok(Page {
+            address,
+            operator_token,
+            shown: Some(shown),
+            report,
+            ended,
+            thread: Some(thread),
+        })
     }
 
     /// Publishes a report with its games. Only the first call has an effect.
@@ -165,7 +189,14 @@ impl Page {
 }
 
 /// The listener, and its address.
-fn listener(PageSettings { listen, token, hosts, .. }: &PageSettings) -> Result<(TcpListener, SocketAddr), PageError> {
+fn listener(
+    PageSettings {
+        listen,
+        token,
+        hosts,
+        ..
+    }: &PageSettings,
+) -> Result<(TcpListener, SocketAddr), PageError> {
     if token.as_ref().is_some_and(String::is_empty) {
         return Err(PageError::EmptyToken);
     }
@@ -177,7 +208,10 @@ fn listener(PageSettings { listen, token, hosts, .. }: &PageSettings) -> Result<
     if let (Some(host), None) = (hosts.first(), token) {
         return Err(PageError::Named(host.clone()));
     }
-    let at = |source| PageError::Listen { address: *listen, source };
+    let at = |source| PageError::Listen {
+        address: *listen,
+        source,
+    };
     let listener = TcpListener::bind(listen).map_err(at)?;
     listener.set_nonblocking(true).map_err(at)?;
     let address = listener.local_addr().map_err(at)?;
@@ -208,14 +242,23 @@ mod tests {
         let hosts = hosts.iter().map(|host| (*host).to_owned()).collect();
         let listen = listen.parse().expect("an address");
         let token = token.map(str::to_owned);
-        Page::open(PageSettings { listen, token, hosts, background: None, stop: Arc::default() })
+        Page::open(PageSettings {
+            listen,
+            token,
+            hosts,
+            background: None,
+            stop: Arc::default(),
+        })
     }
 
     #[test]
     fn the_network_is_not_let_in_without_a_token() {
         assert!(matches!(open("0.0.0.0:0", None), Err(PageError::Open(_))));
         assert!(matches!(open("[::]:0", None), Err(PageError::Open(_))));
-        assert!(matches!(open("0.0.0.0:0", Some("")), Err(PageError::EmptyToken)));
+        assert!(matches!(
+            open("0.0.0.0:0", Some("")),
+            Err(PageError::EmptyToken)
+        ));
         assert!(open("0.0.0.0:0", Some("secret")).is_ok());
         assert!(open("127.0.0.1:0", None).is_ok());
     }
@@ -224,7 +267,12 @@ mod tests {
     fn a_further_name_needs_a_token() {
         let open = |token| open_named("127.0.0.1:0", token, &["boat.local"]);
         let error = open(None).err().expect("the page is refused").to_string();
-        assert!(["boat.local", "--host", "--page-token-file"].iter().all(|word| error.contains(word)), "{error}");
+        assert!(
+            ["boat.local", "--host", "--page-token-file"]
+                .iter()
+                .all(|word| error.contains(word)),
+            "{error}"
+        );
         assert!(open(Some("secret")).is_ok());
     }
 

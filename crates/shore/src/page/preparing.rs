@@ -31,7 +31,13 @@ impl PreparingView {
     }
 
     fn of(text: &str, failed: bool) -> PreparingView {
-        PreparingView { said: Arc::new(Mutex::new(Said { text: text.to_owned(), failed })), news: Changes::default() }
+        PreparingView {
+            said: Arc::new(Mutex::new(Said {
+                text: text.to_owned(),
+                failed,
+            })),
+            news: Changes::default(),
+        }
     }
 
     /// Replaces the text.
@@ -43,7 +49,10 @@ impl PreparingView {
 
 impl View for PreparingView {
     fn open_viewer(&self, _: Access) -> Box<dyn Viewer> {
-        Box::new(PreparingViewer { said: Arc::clone(&self.said), sent: None })
+        Box::new(PreparingViewer {
+            said: Arc::clone(&self.said),
+            sent: None,
+        })
     }
 
     fn news(&self) -> &Changes {
@@ -71,7 +80,11 @@ impl Viewer for PreparingViewer {
         if self.sent.as_ref() == Some(&said) {
             return None;
         }
-        let message = PageMessage::Preparing { text: &said.text, failed: said.failed }.json();
+        let message = PageMessage::Preparing {
+            text: &said.text,
+            failed: said.failed,
+        }
+        .json();
         self.sent = Some(said);
         Some(Outgoing::Text(message))
     }

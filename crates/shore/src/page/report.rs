@@ -31,7 +31,10 @@ pub struct Shown {
 impl Shown {
     /// The default view of all pages.
     pub(super) fn to_all(receiver: watch::Receiver<Option<Arc<dyn View>>>) -> Shown {
-        Shown { receiver, _kept: None }
+        Shown {
+            receiver,
+            _kept: None,
+        }
     }
 }
 
@@ -51,7 +54,10 @@ impl Showing {
 
     /// A handle for one page.
     pub fn shown(self: &Arc<Showing>) -> Shown {
-        Shown { receiver: self.0.subscribe(), _kept: Some(Arc::clone(self)) }
+        Shown {
+            receiver: self.0.subscribe(),
+            _kept: Some(Arc::clone(self)),
+        }
     }
 
     /// Whether any page shows it.

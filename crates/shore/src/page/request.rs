@@ -113,9 +113,13 @@ mod tests {
     #[test]
     fn what_the_protocol_lists_is_understood() {
         let cases = concat!(env!("CARGO_MANIFEST_DIR"), "/src/page/request_cases.txt");
-        for line in std::fs::read_to_string(cases).expect("the cases can be read").lines() {
+        for line in std::fs::read_to_string(cases)
+            .expect("the cases can be read")
+            .lines()
+        {
             let (text, want) = line.split_once(" is ").expect("a message and its meaning");
-            let ask: PageRequest = serde_json::from_str(text).unwrap_or_else(|e| panic!("{text}: {e}"));
+            let ask: PageRequest =
+                serde_json::from_str(text).unwrap_or_else(|e| panic!("{text}: {e}"));
             assert_eq!(format!("{ask:?}"), want);
             assert!(text.contains(&format!("{:?}", ask.name())), "{text}");
         }

@@ -54,13 +54,24 @@ pub(super) struct Function {
 impl Helm {
     /// A valid report with names instead of numbers, with utilities if requested.
     pub(super) fn new(scenario: &Scenario, report: &HelmReport, has_utilities: bool) -> Helm {
-        let percents = |utilities: &[f32]| utilities.iter().map(|utility| whole(f64::from(*utility))).collect();
+        let percents = |utilities: &[f32]| {
+            utilities
+                .iter()
+                .map(|utility| whole(f64::from(*utility)))
+                .collect()
+        };
         let function = |function: &messages::helm::FunctionReport| Function {
             behaviour: function.behaviour.clone(),
-            contact: function.contact.and_then(|v| Some(scenario.vehicles.get(v.index())?.name.clone())),
+            contact: function
+                .contact
+                .and_then(|v| Some(scenario.vehicles.get(v.index())?.name.clone())),
             weight: function.weight,
             utility: function.utility,
-            utilities: if has_utilities { percents(&function.utilities) } else { vec![] },
+            utilities: if has_utilities {
+                percents(&function.utilities)
+            } else {
+                vec![]
+            },
         };
         let policy = |policy: &PolicyReport| {
             let mut words = policy.words(scenario, report.vehicle);
@@ -73,7 +84,11 @@ impl Helm {
                 option: policy.option.clone(),
                 fault: policy.fault.clone(),
                 actions: words.actions,
-                observed: if has_utilities { words.observed } else { vec![] },
+                observed: if has_utilities {
+                    words.observed
+                } else {
+                    vec![]
+                },
             }
         };
         Helm {
@@ -90,7 +105,11 @@ impl Helm {
             speeds: report.speeds,
             speed_max_m_s: report.speed_max_m_s,
             functions: report.functions.iter().map(function).collect(),
-            collective: if has_utilities { collective(report) } else { None },
+            collective: if has_utilities {
+                collective(report)
+            } else {
+                None
+            },
         }
     }
 }
@@ -109,16 +128,42 @@ pub struct HelmAnswer {
 }
 
 /// The message to a page about a helm.
-pub(super) fn helm_text(scenario: &Scenario, vehicle: VehicleId, functions: bool, answer: HelmAnswer) -> String {
-    let HelmAnswer { report, mut reason, computed, agrees } = answer;
-    let sound = report.as_ref().filter(|report| is_sound(report, vehicle, scenario.vehicles.len()));
+pub(super) fn helm_text(
+    scenario: &Scenario,
+    vehicle: VehicleId,
+    functions: bool,
+    answer: HelmAnswer,
+) -> String {
+    let HelmAnswer {
+        report,
+        mut reason,
+        computed,
+        agrees,
+    } = answer;
+    let sound = report
+        .as_ref()
+        .filter(|report| is_sound(report, vehicle, scenario.vehicles.len()));
     if report.is_some() && sound.is_none() {
         reason = Some("the reply is invalid".to_owned());
     }
     let helm = sound.map(|report| Helm::new(scenario, report, functions));
-    let reason = if helm.is_some() { None } else { reason.or_else(|| Some("no reason given".to_owned())) };
-    let name = scenario.vehicles.get(vehicle.index()).map_or("", |vehicle| &vehicle.name);
-    PageMessage::Helm { vehicle: name, report: helm.as_ref(), reason: reason.as_deref(), computed, agrees }.json()
+    let reason = if helm.is_some() {
+        None
+    } else {
+        reason.or_else(|| Some("no reason given".to_owned()))
+    };
+    let name = scenario
+        .vehicles
+        .get(vehicle.index())
+        .map_or("", |vehicle| &vehicle.name);
+    PageMessage::Helm {
+        vehicle: name,
+        report: helm.as_ref(),
+        reason: reason.as_deref(),
+        computed,
+        agrees,
+    }
+    .json()
 }
 
 /// Whether a report is consistent and about this vehicle. Replies from agents are not trusted.
@@ -131,20 +176,35 @@ pub fn is_sound(report: &HelmReport, vehicle: VehicleId, vehicles: usize) -> boo
     report.vehicle == vehicle
         && is_grid
         && report.functions.iter().all(|function| {
-            is_whole(function.utilities.len()) && function.contact.is_none_or(|contact| contact.index() < vehicles)
+            is_whole(function.utilities.len())
+                && function
+                    .contact
+                    .is_none_or(|contact| contact.index() < vehicles)
         })
 }
 
 /// The weighted sum of all functions, scaled from its minimum to its maximum. `None` without
 /// functions.
 fn collective(report: &HelmReport) -> Option<Vec<u8>> {
-    report.functions.iter().find(|function| !function.utilities.is_empty())?;
+    report
+        .functions
+        .iter()
+        .find(|function| !function.utilities.is_empty())?;
     let sums = report.sum(report.functions.iter());
-    let (least, greatest) =
-        sums.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), sum| (least.min(*sum), most.max(*sum)));
+    let (least, greatest) = sums
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), sum| {
+            (least.min(*sum), most.max(*sum))
+        });
     let range = greatest - least;
     // If all courses have the same value, none is worse.
-    let share = |sum: &f64| if range > 0.0 { whole((sum - least) / range * 100.0) } else { 100 };
+    let share = |sum: &f64| {
+        if range > 0.0 {
+            whole((sum - least) / range * 100.0)
+        } else {
+            100
+        }
+    };
     Some(sums.iter().map(share).collect())
 }
 
@@ -162,39 +222,66 @@ pub(super) mod tests {
     use serde_json::json;
 
     pub(in super::super) fn scenario() -> Scenario {
-        let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
+        let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("../../scenarios/games/pav01_vs_pav01.toml");
         scenario::load(&file).unwrap_or_else(|e| panic!("{e}"))
     }
 
     fn function(weight: f64, utilities: &[f32]) -> FunctionReport {
         let contact = Some(VehicleId(1));
-        FunctionReport { behaviour: "go".into(), contact, weight, utility: Some(50.0), utilities: utilities.to_vec() }
+        FunctionReport {
+            behaviour: "go".into(),
+            contact,
+            weight,
+            utility: Some(50.0),
+            utilities: utilities.to_vec(),
+        }
     }
 
     fn report(functions: Vec<FunctionReport>) -> HelmReport {
         let report = json!({"vehicle": 0, "at": SimTime::from_s(1.5), "program": "pav01", "mode": "attacking",
             "courses": 2, "speeds": 2, "speed_max_m_s": 2.0, "behaviours": [], "variables": [], "functions": []});
-        HelmReport { functions, ..serde_json::from_value(report).expect("a report") }
+        HelmReport {
+            functions,
+            ..serde_json::from_value(report).expect("a report")
+        }
     }
 
     #[test]
     fn utilities_are_whole_and_their_sum_goes_from_its_least_to_its_greatest() {
-        let all = report(vec![function(100.0, &[0.0, 49.6, 100.0, 20.0]), function(300.0, &[0.0, 0.0, 100.0, 80.0])]);
+        let all = report(vec![
+            function(100.0, &[0.0, 49.6, 100.0, 20.0]),
+            function(300.0, &[0.0, 0.0, 100.0, 80.0]),
+        ]);
         let helm = Helm::new(&scenario(), &all, true);
         assert_eq!(helm.functions[0].utilities, [0, 50, 100, 20]);
         assert_eq!(helm.functions[0].contact.as_deref(), Some("blue_two"));
         assert_eq!(helm.collective, Some(vec![0, 12, 100, 65]));
         assert_eq!(helm.at_s, 1.5);
         let light = Helm::new(&scenario(), &all, false);
-        assert_eq!((light.collective, light.functions[1].utilities.len(), light.functions[1].weight), (None, 0, 300.0));
+        assert_eq!(
+            (
+                light.collective,
+                light.functions[1].utilities.len(),
+                light.functions[1].weight
+            ),
+            (None, 0, 300.0)
+        );
     }
 
     #[test]
     fn a_flat_sum_and_no_sum_are_told_apart() {
         let scenario = scenario();
         assert_eq!(Helm::new(&scenario, &report(vec![]), true).collective, None);
-        assert_eq!(Helm::new(&scenario, &report(vec![function(1.0, &[])]), true).collective, None);
-        let flat = Helm::new(&scenario, &report(vec![function(1.0, &[7.0, 7.0, 7.0, 7.0])]), true);
+        assert_eq!(
+            Helm::new(&scenario, &report(vec![function(1.0, &[])]), true).collective,
+            None
+        );
+        let flat = Helm::new(
+            &scenario,
+            &report(vec![function(1.0, &[7.0, 7.0, 7.0, 7.0])]),
+            true,
+        );
         assert_eq!(flat.collective, Some(vec![100; 4]));
     }
 
@@ -202,12 +289,24 @@ pub(super) mod tests {
     fn reports_that_make_no_sense_are_told_from_those_that_do() {
         let good = report(vec![function(1.0, &[0.0; 4])]);
         assert!(is_sound(&good, VehicleId(0), 2) && is_sound(&report(vec![]), VehicleId(0), 2));
-        assert!(!is_sound(&good, VehicleId(1), 2), "a report on another boat");
-        assert!(!is_sound(&good, VehicleId(0), 1), "a contact that does not exist");
+        assert!(
+            !is_sound(&good, VehicleId(1), 2),
+            "a report on another boat"
+        );
+        assert!(
+            !is_sound(&good, VehicleId(0), 1),
+            "a contact that does not exist"
+        );
         for bad in [
             report(vec![function(1.0, &[0.0; 3])]),
-            HelmReport { courses: usize::MAX, ..report(vec![]) },
-            HelmReport { speed_max_m_s: f64::NAN, ..good.clone() },
+            HelmReport {
+                courses: usize::MAX,
+                ..report(vec![])
+            },
+            HelmReport {
+                speed_max_m_s: f64::NAN,
+                ..good.clone()
+            },
         ] {
             assert!(!is_sound(&bad, VehicleId(0), 2), "{bad:?}");
         }

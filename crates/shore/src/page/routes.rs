@@ -56,16 +56,31 @@ struct AppState {
 
 impl AppState {
     /// Runs `get` on the report in a thread that may block. `None` without a report.
-    async fn of_report<T: Send + 'static>(&self, get: impl FnOnce(&dyn Report) -> T + Send + 'static) -> Option<T> {
+    async fn of_report<T: Send + 'static>(
+        &self,
+        get: impl FnOnce(&dyn Report) -> T + Send + 'static,
+    ) -> Option<T> {
         let report = Arc::clone(self.report.get()?);
         // A thread that panicked has already reported it.
-        tokio::task::spawn_blocking(move || get(&*report)).await.ok()
+        tokio::task::spawn_blocking(move || get(&*report))
+            .await
+            .ok()
     }
 
     /// A slot for a page with this address and query, and its access.
     fn admit(&self, from: IpAddr, query: Option<&str>) -> (Room, Access) {
         let access = self.access_control.access(query);
-        (admit(if access == Access::Operate { &self.operators } else { &self.viewers }, from), access)
+        (
+            admit(
+                if access == Access::Operate {
+                    &self.operators
+                } else {
+                    &self.viewers
+                },
+                from,
+            ),
+            access,
+        )
     }
 }
 
@@ -75,7 +90,10 @@ pub(super) type Room = (Slot, oneshot::Receiver<()>);
 fn admit(connections: &Connections, from: IpAddr) -> Room {
     let (close, closed) = oneshot::channel();
     // The connection may have ended already.
-    (connections.admit(from, move || close.send(()).unwrap_or_default()), closed)
+    (
+        connections.admit(from, move || close.send(()).unwrap_or_default()),
+        closed,
+    )
 }
 
 pub(super) async fn serve(
@@ -141,19 +159,32 @@ async fn serve_connection(
     stream.set_read_timeout(Some(SILENCE));
     stream.set_write_timeout(Some(DEAF));
     let slot = Arc::new(slot);
-    let site = site.layer(middleware::from_fn(move |mut request: Request, next: Next| {
-        slot.touch();
-        request.extensions_mut().insert(from);
-        next.run(request)
-    }));
+    let site = site.layer(middleware::from_fn(
+        move |mut request: Request, next: Next| {
+            slot.touch();
+            request.extensions_mut().insert(from);
+            next.run(request)
+        },
+    ));
     let mut server = Builder::new(TokioExecutor::new()).http1_only();
-    server.http1().timer(TokioTimer::new()).header_read_timeout(REQUEST);
-    server.serve_connection_with_upgrades(TokioIo::new(Box::pin(stream)), TowerToHyperService::new(site)).await
+    server
+        .http1()
+        .timer(TokioTimer::new())
+        .header_read_timeout(REQUEST);
+    server
+        .serve_connection_with_upgrades(
+            TokioIo::new(Box::pin(stream)),
+            TowerToHyperService::new(site),
+        )
+        .await
 }
 
 /// Rejects requests for other servers, and adds security headers to responses.
 async fn check(State(app): State<AppState>, request: Request, next: Next) -> Response<Body> {
-    let mut response = match app.access_control.check_host(text_of(request.headers(), &HOST)) {
+    let mut response = match app
+        .access_control
+        .check_host(text_of(request.headers(), &HOST))
+    {
         Ok(()) => next.run(request).await,
         Err(reason) => asset::text(StatusCode::FORBIDDEN, &reason),
     };
@@ -163,16 +194,27 @@ async fn check(State(app): State<AppState>, request: Request, next: Next) -> Res
 
 async fn file(State(app): State<AppState>, method: Method, uri: Uri) -> Response<Body> {
     if method != Method::GET && method != Method::HEAD {
-        return asset::text(StatusCode::METHOD_NOT_ALLOWED, "Only GET and HEAD are allowed.\n");
+        return asset::text(
+            StatusCode::METHOD_NOT_ALLOWED,
+            "Only GET and HEAD are allowed.\n",
+        );
     }
     if let Some(response) = background_file(app.background.as_deref(), uri.path()) {
         return response;
     }
     let path = uri.path().to_owned();
-    if let Some(report) = app.report.get().filter(|_| path == "/" && value(uri.query(), "game").is_none()) {
+    if let Some(report) = app
+        .report
+        .get()
+        .filter(|_| path == "/" && value(uri.query(), "game").is_none())
+    {
         return asset::elsewhere(report.page());
     }
-    match app.of_report(move |report| report.file(&path)).await.flatten() {
+    match app
+        .of_report(move |report| report.file(&path))
+        .await
+        .flatten()
+    {
         Some(contents) => asset::own(uri.path(), Body::from(contents)),
         None => asset::answer(uri.path()),
     }
@@ -184,9 +226,15 @@ fn background_file(background: Option<&Background>, path: &str) -> Option<Respon
     match path {
         "/background.json" => {
             let json = background.map_or("null", |background| &background.json);
-            Some(asset::plain(StatusCode::OK, "application/json", Body::from(json.to_owned())))
+            Some(asset::plain(
+                StatusCode::OK,
+                "application/json",
+                Body::from(json.to_owned()),
+            ))
         }
-        "/background-image" => image.map(|(kind, bytes)| asset::plain(StatusCode::OK, kind, Body::from(bytes.clone()))),
+        "/background-image" => {
+            image.map(|(kind, bytes)| asset::plain(StatusCode::OK, kind, Body::from(bytes.clone())))
+        }
         _ => None,
     }
 }
@@ -199,9 +247,14 @@ async fn upgrade(
     upgrade: Result<WebSocketUpgrade, WebSocketUpgradeRejection>,
 ) -> Response<Body> {
     let Ok(upgrade) = upgrade else {
-        return asset::text(StatusCode::BAD_REQUEST, "Only WebSocket connections are allowed.\n");
+        return asset::text(
+            StatusCode::BAD_REQUEST,
+            "Only WebSocket connections are allowed.\n",
+        );
     };
-    if let Err(reason) = AccessControl::check_origin(text_of(&headers, &HOST), text_of(&headers, &ORIGIN)) {
+    if let Err(reason) =
+        AccessControl::check_origin(text_of(&headers, &HOST), text_of(&headers, &ORIGIN))
+    {
         return asset::text(StatusCode::FORBIDDEN, &reason);
     }
     let game = value(uri.query(), "game").map(|name| String::from_utf8_lossy(&name).into_owned());
@@ -210,7 +263,9 @@ async fn upgrade(
         None => None,
     };
     let (room, access) = app.admit(from, uri.query());
-    let upgrade = upgrade.max_message_size(RECEIVED_MAX).max_frame_size(RECEIVED_MAX);
+    let upgrade = upgrade
+        .max_message_size(RECEIVED_MAX)
+        .max_frame_size(RECEIVED_MAX);
     upgrade.on_upgrade(move |socket| socket::serve(socket, game.unwrap_or(app.shown), access, room))
 }
 

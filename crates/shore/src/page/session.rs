@@ -32,7 +32,14 @@ pub struct PageSession {
 impl PageSession {
     /// Starts a session with a page.
     pub fn new(viewer: Box<dyn Viewer>, access: Access) -> PageSession {
-        PageSession { viewer, access, undrawn: 0, unconfirmed: 0, pings: (0, 0), refusals: VecDeque::new() }
+        PageSession {
+            viewer,
+            access,
+            undrawn: 0,
+            unconfirmed: 0,
+            pings: (0, 0),
+            refusals: VecDeque::new(),
+        }
     }
 
     /// Replaces the viewer. Frames in flight still count.
@@ -54,7 +61,9 @@ impl PageSession {
         if !is_allowed {
             let reason = match self.access {
                 Access::Watch => "this page may only watch: open it with the token",
-                _ => "this page may only watch and stop real boats: open it with the operator's token",
+                _ => {
+                    "this page may only watch and stop real boats: open it with the operator's token"
+                }
             };
             return self.refuse(ask.name(), reason.to_owned());
         }
@@ -71,7 +80,13 @@ impl PageSession {
     /// The next message to the page, if any.
     pub fn next_message(&mut self, now: Instant) -> Option<Outgoing> {
         if let Some((what, reason)) = self.refusals.pop_front() {
-            return Some(Outgoing::Text(PageMessage::Refused { what: &what, reason: &reason }.json()));
+            return Some(Outgoing::Text(
+                PageMessage::Refused {
+                    what: &what,
+                    reason: &reason,
+                }
+                .json(),
+            ));
         }
         let outgoing = self.viewer.next_message(now, self.budget());
         match &outgoing {
@@ -145,7 +160,11 @@ mod tests {
         }
         fn ask(&mut self, ask: &PageRequest, _: Instant) -> Result<(), String> {
             self.asked.lock().unwrap().push(ask.clone());
-            if matches!(ask, PageRequest::Seek { .. }) { Err("no".to_owned()) } else { Ok(()) }
+            if matches!(ask, PageRequest::Seek { .. }) {
+                Err("no".to_owned())
+            } else {
+                Ok(())
+            }
         }
         fn next_message(&mut self, _: Instant, budget: Budget) -> Option<Outgoing> {
             let fits = budget >= Budget::Frames;
@@ -159,7 +178,11 @@ mod tests {
 
     fn session(mode: Mode, access: Access) -> (PageSession, Arc<Mutex<Vec<PageRequest>>>) {
         let asked = Arc::new(Mutex::new(vec![]));
-        let viewer = TestViewer { mode, asked: Arc::clone(&asked), frames: 0 };
+        let viewer = TestViewer {
+            mode,
+            asked: Arc::clone(&asked),
+            frames: 0,
+        };
         (PageSession::new(Box::new(viewer), access), asked)
     }
 
@@ -167,14 +190,21 @@ mod tests {
     fn two_frames_are_on_their_way_and_a_third_when_one_is_drawn() {
         let (mut session, _) = session(Mode::Live, Access::Watch);
         let now = clock::now();
-        let frames: Vec<Outgoing> = std::iter::from_fn(|| session.next_message(now)).take(9).collect();
+        let frames: Vec<Outgoing> = std::iter::from_fn(|| session.next_message(now))
+            .take(9)
+            .collect();
         assert_eq!(frames, [Outgoing::now(&[1]), Outgoing::now(&[2])]);
         session.receive(r#"{"do":"ack"}"#, now);
         assert_eq!(session.next_message(now), Some(Outgoing::now(&[3])));
         assert_eq!(session.next_message(now), None);
         // A page that acknowledges more frames than it received gets no more than two.
         (0..9).for_each(|_| session.receive(r#"{"do":"ack"}"#, now));
-        assert_eq!(std::iter::from_fn(|| session.next_message(now)).take(9).count(), 2);
+        assert_eq!(
+            std::iter::from_fn(|| session.next_message(now))
+                .take(9)
+                .count(),
+            2
+        );
     }
 
     #[test]
@@ -182,18 +212,32 @@ mod tests {
         let (mut session, _) = session(Mode::Live, Access::Watch);
         assert_eq!((session.budget(), session.ping()), (Budget::All, None));
         session.unconfirmed = UNCONFIRMED_MAX - 1;
-        assert_eq!((session.budget(), session.ping()), (Budget::All, None), "short texts do not count");
+        assert_eq!(
+            (session.budget(), session.ping()),
+            (Budget::All, None),
+            "short texts do not count"
+        );
         session.unconfirmed = UNCONFIRMED_MAX;
         assert_eq!(session.budget(), Budget::Frames, "frames continue");
-        assert_eq!((session.ping(), session.ping(), session.last_ping()), (Some(1), None, 1));
+        assert_eq!(
+            (session.ping(), session.ping(), session.last_ping()),
+            (Some(1), None, 1)
+        );
         session.receive_pong(0);
-        assert_eq!(session.budget(), Budget::Frames, "an older ping does not confirm it");
+        assert_eq!(
+            session.budget(),
+            Budget::Frames,
+            "an older ping does not confirm it"
+        );
         session.receive_pong(1);
         assert_eq!(session.budget(), Budget::All);
         // A page that returns pings it never received has not received later messages.
         session.receive_pong(u64::MAX);
         session.unconfirmed = UNCONFIRMED_MAX;
-        assert_eq!((session.ping(), session.budget()), (Some(2), Budget::Frames));
+        assert_eq!(
+            (session.ping(), session.budget()),
+            (Some(2), Budget::Frames)
+        );
         session.undrawn = UNDRAWN_MAX;
         session.receive_pong(2);
         assert_eq!(session.budget(), Budget::None);
@@ -205,17 +249,25 @@ mod tests {
         let disarm = r#"{"do":"operate","vehicle":"a","command":"disarm"}"#;
         let arm = r#"{"do":"operate","vehicle":"a","command":"arm"}"#;
         let mission = r#"{"do":"mission","vehicle":"a","lines":""}"#;
-        for (act, least) in
-            [(pause, Access::Control), (disarm, Access::Control), (arm, Access::Operate), (mission, Access::Operate)]
-        {
+        for (act, least) in [
+            (pause, Access::Control),
+            (disarm, Access::Control),
+            (arm, Access::Operate),
+            (mission, Access::Operate),
+        ] {
             for access in [Access::Watch, Access::Control, Access::Operate] {
                 for mode in [Mode::Live, Mode::Replay] {
                     let (mut session, asked) = session(mode, access);
                     session.receive(act, clock::now());
                     let is_allowed = mode == Mode::Replay || access >= least;
-                    assert_eq!(asked.lock().unwrap().len(), usize::from(is_allowed), "{act} {mode:?} {access:?}");
+                    assert_eq!(
+                        asked.lock().unwrap().len(),
+                        usize::from(is_allowed),
+                        "{act} {mode:?} {access:?}"
+                    );
                     let next = session.next_message(clock::now());
-                    let refused = matches!(next, Some(Outgoing::Text(text)) if text.contains("refused"));
+                    let refused =
+                        matches!(next, Some(Outgoing::Text(text)) if text.contains("refused"));
                     assert_eq!(refused, !is_allowed, "{act} {mode:?} {access:?}");
                 }
             }
@@ -228,11 +280,22 @@ mod tests {
         let now = clock::now();
         (0..100).for_each(|_| session.receive("ahoy", now));
         session.receive_binary();
-        let outgoing: Vec<Outgoing> = std::iter::from_fn(|| session.next_message(now)).take(100).collect();
-        assert_eq!(outgoing.iter().filter(|outgoing| matches!(outgoing, Outgoing::Text(_))).count(), REFUSALS_MAX);
+        let outgoing: Vec<Outgoing> = std::iter::from_fn(|| session.next_message(now))
+            .take(100)
+            .collect();
+        assert_eq!(
+            outgoing
+                .iter()
+                .filter(|outgoing| matches!(outgoing, Outgoing::Text(_)))
+                .count(),
+            REFUSALS_MAX
+        );
         session.receive(r#"{"do":"seek","t_s":3}"#, now);
         let want = r#"{"kind":"refused","what":"seek","reason":"no"}"#;
-        assert_eq!(session.next_message(now), Some(Outgoing::Text(want.to_owned())));
+        assert_eq!(
+            session.next_message(now),
+            Some(Outgoing::Text(want.to_owned()))
+        );
     }
 
     fn anything() -> impl Strategy<Value = String> {

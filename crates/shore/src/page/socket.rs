@@ -46,9 +46,21 @@ struct Incoming {
 }
 
 /// Talks to a page until the page leaves, the server closes, or another page needs the slot.
-pub(super) async fn serve(socket: WebSocket, shown: Shown, access: Access, (slot, displaced): Room) {
+pub(super) async fn serve(
+    socket: WebSocket,
+    shown: Shown,
+    access: Access,
+    (slot, displaced): Room,
+) {
     let (sink, stream) = socket.split();
-    let mut socket = Socket { sink, incoming: Incoming { stream, slot, last_received: clock::now() } };
+    let mut socket = Socket {
+        sink,
+        incoming: Incoming {
+            stream,
+            slot,
+            last_received: clock::now(),
+        },
+    };
     let end = tokio::select! {
         end = socket.talk(shown, access) => end,
         Ok(()) = displaced => End::Displaced,
@@ -56,7 +68,10 @@ pub(super) async fn serve(socket: WebSocket, shown: Shown, access: Access, (slot
     let goodbye = match end {
         End::Gone => return,
         End::Closed => None,
-        End::Displaced => Some(CloseFrame { code: close_code::AGAIN, reason: "another page needs the slot".into() }),
+        End::Displaced => Some(CloseFrame {
+            code: close_code::AGAIN,
+            reason: "another page needs the slot".into(),
+        }),
     };
     // The page may have left already.
     drop(timeout(CLOSE_LIMIT, socket.sink.send(Message::Close(goodbye))).await);
@@ -98,7 +113,12 @@ impl Socket {
     }
 
     /// Shows one view until it is replaced.
-    async fn run(&mut self, shown: &mut Shown, news: &Changes, session: &mut PageSession) -> Result<(), End> {
+    async fn run(
+        &mut self,
+        shown: &mut Shown,
+        news: &Changes,
+        session: &mut PageSession,
+    ) -> Result<(), End> {
         let mut news = news.subscribe();
         self.incoming.last_received = clock::now();
         let mut pinged = self.incoming.last_received;

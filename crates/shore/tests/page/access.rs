@@ -38,8 +38,14 @@ fn the_page_is_served_under_its_own_names_and_sealed() {
         ] {
             assert!(low.contains(header), "no {header} in {answer}");
         }
-        assert!(status != 403 || answer.contains("not known as"), "no reason in {answer}");
-        assert!(status != 200 || low.contains("content-type: text/html; charset=utf-8"), "no page in {answer}");
+        assert!(
+            status != 403 || answer.contains("not known as"),
+            "no reason in {answer}"
+        );
+        assert!(
+            status != 200 || low.contains("content-type: text/html; charset=utf-8"),
+            "no page in {answer}"
+        );
     }
     drop(page);
 }
@@ -52,16 +58,27 @@ fn other_pages_cannot_open_a_websocket() {
         (vec![("Origin", own.as_str())], None),
         (vec![("Origin", "http://evil.example")], Some(403)),
         (vec![("Origin", "null")], Some(403)),
-        (vec![("Host", "evil.example"), ("Origin", "http://evil.example")], Some(403)),
+        (
+            vec![("Host", "evil.example"), ("Origin", "http://evil.example")],
+            Some(403),
+        ),
     ] {
-        assert_eq!(Client::connect(page.address, "/ws", &headers).err(), refused, "{headers:?}");
+        assert_eq!(
+            Client::connect(page.address, "/ws", &headers).err(),
+            refused,
+            "{headers:?}"
+        );
     }
 }
 
 #[test]
 fn only_clients_that_present_the_token_have_rights() {
     let page = page(show(), Some("a secret"), &[]);
-    for (path, rights) in [("/ws", false), ("/ws?token=guess", false), ("/ws?token=a%20secret", true)] {
+    for (path, rights) in [
+        ("/ws", false),
+        ("/ws?token=guess", false),
+        ("/ws?token=a%20secret", true),
+    ] {
         let mut client = Client::connect(page.address, path, &[]).expect("everyone may watch");
         assert_eq!(client.text()["rights"], rights, "{path}");
     }
@@ -92,13 +109,19 @@ fn those_who_only_look_keep_nobody_out_who_may_act() {
     let come = || Client::connect(page.address, "/ws?token=secret", &[]).expect("a slot is free");
     let mut operators: Vec<Client> = (0..8).map(|_| come()).collect();
     let onlookers: Vec<Client> = (0..200).map(|_| open_viewer(&page)).collect();
-    operators.iter_mut().for_each(|operator| assert_eq!(operator.text()["rights"], true));
-    operators[1..].iter_mut().for_each(|operator| seek(operator, 3.0));
+    operators
+        .iter_mut()
+        .for_each(|operator| assert_eq!(operator.text()["rights"], true));
+    operators[1..]
+        .iter_mut()
+        .for_each(|operator| seek(operator, 3.0));
     // One more displaces another.
     let mut another = come();
     seek(&mut another, 3.0);
     assert_eq!(operators[0].close_code(), Some(AGAIN));
-    operators[1..].iter_mut().for_each(|operator| seek(operator, 4.0));
+    operators[1..]
+        .iter_mut()
+        .for_each(|operator| seek(operator, 4.0));
     drop(onlookers);
 }
 
@@ -107,17 +130,26 @@ fn a_request_that_does_not_come_to_its_end_is_not_waited_for() {
     let page = page(show(), None, &[]);
     let end = now() + Duration::from_secs(25);
     let mut line = TcpStream::connect(page.address).expect("the server listens");
-    line.set_read_timeout(Some(Duration::from_millis(100))).expect("the timeout is valid");
-    line.write_all(b"GET / HTTP/1.1\r\nHost: localhost\r\nX-Slow: ").expect("the server listens");
+    line.set_read_timeout(Some(Duration::from_millis(100)))
+        .expect("the timeout is valid");
+    line.write_all(b"GET / HTTP/1.1\r\nHost: localhost\r\nX-Slow: ")
+        .expect("the server listens");
     let is_cut =
-        std::iter::from_fn(|| (now() < end).then(|| (line.write(b"x"), line.read(&mut [0; 64])))).find_map(|tried| {
-            match tried {
-                (Ok(_), Err(e)) if matches!(e.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => None,
+        std::iter::from_fn(|| (now() < end).then(|| (line.write(b"x"), line.read(&mut [0; 64]))))
+            .find_map(|tried| match tried {
+                (Ok(_), Err(e))
+                    if matches!(e.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) =>
+                {
+                    None
+                }
                 (Ok(_), Ok(0)) | (Err(_), _) | (_, Err(_)) => Some(true),
                 (_, Ok(_)) => None,
-            }
-        });
-    assert_eq!(is_cut, Some(true), "a byte from time to time kept the connection open");
+            });
+    assert_eq!(
+        is_cut,
+        Some(true),
+        "a byte from time to time kept the connection open"
+    );
 }
 
 #[test]

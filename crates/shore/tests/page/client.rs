@@ -20,25 +20,40 @@ pub(crate) struct Client {
 
 impl Client {
     /// Opens a WebSocket at this path with these headers, or returns the status of the response.
-    pub(crate) fn connect(address: SocketAddr, path: &str, headers: &[(&str, &str)]) -> Result<Client, u16> {
-        let mut request = format!("ws://{address}{path}").into_client_request().expect("a valid request");
+    pub(crate) fn connect(
+        address: SocketAddr,
+        path: &str,
+        headers: &[(&str, &str)],
+    ) -> Result<Client, u16> {
+        let mut request = format!("ws://{address}{path}")
+            .into_client_request()
+            .expect("a valid request");
         for (name, value) in headers {
             let name: HeaderName = name.parse().expect("a header");
-            request.headers_mut().insert(name, HeaderValue::from_str(value).expect("a value"));
+            request
+                .headers_mut()
+                .insert(name, HeaderValue::from_str(value).expect("a value"));
         }
         let stream = TcpStream::connect(address).expect("the server listens");
         match tungstenite::client(request, stream) {
             Ok((socket, _)) => {
-                socket.get_ref().set_read_timeout(Some(Duration::from_millis(20))).expect("the timeout is valid");
+                socket
+                    .get_ref()
+                    .set_read_timeout(Some(Duration::from_millis(20)))
+                    .expect("the timeout is valid");
                 Ok(Client { socket })
             }
-            Err(tungstenite::HandshakeError::Failure(Error::Http(response))) => Err(response.status().as_u16()),
+            Err(tungstenite::HandshakeError::Failure(Error::Http(response))) => {
+                Err(response.status().as_u16())
+            }
             Err(other) => panic!("{other}"),
         }
     }
 
     pub(crate) fn send(&mut self, json: &str) {
-        self.socket.send(Message::text(json)).expect("the server accepts it");
+        self.socket
+            .send(Message::text(json))
+            .expect("the server accepts it");
     }
 
     pub(crate) fn send_raw(&mut self, message: Message) -> Result<(), Error> {
@@ -56,7 +71,8 @@ impl Client {
             match self.socket.read() {
                 Ok(Message::Ping(_) | Message::Pong(_)) => {}
                 Ok(message) => return Ok(Some(message)),
-                Err(Error::Io(e)) if matches!(e.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {}
+                Err(Error::Io(e))
+                    if matches!(e.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {}
                 Err(e) => return Err(e),
             }
         }
@@ -65,7 +81,9 @@ impl Client {
 
     /// The next message, which must arrive.
     pub(crate) fn next(&mut self) -> Message {
-        self.next_within(LIMIT).expect("the connection is open").expect("a message arrives in time")
+        self.next_within(LIMIT)
+            .expect("the connection is open")
+            .expect("a message arrives in time")
     }
 
     /// The next message, which must be text.
@@ -100,7 +118,12 @@ impl Client {
     /// The next refusal, whose reason must contain `why`.
     pub(crate) fn is_refused(&mut self, why: &str) -> Value {
         let refused = self.until("refused", |_| true);
-        assert!(refused["reason"].as_str().is_some_and(|reason| reason.contains(why)), "{why}: {refused}");
+        assert!(
+            refused["reason"]
+                .as_str()
+                .is_some_and(|reason| reason.contains(why)),
+            "{why}: {refused}"
+        );
         refused
     }
 
@@ -144,11 +167,21 @@ impl Client {
 /// Requests a file as a browser does. Returns the status and body of the response.
 pub(crate) fn get(address: SocketAddr, path: &str, host: &str) -> (u16, String) {
     let mut stream = TcpStream::connect(address).expect("the server listens");
-    stream.set_read_timeout(Some(LIMIT)).expect("a socket has time-outs");
+    stream
+        .set_read_timeout(Some(LIMIT))
+        .expect("a socket has time-outs");
     let request = format!("GET {path} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n");
-    stream.write_all(request.as_bytes()).expect("the server listens");
+    stream
+        .write_all(request.as_bytes())
+        .expect("the server listens");
     let mut answer = String::new();
-    stream.read_to_string(&mut answer).expect("the response is text");
-    let status = answer.split(' ').nth(1).and_then(|status| status.parse().ok()).expect("a status");
+    stream
+        .read_to_string(&mut answer)
+        .expect("the response is text");
+    let status = answer
+        .split(' ')
+        .nth(1)
+        .and_then(|status| status.parse().ok())
+        .expect("a status");
     (status, answer)
 }

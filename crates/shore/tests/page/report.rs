@@ -24,7 +24,10 @@ impl Report for OneGame {
     fn game(&self, name: &str) -> Shown {
         match name {
             "a b&c" => self.showing.shown(),
-            other => Showing::new(Arc::new(PreparingView::failed(&format!("there is no game {other:?}")))).shown(),
+            other => Showing::new(Arc::new(PreparingView::failed(&format!(
+                "there is no game {other:?}"
+            ))))
+            .shown(),
         }
     }
 }
@@ -32,7 +35,10 @@ impl Report for OneGame {
 #[test]
 fn a_report_has_files_and_a_game_is_told_of_until_it_is_there() {
     let preparing = Arc::new(PreparingView::new("in a moment"));
-    let report = Arc::new(OneGame { showing: Showing::new(Arc::clone(&preparing) as _), preparing });
+    let report = Arc::new(OneGame {
+        showing: Showing::new(Arc::clone(&preparing) as _),
+        preparing,
+    });
     let page = empty_page(None, &[]);
     page.publish(Arc::clone(&report) as _);
     let at = page.address;
@@ -45,8 +51,16 @@ fn a_report_has_files_and_a_game_is_told_of_until_it_is_there() {
         ("/other.json", 404, "No such file"),
     ] {
         let (got, answer) = get(at, path, &host);
-        assert!(got == status && answer.contains(part), "{path}: {got} {answer}");
-        assert!(answer.to_lowercase().contains("content-security-policy: default-src 'self'"), "{path}: {answer}");
+        assert!(
+            got == status && answer.contains(part),
+            "{path}: {got} {answer}"
+        );
+        assert!(
+            answer
+                .to_lowercase()
+                .contains("content-security-policy: default-src 'self'"),
+            "{path}: {answer}"
+        );
     }
     assert!(!report.showing.is_watched());
     let mut client = Client::connect(at, "/ws?game=a%20b%26c", &[]).expect("everyone may watch");
@@ -62,7 +76,10 @@ fn a_report_has_files_and_a_game_is_told_of_until_it_is_there() {
     assert_eq!(client.until("hello", |_| true)["mode"], "replay");
     let mut other = Client::connect(at, "/ws?game=%3Cb%3E", &[]).expect("everyone may watch");
     let told = other.until("preparing", |_| true);
-    assert_eq!((&told["text"], &told["failed"]), (&"there is no game \"<b>\"".into(), &true.into()));
+    assert_eq!(
+        (&told["text"], &told["failed"]),
+        (&"there is no game \"<b>\"".into(), &true.into())
+    );
     // A page that reconnects for more would do so forever.
     other.send(r#"{"do":"seek","t_s":3}"#);
     other.until("refused", |_| true);

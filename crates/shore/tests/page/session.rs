@@ -52,14 +52,20 @@ fn frames(messages: &[Message]) -> Vec<u64> {
 fn a_page_that_draws_nothing_gets_two_frames() {
     let (_page, mut client) = visit(show());
     client.send(r#"{"do":"control","what":"resume"}"#);
-    let messages: Vec<Message> = std::iter::from_fn(|| Some(client.next())).take(20).collect();
+    let messages: Vec<Message> = std::iter::from_fn(|| Some(client.next()))
+        .take(20)
+        .collect();
     assert_eq!(frames(&messages).len(), 2, "after seconds of playing");
     client.send(r#"{"do":"control","what":"pause"}"#);
     let paused = client.until("player", |player| player["playing"] == false);
     assert!(frames(&client.rest()).is_empty());
     client.ack();
     let newest = (paused["t_s"].as_f64().expect("a time") * 10.0 + 1e-6) as u64;
-    assert_eq!(frames(&client.rest()), [newest], "the frames in between are skipped");
+    assert_eq!(
+        frames(&client.rest()),
+        [newest],
+        "the frames in between are skipped"
+    );
 }
 
 #[test]
@@ -68,7 +74,10 @@ fn a_page_that_does_not_read_can_still_send() {
     let (_page, mut client) = visit(Arc::new(Talker(asked, Changes::default())));
     // The connection's buffers fill up once the page has read nothing for a while.
     assert!(asks.recv_timeout(Duration::from_secs(1)).is_err());
-    for ask in [r#"{"do":"control","what":"halt"}"#, r#"{"do":"control","what":"e_stop"}"#] {
+    for ask in [
+        r#"{"do":"control","what":"halt"}"#,
+        r#"{"do":"control","what":"e_stop"}"#,
+    ] {
         client.send(ask);
         let want: PageRequest = serde_json::from_str(ask).expect("a valid request");
         assert_eq!(asks.recv_timeout(Duration::from_secs(10)), Ok(want));

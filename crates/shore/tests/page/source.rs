@@ -16,14 +16,20 @@ use std::io::Cursor;
 use std::sync::{Arc, OnceLock};
 
 pub(crate) fn scenario(file: &str) -> Scenario {
-    let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games").join(file);
+    let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../scenarios/games")
+        .join(file);
     scenario::load(&file).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// The frame of a decision in a game with ten decisions per second.
 pub(crate) fn frame(scenario: &Scenario, seq: u64) -> Frame {
     Frame {
-        stamp: Stamp { valid_ns: SimTime(100_000_000 * seq as i64), seq, version: Frame::VERSION },
+        stamp: Stamp {
+            valid_ns: SimTime(100_000_000 * seq as i64),
+            seq,
+            version: Frame::VERSION,
+        },
         vehicles: vec![VehicleTruth::default(); scenario.vehicles.len()],
         flags: vec![FlagView { carrier: -1 }; scenario.field.flags.len()],
         score: vec![0; scenario.teams.len()],
@@ -33,11 +39,20 @@ pub(crate) fn frame(scenario: &Scenario, seq: u64) -> Frame {
 
 /// The decision of an encoded frame.
 pub(crate) fn seq_of(wire: &[u8]) -> u64 {
-    primitives::codec::decode::<Frame>(&wire[1..]).expect("frames are CDR").stamp.seq
+    primitives::codec::decode::<Frame>(&wire[1..])
+        .expect("frames are CDR")
+        .stamp
+        .seq
 }
 
 pub(crate) fn own_boat(vehicle: VehicleId) -> OwnBoat {
-    let nav = Nav { north_m: 3.0, east_m: 4.0, psi_rad: std::f64::consts::FRAC_PI_2, surge_m_s: 1.5, ..Nav::default() };
+    let nav = Nav {
+        north_m: 3.0,
+        east_m: 4.0,
+        psi_rad: std::f64::consts::FRAC_PI_2,
+        surge_m_s: 1.5,
+        ..Nav::default()
+    };
     OwnBoat::new(vehicle, nav)
 }
 
@@ -60,26 +75,60 @@ pub(crate) fn recorded(frames: u64) -> Arc<Recorded> {
 
 pub(crate) fn recorded_in(bytes: Vec<u8>) -> Arc<Recorded> {
     let recording = Recording::of(bytes).expect("a recording");
-    Arc::new(Recorded::new(Arc::new(recording), "made_up.mcap".to_owned()))
+    Arc::new(Recorded::new(
+        Arc::new(recording),
+        "made_up.mcap".to_owned(),
+    ))
 }
 
 pub(crate) fn bytes_of_recording(frames: u64) -> Vec<u8> {
     let scenario = scenario("pav01_vs_pav01.toml");
     let picture = |team: u8| {
         let boats = (0..scenario.vehicles.len()).map(VehicleId::at);
-        let own = boats.filter(|boat| scenario.team_of(*boat).0 == team).map(own_boat).collect();
-        Picture { stamp: Stamp { version: Picture::VERSION, ..Stamp::default() }, team, own, ..Picture::default() }
+        let own = boats
+            .filter(|boat| scenario.team_of(*boat).0 == team)
+            .map(own_boat)
+            .collect();
+        Picture {
+            stamp: Stamp {
+                version: Picture::VERSION,
+                ..Stamp::default()
+            },
+            team,
+            own,
+            ..Picture::default()
+        }
     };
     let decision = |seq: u64| {
         let mut frame = frame(&scenario, seq);
         let untagged = Event::Untagged(VehicleId(0));
-        let logged = Logged { tick: 2 * seq, at: frame.stamp.valid_ns, event: untagged };
-        frame.events.extend((seq == 10).then(|| EventRecord::from(logged)));
-        let pictures = if seq == 0 { vec![picture(0), picture(1)] } else { vec![] };
-        Entry::Decision(Box::new(Decision { frame: frame.into(), pictures, inputs: vec![] }))
+        let logged = Logged {
+            tick: 2 * seq,
+            at: frame.stamp.valid_ns,
+            event: untagged,
+        };
+        frame
+            .events
+            .extend((seq == 10).then(|| EventRecord::from(logged)));
+        let pictures = if seq == 0 {
+            vec![picture(0), picture(1)]
+        } else {
+            vec![]
+        };
+        Entry::Decision(Box::new(Decision {
+            frame: frame.into(),
+            pictures,
+            inputs: vec![],
+        }))
     };
-    let failsafes = vec![FailsafeReport { at_s: 3.0, cause: "link down".to_owned() }];
-    let status = GatewayStatus { failsafes, ..GatewayStatus::default() };
+    let failsafes = vec![FailsafeReport {
+        at_s: 3.0,
+        cause: "link down".to_owned(),
+    }];
+    let status = GatewayStatus {
+        failsafes,
+        ..GatewayStatus::default()
+    };
     let status = Entry::Message {
         topic: "status/blue_one".to_owned(),
         schema: None,
@@ -97,12 +146,17 @@ pub(crate) fn bytes_of_recording(frames: u64) -> Vec<u8> {
         },
         water: Water::default(),
     };
-    let mut writer = Writer::begin(Cursor::new(Vec::new()), &header.opening()).expect("the recording can be written");
-    (0..frames)
-        .map(decision)
-        .chain([status])
-        .for_each(|entry| writer.write(&entry, 1).expect("the recording can be written"));
-    writer.end(recording::Facts::new()).expect("the recording can be written").into_inner()
+    let mut writer = Writer::begin(Cursor::new(Vec::new()), &header.opening())
+        .expect("the recording can be written");
+    (0..frames).map(decision).chain([status]).for_each(|entry| {
+        writer
+            .write(&entry, 1)
+            .expect("the recording can be written")
+    });
+    writer
+        .end(recording::Facts::new())
+        .expect("the recording can be written")
+        .into_inner()
 }
 
 /// Helms that report only the decision asked for.
@@ -111,8 +165,16 @@ pub(crate) struct Rememberer;
 impl Helms for Rememberer {
     fn report(&mut self, vehicle: VehicleId, decision: u64, _: bool) -> HelmAnswer {
         let mode = format!("sailing:{decision}");
-        let report = Some(HelmReport { mode, ..report(vehicle) });
-        HelmAnswer { report, reason: None, computed: true, agrees: Some(true) }
+        let report = Some(HelmReport {
+            mode,
+            ..report(vehicle)
+        });
+        HelmAnswer {
+            report,
+            reason: None,
+            computed: true,
+            agrees: Some(true),
+        }
     }
 
     fn modes(&mut self, decision: u64) -> Vec<Option<String>> {

@@ -107,13 +107,22 @@ pub fn names() -> Vec<&'static str> {
 /// [`NoFit`] for an unknown name.
 pub fn parameters(named: &[String], boat: &Boat) -> Result<Vec<Parameter>, NoFit> {
     if named.is_empty() {
-        let usual = |parameter: &&Parameter| parameter.by_default && parameter.value(boat).is_some_and(|v| v > 0.0);
+        let usual = |parameter: &&Parameter| {
+            parameter.by_default && parameter.value(boat).is_some_and(|v| v > 0.0)
+        };
         return Ok(PARAMETERS.iter().filter(usual).copied().collect());
     }
-    if let Some(unknown) = named.iter().find(|name| PARAMETERS.iter().all(|known| known.name != name.as_str())) {
+    if let Some(unknown) = named
+        .iter()
+        .find(|name| PARAMETERS.iter().all(|known| known.name != name.as_str()))
+    {
         return Err(NoFit::Unknown(unknown.clone()));
     }
-    Ok(PARAMETERS.iter().filter(|known| named.iter().any(|name| name == known.name)).copied().collect())
+    Ok(PARAMETERS
+        .iter()
+        .filter(|known| named.iter().any(|name| name == known.name))
+        .copied()
+        .collect())
 }
 
 /// A step of the search.
@@ -139,8 +148,12 @@ pub fn fit(
     parameters: &[Parameter],
     tell: &dyn Fn(Step),
 ) -> Result<Fit, NoFit> {
-    let knob = |parameter: &Parameter| Knob::new(*parameter, boat).ok_or(NoFit::NotThere(parameter.name));
-    let knobs = parameters.iter().map(knob).collect::<Result<Vec<Knob>, NoFit>>()?;
+    let knob =
+        |parameter: &Parameter| Knob::new(*parameter, boat).ok_or(NoFit::NotThere(parameter.name));
+    let knobs = parameters
+        .iter()
+        .map(knob)
+        .collect::<Result<Vec<Knob>, NoFit>>()?;
     if knobs.is_empty() {
         return Err(NoFit::Nothing);
     }
@@ -148,18 +161,29 @@ pub fn fit(
         return Err(NoFit::NoStart);
     }
     let search = Cell::new(1);
-    let told = |rms| tell(Step { searches: WEIGHINGS, search: search.get(), rms });
+    let told = |rms| {
+        tell(Step {
+            searches: WEIGHINGS,
+            search: search.get(),
+            rms,
+        })
+    };
     let mut problem = Problem::new(boat, setting, log, knobs, &told);
     let first_guess = problem.sigmas;
     for weighing in 0..WEIGHINGS {
-        let (found, report) = LevenbergMarquardt::new().with_tol(1e-9).with_patience(20).minimize(problem);
+        let (found, report) = LevenbergMarquardt::new()
+            .with_tol(1e-9)
+            .with_patience(20)
+            .minimize(problem);
         problem = found;
         if report.termination.was_usage_issue() || problem.residuals().is_none() {
             return Err(NoFit::Search(format!("{:?}", report.termination)));
         }
         if weighing + 1 < WEIGHINGS {
             search.set(weighing + 2);
-            let sigma = |channel: usize| rms(&problem.residuals_of(channel)).max(LEAST_SIGMA * first_guess[channel]);
+            let sigma = |channel: usize| {
+                rms(&problem.residuals_of(channel)).max(LEAST_SIGMA * first_guess[channel])
+            };
             let sigmas = std::array::from_fn(sigma);
             problem.weigh(sigmas);
         }
@@ -192,7 +216,10 @@ fn report(problem: &Problem<'_>) -> Result<Fit, NoFit> {
         for j in 0..i {
             let correlation = covariance[(i, j)] / (deviation(i) * deviation(j));
             if correlation.abs() > CONFUSED {
-                let names = [problem.knobs[j].parameter.name, problem.knobs[i].parameter.name];
+                let names = [
+                    problem.knobs[j].parameter.name,
+                    problem.knobs[i].parameter.name,
+                ];
                 confused.push(Confused { names, correlation });
             }
         }
@@ -200,7 +227,9 @@ fn report(problem: &Problem<'_>) -> Result<Fit, NoFit> {
     Ok(Fit {
         boat: problem.boat_at(at),
         estimates: problem.knobs.iter().enumerate().map(estimate).collect(),
-        qualities: (0..6).filter_map(|channel| quality(problem, channel)).collect(),
+        qualities: (0..6)
+            .filter_map(|channel| quality(problem, channel))
+            .collect(),
         confused,
         segments: problem.segments.len() - 1,
         measured,
@@ -208,16 +237,34 @@ fn report(problem: &Problem<'_>) -> Result<Fit, NoFit> {
 }
 
 /// The covariance of the parameters' logarithms, s² (JᵀJ)⁻¹.
-fn covariance(jacobian: &DMatrix<f64>, variance: f64, problem: &Problem<'_>) -> Result<DMatrix<f64>, NoFit> {
+fn covariance(
+    jacobian: &DMatrix<f64>,
+    variance: f64,
+    problem: &Problem<'_>,
+) -> Result<DMatrix<f64>, NoFit> {
     let blind = |i: &usize| jacobian.column(*i).norm() < 1e-9;
-    let undetermined: Vec<&str> =
-        (0..jacobian.ncols()).filter(blind).map(|i| problem.knobs[i].parameter.name).collect();
+    let undetermined: Vec<&str> = (0..jacobian.ncols())
+        .filter(blind)
+        .map(|i| problem.knobs[i].parameter.name)
+        .collect();
     if !undetermined.is_empty() {
         return Err(NoFit::Undetermined(undetermined.join(", ")));
     }
-    let inverse = jacobian.tr_mul(jacobian).cholesky().map(|factors| factors.inverse());
-    let names = || problem.knobs.iter().map(|knob| knob.parameter.name).collect::<Vec<_>>().join(", ");
-    inverse.map(|inverse| inverse * variance).ok_or_else(|| NoFit::Undetermined(names()))
+    let inverse = jacobian
+        .tr_mul(jacobian)
+        .cholesky()
+        .map(|factors| factors.inverse());
+    let names = || {
+        problem
+            .knobs
+            .iter()
+            .map(|knob| knob.parameter.name)
+            .collect::<Vec<_>>()
+            .join(", ")
+    };
+    inverse
+        .map(|inverse| inverse * variance)
+        .ok_or_else(|| NoFit::Undetermined(names()))
 }
 
 fn quality(problem: &Problem<'_>, channel: usize) -> Option<Quality> {
@@ -231,7 +278,10 @@ fn quality(problem: &Problem<'_>, channel: usize) -> Option<Quality> {
         return None;
     }
     let mean = measured.iter().sum::<f64>() / measured.len() as f64;
-    let spread: f64 = measured.iter().map(|cell| (cell - mean) * (cell - mean)).sum();
+    let spread: f64 = measured
+        .iter()
+        .map(|cell| (cell - mean) * (cell - mean))
+        .sum();
     let left: f64 = residuals.iter().map(|residual| residual * residual).sum();
     let (name, head, unit) = CHANNELS[channel];
     let rms = rms(&residuals);
@@ -243,7 +293,11 @@ fn quality(problem: &Problem<'_>, channel: usize) -> Option<Quality> {
             (Unit::Plain, true) => "m/s",
             (Unit::Plain, false) => "m",
         },
-        rms: if unit == Unit::Degrees { rms.to_degrees() } else { rms },
+        rms: if unit == Unit::Degrees {
+            rms.to_degrees()
+        } else {
+            rms
+        },
         r_squared: 1.0 - left / spread,
     })
 }

@@ -51,33 +51,52 @@ impl Log {
     /// If columns are missing or a cell is not a number.
     pub fn of_sheet(sheet: &Sheet, boat: &Boat) -> Result<Log, Mistake> {
         if matches!(boat.drive, Drive::Kinematic(_)) {
-            return Err(sheet.mistake(None, format!("{} is kinematic and has no hull to identify", boat.name)));
+            return Err(sheet.mistake(
+                None,
+                format!("{} is kinematic and has no hull to identify", boat.name),
+            ));
         }
         let times_s = sheet.times_from_first(LONGEST_S)?;
         let orders = Orders::at_times(sheet, &times_s, &Engine::new(boat))?;
         let columns = CHANNELS.map(|(_, head, _)| sheet.column(head));
         for needed in [HEADING, SURGE, YAW_RATE] {
             if columns[needed].is_none() {
-                let message = format!("no column {} among {}", CHANNELS[needed].1, sheet.heads().join(", "));
+                let message = format!(
+                    "no column {} among {}",
+                    CHANNELS[needed].1,
+                    sheet.heads().join(", ")
+                );
                 return Err(sheet.mistake(Some(1), message));
             }
         }
         if columns[0].is_some() != columns[1].is_some() {
-            return Err(sheet.mistake(Some(1), "one of the columns x_m and y_m, expected both or none".to_owned()));
+            return Err(sheet.mistake(
+                Some(1),
+                "one of the columns x_m and y_m, expected both or none".to_owned(),
+            ));
         }
         if times_s.len() < ROWS_MIN {
-            return Err(sheet.mistake(None, format!("{} rows, expected at least {ROWS_MIN}", times_s.len())));
+            return Err(sheet.mistake(
+                None,
+                format!("{} rows, expected at least {ROWS_MIN}", times_s.len()),
+            ));
         }
         let mut measured = Vec::with_capacity(times_s.len());
         for row in 0..times_s.len() {
             let mut cells = [f64::NAN; 6];
             for (channel, column) in columns.iter().enumerate() {
-                cells[channel] = column.map_or(Ok(f64::NAN), |column| cell(sheet, row, column, CHANNELS[channel].2))?;
+                cells[channel] = column.map_or(Ok(f64::NAN), |column| {
+                    cell(sheet, row, column, CHANNELS[channel].2)
+                })?;
             }
             measured.push(cells);
         }
         unwrap_headings(&mut measured);
-        Ok(Log { times: times_s.into_iter().map(SimTime::from_s).collect(), measured, orders })
+        Ok(Log {
+            times: times_s.into_iter().map(SimTime::from_s).collect(),
+            measured,
+            orders,
+        })
     }
 
     /// The first rows of segments: the first row at least `segment` after the last one with all
@@ -87,12 +106,19 @@ impl Log {
         let has_place = self.measured.iter().any(|cells| cells[X].is_finite());
         let is_start = |cells: &[f64; 6]| {
             let needed = [(X, has_place), (X + 1, has_place), (SWAY, has_sway)];
-            let always = [HEADING, SURGE, YAW_RATE].iter().all(|channel| cells[*channel].is_finite());
-            always && needed.iter().all(|(channel, needed)| !needed || cells[*channel].is_finite())
+            let always = [HEADING, SURGE, YAW_RATE]
+                .iter()
+                .all(|channel| cells[*channel].is_finite());
+            always
+                && needed
+                    .iter()
+                    .all(|(channel, needed)| !needed || cells[*channel].is_finite())
         };
         let mut starts: Vec<usize> = vec![];
         for (row, cells) in self.measured.iter().enumerate() {
-            let due = starts.last().is_none_or(|last| self.times[row] - self.times[*last] >= segment);
+            let due = starts
+                .last()
+                .is_none_or(|last| self.times[row] - self.times[*last] >= segment);
             // A remainder shorter than half a segment joins the previous one.
             let left = *self.times.last().unwrap_or(&SimTime::ZERO) - self.times[row];
             if due && is_start(cells) && (starts.is_empty() || left.0 * 2 >= segment.0) {
@@ -110,14 +136,23 @@ fn cell(sheet: &Sheet, row: usize, column: usize, unit: Unit) -> Result<f64, Mis
         return Ok(f64::NAN);
     }
     let number = sheet.number(row, column, (-1e7, 1e7))?;
-    Ok(if unit == Unit::Degrees { number.to_radians() } else { number })
+    Ok(if unit == Unit::Degrees {
+        number.to_radians()
+    } else {
+        number
+    })
 }
 
 /// Unwraps headings: removes jumps of a whole turn.
 fn unwrap_headings(measured: &mut [[f64; 6]]) {
     let mut before: Option<f64> = None;
-    for cells in measured.iter_mut().filter(|cells| cells[HEADING].is_finite()) {
-        cells[HEADING] = before.map_or(cells[HEADING], |before| before + wrap_pi(cells[HEADING] - before));
+    for cells in measured
+        .iter_mut()
+        .filter(|cells| cells[HEADING].is_finite())
+    {
+        cells[HEADING] = before.map_or(cells[HEADING], |before| {
+            before + wrap_pi(cells[HEADING] - before)
+        });
         before = Some(cells[HEADING]);
     }
 }

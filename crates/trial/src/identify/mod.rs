@@ -16,14 +16,23 @@ pub use rollout::Setting;
 
 /// A boat file with the fitted parameters and everything else from `base`. `log` is the log's name.
 pub fn written(fit: &Fit, base: &str, log: &str) -> String {
-    let mut text = format!("# Fitted to {} by squall identify: value ± 95 %.\n", log.replace(['\n', '\r'], " "));
+    let mut text = format!(
+        "# Fitted to {} by squall identify: value ± 95 %.\n",
+        log.replace(['\n', '\r'], " ")
+    );
     for quality in &fit.qualities {
-        text +=
-            &format!("# {}: rms {:.4} {}, R² {:.4}\n", quality.channel, quality.rms, quality.unit, quality.r_squared);
+        text += &format!(
+            "# {}: rms {:.4} {}, R² {:.4}\n",
+            quality.channel, quality.rms, quality.unit, quality.r_squared
+        );
     }
     text += &format!("\nbase = {base:?}\n");
     for table in ["hull", "thruster"] {
-        let mut of_table = fit.estimates.iter().filter(|estimate| estimate.parameter.table == table).peekable();
+        let mut of_table = fit
+            .estimates
+            .iter()
+            .filter(|estimate| estimate.parameter.table == table)
+            .peekable();
         if of_table.peek().is_some() {
             text += &format!("\n[{table}]\n");
         }
@@ -31,7 +40,10 @@ pub fn written(fit: &Fit, base: &str, log: &str) -> String {
             let key = estimate.parameter.key;
             let value = estimate.value;
             let plus_minus = estimate.plus_minus;
-            text += &format!("{key} = {value:.6} # ± {plus_minus:.6}, was {}\n", estimate.before);
+            text += &format!(
+                "{key} = {value:.6} # ± {plus_minus:.6}, was {}\n",
+                estimate.before
+            );
         }
     }
     text

@@ -20,22 +20,54 @@ pub struct Parameter {
 
 /// All parameters, in the order of reports.
 pub const PARAMETERS: [Parameter; 16] = [
-    hull("surge_linear", "surge_linear_kg_s", true, |boat| Some(&mut boat.hull.surge_linear_kg_s)),
-    hull("surge_quadratic", "surge_quadratic_kg_m", true, |boat| Some(&mut boat.hull.surge_quadratic_kg_m)),
-    hull("sway_linear", "sway_linear_kg_s", true, |boat| Some(&mut boat.hull.sway_linear_kg_s)),
-    hull("sway_lift", "sway_lift_kg_m", false, |boat| Some(&mut boat.hull.sway_lift_kg_m)),
-    hull("yaw_linear", "yaw_linear_kg_m2_s", true, |boat| Some(&mut boat.hull.yaw_linear_kg_m2_s)),
-    hull("yaw_quadratic", "yaw_quadratic_kg_m2", true, |boat| Some(&mut boat.hull.yaw_quadratic_kg_m2)),
-    hull("yaw_lift", "yaw_lift_kg_m", true, |boat| Some(&mut boat.hull.yaw_lift_kg_m)),
-    hull("munk_factor", "munk_factor", false, |boat| Some(&mut boat.hull.munk_factor)),
-    hull("crossflow", "crossflow_coefficient", false, |boat| Some(&mut boat.hull.crossflow_coefficient)),
-    hull("added_surge", "added_surge_kg", false, |boat| Some(&mut boat.hull.added_surge_kg)),
-    hull("added_sway", "added_sway_kg", false, |boat| Some(&mut boat.hull.added_sway_kg)),
-    hull("added_yaw", "added_yaw_kg_m2", false, |boat| Some(&mut boat.hull.added_yaw_kg_m2)),
-    hull("yaw_inertia", "yaw_inertia_kg_m2", false, |boat| Some(&mut boat.hull.yaw_inertia_kg_m2)),
-    thrusters("port_gain", "port_gain", |boat| thruster(boat).map(|thruster| &mut thruster.flaws.gain.0)),
-    thrusters("starboard_gain", "starboard_gain", |boat| thruster(boat).map(|thruster| &mut thruster.flaws.gain.1)),
-    thrusters("lag", "lag_s", |boat| thruster(boat).map(|thruster| &mut thruster.lag_s)),
+    hull("surge_linear", "surge_linear_kg_s", true, |boat| {
+        Some(&mut boat.hull.surge_linear_kg_s)
+    }),
+    hull("surge_quadratic", "surge_quadratic_kg_m", true, |boat| {
+        Some(&mut boat.hull.surge_quadratic_kg_m)
+    }),
+    hull("sway_linear", "sway_linear_kg_s", true, |boat| {
+        Some(&mut boat.hull.sway_linear_kg_s)
+    }),
+    hull("sway_lift", "sway_lift_kg_m", false, |boat| {
+        Some(&mut boat.hull.sway_lift_kg_m)
+    }),
+    hull("yaw_linear", "yaw_linear_kg_m2_s", true, |boat| {
+        Some(&mut boat.hull.yaw_linear_kg_m2_s)
+    }),
+    hull("yaw_quadratic", "yaw_quadratic_kg_m2", true, |boat| {
+        Some(&mut boat.hull.yaw_quadratic_kg_m2)
+    }),
+    hull("yaw_lift", "yaw_lift_kg_m", true, |boat| {
+        Some(&mut boat.hull.yaw_lift_kg_m)
+    }),
+    hull("munk_factor", "munk_factor", false, |boat| {
+        Some(&mut boat.hull.munk_factor)
+    }),
+    hull("crossflow", "crossflow_coefficient", false, |boat| {
+        Some(&mut boat.hull.crossflow_coefficient)
+    }),
+    hull("added_surge", "added_surge_kg", false, |boat| {
+        Some(&mut boat.hull.added_surge_kg)
+    }),
+    hull("added_sway", "added_sway_kg", false, |boat| {
+        Some(&mut boat.hull.added_sway_kg)
+    }),
+    hull("added_yaw", "added_yaw_kg_m2", false, |boat| {
+        Some(&mut boat.hull.added_yaw_kg_m2)
+    }),
+    hull("yaw_inertia", "yaw_inertia_kg_m2", false, |boat| {
+        Some(&mut boat.hull.yaw_inertia_kg_m2)
+    }),
+    thrusters("port_gain", "port_gain", |boat| {
+        thruster(boat).map(|thruster| &mut thruster.flaws.gain.0)
+    }),
+    thrusters("starboard_gain", "starboard_gain", |boat| {
+        thruster(boat).map(|thruster| &mut thruster.flaws.gain.1)
+    }),
+    thrusters("lag", "lag_s", |boat| {
+        thruster(boat).map(|thruster| &mut thruster.lag_s)
+    }),
 ];
 
 const fn hull(
@@ -44,11 +76,27 @@ const fn hull(
     by_default: bool,
     place: fn(&mut Boat) -> Option<&mut f64>,
 ) -> Parameter {
-    Parameter { name, table: "hull", key, by_default, place }
+    Parameter {
+        name,
+        table: "hull",
+        key,
+        by_default,
+        place,
+    }
 }
 
-const fn thrusters(name: &'static str, key: &'static str, place: fn(&mut Boat) -> Option<&mut f64>) -> Parameter {
-    Parameter { name, table: "thruster", key, by_default: true, place }
+const fn thrusters(
+    name: &'static str,
+    key: &'static str,
+    place: fn(&mut Boat) -> Option<&mut f64>,
+) -> Parameter {
+    Parameter {
+        name,
+        table: "thruster",
+        key,
+        by_default: true,
+        place,
+    }
 }
 
 fn thruster(boat: &mut Boat) -> Option<&mut Thruster> {
@@ -88,8 +136,16 @@ const FROM_ZERO: f64 = 0.01;
 impl Knob {
     pub(super) fn new(parameter: Parameter, boat: &Boat) -> Option<Knob> {
         let before = parameter.value(boat)?;
-        let scale = if before > 0.0 { before } else { FROM_ZERO * boat.hull.mass_kg };
-        Some(Knob { parameter, before, scale })
+        let scale = if before > 0.0 {
+            before
+        } else {
+            FROM_ZERO * boat.hull.mass_kg
+        };
+        Some(Knob {
+            parameter,
+            before,
+            scale,
+        })
     }
 
     /// The value at a search coordinate, where 0 is the start.

@@ -56,12 +56,20 @@ impl<'a> Problem<'a> {
     ) -> Problem<'a> {
         let segments = log.segments(setting.segment);
         let rows = segments[0]..log.measured.len();
-        let measured = |row: usize| (0..6).filter(move |channel| log.measured[row][*channel].is_finite());
-        let cells: Vec<(usize, usize)> =
-            rows.flat_map(|row| measured(row).map(move |channel| (row, channel))).collect();
-        let borders = segments.iter().map(|start| cells.partition_point(|(row, _)| row < start)).collect();
-        let fitted = (0..6).filter(|channel| cells.iter().any(|(_, of)| of == channel)).collect();
-        let known = |row: &usize| log.measured[*row].map(|cell| if cell.is_finite() { cell } else { 0.0 });
+        let measured =
+            |row: usize| (0..6).filter(move |channel| log.measured[row][*channel].is_finite());
+        let cells: Vec<(usize, usize)> = rows
+            .flat_map(|row| measured(row).map(move |channel| (row, channel)))
+            .collect();
+        let borders = segments
+            .iter()
+            .map(|start| cells.partition_point(|(row, _)| row < start))
+            .collect();
+        let fitted = (0..6)
+            .filter(|channel| cells.iter().any(|(_, of)| of == channel))
+            .collect();
+        let known =
+            |row: &usize| log.measured[*row].map(|cell| if cell.is_finite() { cell } else { 0.0 });
         let starts = segments[..segments.len() - 1].iter().map(known).collect();
         let at = DVector::zeros(knobs.len());
         let mut problem = Problem {
@@ -95,20 +103,33 @@ impl<'a> Problem<'a> {
     /// The boat at a search coordinate.
     pub(super) fn boat_at(&self, at: &DVector<f64>) -> Boat {
         let mut boat = self.boat.clone();
-        self.knobs.iter().zip(at.iter()).for_each(|(knob, at)| knob.turn(&mut boat, *at));
+        self.knobs
+            .iter()
+            .zip(at.iter())
+            .for_each(|(knob, at)| knob.turn(&mut boat, *at));
         boat
     }
 
     /// The numbers of measured values and of fitted values, including starts.
     pub(super) fn sizes(&self) -> (usize, usize) {
-        (self.cells.len(), self.knobs.len() + self.fitted.len() * self.starts.len())
+        (
+            self.cells.len(),
+            self.knobs.len() + self.fitted.len() * self.starts.len(),
+        )
     }
 
     /// The residuals of a channel in its own unit.
     pub(super) fn residuals_of(&self, channel: usize) -> Vec<f64> {
-        let Some(residuals) = &self.residuals else { return vec![] };
-        let of = self.cells.iter().zip(residuals.iter()).filter(|((_, of), _)| *of == channel);
-        of.map(|(_, residual)| residual * self.sigmas[channel]).collect()
+        let Some(residuals) = &self.residuals else {
+            return vec![];
+        };
+        let of = self
+            .cells
+            .iter()
+            .zip(residuals.iter())
+            .filter(|((_, of), _)| *of == channel);
+        of.map(|(_, residual)| residual * self.sigmas[channel])
+            .collect()
     }
 
     fn weighed(&self, boat: &Boat, starts: &[Point]) -> Option<DVector<f64>> {
@@ -117,7 +138,10 @@ impl<'a> Problem<'a> {
             (points[*row][*channel] - self.log.measured[*row][*channel]) / self.sigmas[*channel]
         };
         let residuals = DVector::from_iterator(self.cells.len(), self.cells.iter().map(residual));
-        residuals.iter().all(|residual| residual.is_finite()).then_some(residuals)
+        residuals
+            .iter()
+            .all(|residual| residual.is_finite())
+            .then_some(residuals)
     }
 
     /// Derivatives of the residuals with respect to the starts: a segment's start columns are in
@@ -126,7 +150,9 @@ impl<'a> Problem<'a> {
         let mut columns = Vec::with_capacity(self.fitted.len());
         for channel in &self.fitted {
             let mut moved = self.starts.clone();
-            moved.iter_mut().for_each(|start| start[*channel] += START_STEP * self.sigmas[*channel]);
+            moved
+                .iter_mut()
+                .for_each(|start| start[*channel] += START_STEP * self.sigmas[*channel]);
             columns.push((self.weighed(boat, &moved)? - residuals) / START_STEP);
         }
         Some(DMatrix::from_columns(&columns))
@@ -134,13 +160,21 @@ impl<'a> Problem<'a> {
 
     /// For each segment, the best change of its start to cancel `from`, in the columns of
     /// `by_starts`; none if undetermined.
-    fn corrections(&self, by_starts: &DMatrix<f64>, from: &DVector<f64>) -> Option<Vec<DVector<f64>>> {
+    fn corrections(
+        &self,
+        by_starts: &DMatrix<f64>,
+        from: &DVector<f64>,
+    ) -> Option<Vec<DVector<f64>>> {
         let correction = |border: &[usize]| {
             let columns = by_starts.rows(border[0], border[1] - border[0]);
             let mut normal = columns.tr_mul(&columns);
             // Small enough to matter only for a channel without information.
             (0..normal.nrows()).for_each(|i| normal[(i, i)] += 1e-9);
-            Some(normal.cholesky()?.solve(&columns.tr_mul(&from.rows(border[0], border[1] - border[0]))))
+            Some(
+                normal
+                    .cholesky()?
+                    .solve(&columns.tr_mul(&from.rows(border[0], border[1] - border[0]))),
+            )
         };
         self.borders.windows(2).map(correction).collect()
     }
@@ -148,11 +182,18 @@ impl<'a> Problem<'a> {
     /// The part of a vector that the starts cannot cancel.
     fn project(&self, by_starts: &DMatrix<f64>, from: &DVector<f64>) -> Option<DVector<f64>> {
         let mut left = from.clone();
-        for (border, change) in self.borders.windows(2).zip(self.corrections(by_starts, from)?) {
+        for (border, change) in self
+            .borders
+            .windows(2)
+            .zip(self.corrections(by_starts, from)?)
+        {
             let begin = border[0];
             let count = border[1] - border[0];
             let taken = by_starts.rows(begin, count) * change;
-            left.rows_mut(begin, count).iter_mut().zip(taken.iter()).for_each(|(left, taken)| *left -= taken);
+            left.rows_mut(begin, count)
+                .iter_mut()
+                .zip(taken.iter())
+                .for_each(|(left, taken)| *left -= taken);
         }
         Some(left)
     }
@@ -162,9 +203,15 @@ impl<'a> Problem<'a> {
         let boat = self.boat_at(&self.at);
         self.residuals = self.weighed(&boat, &self.starts);
         for _ in 0..CORRECTIONS {
-            let Some(residuals) = &self.residuals else { return };
-            let corrections = self.by_starts(&boat, residuals).and_then(|by| self.corrections(&by, residuals));
-            let Some(corrections) = corrections else { return };
+            let Some(residuals) = &self.residuals else {
+                return;
+            };
+            let corrections = self
+                .by_starts(&boat, residuals)
+                .and_then(|by| self.corrections(&by, residuals));
+            let Some(corrections) = corrections else {
+                return;
+            };
             let mut starts = self.starts.clone();
             for (start, change) in starts.iter_mut().zip(&corrections) {
                 for (channel, change) in self.fitted.iter().zip(change.iter()) {
@@ -190,7 +237,8 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
     fn set_params(&mut self, at: &DVector<f64>) {
         self.at.copy_from(at);
         self.settle();
-        let rms = |residuals: &DVector<f64>| (residuals.norm_squared() / residuals.len() as f64).sqrt();
+        let rms =
+            |residuals: &DVector<f64>| (residuals.norm_squared() / residuals.len() as f64).sqrt();
         (self.tell)(self.residuals.as_ref().map(rms));
     }
 

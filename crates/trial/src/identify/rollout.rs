@@ -34,7 +34,13 @@ pub(super) fn rollout(
     segments: &[usize],
     starts: &[Point],
 ) -> Option<Vec<Point>> {
-    let mut trial_boat = TrialBoat::new(boat, &setting.sea, setting.tick, setting.seed, &Start::default());
+    let mut trial_boat = TrialBoat::new(
+        boat,
+        &setting.sea,
+        setting.tick,
+        setting.seed,
+        &Start::default(),
+    );
     let mut points = vec![[f64::NAN; 6]; segments[0]];
     for (segment, start) in segments.windows(2).zip(starts) {
         // The thrusters follow the earlier commands first; the boat's motion meanwhile does not
@@ -42,8 +48,18 @@ pub(super) fn rollout(
         while trial_boat.now() + SimTime(setting.tick.0 / 2) < log.times[segment[0]] {
             trial_boat.step(log.orders.at(trial_boat.now()));
         }
-        let pose = Pose { at: Ned::from_xy(start[0], start[1]), psi_rad: wrap_pi(start[HEADING]) };
-        trial_boat.relocate(pose, Planar { surge: start[SURGE], sway: start[SWAY], yaw: start[YAW_RATE] });
+        let pose = Pose {
+            at: Ned::from_xy(start[0], start[1]),
+            psi_rad: wrap_pi(start[HEADING]),
+        };
+        trial_boat.relocate(
+            pose,
+            Planar {
+                surge: start[SURGE],
+                sway: start[SWAY],
+                yaw: start[YAW_RATE],
+            },
+        );
         let mut before = (trial_boat.now(), *start);
         let mut now = before;
         for row in segment[0]..segment[1] {
@@ -65,12 +81,23 @@ pub(super) fn rollout(
 fn point(trial_boat: &TrialBoat, heading_before: f64) -> Point {
     let sample = trial_boat.sample(0.0, Command::Hold);
     let heading = heading_before + wrap_pi(sample.psi_rad - heading_before);
-    [sample.at.east, sample.at.north, heading, sample.nu.surge, sample.nu.sway, sample.nu.yaw]
+    [
+        sample.at.east,
+        sample.at.north,
+        heading,
+        sample.nu.surge,
+        sample.nu.sway,
+        sample.nu.yaw,
+    ]
 }
 
 /// Linear interpolation between two ticks.
 fn between(before: (SimTime, Point), now: (SimTime, Point), at: SimTime) -> Point {
     let span = (now.0 - before.0).as_s();
-    let share = if span > 0.0 { ((at - before.0).as_s() / span).clamp(0.0, 1.0) } else { 1.0 };
+    let share = if span > 0.0 {
+        ((at - before.0).as_s() / span).clamp(0.0, 1.0)
+    } else {
+        1.0
+    };
     std::array::from_fn(|i| before.1[i] + share * (now.1[i] - before.1[i]))
 }

@@ -1,13 +1,16 @@
 //! The commands that an emulated ArduPilot boat accepts, and its acknowledgements.
 
-#![expect(deprecated, reason = "ground stations send the older commands, too, and ArduPilot takes them")]
+#![expect(
+    deprecated,
+    reason = "ground stations send the older commands, too, and ArduPilot takes them"
+)]
 
 use super::ArduPilot;
 use super::set_point::is_global;
 use crate::mavlink::RoverMode;
 use crate::mavlink::dialect::{
-    AUTOPILOT_VERSION_DATA, COMMAND_ACK_DATA, COMMAND_INT_DATA, COMMAND_LONG_DATA, HOME_POSITION_DATA, MavCmd,
-    MavFrame, MavResult, MavSeverity,
+    AUTOPILOT_VERSION_DATA, COMMAND_ACK_DATA, COMMAND_INT_DATA, COMMAND_LONG_DATA,
+    HOME_POSITION_DATA, MavCmd, MavFrame, MavResult, MavSeverity,
 };
 use ::mavlink::MessageData;
 use primitives::SimTime;
@@ -26,31 +29,74 @@ fn result_of(is_done: bool) -> MavResult {
 
 impl ArduPilot {
     /// Converted to the equivalent COMMAND_INT, as in ArduPilot.
-    pub(super) fn take_command_long(&mut self, now: SimTime, from: (u8, u8), long: &COMMAND_LONG_DATA) {
-        let has_position = matches!(long.command, MavCmd::MAV_CMD_DO_SET_HOME | MavCmd::MAV_CMD_DO_REPOSITION);
-        let whole = |param: f32| (if has_position { 1e7 } else { 1.0 } * f64::from(param)).round() as i32;
-        let COMMAND_LONG_DATA { param1, param2, param3, param4, command, .. } = *long;
+    pub(super) fn take_command_long(
+        &mut self,
+        now: SimTime,
+        from: (u8, u8),
+        long: &COMMAND_LONG_DATA,
+    ) {
+        let has_position = matches!(
+            long.command,
+            MavCmd::MAV_CMD_DO_SET_HOME | MavCmd::MAV_CMD_DO_REPOSITION
+        );
+        let whole =
+            |param: f32| (if has_position { 1e7 } else { 1.0 } * f64::from(param)).round() as i32;
+        let COMMAND_LONG_DATA {
+            param1,
+            param2,
+            param3,
+            param4,
+            command,
+            ..
+        } = *long;
         let x = whole(long.param5);
         let y = whole(long.param6);
         let frame = MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT;
-        let int = COMMAND_INT_DATA { param1, param2, param3, param4, x, y, command, frame, ..Default::default() };
+        let int = COMMAND_INT_DATA {
+            param1,
+            param2,
+            param3,
+            param4,
+            x,
+            y,
+            command,
+            frame,
+            ..Default::default()
+        };
         self.take_command_int(now, from, &int);
     }
 
-    pub(super) fn take_command_int(&mut self, now: SimTime, from: (u8, u8), command: &COMMAND_INT_DATA) {
-        let COMMAND_INT_DATA { param1, param2, x, y, .. } = *command;
+    pub(super) fn take_command_int(
+        &mut self,
+        now: SimTime,
+        from: (u8, u8),
+        command: &COMMAND_INT_DATA,
+    ) {
+        let COMMAND_INT_DATA {
+            param1,
+            param2,
+            x,
+            y,
+            ..
+        } = *command;
         let result = match command.command {
             MavCmd::MAV_CMD_DO_SET_MODE => self.command_mode(param2 as u32),
             MavCmd::MAV_CMD_COMPONENT_ARM_DISARM => self.command_arming(param1 == 1.0),
-            MavCmd::MAV_CMD_RUN_PREARM_CHECKS if self.is_armed => MavResult::MAV_RESULT_TEMPORARILY_REJECTED,
+            MavCmd::MAV_CMD_RUN_PREARM_CHECKS if self.is_armed => {
+                MavResult::MAV_RESULT_TEMPORARILY_REJECTED
+            }
             MavCmd::MAV_CMD_RUN_PREARM_CHECKS => DONE,
-            MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL => self.streams.set_interval(param1 as u32, f64::from(param2)),
+            MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL => {
+                self.streams.set_interval(param1 as u32, f64::from(param2))
+            }
             MavCmd::MAV_CMD_GET_MESSAGE_INTERVAL => self.show_interval(param1 as u32),
             MavCmd::MAV_CMD_REQUEST_MESSAGE => result_of(self.send_message(now, param1 as u32)),
             MavCmd::MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES => {
                 result_of(param1 == 1.0 && self.send_message(now, AUTOPILOT_VERSION_DATA::ID))
             }
-            MavCmd::MAV_CMD_GET_HOME_POSITION => result_of(self.send_message(now, HOME_POSITION_DATA::ID)),
+            MavCmd::MAV_CMD_GET_HOME_POSITION => {
+                result_of(self.send_message(now, HOME_POSITION_DATA::ID))
+            }
             MavCmd::MAV_CMD_DO_SET_HOME => self.command_home(param1 == 1.0, (x, y)),
             MavCmd::MAV_CMD_DO_CHANGE_SPEED if !matches!(param1 as i32, 0 | 1) => DENIED,
             MavCmd::MAV_CMD_DO_CHANGE_SPEED => result_of(self.change_speed(f64::from(param2))),
@@ -70,16 +116,32 @@ impl ArduPilot {
     pub(super) fn take_unknown_command(&mut self, from: (u8, u8), command: u16) {
         let is_banner = command == DO_SEND_BANNER;
         if is_banner {
-            self.say(MavSeverity::MAV_SEVERITY_INFO, "ArduRover V4.5.7, emulated by Squall");
+            self.say(
+                MavSeverity::MAV_SEVERITY_INFO,
+                "ArduRover V4.5.7, emulated by Squall",
+            );
         }
-        self.acknowledge(from, command, if is_banner { DONE } else { MavResult::MAV_RESULT_UNSUPPORTED });
+        self.acknowledge(
+            from,
+            command,
+            if is_banner {
+                DONE
+            } else {
+                MavResult::MAV_RESULT_UNSUPPORTED
+            },
+        );
     }
 
     /// Takes a number, because commands unknown to the dialect are also acknowledged.
     pub(super) fn acknowledge(&mut self, from: (u8, u8), command: u16, result: MavResult) {
         let [low, high] = command.to_le_bytes();
         let payload = [low, high, result as u8, 0, 0, 0, 0, 0, from.0, from.1];
-        self.writer.write_raw(COMMAND_ACK_DATA::ID, COMMAND_ACK_DATA::EXTRA_CRC, &payload, &mut self.outbox);
+        self.writer.write_raw(
+            COMMAND_ACK_DATA::ID,
+            COMMAND_ACK_DATA::EXTRA_CRC,
+            &payload,
+            &mut self.outbox,
+        );
     }
 
     pub(super) fn command_mode(&mut self, number: u32) -> MavResult {
@@ -104,7 +166,9 @@ impl ArduPilot {
             self.is_armed = false;
             return DONE;
         }
-        let Some(here) = self.lat_lon_e7() else { return self.refuse("PreArm: GPS 1: Bad fix") };
+        let Some(here) = self.lat_lon_e7() else {
+            return self.refuse("PreArm: GPS 1: Bad fix");
+        };
         if !self.is_armed {
             if !self.mode.allows_arming() {
                 return self.refuse("Arm: Mode not armable");
@@ -120,14 +184,20 @@ impl ArduPilot {
     }
 
     fn command_home(&mut self, is_here: bool, at_e7: (i32, i32)) -> MavResult {
-        let home = if is_here { self.lat_lon_e7() } else { self.place(at_e7).map(|_| at_e7) };
+        let home = if is_here {
+            self.lat_lon_e7()
+        } else {
+            self.place(at_e7).map(|_| at_e7)
+        };
         home.into_iter().for_each(|home| self.set_home(home));
         result_of(home.is_some())
     }
 
     fn set_home(&mut self, home: (i32, i32)) {
         self.home = Some(home);
-        self.place(home).into_iter().for_each(|place| self.autopilot.set_home(place));
+        self.place(home)
+            .into_iter()
+            .for_each(|place| self.autopilot.set_home(place));
     }
 
     /// Changes the speed in the modes that go to positions; returns whether this is one.
@@ -147,8 +217,12 @@ impl ArduPilot {
     fn command_reposition(&mut self, command: &COMMAND_INT_DATA) -> MavResult {
         let may_change_mode = command.param2 as i32 & CHANGE_MODE != 0;
         let at_e7 = (command.x, command.y);
-        let place = self.place(at_e7).filter(|_| is_global(command.frame) && at_e7 != (0, 0));
-        let (Some(place), true) = (place, self.mode == RoverMode::Guided || may_change_mode) else { return DENIED };
+        let place = self
+            .place(at_e7)
+            .filter(|_| is_global(command.frame) && at_e7 != (0, 0));
+        let (Some(place), true) = (place, self.mode == RoverMode::Guided || may_change_mode) else {
+            return DENIED;
+        };
         self.set_mode(RoverMode::Guided);
         if command.param1 > 0.0 && !self.change_speed(f64::from(command.param1)) {
             return FAILED;
@@ -158,17 +232,25 @@ impl ArduPilot {
 
     /// Sets a heading, from north or relative to the current one, and a speed.
     fn command_yaw_speed(&mut self, now: SimTime, command: &COMMAND_INT_DATA) -> MavResult {
-        let Some(own) = self.sensed.own.filter(|_| self.mode == RoverMode::Guided) else { return FAILED };
+        let Some(own) = self.sensed.own.filter(|_| self.mode == RoverMode::Guided) else {
+            return FAILED;
+        };
         let own_rad = (command.param3 > 0.0).then_some(own.nav.psi_rad);
         let heading_rad = f64::from(command.param1).to_radians();
         let speed_m_s = f64::from(command.param2);
-        result_of(self.set_points.take_heading(now, heading_rad, own_rad, speed_m_s).is_ok())
+        result_of(
+            self.set_points
+                .take_heading(now, heading_rad, own_rad, speed_m_s)
+                .is_ok(),
+        )
     }
 
     /// Continues with an item of the mission; returns whether it exists.
     pub(super) fn set_current(&mut self, seq: u16) -> bool {
         let waypoint = self.mission.waypoint_of(seq);
-        waypoint.into_iter().for_each(|waypoint| self.autopilot.next = waypoint);
+        waypoint
+            .into_iter()
+            .for_each(|waypoint| self.autopilot.next = waypoint);
         waypoint.is_some()
     }
 

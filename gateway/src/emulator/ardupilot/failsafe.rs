@@ -23,7 +23,9 @@ impl ArduPilot {
     /// terminates.
     pub(super) fn check_failsafe(&mut self, now: SimTime) {
         let is_enabled = self.parameters.value("FS_GCS_ENABLE") != 0.0;
-        let Some(heard_at) = self.station.heard_at.filter(|_| is_enabled) else { return };
+        let Some(heard_at) = self.station.heard_at.filter(|_| is_enabled) else {
+            return;
+        };
         if (now - heard_at).as_s() < self.parameters.value("FS_GCS_TIMEOUT") {
             if self.station.is_triggered {
                 self.say(MavSeverity::MAV_SEVERITY_INFO, "GCS Failsafe Cleared");
@@ -34,7 +36,10 @@ impl ArduPilot {
         let lost_at = *self.station.lost_at.get_or_insert(now);
         let is_due = (now - lost_at).as_s() > self.parameters.value("FS_TIMEOUT");
         // A boat at rest or on its way home is left alone.
-        if is_due && !self.station.is_triggered && !matches!(self.mode, RoverMode::Hold | RoverMode::Rtl) {
+        if is_due
+            && !self.station.is_triggered
+            && !matches!(self.mode, RoverMode::Hold | RoverMode::Rtl)
+        {
             self.station.is_triggered = true;
             self.say(MavSeverity::MAV_SEVERITY_WARNING, "GCS Failsafe");
             self.fail_safe();
@@ -45,12 +50,17 @@ impl ArduPilot {
         self.set_points.manual = None;
         // With 2 a mission continues.
         if self.mode == RoverMode::Auto && self.parameters.value("FS_GCS_ENABLE") == 2.0 {
-            return self.say(MavSeverity::MAV_SEVERITY_WARNING, "Failsafe - Continuing Auto Mode");
+            return self.say(
+                MavSeverity::MAV_SEVERITY_WARNING,
+                "Failsafe - Continuing Auto Mode",
+            );
         }
         match self.parameters.value("FS_ACTION") as i32 {
             0 => {}
             // SmartRTL, which is not emulated, falls back to RTL, and RTL to HOLD.
-            1 | 3 if self.command_mode(RoverMode::Rtl.number()) == MavResult::MAV_RESULT_ACCEPTED => {}
+            1 | 3
+                if self.command_mode(RoverMode::Rtl.number()) == MavResult::MAV_RESULT_ACCEPTED => {
+            }
             5 => self.is_armed = false,
             _ => self.set_mode(RoverMode::Hold),
         }

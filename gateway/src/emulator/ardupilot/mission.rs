@@ -1,12 +1,16 @@
 //! The mission of an emulated ArduPilot boat: it requests one item after the other, and shows them
 //! on request.
 
-#![expect(deprecated, reason = "ground stations send the older messages, and are answered as ArduPilot does")]
+#![expect(
+    deprecated,
+    reason = "ground stations send the older messages, and are answered as ArduPilot does"
+)]
 
 use super::set_point::is_global;
 use crate::mavlink::dialect::{
-    MISSION_ACK_DATA, MISSION_COUNT_DATA, MISSION_CURRENT_DATA, MISSION_ITEM_DATA, MISSION_ITEM_INT_DATA,
-    MISSION_REQUEST_DATA, MavCmd, MavFrame, MavMessage, MavMissionResult, MavMissionType,
+    MISSION_ACK_DATA, MISSION_COUNT_DATA, MISSION_CURRENT_DATA, MISSION_ITEM_DATA,
+    MISSION_ITEM_INT_DATA, MISSION_REQUEST_DATA, MavCmd, MavFrame, MavMessage, MavMissionResult,
+    MavMissionType,
 };
 use crate::mavlink::position::{LAT_MAX_E7, LON_MAX_E7};
 use crate::mavlink::{e7, lat_lon};
@@ -44,7 +48,12 @@ impl Upload {
         let (target_system, target_component) = self.from;
         let seq = self.items.len() as u16;
         // ArduPilot requests items with this message, and dronekit knows no other.
-        MavMessage::MISSION_REQUEST(MISSION_REQUEST_DATA { seq, target_system, target_component, ..Default::default() })
+        MavMessage::MISSION_REQUEST(MISSION_REQUEST_DATA {
+            seq,
+            target_system,
+            target_component,
+            ..Default::default()
+        })
     }
 }
 
@@ -56,21 +65,39 @@ impl MissionStore {
     /// The number of waypoints; the first item is the home.
     pub(super) fn waypoints(&self) -> usize {
         // Item 0 is always the home in ArduPilot's missions.
-        self.items.iter().skip(1).filter(|item| is_waypoint(item)).count()
+        self.items
+            .iter()
+            .skip(1)
+            .filter(|item| is_waypoint(item))
+            .count()
     }
 
     /// The number of the waypoint, from 1, to which an item leads.
     pub(super) fn waypoint_of(&self, seq: u16) -> Option<u16> {
         let before = self.items.get(1..usize::from(seq.max(1)))?;
-        (usize::from(seq) < self.items.len()).then(|| before.iter().filter(|item| is_waypoint(item)).count() as u16 + 1)
+        (usize::from(seq) < self.items.len())
+            .then(|| before.iter().filter(|item| is_waypoint(item)).count() as u16 + 1)
     }
 
     /// The item that leads to a waypoint.
     pub(super) fn current(&self, waypoint: u16) -> MavMessage {
-        let waypoints = self.items.iter().enumerate().skip(1).filter(|(_, item)| is_waypoint(item));
-        let seq = waypoints.map(|(seq, _)| seq).take(usize::from(waypoint.max(1))).last().unwrap_or(0) as u16;
+        let waypoints = self
+            .items
+            .iter()
+            .enumerate()
+            .skip(1)
+            .filter(|(_, item)| is_waypoint(item));
+        let seq = waypoints
+            .map(|(seq, _)| seq)
+            .take(usize::from(waypoint.max(1)))
+            .last()
+            .unwrap_or(0) as u16;
         let total = self.items.len().saturating_sub(1) as u16;
-        MavMessage::MISSION_CURRENT(MISSION_CURRENT_DATA { seq, total, ..Default::default() })
+        MavMessage::MISSION_CURRENT(MISSION_CURRENT_DATA {
+            seq,
+            total,
+            ..Default::default()
+        })
     }
 
     /// The mission just accepted: its waypoints, and its speed, m/s, if specified.
@@ -79,8 +106,13 @@ impl MissionStore {
             let items = self.items.iter().skip(1);
             let waypoints = items.clone().filter(|item| is_waypoint(item));
             let speeds = items.filter(|item| item.command == MavCmd::MAV_CMD_DO_CHANGE_SPEED);
-            let speed = speeds.map(|item| f64::from(item.param2)).find(|speed_m_s| *speed_m_s > 0.0);
-            (waypoints.map(|item| lat_lon((item.x, item.y))).collect(), speed)
+            let speed = speeds
+                .map(|item| f64::from(item.param2))
+                .find(|speed_m_s| *speed_m_s > 0.0);
+            (
+                waypoints.map(|item| lat_lon((item.x, item.y))).collect(),
+                speed,
+            )
         })
     }
 
@@ -114,37 +146,53 @@ impl MissionStore {
         home: Option<(i32, i32)>,
         message: &MavMessage,
     ) -> Option<Option<MavMessage>> {
-        if let Some(mission_type) = type_of(message).filter(|kind| *kind != MavMissionType::MAV_MISSION_TYPE_MISSION) {
+        if let Some(mission_type) =
+            type_of(message).filter(|kind| *kind != MavMissionType::MAV_MISSION_TYPE_MISSION)
+        {
             // The reply of a board without fences and rally points.
-            return Some(Some(typed_ack(from, MavMissionResult::MAV_MISSION_UNSUPPORTED, mission_type)));
+            return Some(Some(typed_ack(
+                from,
+                MavMissionResult::MAV_MISSION_UNSUPPORTED,
+                mission_type,
+            )));
         }
         Some(match message {
-            MavMessage::MISSION_COUNT(MISSION_COUNT_DATA { count: 0, .. }) | MavMessage::MISSION_CLEAR_ALL(_) => {
+            MavMessage::MISSION_COUNT(MISSION_COUNT_DATA { count: 0, .. })
+            | MavMessage::MISSION_CLEAR_ALL(_) => {
                 (self.items, self.upload, self.is_new) = (vec![], None, true);
                 Some(ack(from, MavMissionResult::MAV_MISSION_ACCEPTED))
             }
             MavMessage::MISSION_COUNT(count) => Some(self.begin(now, from, count.count)),
             MavMessage::MISSION_ITEM_INT(item) => Some(self.take_item(now, from, item)),
-            MavMessage::MISSION_ITEM(item) => Some(self.take_item(now, from, &int_from_float(item))),
+            MavMessage::MISSION_ITEM(item) => {
+                Some(self.take_item(now, from, &int_from_float(item)))
+            }
             MavMessage::MISSION_ACK(_) => {
                 self.end_upload(from);
                 None
             }
-            MavMessage::MISSION_REQUEST_LIST(_) => Some(MavMessage::MISSION_COUNT(MISSION_COUNT_DATA {
-                count: self.items.len() as u16,
-                target_system: from.0,
-                target_component: from.1,
-                ..MISSION_COUNT_DATA::default()
-            })),
-            MavMessage::MISSION_REQUEST_INT(request) => Some(match self.item(from, home, request.seq) {
-                Some(item) => MavMessage::MISSION_ITEM_INT(item),
-                None => ack(from, MavMissionResult::MAV_MISSION_ERROR),
-            }),
-            MavMessage::MISSION_REQUEST(request) => Some(match self.item(from, home, request.seq) {
-                Some(item) => MavMessage::MISSION_ITEM(float_from_int(&item)),
-                None => ack(from, MavMissionResult::MAV_MISSION_ERROR),
-            }),
-            MavMessage::MISSION_REQUEST_PARTIAL_LIST(_) | MavMessage::MISSION_WRITE_PARTIAL_LIST(_) => {
+            MavMessage::MISSION_REQUEST_LIST(_) => {
+                Some(MavMessage::MISSION_COUNT(MISSION_COUNT_DATA {
+                    count: self.items.len() as u16,
+                    target_system: from.0,
+                    target_component: from.1,
+                    ..MISSION_COUNT_DATA::default()
+                }))
+            }
+            MavMessage::MISSION_REQUEST_INT(request) => {
+                Some(match self.item(from, home, request.seq) {
+                    Some(item) => MavMessage::MISSION_ITEM_INT(item),
+                    None => ack(from, MavMissionResult::MAV_MISSION_ERROR),
+                })
+            }
+            MavMessage::MISSION_REQUEST(request) => {
+                Some(match self.item(from, home, request.seq) {
+                    Some(item) => MavMessage::MISSION_ITEM(float_from_int(&item)),
+                    None => ack(from, MavMissionResult::MAV_MISSION_ERROR),
+                })
+            }
+            MavMessage::MISSION_REQUEST_PARTIAL_LIST(_)
+            | MavMessage::MISSION_WRITE_PARTIAL_LIST(_) => {
                 Some(ack(from, MavMissionResult::MAV_MISSION_UNSUPPORTED))
             }
             _ => return None,
@@ -155,13 +203,30 @@ impl MissionStore {
         if count > ITEMS_MAX {
             return ack(from, MavMissionResult::MAV_MISSION_NO_SPACE);
         }
-        if self.upload.as_ref().is_some_and(|upload| upload.from != from) {
+        if self
+            .upload
+            .as_ref()
+            .is_some_and(|upload| upload.from != from)
+        {
             return ack(from, MavMissionResult::MAV_MISSION_DENIED);
         }
-        self.upload.insert(Upload { from, count, items: vec![], came_at: now, asked_at: now }).request(now)
+        self.upload
+            .insert(Upload {
+                from,
+                count,
+                items: vec![],
+                came_at: now,
+                asked_at: now,
+            })
+            .request(now)
     }
 
-    fn take_item(&mut self, now: SimTime, from: (u8, u8), item: &MISSION_ITEM_INT_DATA) -> MavMessage {
+    fn take_item(
+        &mut self,
+        now: SimTime,
+        from: (u8, u8),
+        item: &MISSION_ITEM_INT_DATA,
+    ) -> MavMessage {
         let Some(upload) = self.upload.as_mut().filter(|upload| upload.from == from) else {
             return ack(from, MavMissionResult::MAV_MISSION_ERROR);
         };
@@ -183,17 +248,32 @@ impl MissionStore {
     }
 
     /// An item; the home can always be read.
-    fn item(&self, from: (u8, u8), home: Option<(i32, i32)>, seq: u16) -> Option<MISSION_ITEM_INT_DATA> {
+    fn item(
+        &self,
+        from: (u8, u8),
+        home: Option<(i32, i32)>,
+        seq: u16,
+    ) -> Option<MISSION_ITEM_INT_DATA> {
         let (target_system, target_component) = from;
         let stored = self.items.get(usize::from(seq)).cloned();
         let item = if seq == 0 {
             let (x, y) = home.unwrap_or_else(|| stored.map_or((0, 0), |item| (item.x, item.y)));
             let command = MavCmd::MAV_CMD_NAV_WAYPOINT;
-            MISSION_ITEM_INT_DATA { x, y, command, frame: MavFrame::MAV_FRAME_GLOBAL, ..Default::default() }
+            MISSION_ITEM_INT_DATA {
+                x,
+                y,
+                command,
+                frame: MavFrame::MAV_FRAME_GLOBAL,
+                ..Default::default()
+            }
         } else {
             stored?
         };
-        Some(MISSION_ITEM_INT_DATA { target_system, target_component, ..item })
+        Some(MISSION_ITEM_INT_DATA {
+            target_system,
+            target_component,
+            ..item
+        })
     }
 }
 
@@ -201,7 +281,9 @@ impl MissionStore {
 fn fault_of(item: &MISSION_ITEM_INT_DATA) -> Option<MavMissionResult> {
     match item.command {
         MavCmd::MAV_CMD_DO_CHANGE_SPEED => None,
-        MavCmd::MAV_CMD_NAV_WAYPOINT if !is_global(item.frame) => Some(MavMissionResult::MAV_MISSION_UNSUPPORTED_FRAME),
+        MavCmd::MAV_CMD_NAV_WAYPOINT if !is_global(item.frame) => {
+            Some(MavMissionResult::MAV_MISSION_UNSUPPORTED_FRAME)
+        }
         MavCmd::MAV_CMD_NAV_WAYPOINT if item.x.unsigned_abs() > LAT_MAX_E7 => {
             Some(MavMissionResult::MAV_MISSION_INVALID_PARAM5_X)
         }
@@ -217,7 +299,11 @@ fn fault_of(item: &MISSION_ITEM_INT_DATA) -> Option<MavMissionResult> {
 fn type_of(message: &MavMessage) -> Option<MavMissionType> {
     Some(match message {
         // Of everything, only the mission exists.
-        MavMessage::MISSION_CLEAR_ALL(all) if all.mission_type == MavMissionType::MAV_MISSION_TYPE_ALL => return None,
+        MavMessage::MISSION_CLEAR_ALL(all)
+            if all.mission_type == MavMissionType::MAV_MISSION_TYPE_ALL =>
+        {
+            return None;
+        }
         MavMessage::MISSION_CLEAR_ALL(clear) => clear.mission_type,
         MavMessage::MISSION_COUNT(count) => count.mission_type,
         MavMessage::MISSION_ITEM(item) => item.mission_type,
@@ -233,22 +319,87 @@ fn type_of(message: &MavMessage) -> Option<MavMissionType> {
 
 /// An item in the older message, whose positions are in degrees.
 pub(super) fn int_from_float(item: &MISSION_ITEM_DATA) -> MISSION_ITEM_INT_DATA {
-    let MISSION_ITEM_DATA { param1, param2, param3, param4, z, seq, command, frame, current, autocontinue, .. } = *item;
+    let MISSION_ITEM_DATA {
+        param1,
+        param2,
+        param3,
+        param4,
+        z,
+        seq,
+        command,
+        frame,
+        current,
+        autocontinue,
+        ..
+    } = *item;
     let x = e7(item.x.into());
     let y = e7(item.y.into());
     let mission_type = item.mission_type;
-    let item = MISSION_ITEM_INT_DATA { param1, param2, param3, param4, x, y, z, seq, ..Default::default() };
-    MISSION_ITEM_INT_DATA { command, frame, current, autocontinue, mission_type, ..item }
+    let item = MISSION_ITEM_INT_DATA {
+        param1,
+        param2,
+        param3,
+        param4,
+        x,
+        y,
+        z,
+        seq,
+        ..Default::default()
+    };
+    MISSION_ITEM_INT_DATA {
+        command,
+        frame,
+        current,
+        autocontinue,
+        mission_type,
+        ..item
+    }
 }
 
 fn float_from_int(item: &MISSION_ITEM_INT_DATA) -> MISSION_ITEM_DATA {
-    let MISSION_ITEM_INT_DATA { param1, param2, param3, param4, z, seq, command, frame, .. } = *item;
-    let MISSION_ITEM_INT_DATA { target_system, target_component, current, autocontinue, mission_type, .. } = *item;
+    let MISSION_ITEM_INT_DATA {
+        param1,
+        param2,
+        param3,
+        param4,
+        z,
+        seq,
+        command,
+        frame,
+        ..
+    } = *item;
+    let MISSION_ITEM_INT_DATA {
+        target_system,
+        target_component,
+        current,
+        autocontinue,
+        mission_type,
+        ..
+    } = *item;
     let at = lat_lon((item.x, item.y));
     let x = at.lat_deg as f32;
     let y = at.lon_deg as f32;
-    let item = MISSION_ITEM_DATA { param1, param2, param3, param4, x, y, z, seq, command, frame, ..Default::default() };
-    MISSION_ITEM_DATA { target_system, target_component, current, autocontinue, mission_type, ..item }
+    let item = MISSION_ITEM_DATA {
+        param1,
+        param2,
+        param3,
+        param4,
+        x,
+        y,
+        z,
+        seq,
+        command,
+        frame,
+        ..Default::default()
+    };
+    MISSION_ITEM_DATA {
+        target_system,
+        target_component,
+        current,
+        autocontinue,
+        mission_type,
+        ..item
+    }
 }
 
 /// The result of an upload or of a single item.
@@ -256,8 +407,18 @@ pub(super) fn ack(from: (u8, u8), mavtype: MavMissionResult) -> MavMessage {
     typed_ack(from, mavtype, MavMissionType::MAV_MISSION_TYPE_MISSION)
 }
 
-fn typed_ack(from: (u8, u8), mavtype: MavMissionResult, mission_type: MavMissionType) -> MavMessage {
+fn typed_ack(
+    from: (u8, u8),
+    mavtype: MavMissionResult,
+    mission_type: MavMissionType,
+) -> MavMessage {
     let (target_system, target_component) = from;
-    let ack = MISSION_ACK_DATA { target_system, target_component, mavtype, mission_type, ..Default::default() };
+    let ack = MISSION_ACK_DATA {
+        target_system,
+        target_component,
+        mavtype,
+        mission_type,
+        ..Default::default()
+    };
     MavMessage::MISSION_ACK(ack)
 }

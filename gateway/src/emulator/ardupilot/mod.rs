@@ -17,7 +17,9 @@ use super::battery::{Battery, Pack};
 use super::sensed::Sensed;
 use super::{FrontSeat, Port};
 use crate::geodesy::LocalFrame;
-use crate::mavlink::dialect::{MISSION_ITEM_INT_DATA, MavCmd, MavMessage, MavMissionResult, MavSeverity};
+use crate::mavlink::dialect::{
+    MISSION_ITEM_INT_DATA, MavCmd, MavMessage, MavMissionResult, MavSeverity,
+};
 use crate::mavlink::{AUTOPILOT, Frame, Framer, Received, RoverMode, Writer, e7, on_globe};
 use crate::nmea::Operator;
 use ::mavlink::Message;
@@ -141,7 +143,9 @@ impl ArduPilot {
 
     /// The thrusters' order from its mode and set-point.
     fn commanded(&mut self, now: SimTime) -> Order {
-        let Some(own) = self.sensed.own else { return Order::Hold };
+        let Some(own) = self.sensed.own else {
+            return Order::Hold;
+        };
         let pose = own.nav.pose();
         if self.mode == RoverMode::Guided && self.set_points.expires(now) {
             // A boat keeps station here, where a car stops.
@@ -153,9 +157,13 @@ impl ArduPilot {
             RoverMode::Manual => self.set_points.manual(now),
             RoverMode::Guided => match self.set_points.destination() {
                 Some((place, speed_m_s)) => {
-                    self.autopilot.go_to(pose, place, speed_m_s.unwrap_or(self.speed_max_m_s()))
+                    self.autopilot
+                        .go_to(pose, place, speed_m_s.unwrap_or(self.speed_max_m_s()))
                 }
-                None => self.set_points.guided(pose.psi_rad).unwrap_or_else(|| self.autopilot.keep(pose)),
+                None => self
+                    .set_points
+                    .guided(pose.psi_rad)
+                    .unwrap_or_else(|| self.autopilot.keep(pose)),
             },
             RoverMode::Loiter => self.autopilot.keep(pose),
             RoverMode::Rtl | RoverMode::SmartRtl => self.autopilot.go_to_erp(pose),
@@ -181,12 +189,23 @@ impl ArduPilot {
         self.writer.system = self.system();
     }
 
-    #[expect(deprecated, reason = "ground stations send SET_MODE and REQUEST_DATA_STREAM all the same")]
+    #[expect(
+        deprecated,
+        reason = "ground stations send SET_MODE and REQUEST_DATA_STREAM all the same"
+    )]
     fn apply(&mut self, now: SimTime, received: &Received) {
-        let Received { system, component, message } = received;
+        let Received {
+            system,
+            component,
+            message,
+        } = received;
         let from = (*system, *component);
-        let is_for_us = message.target_system_id().is_none_or(|target| target == 0 || target == self.system())
-            && message.target_component_id().is_none_or(|target| target == 0 || target == AUTOPILOT);
+        let is_for_us = message
+            .target_system_id()
+            .is_none_or(|target| target == 0 || target == self.system())
+            && message
+                .target_component_id()
+                .is_none_or(|target| target == 0 || target == AUTOPILOT);
         if !is_for_us || from == (self.system(), AUTOPILOT) {
             return;
         }
@@ -202,7 +221,9 @@ impl ArduPilot {
             }
             MavMessage::COMMAND_LONG(command) => self.take_command_long(now, from, command),
             MavMessage::COMMAND_INT(command) => self.take_command_int(now, from, command),
-            MavMessage::MANUAL_CONTROL(control) if is_station && control.target == self.system() => {
+            MavMessage::MANUAL_CONTROL(control)
+                if is_station && control.target == self.system() =>
+            {
                 self.station.heard_at = Some(now);
                 self.set_points.take_manual(now, control);
             }
@@ -211,7 +232,9 @@ impl ArduPilot {
                 self.set_points.take_channels(now, channels);
             }
             // Messages from others are ignored, as by Rover.
-            MavMessage::HEARTBEAT(_) | MavMessage::MANUAL_CONTROL(_) | MavMessage::RC_CHANNELS_OVERRIDE(_) => {}
+            MavMessage::HEARTBEAT(_)
+            | MavMessage::MANUAL_CONTROL(_)
+            | MavMessage::RC_CHANNELS_OVERRIDE(_) => {}
             MavMessage::SET_ATTITUDE_TARGET(_)
             | MavMessage::SET_POSITION_TARGET_LOCAL_NED(_)
             | MavMessage::SET_POSITION_TARGET_GLOBAL_INT(_) => self.take_set_point(now, message),
@@ -240,24 +263,37 @@ impl ArduPilot {
     }
 
     fn begin_mission(&mut self) {
-        let Some((waypoints, speed_m_s)) = self.mission.take_new() else { return };
+        let Some((waypoints, speed_m_s)) = self.mission.take_new() else {
+            return;
+        };
         let places: Vec<_> = waypoints.iter().map(|at| self.frame.ned(*at)).collect();
-        self.note(format!("a mission of {} waypoints is accepted", places.len()));
+        self.note(format!(
+            "a mission of {} waypoints is accepted",
+            places.len()
+        ));
         self.autopilot.set_mission(places, speed_m_s);
     }
 
     /// Handles a set-point, which counts only in mode GUIDED.
     fn take_set_point(&mut self, now: SimTime, message: &MavMessage) {
-        let (Some(own), Some(origin), RoverMode::Guided) = (self.sensed.own, self.origin, self.mode) else { return };
+        let (Some(own), Some(origin), RoverMode::Guided) =
+            (self.sensed.own, self.origin, self.mode)
+        else {
+            return;
+        };
         let speed_max_m_s = self.speed_max_m_s();
         let taken = match message {
-            MavMessage::SET_ATTITUDE_TARGET(target) => self.set_points.take_attitude(now, target, speed_max_m_s),
+            MavMessage::SET_ATTITUDE_TARGET(target) => {
+                self.set_points.take_attitude(now, target, speed_max_m_s)
+            }
             MavMessage::SET_POSITION_TARGET_LOCAL_NED(target) => {
-                self.set_points.take_local(now, target, (own.nav.pose(), origin), speed_max_m_s)
+                self.set_points
+                    .take_local(now, target, (own.nav.pose(), origin), speed_max_m_s)
             }
             MavMessage::SET_POSITION_TARGET_GLOBAL_INT(target) => {
                 let place = self.place((target.lat_int, target.lon_int));
-                self.set_points.take_global(now, target, place, speed_max_m_s)
+                self.set_points
+                    .take_global(now, target, place, speed_max_m_s)
             }
             _ => Ok(()),
         };
@@ -269,11 +305,18 @@ impl ArduPilot {
     /// Handles a position as a mission item, which older programs send in mode GUIDED. A change of
     /// altitude has no effect on a boat.
     fn take_guided(&mut self, from: (u8, u8), item: &MISSION_ITEM_INT_DATA) {
-        let place = self.place((item.x, item.y)).filter(|_| set_point::is_global(item.frame));
-        let is_waypoint = item.command == MavCmd::MAV_CMD_NAV_WAYPOINT && self.mode == RoverMode::Guided;
-        let is_taken = item.current == 3 || is_waypoint && place.is_some_and(|place| self.set_points.go_to(place));
-        let result =
-            if is_taken { MavMissionResult::MAV_MISSION_ACCEPTED } else { MavMissionResult::MAV_MISSION_ERROR };
+        let place = self
+            .place((item.x, item.y))
+            .filter(|_| set_point::is_global(item.frame));
+        let is_waypoint =
+            item.command == MavCmd::MAV_CMD_NAV_WAYPOINT && self.mode == RoverMode::Guided;
+        let is_taken = item.current == 3
+            || is_waypoint && place.is_some_and(|place| self.set_points.go_to(place));
+        let result = if is_taken {
+            MavMissionResult::MAV_MISSION_ACCEPTED
+        } else {
+            MavMissionResult::MAV_MISSION_ERROR
+        };
         self.send(&mission::ack(from, result));
     }
 

@@ -1,7 +1,9 @@
 //! The parameters of an emulated ArduPilot boat: a few of the real ones, with their names up to
 //! version 4.6.
 
-use crate::mavlink::dialect::{MavMessage, MavParamError, MavParamType, PARAM_ERROR_DATA, PARAM_VALUE_DATA};
+use crate::mavlink::dialect::{
+    MavMessage, MavParamError, MavParamType, PARAM_ERROR_DATA, PARAM_VALUE_DATA,
+};
 use ::mavlink::types::CharArray;
 
 /// Names and initial values.
@@ -27,7 +29,9 @@ pub(super) struct Parameters {
 
 impl Parameters {
     pub(super) fn new() -> Parameters {
-        Parameters { values: BEGINNING.map(|(_, value)| value) }
+        Parameters {
+            values: BEGINNING.map(|(_, value)| value),
+        }
     }
 
     /// The value of a parameter; 0 if it does not exist.
@@ -37,16 +41,32 @@ impl Parameters {
 
     /// Handles a message of the parameter protocol. Returns the replies, or `None` for any other
     /// message.
-    pub(super) fn answer(&mut self, from: (u8, u8), message: &MavMessage) -> Option<Vec<MavMessage>> {
+    pub(super) fn answer(
+        &mut self,
+        from: (u8, u8),
+        message: &MavMessage,
+    ) -> Option<Vec<MavMessage>> {
         let one = match message {
             MavMessage::PARAM_REQUEST_LIST(_) => {
-                return Some((0..BEGINNING.len()).map(|index| self.message(index)).collect());
+                return Some(
+                    (0..BEGINNING.len())
+                        .map(|index| self.message(index))
+                        .collect(),
+                );
             }
             MavMessage::PARAM_REQUEST_READ(read) => {
-                let by_index = usize::try_from(read.param_index).ok().filter(|index| *index < BEGINNING.len());
+                let by_index = usize::try_from(read.param_index)
+                    .ok()
+                    .filter(|index| *index < BEGINNING.len());
                 let index = by_index.or_else(|| index_of(read.param_id.to_str().ok()?));
-                let missing =
-                    || error(from, read.param_id, read.param_index, MavParamError::MAV_PARAM_ERROR_DOES_NOT_EXIST);
+                let missing = || {
+                    error(
+                        from,
+                        read.param_id,
+                        read.param_index,
+                        MavParamError::MAV_PARAM_ERROR_DOES_NOT_EXIST,
+                    )
+                };
                 index.map_or_else(missing, |index| self.message(index))
             }
             MavMessage::PARAM_SET(set) => {
@@ -84,10 +104,22 @@ fn index_of(name: &str) -> Option<usize> {
 
 /// Whether a value is valid for a parameter: a system number must be one.
 fn is_allowed(name: &str, value: f32) -> bool {
-    value.is_finite() && (!name.starts_with("SYSID_") || (1.0..=255.0).contains(&value) && value.fract() == 0.0)
+    value.is_finite()
+        && (!name.starts_with("SYSID_") || (1.0..=255.0).contains(&value) && value.fract() == 0.0)
 }
 
-fn error(from: (u8, u8), param_id: CharArray<16>, param_index: i16, error: MavParamError) -> MavMessage {
+fn error(
+    from: (u8, u8),
+    param_id: CharArray<16>,
+    param_index: i16,
+    error: MavParamError,
+) -> MavMessage {
     let (target_system, target_component) = from;
-    MavMessage::PARAM_ERROR(PARAM_ERROR_DATA { param_index, target_system, target_component, param_id, error })
+    MavMessage::PARAM_ERROR(PARAM_ERROR_DATA {
+        param_index,
+        target_system,
+        target_component,
+        param_id,
+        error,
+    })
 }

@@ -5,8 +5,8 @@
 use super::ArduPilot;
 use super::mission::ack;
 use crate::mavlink::dialect::{
-    FILE_TRANSFER_PROTOCOL_DATA, LOG_DATA_DATA, LOG_ENTRY_DATA, MavMessage, MavMissionResult, MavSeverity, PING_DATA,
-    STATUSTEXT_DATA, TIMESYNC_DATA,
+    FILE_TRANSFER_PROTOCOL_DATA, LOG_DATA_DATA, LOG_ENTRY_DATA, MavMessage, MavMissionResult,
+    MavSeverity, PING_DATA, STATUSTEXT_DATA, TIMESYNC_DATA,
 };
 use crate::mavlink::{AUTOPILOT, Unreadable};
 use ::mavlink::Message;
@@ -19,8 +19,20 @@ const NAK: u8 = 129;
 const UNKNOWN_COMMAND: u8 = 7;
 /// The offset of the target system in messages, by number, for messages with enumerations; the
 /// component follows it.
-const TARGET_AT: [(u32, usize); 12] =
-    [(23, 4), (39, 32), (40, 2), (43, 0), (44, 2), (45, 0), (51, 2), (73, 32), (75, 30), (76, 30), (84, 50), (86, 50)];
+const TARGET_AT: [(u32, usize); 12] = [
+    (23, 4),
+    (39, 32),
+    (40, 2),
+    (43, 0),
+    (44, 2),
+    (45, 0),
+    (51, 2),
+    (73, 32),
+    (75, 30),
+    (76, 30),
+    (84, 50),
+    (86, 50),
+];
 
 impl ArduPilot {
     /// Answers a message that is not a command, parameter or mission message.
@@ -29,16 +41,27 @@ impl ArduPilot {
         let reply = match message {
             MavMessage::TIMESYNC(sync) if sync.tc1 == 0 => {
                 let tc1 = (1e9 * now.as_s()) as i64;
-                MavMessage::TIMESYNC(TIMESYNC_DATA { tc1, target_system, target_component, ..sync.clone() })
+                MavMessage::TIMESYNC(TIMESYNC_DATA {
+                    tc1,
+                    target_system,
+                    target_component,
+                    ..sync.clone()
+                })
             }
-            MavMessage::PING(ping) if ping.target_system == 0 => {
-                MavMessage::PING(PING_DATA { target_system, target_component, ..ping.clone() })
-            }
+            MavMessage::PING(ping) if ping.target_system == 0 => MavMessage::PING(PING_DATA {
+                target_system,
+                target_component,
+                ..ping.clone()
+            }),
             MavMessage::LOG_REQUEST_LIST(_) => MavMessage::LOG_ENTRY(LOG_ENTRY_DATA::default()),
             MavMessage::LOG_REQUEST_DATA(wanted) => {
                 let id = wanted.id;
                 let ofs = wanted.ofs;
-                MavMessage::LOG_DATA(LOG_DATA_DATA { id, ofs, ..LOG_DATA_DATA::default() })
+                MavMessage::LOG_DATA(LOG_DATA_DATA {
+                    id,
+                    ofs,
+                    ..LOG_DATA_DATA::default()
+                })
             }
             MavMessage::FILE_TRANSFER_PROTOCOL(request) => {
                 MavMessage::FILE_TRANSFER_PROTOCOL(FILE_TRANSFER_PROTOCOL_DATA {
@@ -50,9 +73,15 @@ impl ArduPilot {
             }
             MavMessage::SET_GPS_GLOBAL_ORIGIN(_) => self.origin_message(),
             // Neither requests anything.
-            MavMessage::TIMESYNC(_) | MavMessage::PING(_) | MavMessage::LOG_REQUEST_END(_) => return,
+            MavMessage::TIMESYNC(_) | MavMessage::PING(_) | MavMessage::LOG_REQUEST_END(_) => {
+                return;
+            }
             other if other.target_system_id().is_some_and(|target| target != 0) => {
-                return self.complain(now, other.message_id(), &format!("{} is not supported", other.message_name()));
+                return self.complain(
+                    now,
+                    other.message_id(),
+                    &format!("{} is not supported", other.message_name()),
+                );
             }
             _ => return,
         };
@@ -61,26 +90,39 @@ impl ArduPilot {
 
     /// Answers a message with a value unknown to the dialect.
     pub(super) fn answer_unreadable(&mut self, now: SimTime, message: &Unreadable) {
-        let Some((_, at)) = TARGET_AT.iter().find(|(id, _)| *id == message.id) else { return };
+        let Some((_, at)) = TARGET_AT.iter().find(|(id, _)| *id == message.id) else {
+            return;
+        };
         let from = (message.system, message.component);
         let is_for = |byte: usize, own: u8| message.byte(byte) == 0 || message.byte(byte) == own;
         if !is_for(*at, self.system()) || !is_for(at + 1, AUTOPILOT) {
             return;
         }
         match message.id {
-            75 | 76 => self.take_unknown_command(from, u16::from_le_bytes([message.byte(28), message.byte(29)])),
+            75 | 76 => self.take_unknown_command(
+                from,
+                u16::from_le_bytes([message.byte(28), message.byte(29)]),
+            ),
             39 | 73 => {
-                let refusal = self.mission.refuse(from, MavMissionResult::MAV_MISSION_UNSUPPORTED);
+                let refusal = self
+                    .mission
+                    .refuse(from, MavMissionResult::MAV_MISSION_UNSUPPORTED);
                 self.send(&refusal);
             }
-            40 | 43 | 44 | 45 | 51 => self.send(&ack(from, MavMissionResult::MAV_MISSION_UNSUPPORTED)),
+            40 | 43 | 44 | 45 | 51 => {
+                self.send(&ack(from, MavMissionResult::MAV_MISSION_UNSUPPORTED))
+            }
             id => self.complain(now, id, &format!("message {id} has an unknown value")),
         }
     }
 
     /// Reports that a message is not supported: at once, but less often than set-points arrive.
     pub(super) fn complain(&mut self, now: SimTime, id: u32, text: &str) {
-        let said = self.complaints.get(&id).copied().unwrap_or(SimTime::LONG_AGO);
+        let said = self
+            .complaints
+            .get(&id)
+            .copied()
+            .unwrap_or(SimTime::LONG_AGO);
         if (now - said).as_s() >= COMPLAINT_S {
             self.complaints.insert(id, now);
             self.say(MavSeverity::MAV_SEVERITY_WARNING, text);
@@ -89,7 +131,11 @@ impl ArduPilot {
 
     /// Sends a text to operators, 50 characters at most.
     pub(super) fn say(&mut self, severity: MavSeverity, text: &str) {
-        let status = STATUSTEXT_DATA { severity, text: text.into(), ..STATUSTEXT_DATA::default() };
+        let status = STATUSTEXT_DATA {
+            severity,
+            text: text.into(),
+            ..STATUSTEXT_DATA::default()
+        };
         self.send(&MavMessage::STATUSTEXT(status));
     }
 

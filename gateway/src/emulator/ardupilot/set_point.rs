@@ -2,8 +2,9 @@
 
 use crate::emulator::autopilot;
 use crate::mavlink::dialect::{
-    AttitudeTargetTypemask, MANUAL_CONTROL_DATA, MavFrame, PositionTargetTypemask, RC_CHANNELS_OVERRIDE_DATA,
-    SET_ATTITUDE_TARGET_DATA, SET_POSITION_TARGET_GLOBAL_INT_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA,
+    AttitudeTargetTypemask, MANUAL_CONTROL_DATA, MavFrame, PositionTargetTypemask,
+    RC_CHANNELS_OVERRIDE_DATA, SET_ATTITUDE_TARGET_DATA, SET_POSITION_TARGET_GLOBAL_INT_DATA,
+    SET_POSITION_TARGET_LOCAL_NED_DATA,
 };
 use messages::Order;
 use primitives::angle::wrap_pi;
@@ -44,19 +45,35 @@ struct Target {
 }
 
 impl Target {
-    fn new(mask: PositionTargetTypemask, frame_rad: f64, place: Ned, velocity: [f32; 2], yaw: [f32; 2]) -> Target {
+    fn new(
+        mask: PositionTargetTypemask,
+        frame_rad: f64,
+        place: Ned,
+        velocity: [f32; 2],
+        yaw: [f32; 2],
+    ) -> Target {
         use PositionTargetTypemask as Mask;
         let has = |one: Mask, other: Mask| !mask.intersects(one | other);
         let [x_m_s, y_m_s] = velocity.map(f64::from);
         let [yaw_rad, yaw_rate_rad_s] = yaw.map(f64::from);
-        let has_place = has(Mask::POSITION_TARGET_TYPEMASK_X_IGNORE, Mask::POSITION_TARGET_TYPEMASK_Y_IGNORE);
-        let has_velocity = has(Mask::POSITION_TARGET_TYPEMASK_VX_IGNORE, Mask::POSITION_TARGET_TYPEMASK_VY_IGNORE);
+        let has_place = has(
+            Mask::POSITION_TARGET_TYPEMASK_X_IGNORE,
+            Mask::POSITION_TARGET_TYPEMASK_Y_IGNORE,
+        );
+        let has_velocity = has(
+            Mask::POSITION_TARGET_TYPEMASK_VX_IGNORE,
+            Mask::POSITION_TARGET_TYPEMASK_VY_IGNORE,
+        );
         Target {
             place: has_place.then_some(place),
             velocity: has_velocity.then_some((x_m_s, y_m_s)),
             yaw_rad: (!mask.contains(Mask::POSITION_TARGET_TYPEMASK_YAW_IGNORE)).then_some(yaw_rad),
-            yaw_rate_rad_s: (!mask.contains(Mask::POSITION_TARGET_TYPEMASK_YAW_RATE_IGNORE)).then_some(yaw_rate_rad_s),
-            has_acceleration: has(Mask::POSITION_TARGET_TYPEMASK_AX_IGNORE, Mask::POSITION_TARGET_TYPEMASK_AY_IGNORE),
+            yaw_rate_rad_s: (!mask.contains(Mask::POSITION_TARGET_TYPEMASK_YAW_RATE_IGNORE))
+                .then_some(yaw_rate_rad_s),
+            has_acceleration: has(
+                Mask::POSITION_TARGET_TYPEMASK_AX_IGNORE,
+                Mask::POSITION_TARGET_TYPEMASK_AY_IGNORE,
+            ),
             frame_rad,
         }
     }
@@ -96,7 +113,9 @@ impl SetPoints {
 
     /// Whether a set-point in mode GUIDED has just expired.
     pub(super) fn expires(&mut self, now: SimTime) -> bool {
-        self.guided.take_if(|(at, ..)| (now - *at).as_s() > HELD_S).is_some()
+        self.guided
+            .take_if(|(at, ..)| (now - *at).as_s() > HELD_S)
+            .is_some()
     }
 
     /// Sets a heading or a rate of turn, with a fraction of the highest speed, m/s.
@@ -120,7 +139,11 @@ impl SetPoints {
             let heading_rad = math::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z));
             self.set(now, Course::Heading(heading_rad), speed_m_s)
         } else {
-            self.set(now, Course::Turn(f64::from(target.body_yaw_rate)), speed_m_s)
+            self.set(
+                now,
+                Course::Turn(f64::from(target.body_yaw_rate)),
+                speed_m_s,
+            )
         }
     }
 
@@ -129,7 +152,10 @@ impl SetPoints {
     ///
     /// # Errors
     /// The reason if Rover ignores it.
-    #[expect(deprecated, reason = "ground stations send the frames of the boat, and Rover takes them")]
+    #[expect(
+        deprecated,
+        reason = "ground stations send the frames of the boat, and Rover takes them"
+    )]
     pub(super) fn take_local(
         &mut self,
         now: SimTime,
@@ -137,13 +163,17 @@ impl SetPoints {
         (pose, origin): (Pose, Ned),
         speed_max_m_s: f64,
     ) -> Result<(), &'static str> {
-        let offset = Ned { north: f64::from(target.x), east: f64::from(target.y) };
+        let offset = Ned {
+            north: f64::from(target.x),
+            east: f64::from(target.y),
+        };
         let (frame_rad, place) = match target.coordinate_frame {
             MavFrame::MAV_FRAME_LOCAL_NED => (0.0, origin + offset),
             MavFrame::MAV_FRAME_LOCAL_OFFSET_NED => (0.0, pose.at + offset),
             MavFrame::MAV_FRAME_BODY_NED | MavFrame::MAV_FRAME_BODY_OFFSET_NED => {
                 let ahead = Rotation::from_heading(pose.psi_rad);
-                let turned = ahead.ahead().scaled(offset.north) + ahead.starboard().scaled(offset.east);
+                let turned =
+                    ahead.ahead().scaled(offset.north) + ahead.starboard().scaled(offset.east);
                 (pose.psi_rad, pose.at + turned)
             }
             _ => return Err("set-point ignored: its frame"),
@@ -151,7 +181,13 @@ impl SetPoints {
         let velocity = [target.vx, target.vy];
         self.follow(
             now,
-            &Target::new(target.type_mask, frame_rad, place, velocity, [target.yaw, target.yaw_rate]),
+            &Target::new(
+                target.type_mask,
+                frame_rad,
+                place,
+                velocity,
+                [target.yaw, target.yaw_rate],
+            ),
             speed_max_m_s,
         )
     }
@@ -172,19 +208,36 @@ impl SetPoints {
         }
         let velocity = [target.vx, target.vy];
         let yaw = [target.yaw, target.yaw_rate];
-        let asked =
-            Target::new(target.type_mask, 0.0, place.unwrap_or(Ned { north: f64::NAN, east: f64::NAN }), velocity, yaw);
+        let asked = Target::new(
+            target.type_mask,
+            0.0,
+            place.unwrap_or(Ned {
+                north: f64::NAN,
+                east: f64::NAN,
+            }),
+            velocity,
+            yaw,
+        );
         self.follow(now, &asked, speed_max_m_s)
     }
 
     /// Sets a position, or a speed with the heading of the velocity, another heading, or a rate of
     /// turn. Like Rover's `handle_set_position_target_local_ned`, including its sign of the speed.
-    fn follow(&mut self, now: SimTime, target: &Target, speed_max_m_s: f64) -> Result<(), &'static str> {
+    fn follow(
+        &mut self,
+        now: SimTime,
+        target: &Target,
+        speed_max_m_s: f64,
+    ) -> Result<(), &'static str> {
         if target.has_acceleration {
             return Err("set-point ignored: set ACC_IGNORE in mask");
         }
         if let Some(place) = target.place {
-            return if self.go_to(place) { Ok(()) } else { Err("set-point ignored: its position") };
+            return if self.go_to(place) {
+                Ok(())
+            } else {
+                Err("set-point ignored: its position")
+            };
         }
         let (x_m_s, y_m_s) = target.velocity.unwrap_or((0.0, 0.0));
         let course = match (target.yaw_rad, target.yaw_rate_rad_s) {
@@ -200,7 +253,11 @@ impl SetPoints {
         // imitated so that our closed loops detect a yaw sent with a velocity.
         let has_yaw = target.yaw_rad.is_some() || target.yaw_rate_rad_s.is_some();
         let sign = if has_yaw && x_m_s < 0.0 { -1.0 } else { 1.0 };
-        self.set(now, course, sign * math::length(x_m_s, y_m_s).min(speed_max_m_s))
+        self.set(
+            now,
+            course,
+            sign * math::length(x_m_s, y_m_s).min(speed_max_m_s),
+        )
     }
 
     /// Sets a heading, rad, from north or relative to the given heading, and a speed, m/s.
@@ -218,7 +275,11 @@ impl SetPoints {
             Some((_, Course::Heading(ordered_rad), _)) => ordered_rad,
             _ => own_rad,
         };
-        self.set(now, Course::Heading(heading_rad + own_rad.map_or(0.0, before)), speed_m_s)
+        self.set(
+            now,
+            Course::Heading(heading_rad + own_rad.map_or(0.0, before)),
+            speed_m_s,
+        )
     }
 
     /// Goes to a position if it is valid.
@@ -232,7 +293,11 @@ impl SetPoints {
     /// Sets the speed on the way to a position, m/s; returns whether there is one.
     pub(super) fn set_speed(&mut self, speed_m_s: f64) -> bool {
         let is_taken = self.destination.is_some() && speed_m_s >= 0.0;
-        self.speed_m_s = if is_taken { Some(speed_m_s) } else { self.speed_m_s };
+        self.speed_m_s = if is_taken {
+            Some(speed_m_s)
+        } else {
+            self.speed_m_s
+        };
         is_taken
     }
 
@@ -267,13 +332,23 @@ impl SetPoints {
     /// or x if that is set.
     pub(super) fn take_manual(&mut self, now: SimTime, control: &MANUAL_CONTROL_DATA) {
         let throttle = 0.002 * (f64::from(control.z) - 500.0);
-        self.manual = Some((now, throttle.clamp(-1.0, 1.0), (0.001 * f64::from(control.y)).clamp(-1.0, 1.0)));
+        self.manual = Some((
+            now,
+            throttle.clamp(-1.0, 1.0),
+            (0.001 * f64::from(control.y)).clamp(-1.0, 1.0),
+        ));
     }
 
     /// RC override: steering is channel 1, throttle channel 3, 1000 to 2000 µs with rest at 1500; 0
     /// means no override.
     pub(super) fn take_channels(&mut self, now: SimTime, channels: &RC_CHANNELS_OVERRIDE_DATA) {
-        let share = |us: u16| if us == 0 || us == u16::MAX { 0.0 } else { 0.002 * (f64::from(us) - 1500.0) };
+        let share = |us: u16| {
+            if us == 0 || us == u16::MAX {
+                0.0
+            } else {
+                0.002 * (f64::from(us) - 1500.0)
+            }
+        };
         let throttle = share(channels.chan3_raw);
         let steering = share(channels.chan1_raw);
         self.manual = Some((now, throttle.clamp(-1.0, 1.0), steering.clamp(-1.0, 1.0)));
@@ -295,14 +370,19 @@ impl SetPoints {
             Course::Heading(heading_rad) if speed_m_s < 0.0 => {
                 autopilot::astern(speed_m_s, wrap_pi(heading_rad - psi_rad))
             }
-            Course::Turn(rate_rad_s) if speed_m_s < 0.0 => autopilot::astern(speed_m_s, rate_rad_s * TURN_LEAD_S),
+            Course::Turn(rate_rad_s) if speed_m_s < 0.0 => {
+                autopilot::astern(speed_m_s, rate_rad_s * TURN_LEAD_S)
+            }
             Course::Heading(heading_rad) => autopilot::steer(Some(heading_rad), Some(speed_m_s)),
             // Our gateway stops a boat with a set-point of zero: it must rest and not hold a
             // heading.
             Course::Turn(0.0) if speed_m_s == 0.0 => Order::Hold,
             Course::Turn(rate_rad_s) => {
                 let by_rad = (rate_rad_s * TURN_LEAD_S).clamp(-PI, PI);
-                Order::Turn { by_rad, speed_m_s: speed_m_s.min(SPEED_MAX_M_S) }
+                Order::Turn {
+                    by_rad,
+                    speed_m_s: speed_m_s.min(SPEED_MAX_M_S),
+                }
             }
         })
     }

@@ -1,14 +1,18 @@
 //! The telemetry of an emulated ArduPilot boat: messages, rates and contents.
 
-#![expect(deprecated, reason = "ground stations ask for streams by REQUEST_DATA_STREAM all the same")]
+#![expect(
+    deprecated,
+    reason = "ground stations ask for streams by REQUEST_DATA_STREAM all the same"
+)]
 
 use super::ArduPilot;
 use crate::mavlink::RoverMode;
 use crate::mavlink::dialect::{
-    ATTITUDE_DATA, AUTOPILOT_VERSION_DATA, BATTERY_STATUS_DATA, GLOBAL_POSITION_INT_DATA, GPS_GLOBAL_ORIGIN_DATA,
-    GPS_RAW_INT_DATA, GpsFixType, HEARTBEAT_DATA, HOME_POSITION_DATA, LOCAL_POSITION_NED_DATA, MESSAGE_INTERVAL_DATA,
-    MISSION_CURRENT_DATA, MavAutopilot, MavDataStream, MavMessage, MavModeFlag, MavProtocolCapability, MavResult,
-    MavState, MavSysStatusSensor, MavType, NAV_CONTROLLER_OUTPUT_DATA, POSITION_TARGET_GLOBAL_INT_DATA,
+    ATTITUDE_DATA, AUTOPILOT_VERSION_DATA, BATTERY_STATUS_DATA, GLOBAL_POSITION_INT_DATA,
+    GPS_GLOBAL_ORIGIN_DATA, GPS_RAW_INT_DATA, GpsFixType, HEARTBEAT_DATA, HOME_POSITION_DATA,
+    LOCAL_POSITION_NED_DATA, MESSAGE_INTERVAL_DATA, MISSION_CURRENT_DATA, MavAutopilot,
+    MavDataStream, MavMessage, MavModeFlag, MavProtocolCapability, MavResult, MavState,
+    MavSysStatusSensor, MavType, NAV_CONTROLLER_OUTPUT_DATA, POSITION_TARGET_GLOBAL_INT_DATA,
     REQUEST_DATA_STREAM_DATA, SYS_STATUS_DATA, SYSTEM_TIME_DATA, VFR_HUD_DATA,
 };
 use ::mavlink::MessageData;
@@ -31,22 +35,86 @@ const EKF_WITHOUT_FIX: u16 = 165;
 
 /// Every message that it can send: its number, its stream, and its default interval, s, if any.
 const MESSAGES: [(u32, MavDataStream, Option<f64>); 16] = [
-    (HEARTBEAT_DATA::ID, MavDataStream::MAV_DATA_STREAM_ALL, Some(1.0)),
-    (SYS_STATUS_DATA::ID, MavDataStream::MAV_DATA_STREAM_EXTENDED_STATUS, Some(1.0)),
-    (GPS_RAW_INT_DATA::ID, MavDataStream::MAV_DATA_STREAM_EXTENDED_STATUS, Some(1.0)),
-    (NAV_CONTROLLER_OUTPUT_DATA::ID, MavDataStream::MAV_DATA_STREAM_EXTENDED_STATUS, Some(1.0)),
-    (POSITION_TARGET_GLOBAL_INT_DATA::ID, MavDataStream::MAV_DATA_STREAM_EXTENDED_STATUS, Some(1.0)),
-    (MISSION_CURRENT_DATA::ID, MavDataStream::MAV_DATA_STREAM_EXTENDED_STATUS, Some(1.0)),
-    (GLOBAL_POSITION_INT_DATA::ID, MavDataStream::MAV_DATA_STREAM_POSITION, Some(1.0)),
-    (LOCAL_POSITION_NED_DATA::ID, MavDataStream::MAV_DATA_STREAM_POSITION, Some(1.0)),
-    (ATTITUDE_DATA::ID, MavDataStream::MAV_DATA_STREAM_EXTRA1, Some(1.0)),
-    (VFR_HUD_DATA::ID, MavDataStream::MAV_DATA_STREAM_EXTRA2, Some(1.0)),
-    (SYSTEM_TIME_DATA::ID, MavDataStream::MAV_DATA_STREAM_EXTRA3, Some(1.0)),
-    (BATTERY_STATUS_DATA::ID, MavDataStream::MAV_DATA_STREAM_EXTRA3, Some(1.0)),
-    (EKF_STATUS_REPORT, MavDataStream::MAV_DATA_STREAM_EXTRA3, Some(1.0)),
-    (HOME_POSITION_DATA::ID, MavDataStream::MAV_DATA_STREAM_ALL, None),
-    (GPS_GLOBAL_ORIGIN_DATA::ID, MavDataStream::MAV_DATA_STREAM_ALL, None),
-    (AUTOPILOT_VERSION_DATA::ID, MavDataStream::MAV_DATA_STREAM_ALL, None),
+    (
+        HEARTBEAT_DATA::ID,
+        MavDataStream::MAV_DATA_STREAM_ALL,
+        Some(1.0),
+    ),
+    (
+        SYS_STATUS_DATA::ID,
+        MavDataStream::MAV_DATA_STREAM_EXTENDED_STATUS,
+        Some(1.0),
+    ),
+    (
+        GPS_RAW_INT_DATA::ID,
+        MavDataStream::MAV_DATA_STREAM_EXTENDED_STATUS,
+        Some(1.0),
+    ),
+    (
+        NAV_CONTROLLER_OUTPUT_DATA::ID,
+        MavDataStream::MAV_DATA_STREAM_EXTENDED_STATUS,
+        Some(1.0),
+    ),
+    (
+        POSITION_TARGET_GLOBAL_INT_DATA::ID,
+        MavDataStream::MAV_DATA_STREAM_EXTENDED_STATUS,
+        Some(1.0),
+    ),
+    (
+        MISSION_CURRENT_DATA::ID,
+        MavDataStream::MAV_DATA_STREAM_EXTENDED_STATUS,
+        Some(1.0),
+    ),
+    (
+        GLOBAL_POSITION_INT_DATA::ID,
+        MavDataStream::MAV_DATA_STREAM_POSITION,
+        Some(1.0),
+    ),
+    (
+        LOCAL_POSITION_NED_DATA::ID,
+        MavDataStream::MAV_DATA_STREAM_POSITION,
+        Some(1.0),
+    ),
+    (
+        ATTITUDE_DATA::ID,
+        MavDataStream::MAV_DATA_STREAM_EXTRA1,
+        Some(1.0),
+    ),
+    (
+        VFR_HUD_DATA::ID,
+        MavDataStream::MAV_DATA_STREAM_EXTRA2,
+        Some(1.0),
+    ),
+    (
+        SYSTEM_TIME_DATA::ID,
+        MavDataStream::MAV_DATA_STREAM_EXTRA3,
+        Some(1.0),
+    ),
+    (
+        BATTERY_STATUS_DATA::ID,
+        MavDataStream::MAV_DATA_STREAM_EXTRA3,
+        Some(1.0),
+    ),
+    (
+        EKF_STATUS_REPORT,
+        MavDataStream::MAV_DATA_STREAM_EXTRA3,
+        Some(1.0),
+    ),
+    (
+        HOME_POSITION_DATA::ID,
+        MavDataStream::MAV_DATA_STREAM_ALL,
+        None,
+    ),
+    (
+        GPS_GLOBAL_ORIGIN_DATA::ID,
+        MavDataStream::MAV_DATA_STREAM_ALL,
+        None,
+    ),
+    (
+        AUTOPILOT_VERSION_DATA::ID,
+        MavDataStream::MAV_DATA_STREAM_ALL,
+        None,
+    ),
 ];
 
 /// The interval of each message, s, and when it is due.
@@ -57,8 +125,12 @@ pub(super) struct Streams {
 
 impl Streams {
     pub(super) fn new() -> Streams {
-        let regular = MESSAGES.iter().filter_map(|(id, _, every_s)| Some((*id, ((*every_s)?, SimTime::ZERO))));
-        Streams { regular: regular.collect() }
+        let regular = MESSAGES
+            .iter()
+            .filter_map(|(id, _, every_s)| Some((*id, ((*every_s)?, SimTime::ZERO))));
+        Streams {
+            regular: regular.collect(),
+        }
     }
 
     /// The messages that are due now.
@@ -81,8 +153,11 @@ impl Streams {
         let Some((_, _, unasked_s)) = MESSAGES.iter().find(|(known, ..)| *known == id) else {
             return MavResult::MAV_RESULT_FAILED;
         };
-        let every_s =
-            if interval_us > 0.0 { Some(1e-6 * interval_us) } else { unasked_s.filter(|_| interval_us == 0.0) };
+        let every_s = if interval_us > 0.0 {
+            Some(1e-6 * interval_us)
+        } else {
+            unasked_s.filter(|_| interval_us == 0.0)
+        };
         self.set(id, every_s);
         MavResult::MAV_RESULT_ACCEPTED
     }
@@ -91,7 +166,9 @@ impl Streams {
     fn interval_us(&self, id: u32) -> i32 {
         let is_known = MESSAGES.iter().any(|(known, ..)| *known == id);
         let never = if is_known { -1 } else { 0 };
-        self.regular.get(&id).map_or(never, |(every_s, _)| (1e6 * every_s) as i32)
+        self.regular
+            .get(&id)
+            .map_or(never, |(every_s, _)| (1e6 * every_s) as i32)
     }
 
     /// Sets the rate of one stream, or of all.
@@ -101,7 +178,10 @@ impl Streams {
         let is_all = request.req_stream_id == MavDataStream::MAV_DATA_STREAM_ALL;
         for (id, stream, unasked_s) in MESSAGES {
             // The heartbeat continues.
-            if unasked_s.is_some() && id != HEARTBEAT_DATA::ID && (is_all || stream == request.req_stream_id) {
+            if unasked_s.is_some()
+                && id != HEARTBEAT_DATA::ID
+                && (is_all || stream == request.req_stream_id)
+            {
                 self.set(id, every_s);
             }
         }
@@ -122,18 +202,30 @@ impl ArduPilot {
     /// Reports the interval of a message.
     pub(super) fn show_interval(&mut self, id: u32) -> MavResult {
         let interval_us = self.streams.interval_us(id);
-        let shown = MESSAGE_INTERVAL_DATA { interval_us, message_id: id as u16 };
+        let shown = MESSAGE_INTERVAL_DATA {
+            interval_us,
+            message_id: id as u16,
+        };
         self.send(&MavMessage::MESSAGE_INTERVAL(shown));
-        if interval_us == 0 { MavResult::MAV_RESULT_FAILED } else { MavResult::MAV_RESULT_ACCEPTED }
+        if interval_us == 0 {
+            MavResult::MAV_RESULT_FAILED
+        } else {
+            MavResult::MAV_RESULT_ACCEPTED
+        }
     }
 
     /// Sends a message with current data; returns whether there was any.
     pub(super) fn send_message(&mut self, now: SimTime, id: u32) -> bool {
         if id == EKF_STATUS_REPORT {
-            let flags = if self.sensed.has_fix(now) { EKF_WELL } else { EKF_WITHOUT_FIX };
+            let flags = if self.sensed.has_fix(now) {
+                EKF_WELL
+            } else {
+                EKF_WITHOUT_FIX
+            };
             // Five variances that are 0, then the flags.
             let payload = [&[0; 20][..], &flags.to_le_bytes()].concat();
-            self.writer.write_raw(id, EKF_EXTRA_CRC, &payload, &mut self.outbox);
+            self.writer
+                .write_raw(id, EKF_EXTRA_CRC, &payload, &mut self.outbox);
             return true;
         }
         let message = self.message(now, id);
@@ -150,17 +242,27 @@ impl ArduPilot {
             ATTITUDE_DATA::ID => MavMessage::ATTITUDE(self.attitude(now)?),
             NAV_CONTROLLER_OUTPUT_DATA::ID if self.mode == RoverMode::Guided => {
                 let nav_bearing = self.set_points.nav_bearing(now);
-                MavMessage::NAV_CONTROLLER_OUTPUT(NAV_CONTROLLER_OUTPUT_DATA { nav_bearing, ..Default::default() })
+                MavMessage::NAV_CONTROLLER_OUTPUT(NAV_CONTROLLER_OUTPUT_DATA {
+                    nav_bearing,
+                    ..Default::default()
+                })
             }
             // There are no velocities.
             POSITION_TARGET_GLOBAL_INT_DATA::ID if self.mode == RoverMode::Guided => {
                 let (lat_int, lon_int) = self.e7(self.position_target()?);
                 let time_boot_ms = boot_ms(now);
-                let data = POSITION_TARGET_GLOBAL_INT_DATA { time_boot_ms, lat_int, lon_int, ..Default::default() };
+                let data = POSITION_TARGET_GLOBAL_INT_DATA {
+                    time_boot_ms,
+                    lat_int,
+                    lon_int,
+                    ..Default::default()
+                };
                 MavMessage::POSITION_TARGET_GLOBAL_INT(data)
             }
             MISSION_CURRENT_DATA::ID => self.mission.current(self.autopilot.next),
-            LOCAL_POSITION_NED_DATA::ID => MavMessage::LOCAL_POSITION_NED(self.local_position(now)?),
+            LOCAL_POSITION_NED_DATA::ID => {
+                MavMessage::LOCAL_POSITION_NED(self.local_position(now)?)
+            }
             GPS_GLOBAL_ORIGIN_DATA::ID if self.origin.is_some() => self.origin_message(),
             VFR_HUD_DATA::ID => MavMessage::VFR_HUD(self.vfr_hud()?),
             SYSTEM_TIME_DATA::ID => MavMessage::SYSTEM_TIME(SYSTEM_TIME_DATA {
@@ -196,7 +298,11 @@ impl ArduPilot {
             mavtype: MavType::MAV_TYPE_SURFACE_BOAT,
             autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
             base_mode,
-            system_status: if self.is_armed { MavState::MAV_STATE_ACTIVE } else { MavState::MAV_STATE_STANDBY },
+            system_status: if self.is_armed {
+                MavState::MAV_STATE_ACTIVE
+            } else {
+                MavState::MAV_STATE_STANDBY
+            },
             ..HEARTBEAT_DATA::default()
         }
     }
@@ -224,7 +330,9 @@ impl ArduPilot {
 
     /// The current drawn, 10 mA.
     fn centiamps(&self) -> i16 {
-        (100.0 * self.battery.amps()).round().clamp(0.0, f64::from(i16::MAX)) as i16
+        (100.0 * self.battery.amps())
+            .round()
+            .clamp(0.0, f64::from(i16::MAX)) as i16
     }
 
     fn percent_left(&self) -> i8 {
@@ -262,7 +370,11 @@ impl ArduPilot {
             epv: if has_fix { 150 } else { u16::MAX },
             vel: (100.0 * velocity.length()) as u16,
             cog: ((100.0 * course_deg) as u16).min(35_999),
-            fix_type: if has_fix { GpsFixType::GPS_FIX_TYPE_DGPS } else { GpsFixType::GPS_FIX_TYPE_NO_FIX },
+            fix_type: if has_fix {
+                GpsFixType::GPS_FIX_TYPE_DGPS
+            } else {
+                GpsFixType::GPS_FIX_TYPE_NO_FIX
+            },
             satellites_visible: if has_fix { 11 } else { 0 },
             ..GPS_RAW_INT_DATA::default()
         })
@@ -275,13 +387,21 @@ impl ArduPilot {
     /// The position to which it goes in GUIDED, or where it keeps station for lack of a set-point.
     fn position_target(&self) -> Option<Ned> {
         let destination = self.set_points.destination().map(|(place, _)| place);
-        destination.or_else(|| self.autopilot.station.filter(|_| self.set_points.guided.is_none()))
+        destination.or_else(|| {
+            self.autopilot
+                .station
+                .filter(|_| self.set_points.guided.is_none())
+        })
     }
 
     /// The origin of positions in the frame LOCAL_NED.
     pub(super) fn origin_message(&self) -> MavMessage {
         let (latitude, longitude) = self.e7(self.origin.unwrap_or_default());
-        MavMessage::GPS_GLOBAL_ORIGIN(GPS_GLOBAL_ORIGIN_DATA { latitude, longitude, ..Default::default() })
+        MavMessage::GPS_GLOBAL_ORIGIN(GPS_GLOBAL_ORIGIN_DATA {
+            latitude,
+            longitude,
+            ..Default::default()
+        })
     }
 
     fn local_position(&self, now: SimTime) -> Option<LOCAL_POSITION_NED_DATA> {
@@ -348,5 +468,9 @@ fn version() -> AUTOPILOT_VERSION_DATA {
         | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_SET_ATTITUDE_TARGET
         | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_LOCAL_NED
         | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MAVLINK2;
-    AUTOPILOT_VERSION_DATA { capabilities, flight_sw_version: VERSION, ..AUTOPILOT_VERSION_DATA::default() }
+    AUTOPILOT_VERSION_DATA {
+        capabilities,
+        flight_sw_version: VERSION,
+        ..AUTOPILOT_VERSION_DATA::default()
+    }
 }

@@ -16,8 +16,10 @@ use std::time::Duration;
 const PIECE: usize = 64 * 1024;
 /// Idle time before a connection is probed, interval of the probes, and their number before it is
 /// closed.
-const KEEPALIVE: TcpKeepalive =
-    TcpKeepalive::new().with_time(Duration::from_secs(10)).with_interval(Duration::from_secs(5)).with_retries(3);
+const KEEPALIVE: TcpKeepalive = TcpKeepalive::new()
+    .with_time(Duration::from_secs(10))
+    .with_interval(Duration::from_secs(5))
+    .with_retries(3);
 
 /// A client and its connection to the payload.
 struct Forward<'a> {
@@ -33,13 +35,28 @@ struct Forward<'a> {
 
 /// Serves a client until it or the payload is lost.
 pub(super) fn serve(payload: &Payload, at: &HostPort, slot: &Slot, client: &TcpStream) {
-    let Some(_turn) = payload.turn.client() else { return };
+    let Some(_turn) = payload.turn.client() else {
+        return;
+    };
     let upstream = match prepare(client).and_then(|()| connect(at)) {
         Ok(upstream) => upstream,
-        Err(e) => return payload.remark(&format!("cannot connect a client to {}: {e}", payload.port.address)),
+        Err(e) => {
+            return payload.remark(&format!(
+                "cannot connect a client to {}: {e}",
+                payload.port.address
+            ));
+        }
     };
     let (number, talk) = payload.open();
-    let forward = Forward { payload, slot, client, upstream, number, talk, ended: Default::default() };
+    let forward = Forward {
+        payload,
+        slot,
+        client,
+        upstream,
+        number,
+        talk,
+        ended: Default::default(),
+    };
     std::thread::scope(|scope| {
         let thread = std::thread::Builder::new().name(format!("payload {}", payload.port.name));
         match thread.spawn_scoped(scope, || forward.pass(false)) {
@@ -56,7 +73,9 @@ pub(super) fn connect(at: &HostPort) -> io::Result<TcpStream> {
         match TcpStream::connect_timeout(&address, CONNECT_MAX) {
             // Nothing listens on this port of the ephemeral range, and our own socket got that very
             // port.
-            Ok(stream) if stream.local_addr()? == address => last = ErrorKind::ConnectionRefused.into(),
+            Ok(stream) if stream.local_addr()? == address => {
+                last = ErrorKind::ConnectionRefused.into()
+            }
             Ok(stream) => {
                 prepare(&stream)?;
                 return Ok(stream);
@@ -77,14 +96,21 @@ pub(super) fn prepare(stream: &TcpStream) -> io::Result<()> {
 
 /// Whether a wait ended without a result.
 pub(super) fn is_pause(error: &io::Error) -> bool {
-    matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted)
+    matches!(
+        error.kind(),
+        ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted
+    )
 }
 
 impl Forward<'_> {
     /// Passes bytes one way until that ends. Reads no more while the other side does not accept
     /// them.
     fn pass(&self, outward: bool) {
-        let (from, to) = if outward { (self.client, &self.upstream) } else { (&self.upstream, self.client) };
+        let (from, to) = if outward {
+            (self.client, &self.upstream)
+        } else {
+            (&self.upstream, self.client)
+        };
         let mut piece = vec![0; PIECE];
         let mut received = clock::now();
         loop {
@@ -99,7 +125,8 @@ impl Forward<'_> {
                 Ok(count) => {
                     received = clock::now();
                     self.slot.touch();
-                    self.payload.record_bytes(&self.talk, self.number, outward, &piece[..count]);
+                    self.payload
+                        .record_bytes(&self.talk, self.number, outward, &piece[..count]);
                     // Bytes that one side does not accept are not read from the other: TCP's own
                     // back pressure slows down a fast camera.
                     if let Err(e) = (&mut &*to).write_all(&piece[..count]) {
@@ -124,7 +151,9 @@ impl Forward<'_> {
     fn tell_stall(&self, outward: bool, error: &io::Error) {
         if is_pause(error) {
             let receiver = if outward { "the payload" } else { "a client" };
-            self.payload.remark(&format!("{receiver} accepted no data for {WRITE_MAX:?}: disconnected"));
+            self.payload.remark(&format!(
+                "{receiver} accepted no data for {WRITE_MAX:?}: disconnected"
+            ));
         }
     }
 

@@ -64,18 +64,28 @@ enum Way {
 
 impl Payloads {
     /// Opens a port for each. Failure to open one does not abandon the boat; it is a warning.
-    pub(super) fn open(ports: &[PayloadPort], shell: &Shell, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Payloads {
+    pub(super) fn open(
+        ports: &[PayloadPort],
+        shell: &Shell,
+        notify: &mut dyn FnMut(NodeEvent<'_>),
+    ) -> Payloads {
         let mut passages = vec![];
         for port in ports {
             match Passage::open(port, shell) {
                 Ok(passage) => {
                     let reach = format!("tcp://{} (from {})", passage.port.address, port.address);
-                    notify(NodeEvent::Listening { what: &format!("payload {}", port.name), reach: &reach });
+                    notify(NodeEvent::Listening {
+                        what: &format!("payload {}", port.name),
+                        reach: &reach,
+                    });
                     passages.push(passage);
                 }
                 Err(e) => {
                     let text = format!("payload {} is not passed through: {e}", port.name);
-                    notify(NodeEvent::Event { at_s: shell.clock.now().as_s(), event: &Event::Warning(text) });
+                    notify(NodeEvent::Event {
+                        at_s: shell.clock.now().as_s(),
+                        event: &Event::Warning(text),
+                    });
                 }
             }
         }
@@ -85,7 +95,9 @@ impl Payloads {
 
 impl Drop for Payloads {
     fn drop(&mut self) {
-        self.0.iter().for_each(|passage| passage.payload.turn.close());
+        self.0
+            .iter()
+            .for_each(|passage| passage.payload.turn.close());
     }
 }
 
@@ -97,7 +109,10 @@ impl Passage {
         let to = Arc::clone(&way);
         let serve = move |slot: &Slot, client: &TcpStream| to.serve(&clients, slot, client);
         let name = format!("payload {}", port.name);
-        let passage = Passage { port: TcpPort::open(port.listen, &name, CLIENTS_MAX, serve)?, payload };
+        let passage = Passage {
+            port: TcpPort::open(port.listen, &name, CLIENTS_MAX, serve)?,
+            payload,
+        };
         // Without a recording, nobody would receive the values.
         // A sonde sends nothing unasked, and two simultaneous queries get each other's answers. So
         // the gateway queries it, in turn with clients.

@@ -76,46 +76,79 @@ impl Payload {
         }
         *remarked = Some(clock::now());
         // A loop whose queue is full has worse to report.
-        self.calls.offer(Call::Remark(format!("payload {}: {text}", self.port.name)));
+        self.calls
+            .offer(Call::Remark(format!("payload {}: {text}", self.port.name)));
     }
 
     /// The number of a new connection, and its conversation.
     pub(super) fn open(&self) -> (u32, Talk) {
-        (self.connections.fetch_add(1, Ordering::Relaxed).wrapping_add(1), Talk::default())
+        (
+            self.connections
+                .fetch_add(1, Ordering::Relaxed)
+                .wrapping_add(1),
+            Talk::default(),
+        )
     }
 
     /// The state of the sonde; `None` if its values are not wanted.
     pub(super) fn sonde(&self) -> Option<Sonde> {
-        self.recording.as_ref()?.sonde.as_ref().map(|sonde| sonde.lock().clone())
+        self.recording
+            .as_ref()?
+            .sonde
+            .as_ref()
+            .map(|sonde| sonde.lock().clone())
     }
 
     /// Records bytes of the connection of this number, to the payload if `outward`.
     pub(super) fn record_bytes(&self, talk: &Talk, connection: u32, outward: bool, bytes: &[u8]) {
-        self.record(connection, outward, bytes, |sonde| talk.lock().read_bytes(outward, bytes, sonde));
+        self.record(connection, outward, bytes, |sonde| {
+            talk.lock().read_bytes(outward, bytes, sonde)
+        });
     }
 
     /// Records that the sending side has closed the connection.
     pub(super) fn record_end(&self, talk: &Talk, connection: u32, outward: bool) {
-        self.record(connection, outward, &[], |sonde| talk.lock().end(outward, sonde).into_iter().collect());
+        self.record(connection, outward, &[], |sonde| {
+            talk.lock().end(outward, sonde).into_iter().collect()
+        });
     }
 
     /// Without a recorder this does nothing.
-    fn record(&self, connection: u32, outward: bool, bytes: &[u8], read: impl FnOnce(&mut Sonde) -> Vec<Measurement>) {
-        let Some(recording) = &self.recording else { return };
+    fn record(
+        &self,
+        connection: u32,
+        outward: bool,
+        bytes: &[u8],
+        read: impl FnOnce(&mut Sonde) -> Vec<Measurement>,
+    ) {
+        let Some(recording) = &self.recording else {
+            return;
+        };
         let at = recording.clock.now();
         let mut encoder = recording.encoder.lock();
         // The boat's own recording needs the space: a camera at 1 MB a second fills a disk in a
         // day.
         if recording.has_space() {
-            recording.recorder.record(encoder.bytes(at, connection, outward, bytes));
+            recording
+                .recorder
+                .record(encoder.bytes(at, connection, outward, bytes));
         } else {
             let min_mib = recording.space_min_mib;
-            self.remark(&format!("its bytes are not recorded: the disk has less than {min_mib} MiB free"));
+            self.remark(&format!(
+                "its bytes are not recorded: the disk has less than {min_mib} MiB free"
+            ));
         }
-        let Some(sonde) = &recording.sonde else { return };
+        let Some(sonde) = &recording.sonde else {
+            return;
+        };
         let measured = read(&mut sonde.lock());
-        let entries: Vec<Entry> = measured.iter().map(|measurement| encoder.values(at, measurement)).collect();
-        entries.into_iter().for_each(|entry| recording.recorder.record(entry));
+        let entries: Vec<Entry> = measured
+            .iter()
+            .map(|measurement| encoder.values(at, measurement))
+            .collect();
+        entries
+            .into_iter()
+            .for_each(|entry| recording.recorder.record(entry));
     }
 }
 
@@ -126,7 +159,8 @@ impl Recording {
             Some((at, is_enough)) if clock::since(at) < SPACE_EVERY => is_enough,
             _ => {
                 // If the free space is unknown, the recorder will detect a full disk.
-                let is_enough = free_mib(&self.file).map_or(true, |free_mib| free_mib >= self.space_min_mib);
+                let is_enough =
+                    free_mib(&self.file).map_or(true, |free_mib| free_mib >= self.space_min_mib);
                 *seen = Some((clock::now(), is_enough));
                 is_enough
             }
@@ -147,20 +181,41 @@ mod tests {
             let file = folder.path().join(format!("{min_mib}.mcap"));
             let kind = Kind::Gateway;
             let facts = Facts::new();
-            let opening = Opening { kind, began_utc_ns: 0, facts, more: vec![], teams: vec![] };
-            let recorder = Recorder::begin(NewFile::create(&file).expect("a file"), &opening).expect("it begins");
+            let opening = Opening {
+                kind,
+                began_utc_ns: 0,
+                facts,
+                more: vec![],
+                teams: vec![],
+            };
+            let recorder = Recorder::begin(NewFile::create(&file).expect("a file"), &opening)
+                .expect("it begins");
             let (input, output) = loop_input();
             let port = "sonde=tcp://127.0.0.1:1,exo2".parse().expect("a port");
             let record = Some((recorder.bulk(), file.clone()));
-            let shell = Shell { record, space_min_mib: min_mib, clock: Clock::start(), calls: input.calls };
+            let shell = Shell {
+                record,
+                space_min_mib: min_mib,
+                clock: Clock::start(),
+                calls: input.calls,
+            };
             let payload = Payload::new(&port, &shell);
             let (number, talk) = payload.open();
-            for (outward, bytes) in [(true, "para\r"), (false, "1\r"), (true, "data\r"), (false, "20.5\r")] {
+            for (outward, bytes) in [
+                (true, "para\r"),
+                (false, "1\r"),
+                (true, "data\r"),
+                (false, "20.5\r"),
+            ] {
                 payload.record_bytes(&talk, number, outward, bytes.as_bytes());
             }
             drop(recorder);
             let bag = Bag::open(&file).expect("a recording");
-            assert_eq!(["payload/sonde", "values/sonde"].map(|topic| bag.on(topic).count()), want, "{min_mib} MiB");
+            assert_eq!(
+                ["payload/sonde", "values/sonde"].map(|topic| bag.on(topic).count()),
+                want,
+                "{min_mib} MiB"
+            );
             assert_eq!(output.calls.take_now().is_some(), min_mib > 0, "it says so");
         }
     }

@@ -37,7 +37,13 @@ struct Questions<'a> {
 pub(super) fn run(payload: &Payload, way: &Way, exo2: Exo2Port) {
     while let Some(turn) = payload.turn.poll() {
         let sonde = payload.sonde().unwrap_or_default();
-        let mut questions = Questions { payload, turn: &turn, begun: sonde.clone(), last: sonde, unanswered: 0 };
+        let mut questions = Questions {
+            payload,
+            turn: &turn,
+            begun: sonde.clone(),
+            last: sonde,
+            unanswered: 0,
+        };
         let asked = match (way, exo2) {
             (Way::Tcp(at), Exo2Port::Http) => questions.by_http(at),
             (Way::Tcp(at), Exo2Port::Lines) => questions.by_lines(at),
@@ -47,7 +53,10 @@ pub(super) fn run(payload: &Payload, way: &Way, exo2: Exo2Port) {
             }
         };
         if let Err(e) = asked {
-            payload.remark(&format!("cannot query the sonde at {}: {e}", payload.port.address));
+            payload.remark(&format!(
+                "cannot query the sonde at {}: {e}",
+                payload.port.address
+            ));
         }
         // A client that connects gets the sonde at once: people come before the recording.
         turn.is_wanted_within(EVERY);
@@ -58,9 +67,16 @@ impl Questions<'_> {
     /// Queries its parameters until it has reported them, then their values.
     fn next(&mut self) -> Command {
         let sonde = self.payload.sonde().unwrap_or_default();
-        self.unanswered = if sonde == self.last { self.unanswered + 1 } else { 0 };
+        self.unanswered = if sonde == self.last {
+            self.unanswered + 1
+        } else {
+            0
+        };
         if self.unanswered > UNANSWERED_MAX {
-            self.payload.remark(&format!("the sonde does not answer `{}`", self.command(&sonde).word()));
+            self.payload.remark(&format!(
+                "the sonde does not answer `{}`",
+                self.command(&sonde).word()
+            ));
             (self.begun, self.unanswered) = (sonde.clone(), 0);
         }
         self.last = sonde;
@@ -69,7 +85,11 @@ impl Questions<'_> {
 
     fn command(&self, sonde: &Sonde) -> Command {
         // Numbers mean nothing without the codes of their parameters, so these are queried first.
-        if sonde.told == self.begun.told { Command::Parameters } else { Command::Values }
+        if sonde.told == self.begun.told {
+            Command::Parameters
+        } else {
+            Command::Values
+        }
     }
 
     /// The next command in the sonde's format.
@@ -111,14 +131,20 @@ impl Questions<'_> {
                 Command::Values => format!("GET /data HTTP/1.0\r\nHost: {at}\r\n\r\n"),
                 other => {
                     let word = other.word();
-                    let head = format!("POST /data HTTP/1.0\r\nHost: {at}\r\nContent-Type: text/plain");
+                    let head =
+                        format!("POST /data HTTP/1.0\r\nHost: {at}\r\nContent-Type: text/plain");
                     format!("{head}\r\nContent-Length: {}\r\n\r\n{word}", word.len())
                 }
             };
             match self.send(&connect(at)?, &self.payload.open(), &request, ANSWER_MAX)? {
                 Answer::Ended => {}
                 _ if self.turn.is_wanted_within(EVERY) => return Ok(()),
-                _ => return Err(io::Error::new(ErrorKind::TimedOut, format!("no complete answer for {ANSWER_MAX:?}"))),
+                _ => {
+                    return Err(io::Error::new(
+                        ErrorKind::TimedOut,
+                        format!("no complete answer for {ANSWER_MAX:?}"),
+                    ));
+                }
             }
             if self.turn.is_wanted_within(EVERY) {
                 return Ok(());
@@ -134,7 +160,8 @@ impl Questions<'_> {
         question: &str,
         limit: Duration,
     ) -> io::Result<Answer> {
-        self.payload.record_bytes(talk, *number, true, question.as_bytes());
+        self.payload
+            .record_bytes(talk, *number, true, question.as_bytes());
         stream.write_all(question.as_bytes())?;
         let asked = clock::now();
         let mut length = 0;
@@ -146,7 +173,8 @@ impl Questions<'_> {
                     return Ok(Answer::Ended);
                 }
                 Ok(count) => {
-                    self.payload.record_bytes(talk, *number, false, &piece[..count]);
+                    self.payload
+                        .record_bytes(talk, *number, false, &piece[..count]);
                     length += count;
                 }
                 Err(e) if is_pause(&e) => {}

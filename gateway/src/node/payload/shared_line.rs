@@ -47,14 +47,29 @@ struct Client {
 }
 
 impl SharedLine {
-    pub(super) fn open(payload: &Arc<Payload>, address: &LinkAddress) -> Result<SharedLine, LinkError> {
+    pub(super) fn open(
+        payload: &Arc<Payload>,
+        address: &LinkAddress,
+    ) -> Result<SharedLine, LinkError> {
         let (_, talk) = payload.open();
-        let ends = Ends { payload: Arc::clone(payload), talk, is_up: Watched::new(false), clients: Mutex::default() };
+        let ends = Ends {
+            payload: Arc::clone(payload),
+            talk,
+            is_up: Watched::new(false),
+            clients: Mutex::default(),
+        };
         let ends = Arc::new(ends);
-        let settings = LinkSettings { silence: None, ..LinkSettings::default() };
+        let settings = LinkSettings {
+            silence: None,
+            ..LinkSettings::default()
+        };
         let theirs = Arc::clone(&ends);
         let link = Link::open(address, settings, move |event| theirs.handle_event(event))?;
-        Ok(SharedLine { link, writing: Mutex::new(()), ends })
+        Ok(SharedLine {
+            link,
+            writing: Mutex::new(()),
+            ends,
+        })
     }
 
     /// Whether the line is up, or will be soon.
@@ -67,21 +82,32 @@ impl SharedLine {
     pub(super) fn send(&self, connection: u32, bytes: &[u8]) -> bool {
         // A command of one client is written completely before the next one's begins.
         let _writing = self.writing.lock();
-        self.ends.payload.record_bytes(&self.ends.talk, connection, true, bytes);
+        self.ends
+            .payload
+            .record_bytes(&self.ends.talk, connection, true, bytes);
         self.link.send_and_wait(bytes, WRITE_LIMIT)
     }
 
     /// Serves a client until it or the line is lost.
     pub(super) fn serve(&self, slot: &Slot, stream: &TcpStream) {
         let payload = &self.ends.payload;
-        let Some(_turn) = payload.turn.client() else { return };
+        let Some(_turn) = payload.turn.client() else {
+            return;
+        };
         if !self.is_up() {
-            return payload.remark(&format!("cannot connect a client to {}", payload.port.address));
+            return payload.remark(&format!(
+                "cannot connect a client to {}",
+                payload.port.address
+            ));
         }
         let (number, _) = payload.open();
         let (sender, pieces) = sync_channel(WAITING_MAX);
         match prepare(stream).and_then(|()| stream.try_clone()) {
-            Ok(stream) => self.ends.clients.lock().push(Client { number, pieces: sender, stream }),
+            Ok(stream) => self.ends.clients.lock().push(Client {
+                number,
+                pieces: sender,
+                stream,
+            }),
             Err(_) => return,
         }
         std::thread::scope(|scope| {
@@ -91,7 +117,10 @@ impl SharedLine {
                 Err(e) => payload.remark(&format!("cannot start a thread for a client: {e}")),
             }
             // This also closes its queue, which ends the thread.
-            self.ends.clients.lock().retain(|client| client.number != number);
+            self.ends
+                .clients
+                .lock()
+                .retain(|client| client.number != number);
             drop(stream.shutdown(Shutdown::Both));
         });
     }
@@ -109,7 +138,10 @@ impl SharedLine {
                 Ok(count) => {
                     slot.touch();
                     if !self.send(number, &piece[..count]) {
-                        return self.ends.payload.remark(&format!("the line accepted no data for {WRITE_LIMIT:?}"));
+                        return self
+                            .ends
+                            .payload
+                            .remark(&format!("the line accepted no data for {WRITE_LIMIT:?}"));
                     }
                 }
                 Err(e) if is_pause(&e) => {}

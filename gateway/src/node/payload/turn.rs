@@ -46,7 +46,8 @@ impl Turn {
     /// Takes the turn for the gateway once there are no clients; `None` when everything ends.
     pub(super) fn poll(&self) -> Option<PollTurn<'_>> {
         loop {
-            self.0.wait(LET_GO_MAX, |state| state.clients == 0 || state.is_closing);
+            self.0
+                .wait(LET_GO_MAX, |state| state.clients == 0 || state.is_closing);
             let (is_polling, is_closing) = self.0.visit(|state| {
                 state.is_polling = state.clients == 0 && !state.is_closing;
                 (state.is_polling, state.is_closing)
@@ -69,7 +70,9 @@ impl Turn {
 impl PollTurn<'_> {
     /// Waits while nobody else wants the turn; returns whether somebody does.
     pub(super) fn is_wanted_within(&self, limit: Duration) -> bool {
-        self.0.0.wait(limit, |state| state.clients > 0 || state.is_closing)
+        self.0
+            .0
+            .wait(limit, |state| state.clients > 0 || state.is_closing)
     }
 }
 

@@ -44,8 +44,16 @@ impl Lines {
                 None
             }
             Part::Body { left } => {
-                self.part = if left > 1 { Part::Body { left: left - 1 } } else { Part::Line };
-                if is_end || left <= 1 { self.end() } else { None }
+                self.part = if left > 1 {
+                    Part::Body { left: left - 1 }
+                } else {
+                    Part::Line
+                };
+                if is_end || left <= 1 {
+                    self.end()
+                } else {
+                    None
+                }
             }
             Part::Line if is_end => {
                 self.after_cr = byte == b'\r';
@@ -59,10 +67,15 @@ impl Lines {
                 self.after_cr = byte == b'\r';
                 let is_empty = self.line.is_empty() && !self.is_overlong;
                 let line = self.end().unwrap_or_default().to_ascii_lowercase();
-                self.part = match line.split_once(':').map(|(name, value)| (name.trim(), value.trim())) {
+                self.part = match line
+                    .split_once(':')
+                    .map(|(name, value)| (name.trim(), value.trim()))
+                {
                     _ if is_empty && body > 0 => Part::Body { left: body },
                     _ if is_empty => Part::Line,
-                    Some(("content-length", length)) => Part::Head { body: length.parse().unwrap_or(0) },
+                    Some(("content-length", length)) => Part::Head {
+                        body: length.parse().unwrap_or(0),
+                    },
                     Some(("transfer-encoding", coding)) if coding != "identity" => Part::Chunks,
                     _ => self.part,
                 };

@@ -81,7 +81,9 @@ impl Command {
         let words: Vec<&str> = line.split_whitespace().collect();
         match words.as_slice() {
             ["GET", "/data", _] => Some(Command::Values),
-            [word] => [Command::Parameters, Command::Values].into_iter().find(|c| c.word().eq_ignore_ascii_case(word)),
+            [word] => [Command::Parameters, Command::Values]
+                .into_iter()
+                .find(|c| c.word().eq_ignore_ascii_case(word)),
             _ => None,
         }
     }
@@ -89,10 +91,19 @@ impl Command {
 
 impl Conversation {
     /// Adds bytes, `outward` if to the sonde. Returns the measurement if they complete an answer.
-    pub fn read_bytes(&mut self, outward: bool, bytes: &[u8], sonde: &mut Sonde) -> Vec<Measurement> {
+    pub fn read_bytes(
+        &mut self,
+        outward: bool,
+        bytes: &[u8],
+        sonde: &mut Sonde,
+    ) -> Vec<Measurement> {
         let mut measurements = vec![];
         for byte in bytes {
-            let lines = if outward { &mut self.to_sonde } else { &mut self.from_sonde };
+            let lines = if outward {
+                &mut self.to_sonde
+            } else {
+                &mut self.from_sonde
+            };
             if let Some(line) = lines.push_byte(*byte) {
                 measurements.extend(self.read(outward, &line, sonde));
             }
@@ -102,7 +113,11 @@ impl Conversation {
 
     /// Ends one direction: an HTTP/1.0 server ends its answer this way.
     pub fn end(&mut self, outward: bool, sonde: &mut Sonde) -> Option<Measurement> {
-        let line = if outward { self.to_sonde.end() } else { self.from_sonde.end() };
+        let line = if outward {
+            self.to_sonde.end()
+        } else {
+            self.from_sonde.end()
+        };
         self.read(outward, &line?, sonde)
     }
 
@@ -133,9 +148,16 @@ impl Conversation {
                 sonde.measured += 1;
                 let named = sonde.codes.iter().zip(values).map(|(code, value)| {
                     let (name, unit) = parameter(*code).unwrap_or(("unknown", ""));
-                    Value { code: *code, name, unit, value }
+                    Value {
+                        code: *code,
+                        name,
+                        unit,
+                        value,
+                    }
                 });
-                Some(Measurement { values: named.collect() })
+                Some(Measurement {
+                    values: named.collect(),
+                })
             }
         };
         // Only after an answer that was parsed: its echo precedes it, on a line of its own.

@@ -1,10 +1,13 @@
 //! The output parameters of an EXO2 sonde, by code.
 //!
-//! Source: the list of parameter codes in the manuals of YSI's EXO sondes and their signal output adapters.
+//! Source: the list of parameter codes in the manuals of YSI's EXO sondes and their signal output
+//! adapters.
 
 /// Name and unit of a parameter, if its code is known.
 pub fn parameter(code: u16) -> Option<(&'static str, &'static str)> {
-    let at = PARAMETERS.binary_search_by_key(&code, |(code, ..)| *code).ok()?;
+    let at = PARAMETERS
+        .binary_search_by_key(&code, |(code, ..)| *code)
+        .ok()?;
     let (_, name, unit) = PARAMETERS[at];
     Some((name, unit))
 }
@@ -84,6 +87,9 @@ mod tests {
 
     #[test]
     fn parameters_are_in_the_order_of_their_codes() {
-        assert!(PARAMETERS.is_sorted_by(|a, b| a.0 < b.0), "found by a binary search");
+        assert!(
+            PARAMETERS.is_sorted_by(|a, b| a.0 < b.0),
+            "found by a binary search"
+        );
     }
 }

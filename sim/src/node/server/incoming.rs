@@ -46,8 +46,9 @@ impl GameServer<'_> {
     /// Answers some of the waiting questions. Answers take time, and the sender can wait or ask
     /// again.
     fn answer(&mut self) {
-        let questions: Vec<(Question, Query)> =
-            std::iter::from_fn(|| self.questions.take_now()).take(ANSWERS_MAX).collect();
+        let questions: Vec<(Question, Query)> = std::iter::from_fn(|| self.questions.take_now())
+            .take(ANSWERS_MAX)
+            .collect();
         for (question, query) in questions {
             query.answer(match question {
                 Question::Scenario => self.game_info.clone(),
@@ -71,10 +72,19 @@ impl GameServer<'_> {
         match incoming {
             Incoming::Orders(message) => self.take_orders(&message),
             Incoming::Nav(report, bytes) => self.take_nav(&report, bytes),
-            Incoming::Report { ticket, vehicle, what, message } => self.pass_on_report(ticket, vehicle, what, message),
+            Incoming::Report {
+                ticket,
+                vehicle,
+                what,
+                message,
+            } => self.pass_on_report(ticket, vehicle, what, message),
             Incoming::Join(query) => self.join(query),
             Incoming::RecordedMessage(i, bytes) => {
-                let RecordedTopic { topic, schema, is_sound } = &self.recorded_topics[i];
+                let RecordedTopic {
+                    topic,
+                    schema,
+                    is_sound,
+                } = &self.recorded_topics[i];
                 if is_sound(&bytes) {
                     self.record_message(topic.clone(), Some(schema), bytes);
                 } else {
@@ -98,14 +108,17 @@ impl GameServer<'_> {
 
     fn take_orders(&mut self, message: &Orders) {
         let open = (self.contest.decision(), self.pace);
-        let Accepted { orders, back } = agents::accept(&mut self.agents, message, open, &mut self.refusals);
-        back.into_iter().for_each(|vehicle| self.contest.regain_agent(vehicle));
+        let Accepted { orders, back } =
+            agents::accept(&mut self.agents, message, open, &mut self.refusals);
+        back.into_iter()
+            .for_each(|vehicle| self.contest.regain_agent(vehicle));
         if let Some((vehicle, _)) = orders.first() {
             self.note_round_trip(*vehicle, message.stamp.seq);
         }
         for (vehicle, order) in orders {
             let taken = self.contest.order(vehicle, order, message.stamp.valid_ns);
-            self.refusals.add(Refusal::BadNumber, u64::from(taken.is_err()));
+            self.refusals
+                .add(Refusal::BadNumber, u64::from(taken.is_err()));
             self.heard[vehicle.index()] = self.time.worked;
             // At once, not with the next pictures, which may be a decision later.
             self.pass_on_now(vehicle);
@@ -115,12 +128,20 @@ impl GameServer<'_> {
     /// Records how long a team's agents took to answer the picture of a decision.
     fn note_round_trip(&mut self, vehicle: VehicleId, seq: u64) {
         let team = self.contest.scenario().team_of(vehicle);
-        let Some(throttle) = self.throttles.get_mut(team.index()) else { return };
+        let Some(throttle) = self.throttles.get_mut(team.index()) else {
+            return;
+        };
         let now = clock::now();
-        let decision_s = self.contest.scenario().decision().as_s() / self.pacing.speed.unwrap_or(1.0);
+        let decision_s =
+            self.contest.scenario().decision().as_s() / self.pacing.speed.unwrap_or(1.0);
         let decisions = self.contest.decision().saturating_sub(seq) as f64;
-        let since_open = self.opened.map_or(Duration::ZERO, |opened| now.saturating_duration_since(opened));
-        throttle.note(now, since_open + Duration::from_secs_f64(decision_s * decisions));
+        let since_open = self.opened.map_or(Duration::ZERO, |opened| {
+            now.saturating_duration_since(opened)
+        });
+        throttle.note(
+            now,
+            since_open + Duration::from_secs_f64(decision_s * decisions),
+        );
     }
 
     fn take_nav(&mut self, report: &NavReport, bytes: Vec<u8>) {
@@ -131,13 +152,25 @@ impl GameServer<'_> {
             self.record_message(topic, Some(NavReport::SCHEMA), bytes);
         }
         let now = self.moment();
-        let Some(fix_at) = gateways::accept(&mut self.gateways, report, now, &mut self.refusals) else { return };
-        let taken = self.contest.report(report.vehicle, report.nav, fix_at, report.valid);
-        self.refusals.add(Refusal::BadNumber, u64::from(taken.is_err()));
+        let Some(fix_at) = gateways::accept(&mut self.gateways, report, now, &mut self.refusals)
+        else {
+            return;
+        };
+        let taken = self
+            .contest
+            .report(report.vehicle, report.nav, fix_at, report.valid);
+        self.refusals
+            .add(Refusal::BadNumber, u64::from(taken.is_err()));
     }
 
     /// Publishes a gateway's report about a boat if the gateway has joined for that boat.
-    fn pass_on_report(&mut self, ticket: u64, vehicle: VehicleId, what: Reported, message: Vec<u8>) {
+    fn pass_on_report(
+        &mut self,
+        ticket: u64,
+        vehicle: VehicleId,
+        what: Reported,
+        message: Vec<u8>,
+    ) {
         if !self.gateways.vehicles_of(ticket).any(|own| own == vehicle) {
             return self.refusals.count(Refusal::NotYours);
         }
@@ -149,7 +182,9 @@ impl GameServer<'_> {
         let passed_on = match (what, self.reports.get(&(vehicle, what))) {
             (_, None) => Ok(()),
             (Reported::Status, Some(publisher)) => publisher.send_json(message.clone()),
-            (Reported::Link, Some(publisher)) => publisher.send_encoded::<LinkBytes>(message.clone()),
+            (Reported::Link, Some(publisher)) => {
+                publisher.send_encoded::<LinkBytes>(message.clone())
+            }
         };
         passed_on.unwrap_or_default();
         let schema = (what == Reported::Link).then_some(LinkBytes::SCHEMA);
@@ -159,36 +194,63 @@ impl GameServer<'_> {
     /// Simulated time by the clock: the open decision's time plus the time since. Only for fixes,
     /// which would otherwise seem up to a decision older than they are.
     fn moment(&self) -> SimTime {
-        let factor = if self.pace == Pace::Lockstep { 0.0 } else { self.pacing.speed.unwrap_or(0.0) };
-        let passed = self.opened.map_or(0.0, |opened| clock::since(opened).as_secs_f64() * factor);
+        let factor = if self.pace == Pace::Lockstep {
+            0.0
+        } else {
+            self.pacing.speed.unwrap_or(0.0)
+        };
+        let passed = self
+            .opened
+            .map_or(0.0, |opened| clock::since(opened).as_secs_f64() * factor);
         self.contest.now() + SimTime::from_s(passed).min(self.contest.scenario().decision())
     }
 
     fn join(&mut self, query: Query) {
-        let reply = match self.guard.check::<JoinRequest>(query.key(), query.payload(), |_| true) {
+        let reply = match self
+            .guard
+            .check::<JoinRequest>(query.key(), query.payload(), |_| true)
+        {
             Checked::Granted(request) => self.join_at(query.key(), &request),
             Checked::Challenged(challenge) => return query.answer(challenge),
-            Checked::Garbage(e) => JoinReply::Refused { reason: format!("cannot parse the request: {e}") },
+            Checked::Garbage(e) => JoinReply::Refused {
+                reason: format!("cannot parse the request: {e}"),
+            },
         };
         // Before the node can send its ticket.
-        self.inbox.accept_tickets(self.agents.tickets().chain(self.gateways.tickets()).collect());
+        self.inbox.accept_tickets(
+            self.agents
+                .tickets()
+                .chain(self.gateways.tickets())
+                .collect(),
+        );
         query.answer(token::answer(&reply));
     }
 
     /// Handles a join request on the key of a team or boat; access control permits no other.
     fn join_at(&mut self, key: &str, request: &JoinRequest) -> JoinReply {
-        let place = topic::join(&self.game, self.contest.scenario(), request.role, &request.vehicles);
+        let place = topic::join(
+            &self.game,
+            self.contest.scenario(),
+            request.role,
+            &request.vehicles,
+        );
         match request.role {
             _ if place != key => JoinReply::Refused {
-                reason: format!("requests to join with these vehicles belong at {place}, not at {key}"),
+                reason: format!(
+                    "requests to join with these vehicles belong at {place}, not at {key}"
+                ),
             },
-            Role::Gateway => self.gateways.join(request, random_number(), self.contest.now()),
+            Role::Gateway => self
+                .gateways
+                .join(request, random_number(), self.contest.now()),
             Role::Agent => self.join_agent(request),
         }
     }
 
     fn join_agent(&mut self, request: &JoinRequest) -> JoinReply {
-        let reply = self.agents.join(request, random_number(), self.contest.now());
+        let reply = self
+            .agents
+            .join(request, random_number(), self.contest.now());
         if let JoinReply::Granted { vehicles, .. } = &reply {
             for vehicle in vehicles {
                 // The order in force came from another agent.
@@ -202,7 +264,11 @@ impl GameServer<'_> {
 
     fn asked_to_control(&mut self, query: Query) {
         let reply: ControlReply =
-            match self.guard.check(query.key(), query.payload(), |control: &Control| !control.stops()) {
+            match self
+                .guard
+                .check(query.key(), query.payload(), |control: &Control| {
+                    !control.stops()
+                }) {
                 Checked::Granted(control) => self.control(control),
                 Checked::Challenged(challenge) => return query.answer(challenge),
                 Checked::Garbage(e) => {

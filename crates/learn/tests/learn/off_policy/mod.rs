@@ -34,7 +34,10 @@ fn assert_slopes<L: Clone>(
     // For slopes of about 0.1 from finite differences in single precision.
     const TOLERANCE: f32 = 1e-3;
     let (gradient, _) = gradient_and_loss(learner);
-    assert!(gradient.iter().any(|slope| slope.abs() > 30.0 * TOLERANCE), "{gradient:?}");
+    assert!(
+        gradient.iter().any(|slope| slope.abs() > 30.0 * TOLERANCE),
+        "{gradient:?}"
+    );
     for (i, slope) in gradient.iter().enumerate() {
         let at = |by: f32| {
             let mut learner = learner.clone();
@@ -42,7 +45,10 @@ fn assert_slopes<L: Clone>(
             gradient_and_loss(&learner).1
         };
         let want = (at(STEP) - at(-STEP)) / (2.0 * STEP);
-        assert!((slope - want).abs() < TOLERANCE, "parameter {i}: got {slope}, want {want}");
+        assert!(
+            (slope - want).abs() < TOLERANCE,
+            "parameter {i}: got {slope}, want {want}"
+        );
     }
 }
 
@@ -52,7 +58,11 @@ fn the_gradient_of_the_policy_of_td3_goes_through_its_first_critic() {
     let mut learner = Td3Learner::new(3, &[6, 5], 9);
     learner.actor = Perceptron::new(&[3, 6, 5, NUMBERS], 1.0, stream);
     let minibatch = random(7, stream, drawn);
-    assert_slopes(&learner, |learner| &mut learner.actor, |learner| learner.actor_gradient(&minibatch));
+    assert_slopes(
+        &learner,
+        |learner| &mut learner.actor,
+        |learner| learner.actor_gradient(&minibatch),
+    );
 }
 
 #[test]
@@ -69,7 +79,11 @@ fn only_what_boats_did_as_they_were_told_trains_the_policy() {
     assert!(learner.actor_gradient(&other) != learner.actor_gradient(&minibatch));
     other.counts.fill(false);
     let (gradient, loss) = learner.actor_gradient(&other);
-    assert!(loss == 0.0 && gradient.len() == learner.actor.parameters().len() && gradient.iter().all(|g| *g == 0.0));
+    assert!(
+        loss == 0.0
+            && gradient.len() == learner.actor.parameters().len()
+            && gradient.iter().all(|g| *g == 0.0)
+    );
 }
 
 #[test]
@@ -80,5 +94,9 @@ fn the_gradient_of_double_dqn_is_the_slope_of_its_loss() {
     learner.target = Perceptron::new(&[3, 6, 5, 4], 1.0, stream);
     let minibatch = random(11, stream, |stream| stream.below(4) as u16);
     let settings = fixture::dqn();
-    assert_slopes(&learner, |learner| &mut learner.network, |learner| learner.gradient(&minibatch, &settings));
+    assert_slopes(
+        &learner,
+        |learner| &mut learner.network,
+        |learner| learner.gradient(&minibatch, &settings),
+    );
 }

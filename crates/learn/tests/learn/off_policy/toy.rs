@@ -9,7 +9,11 @@ use learn::training::{Dqn, Td3};
 use primitives::stream::Stream;
 
 fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
-    rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads").install(work)
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .expect("threads")
+        .install(work)
 }
 
 /// The next position on a line from -1 to 1.
@@ -27,7 +31,12 @@ fn steps_on_a_line(count: usize) -> Replay<td3::Numbers> {
         let action = td3::drawn(stream);
         let counts = i % 5 != 0;
         let next = moved(place, if counts { action[0] } else { 1.0 });
-        let cost = next * next + if counts { 0.5 * (action[1] - 0.5) * (action[1] - 0.5) } else { 0.0 };
+        let cost = next * next
+            + if counts {
+                0.5 * (action[1] - 0.5) * (action[1] - 0.5)
+            } else {
+                0.0
+            };
         // Steps that ignore the action start farther out, since being tagged is another state.
         let mark = if counts { 0.0 } else { 3.0 };
         replay.push(Transition {
@@ -57,7 +66,10 @@ fn trained_td3(steps: usize, threads: usize) -> Td3Learner {
     on_threads(threads, || {
         for _ in 0..steps {
             let losses = learner.update(&replay, &settings, stream);
-            assert!(losses.critic.is_finite() && losses.critic >= 0.0, "{losses:?}");
+            assert!(
+                losses.critic.is_finite() && losses.critic >= 0.0,
+                "{losses:?}"
+            );
         }
     });
     learner
@@ -72,7 +84,10 @@ fn td3_learns_to_go_to_the_middle_of_a_line_and_stay_there() {
         for _ in 0..6 {
             learner.actor.forward(&[place], &mut trace);
             let [go, idle] = td3::action(trace.output());
-            assert!((idle - 0.5).abs() < 0.25, "from {start}, at {place}: got {idle}, want 0.5");
+            assert!(
+                (idle - 0.5).abs() < 0.25,
+                "from {start}, at {place}: got {idle}, want 0.5"
+            );
             place = moved(place, go);
         }
         assert!(place.abs() < 0.1, "from {start} to {place}");
@@ -108,7 +123,11 @@ fn steps_in_a_row(count: usize) -> Replay<u16> {
     for _ in 0..count {
         let place = stream.below(LAST as u64) as usize;
         let action = stream.below(2) as u16;
-        let next = if action == 1 { place + 1 } else { place.saturating_sub(1) };
+        let next = if action == 1 {
+            place + 1
+        } else {
+            place.saturating_sub(1)
+        };
         replay.push(Transition {
             observation: &shown(place),
             action,
@@ -122,11 +141,19 @@ fn steps_in_a_row(count: usize) -> Replay<u16> {
 }
 
 fn trained_dqn(steps: usize, threads: usize) -> DqnLearner {
-    let settings = Dqn { minibatch: 300, learning_rate: 3e-3, discount: 0.8, target_every: 20, ..fixture::dqn() };
+    let settings = Dqn {
+        minibatch: 300,
+        learning_rate: 3e-3,
+        discount: 0.8,
+        target_every: 20,
+        ..fixture::dqn()
+    };
     let replay = steps_in_a_row(2000);
     let stream = &mut Stream::new(3, "test/learning");
     let mut learner = DqnLearner::new(LAST, &[32], 2, 5);
-    on_threads(threads, || (0..steps).for_each(|_| _ = learner.update(&replay, &settings, stream)));
+    on_threads(threads, || {
+        (0..steps).for_each(|_| _ = learner.update(&replay, &settings, stream))
+    });
     learner
 }
 
@@ -139,7 +166,11 @@ fn double_dqn_learns_what_every_place_in_a_row_is_worth() {
         let right = 0.8_f32.powi((LAST - 1 - place) as i32);
         let left = 0.8_f32.powi((LAST - place.saturating_sub(1)) as i32);
         for (value, want) in trace.output().iter().zip([left, right]) {
-            assert!((value - want).abs() < 0.05, "place {place}: got {:?}, want {left} and {right}", trace.output());
+            assert!(
+                (value - want).abs() < 0.05,
+                "place {place}: got {:?}, want {left} and {right}",
+                trace.output()
+            );
         }
     }
 }
@@ -147,7 +178,13 @@ fn double_dqn_learns_what_every_place_in_a_row_is_worth() {
 #[test]
 fn learning_is_the_same_to_the_bit_on_any_number_of_threads() {
     for threads in [2, 3] {
-        assert!(trained_td3(9, threads) == trained_td3(9, 1), "TD3, {threads} threads");
-        assert!(trained_dqn(9, threads) == trained_dqn(9, 1), "double DQN, {threads} threads");
+        assert!(
+            trained_td3(9, threads) == trained_td3(9, 1),
+            "TD3, {threads} threads"
+        );
+        assert!(
+            trained_dqn(9, threads) == trained_dqn(9, 1),
+            "double DQN, {threads} threads"
+        );
     }
 }

@@ -5,15 +5,33 @@ use crate::diagnostics::Diagnostics;
 use crate::raw;
 use crate::read::Document;
 
-pub(super) fn check_kinematic(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, kinematic: &Kinematic) {
+pub(super) fn check_kinematic(
+    diagnostics: &mut Diagnostics,
+    document: &Document<raw::Boat>,
+    kinematic: &Kinematic,
+) {
     if kinematic.speed_factor == 0.0 && !document.has("kinematic.speed_pid") {
-        document.note_missing(diagnostics, "kinematic.speed_pid", "speed_pid or speed_factor");
+        document.note_missing(
+            diagnostics,
+            "kinematic.speed_pid",
+            "speed_pid or speed_factor",
+        );
     }
-    check_thrust_map(diagnostics, document, "kinematic.thrust_map", &kinematic.thrust_map);
+    check_thrust_map(
+        diagnostics,
+        document,
+        "kinematic.thrust_map",
+        &kinematic.thrust_map,
+    );
 }
 
 /// Checks the map of thrust in per cent and speed in m/s at `path`.
-pub fn check_thrust_map<T>(diagnostics: &mut Diagnostics, document: &Document<T>, path: &str, points: &[(f64, f64)]) {
+pub fn check_thrust_map<T>(
+    diagnostics: &mut Diagnostics,
+    document: &Document<T>,
+    path: &str,
+    points: &[(f64, f64)],
+) {
     if !document.is_sound(path) {
         return;
     }

@@ -41,7 +41,9 @@ impl ScenarioFile for Boat {
             return None;
         }
         let drive = drive?;
-        let draught_m = hull.crossflow_draught_m.filter(|draught_m| *draught_m > 0.0);
+        let draught_m = hull
+            .crossflow_draught_m
+            .filter(|draught_m| *draught_m > 0.0);
         let boat = Boat {
             name: document.name.clone(),
             length_m: raw.length_m,
@@ -75,15 +77,24 @@ fn drive(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>) -> Optio
         }
     }
     let thruster = thruster::thruster(diagnostics, document, raw.thruster.as_ref()?)?;
-    Some(Drive::Thrusters { thruster, autopilot: raw.autopilot.clone()? })
+    Some(Drive::Thrusters {
+        thruster,
+        autopilot: raw.autopilot.clone()?,
+    })
 }
 
 fn check_gps(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, gps: &Gps) {
     let latency_s = gps.latency_s;
     let most_s = MOST_PERIODS_LATE * gps.period_s;
     if latency_s > most_s {
-        let path = if document.has("gps.latency_s") { "gps.latency_s" } else { "gps.period_s" };
-        let message = format!("latency_s is {latency_s}, expected at most {most_s}: {MOST_PERIODS_LATE} periods");
+        let path = if document.has("gps.latency_s") {
+            "gps.latency_s"
+        } else {
+            "gps.period_s"
+        };
+        let message = format!(
+            "latency_s is {latency_s}, expected at most {most_s}: {MOST_PERIODS_LATE} periods"
+        );
         diagnostics.note(document.at(path), message);
     }
 }
@@ -92,12 +103,23 @@ fn check_gps(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, gps:
 /// descriptions.
 fn hull(raw: &raw::Boat, drive: &Drive) -> Hull {
     let (thrust_max_newton, speed_max_m_s) = match drive {
-        Drive::Thrusters { thruster, autopilot } => (2.0 * full_ahead_newton(&thruster.curve), autopilot.speed_max_m_s),
+        Drive::Thrusters {
+            thruster,
+            autopilot,
+        } => (
+            2.0 * full_ahead_newton(&thruster.curve),
+            autopilot.speed_max_m_s,
+        ),
         Drive::Kinematic(kinematic) => (0.0, kinematic.speed_max_m_s),
     };
     let hull = &raw.hull;
     let length_m = raw.length_m;
-    let Hull { mass_kg, x_g_m, surge_quadratic_kg_m, .. } = *hull;
+    let Hull {
+        mass_kg,
+        x_g_m,
+        surge_quadratic_kg_m,
+        ..
+    } = *hull;
     // A radius of gyration of a quarter of the length, shifted from the centre of gravity to
     // midships.
     let estimate_kg_m2 = || mass_kg * (length_m * length_m / 16.0 + x_g_m * x_g_m);
@@ -124,7 +146,9 @@ fn hull(raw: &raw::Boat, drive: &Drive) -> Hull {
         surge_quadratic_kg_m,
         sway_linear_kg_s: hull.sway_linear_kg_s.unwrap_or(mass_kg + added_sway_kg),
         sway_lift_kg_m: hull.sway_lift_kg_m,
-        yaw_linear_kg_m2_s: hull.yaw_linear_kg_m2_s.unwrap_or(yaw_inertia_kg_m2 + added_yaw_kg_m2),
+        yaw_linear_kg_m2_s: hull
+            .yaw_linear_kg_m2_s
+            .unwrap_or(yaw_inertia_kg_m2 + added_yaw_kg_m2),
         yaw_quadratic_kg_m2: hull.yaw_quadratic_kg_m2,
         yaw_lift_kg_m: hull.yaw_lift_kg_m,
         crossflow_coefficient: hull.crossflow_coefficient,
@@ -141,7 +165,9 @@ fn windage(raw: &raw::Boat) -> Windage {
     let beam_m = raw.beam_m;
     Windage {
         frontal_area_m2: windage.frontal_area_m2.unwrap_or(0.36 * beam_m * beam_m),
-        lateral_area_m2: windage.lateral_area_m2.unwrap_or(0.16 * length_m * length_m),
+        lateral_area_m2: windage
+            .lateral_area_m2
+            .unwrap_or(0.16 * length_m * length_m),
         height_m: windage.height_m.unwrap_or(0.25 * length_m),
         surge_coefficient: windage.surge_coefficient,
         sway_coefficient: windage.sway_coefficient,
@@ -160,7 +186,10 @@ fn check_inertia(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, 
         let message = format!("x_g_m is {x_g}, expected -{half_m} to {half_m}, within the hull");
         diagnostics.note(document.at("hull.x_g_m"), message);
     } else if i_z <= m * x_g * x_g {
-        let message = format!("yaw_inertia_kg_m2 is {i_z}, expected more than m x_g² = {}", m * x_g * x_g);
+        let message = format!(
+            "yaw_inertia_kg_m2 is {i_z}, expected more than m x_g² = {}",
+            m * x_g * x_g
+        );
         diagnostics.note(document.at("hull.yaw_inertia_kg_m2"), message);
     }
     let coupling = m * x_g + hull.added_sway_yaw_kg_m;
@@ -188,7 +217,14 @@ fn check_decay(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, bo
             "sway" => "hull.sway_linear_kg_s",
             _ => "hull.yaw_linear_kg_m2_s",
         };
-        diagnostics.note(document.at(if document.has(culprit) { culprit } else { "hull.mass_kg" }), message);
+        diagnostics.note(
+            document.at(if document.has(culprit) {
+                culprit
+            } else {
+                "hull.mass_kg"
+            }),
+            message,
+        );
     }
 }
 
@@ -197,21 +233,35 @@ fn check_decay(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, bo
 pub(super) fn fastest_decay(boat: &Boat) -> (&'static str, f64) {
     let hull = &boat.hull;
     let u_m_s = boat.speed_max_m_s();
-    let crossflow_kg_s = 1025.0 * hull.crossflow_coefficient * hull.crossflow_draught_m * hull.crossflow_length_m;
+    let crossflow_kg_s =
+        1025.0 * hull.crossflow_coefficient * hull.crossflow_draught_m * hull.crossflow_length_m;
     let surge_kg_s = hull.surge_linear_kg_s + 2.0 * hull.surge_quadratic_kg_m * u_m_s;
     let sway_kg_s = hull.sway_linear_kg_s + hull.sway_lift_kg_m * u_m_s + crossflow_kg_s;
-    let yaw_kg_m2_s = hull.yaw_linear_kg_m2_s + hull.yaw_lift_kg_m * u_m_s + 2.0 * hull.yaw_quadratic_kg_m2;
+    let yaw_kg_m2_s =
+        hull.yaw_linear_kg_m2_s + hull.yaw_lift_kg_m * u_m_s + 2.0 * hull.yaw_quadratic_kg_m2;
     let rates = [
         ("surge", surge_kg_s / (hull.mass_kg + hull.added_surge_kg)),
         ("sway", sway_kg_s / (hull.mass_kg + hull.added_sway_kg)),
-        ("yaw", yaw_kg_m2_s / (hull.yaw_inertia_kg_m2 + hull.added_yaw_kg_m2)),
+        (
+            "yaw",
+            yaw_kg_m2_s / (hull.yaw_inertia_kg_m2 + hull.added_yaw_kg_m2),
+        ),
     ];
-    rates.into_iter().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or(("surge", 0.0))
+    rates
+        .into_iter()
+        .max_by(|a, b| a.1.total_cmp(&b.1))
+        .unwrap_or(("surge", 0.0))
 }
 
 fn full_ahead_newton(curve: &ThrustCurve) -> f64 {
     match curve {
-        ThrustCurve::Propeller(Propeller { k_ahead, n_max_rad_s, .. }) => k_ahead * n_max_rad_s * n_max_rad_s,
-        ThrustCurve::Table { points } => points.last().map_or(0.0, |(_, thrust_newton)| *thrust_newton),
+        ThrustCurve::Propeller(Propeller {
+            k_ahead,
+            n_max_rad_s,
+            ..
+        }) => k_ahead * n_max_rad_s * n_max_rad_s,
+        ThrustCurve::Table { points } => points
+            .last()
+            .map_or(0.0, |(_, thrust_newton)| *thrust_newton),
     }
 }

@@ -12,10 +12,20 @@ pub(super) fn thruster(
 ) -> Option<Thruster> {
     let curve = match (&raw.propeller, &raw.table_pct_newton) {
         (Some(propeller), None) => {
-            let Propeller { k_ahead, k_astern, n_max_rad_s, n_min_rad_s } = *propeller;
+            let Propeller {
+                k_ahead,
+                k_astern,
+                n_max_rad_s,
+                n_min_rad_s,
+            } = *propeller;
             let k_astern = k_astern.unwrap_or(k_ahead);
             let n_min_rad_s = n_min_rad_s.unwrap_or(n_max_rad_s);
-            ThrustCurve::Propeller(Propeller { k_ahead, k_astern, n_max_rad_s, n_min_rad_s })
+            ThrustCurve::Propeller(Propeller {
+                k_ahead,
+                k_astern,
+                n_max_rad_s,
+                n_min_rad_s,
+            })
         }
         (None, Some(rows)) => table(diagnostics, document, rows),
         (Some(_), Some(_)) => {
@@ -25,16 +35,37 @@ pub(super) fn thruster(
         }
         (None, None) => {
             if document.is_sound("thruster.table_pct_newton") {
-                document.note_missing(diagnostics, "thruster.propeller", "propeller or table_pct_newton");
+                document.note_missing(
+                    diagnostics,
+                    "thruster.propeller",
+                    "propeller or table_pct_newton",
+                );
             }
             return None;
         }
     };
-    let raw::Thruster { arm_m, lag_s, slew_per_s, deadband, .. } = *raw;
-    Some(Thruster { arm_m, curve, lag_s, slew_per_s, deadband, flaws: raw.flaws.clone() })
+    let raw::Thruster {
+        arm_m,
+        lag_s,
+        slew_per_s,
+        deadband,
+        ..
+    } = *raw;
+    Some(Thruster {
+        arm_m,
+        curve,
+        lag_s,
+        slew_per_s,
+        deadband,
+        flaws: raw.flaws.clone(),
+    })
 }
 
-fn table(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, rows: &[raw::SettingAndThrust]) -> ThrustCurve {
+fn table(
+    diagnostics: &mut Diagnostics,
+    document: &Document<raw::Boat>,
+    rows: &[raw::SettingAndThrust],
+) -> ThrustCurve {
     let path = "thruster.table_pct_newton";
     let points: Vec<(f64, f64)> = rows.iter().map(|row| (row.0 / 100.0, row.1)).collect();
     if document.is_sound(path) {
@@ -47,9 +78,13 @@ fn table(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, rows: &[
                 diagnostics.note(document.at(&format!("{path}.{i}")), message);
             }
         }
-        let ends = (points.first().map(|first| first.0), points.last().map(|last| last.0));
+        let ends = (
+            points.first().map(|first| first.0),
+            points.last().map(|last| last.0),
+        );
         if ends != (Some(-1.0), Some(1.0)) {
-            let message = "table_pct_newton does not span the settings, expected -100 first and 100 last";
+            let message =
+                "table_pct_newton does not span the settings, expected -100 first and 100 last";
             diagnostics.note(document.at(path), message);
         }
         if !points.contains(&(0.0, 0.0)) {

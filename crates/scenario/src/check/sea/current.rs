@@ -6,7 +6,11 @@ use crate::read::Document;
 use crate::sea::{Current, Shear, Tide, Wander};
 use primitives::frame::Ned;
 
-pub(super) fn current(diagnostics: &mut Diagnostics, document: &Document<raw::Sea>, raw: &raw::Current) -> Current {
+pub(super) fn current(
+    diagnostics: &mut Diagnostics,
+    document: &Document<raw::Sea>,
+    raw: &raw::Current,
+) -> Current {
     let toward = Ned::toward_deg(raw.toward_deg);
     let mut rising = |key: &str, (from, to): (f64, f64)| {
         if from > to {

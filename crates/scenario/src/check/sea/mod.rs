@@ -20,7 +20,10 @@ impl ScenarioFile for Sea {
             name: document.name.clone(),
             water_density_kg_m3: raw.water_density_kg_m3,
             depth_m: raw.depth_m,
-            waves: raw.waves.as_ref().and_then(|waves| waves::waves(diagnostics, document, waves)),
+            waves: raw
+                .waves
+                .as_ref()
+                .and_then(|waves| waves::waves(diagnostics, document, waves)),
             wind: raw.wind.as_ref().map(wind),
             current: current::current(diagnostics, document, &raw.current),
         };
@@ -29,10 +32,19 @@ impl ScenarioFile for Sea {
 }
 
 fn wind(raw: &raw::Wind) -> Wind {
-    let raw::Wind { intensity, across_ratio, length_m, .. } = *raw;
+    let raw::Wind {
+        intensity,
+        across_ratio,
+        length_m,
+        ..
+    } = *raw;
     let gusts = match raw.gusts {
         raw::Gusts::None => Gusts::None,
-        raw::Gusts::OrnsteinUhlenbeck => Gusts::OrnsteinUhlenbeck { intensity, across_ratio, length_m },
+        raw::Gusts::OrnsteinUhlenbeck => Gusts::OrnsteinUhlenbeck {
+            intensity,
+            across_ratio,
+            length_m,
+        },
     };
     Wind {
         speed_10m_m_s: raw.speed_m_s,

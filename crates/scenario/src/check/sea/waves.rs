@@ -11,12 +11,19 @@ const STEEPEST: f64 = 0.08;
 /// Maximum height as a share of the depth; higher waves break.
 const HIGHEST: f64 = 0.6;
 
-pub(super) fn waves(diagnostics: &mut Diagnostics, document: &Document<raw::Sea>, raw: &raw::Waves) -> Option<Waves> {
+pub(super) fn waves(
+    diagnostics: &mut Diagnostics,
+    document: &Document<raw::Sea>,
+    raw: &raw::Waves,
+) -> Option<Waves> {
     let depth_m = document.raw.depth_m;
     let wind = document.raw.wind.as_ref();
     let is_jonswap = raw.spectrum == raw::Spectrum::Jonswap;
     if !is_jonswap && document.has("waves.gamma") {
-        let message = format!("gamma is {}, expected none: it applies only to \"jonswap\"", raw.gamma);
+        let message = format!(
+            "gamma is {}, expected none: it applies only to \"jonswap\"",
+            raw.gamma
+        );
         diagnostics.note(document.at("waves.gamma"), message);
     }
     if raw.spreading != raw::Spreading::Cosine2s && document.has("waves.spread_s") {
@@ -29,11 +36,15 @@ pub(super) fn waves(diagnostics: &mut Diagnostics, document: &Document<raw::Sea>
     }
     let (hs_m, tp_s) = height_and_period(diagnostics, document, raw)?;
     let steepness = hs_m / peak_length_m(tp_s, depth_m);
-    let size = ["waves.hs_m", "waves.fetch_km", "waves"].into_iter().find(|path| document.has(path));
+    let size = ["waves.hs_m", "waves.fetch_km", "waves"]
+        .into_iter()
+        .find(|path| document.has(path));
     let place = document.at(size.unwrap_or("waves"));
     if let Some(depth_m) = depth_m.filter(|depth_m| hs_m > HIGHEST * depth_m) {
         let highest_m = HIGHEST * depth_m;
-        let message = format!("waves of hs_m {hs_m:.3} break in {depth_m} m, expected at most {highest_m:.3}");
+        let message = format!(
+            "waves of hs_m {hs_m:.3} break in {depth_m} m, expected at most {highest_m:.3}"
+        );
         diagnostics.note(place, message);
     } else if steepness > STEEPEST {
         let message = format!(
@@ -65,7 +76,8 @@ fn height_and_period(
     let wind = document.raw.wind.as_ref();
     let is_fully_grown = raw.spectrum == raw::Spectrum::PiersonMoskowitz;
     if document.has("waves.hs_m") && document.has("waves.fetch_km") {
-        let message = "fetch_km is given with hs_m, expected either height and period, or the fetch";
+        let message =
+            "fetch_km is given with hs_m, expected either height and period, or the fetch";
         diagnostics.note(document.at("waves.fetch_km"), message);
         return None;
     }
@@ -75,11 +87,17 @@ fn height_and_period(
         return None;
     }
     // Without wind there are no waves; 0.5 m/s is the minimum here.
-    let wind_m_s = raw.wind_m_s.or(wind.map(|wind| wind.speed_m_s.clamp(0.5, 50.0)));
+    let wind_m_s = raw
+        .wind_m_s
+        .or(wind.map(|wind| wind.speed_m_s.clamp(0.5, 50.0)));
     match (raw.hs_m, raw.tp_s, raw.fetch_km, wind_m_s) {
         (Some(hs_m), ..) if is_fully_grown => Some(fully_grown_with(hs_m)),
         (None, _, None, Some(u_10)) if is_fully_grown => {
-            let u_19_5 = u_10 * libm::pow(1.95, wind.map_or(PROFILE_EXPONENT, |wind| wind.profile_exponent));
+            let u_19_5 = u_10
+                * libm::pow(
+                    1.95,
+                    wind.map_or(PROFILE_EXPONENT, |wind| wind.profile_exponent),
+                );
             Some(fully_grown_with(0.209_2 * u_19_5 * u_19_5 / GRAVITY_M_S2))
         }
         (Some(hs_m), Some(tp_s), ..) => Some((hs_m, tp_s)),
@@ -87,7 +105,10 @@ fn height_and_period(
             // Carter, D. J. T. (1982). Prediction of wave height and period for a constant wind
             // velocity. The sea is fully developed, with Hs = 0.02481 U², after 2.317 U² km.
             let x_km = x_km.min(2.317 * u * u);
-            Some((0.0163 * x_km.sqrt() * u, 0.566 * math::exp(0.3 * libm::log(x_km) + 0.4 * libm::log(u))))
+            Some((
+                0.0163 * x_km.sqrt() * u,
+                0.566 * math::exp(0.3 * libm::log(x_km) + 0.4 * libm::log(u)),
+            ))
         }
         _ => {
             let expected = match is_fully_grown {
@@ -109,7 +130,10 @@ fn height_and_period(
 /// the water. Hence Hs = 0.2092 U² / g, and the peak is at 0.8772 g / U.
 fn fully_grown_with(hs_m: f64) -> (f64, f64) {
     let u_m_s = (hs_m * GRAVITY_M_S2 / 0.209_2).sqrt().max(0.1);
-    (hs_m, std::f64::consts::TAU * u_m_s / (0.877_2 * GRAVITY_M_S2))
+    (
+        hs_m,
+        std::f64::consts::TAU * u_m_s / (0.877_2 * GRAVITY_M_S2),
+    )
 }
 
 /// The wavelength at this period, m.

@@ -11,7 +11,8 @@ use crate::raw;
 use crate::read;
 use crate::schema::declared;
 use crate::strategy::{
-    Behaviour, Boat, Kind as VariableKind, Mode, Moment, Named, Parameter, Place, Post, Task, Variable,
+    Behaviour, Boat, Kind as VariableKind, Mode, Moment, Named, Parameter, Place, Post, Task,
+    Variable,
 };
 use primitives::frame::Ned;
 use serde::Deserialize;
@@ -21,8 +22,11 @@ use serde_json::{Map, Value as Json, json};
 const MOST: usize = 1000;
 
 /// Pairs of numbers in ascending order.
-const IN_ORDER: [(&str, &str); 3] =
-    [("inner_m", "outer_m"), ("cpa_min_m", "cpa_max_m"), ("inner_radius_m", "outer_radius_m")];
+const IN_ORDER: [(&str, &str); 3] = [
+    ("inner_m", "outer_m"),
+    ("cpa_min_m", "cpa_max_m"),
+    ("inner_radius_m", "outer_radius_m"),
+];
 
 /// Checks the behaviours. If the modes do not form a tree, references to modes are not checked.
 pub(super) fn behaviours(scope: &mut Scope<'_>, modes: Option<&[Mode]>) -> Vec<Behaviour> {
@@ -31,20 +35,43 @@ pub(super) fn behaviours(scope: &mut Scope<'_>, modes: Option<&[Mode]>) -> Vec<B
         scope.note_missing("roles", "roles or at least one [behaviour.NAME]");
     }
     if given.len() > MOST {
-        scope.note("behaviour", &format!("has {} entries, expected at most {MOST}", given.len()));
+        scope.note(
+            "behaviour",
+            &format!("has {} entries, expected at most {MOST}", given.len()),
+        );
     }
-    given.iter().take(MOST).filter_map(|(name, given)| one(scope, modes, name, &given.0)).collect()
+    given
+        .iter()
+        .take(MOST)
+        .filter_map(|(name, given)| one(scope, modes, name, &given.0))
+        .collect()
 }
 
-fn one(scope: &mut Scope<'_>, modes: Option<&[Mode]>, name: &str, given: &Json) -> Option<Behaviour> {
+fn one(
+    scope: &mut Scope<'_>,
+    modes: Option<&[Mode]>,
+    name: &str,
+    given: &Json,
+) -> Option<Behaviour> {
     let path = format!("behaviour.{name}");
-    scope.diagnostics.is_name(scope.document.at(&path), "behaviour", name);
-    let modes =
-        modes.map(|modes| in_modes(scope, &path, modes, given["in"].as_array().map(Vec::as_slice))).unwrap_or_default();
+    scope
+        .diagnostics
+        .is_name(scope.document.at(&path), "behaviour", name);
+    let modes = modes
+        .map(|modes| {
+            in_modes(
+                scope,
+                &path,
+                modes,
+                given["in"].as_array().map(Vec::as_slice),
+            )
+        })
+        .unwrap_or_default();
     let when = scope.condition(&format!("{path}.when"), given["when"].as_str());
     let posts = posts(scope, &path, given);
     let mut kinds = declared(Kind::STRATEGY)["definitions"].as_object()?.iter();
-    let (variant, about) = kinds.find(|(_, about)| about["properties"]["kind"]["const"] == given["kind"])?;
+    let (variant, about) =
+        kinds.find(|(_, about)| about["properties"]["kind"]["const"] == given["kind"])?;
     let mut keys = checked_table(scope, &path, given.as_object()?, about);
     check_order(scope, &path, &keys);
     if variant == "Loiter" {
@@ -52,8 +79,16 @@ fn one(scope: &mut Scope<'_>, modes: Option<&[Mode]>, name: &str, given: &Json) 
         keys.insert("shape".to_owned(), shape);
     }
     let is_policy = variant == "Policy";
-    let sets = if is_policy { sets(scope, &path, &mut keys)? } else { None };
-    let model = if is_policy { model(scope, &path, &mut keys, sets)? } else { None };
+    let sets = if is_policy {
+        sets(scope, &path, &mut keys)?
+    } else {
+        None
+    };
+    let model = if is_policy {
+        model(scope, &path, &mut keys, sets)?
+    } else {
+        None
+    };
     let weight = parameter(&keys, "weight")?;
     let duration_s = parameter(&keys, "duration_s");
     let mut task: Task = serde_json::from_value(json!({ variant: keys })).ok()?;
@@ -73,10 +108,20 @@ fn one(scope: &mut Scope<'_>, modes: Option<&[Mode]>, name: &str, given: &Json) 
 }
 
 /// The keys of a table with their checked values; faults are reported and left out.
-fn checked_table(scope: &mut Scope<'_>, path: &str, given: &Map<String, Json>, about: &Json) -> Map<String, Json> {
+fn checked_table(
+    scope: &mut Scope<'_>,
+    path: &str,
+    given: &Map<String, Json>,
+    about: &Json,
+) -> Map<String, Json> {
     let mut table = Map::new();
     for (key, value) in given {
-        let value = checked(scope, &format!("{path}.{key}"), value, &about["properties"][key]);
+        let value = checked(
+            scope,
+            &format!("{path}.{key}"),
+            value,
+            &about["properties"][key],
+        );
         table.extend(value.map(|value| (key.clone(), value)));
     }
     table
@@ -85,13 +130,19 @@ fn checked_table(scope: &mut Scope<'_>, path: &str, given: &Map<String, Json>, a
 /// The checked value at `path`; `about` is the schema of the typed value.
 fn checked(scope: &mut Scope<'_>, path: &str, given: &Json, about: &Json) -> Option<Json> {
     let value = match (about["title"].as_str(), given) {
-        (Some("a number or an expression"), _) => serde_json::to_value(scope.parameter(path, given, about)?),
+        (Some("a number or an expression"), _) => {
+            serde_json::to_value(scope.parameter(path, given, about)?)
+        }
         (Some("boat"), Json::String(name)) => serde_json::to_value(Boat::by_name(name)?),
         (Some("place"), Json::String(name)) => serde_json::to_value(Place::by_name(name)?),
-        (Some("place"), _) => serde_json::to_value(Place::At(Ned::from_xy(given[0].as_f64()?, given[1].as_f64()?))),
+        (Some("place"), _) => serde_json::to_value(Place::At(Ned::from_xy(
+            given[0].as_f64()?,
+            given[1].as_f64()?,
+        ))),
         (_, Json::Array(items)) => {
             let items = items.iter().enumerate();
-            let items = items.map(|(i, item)| checked(scope, &format!("{path}.{i}"), item, &about["items"]));
+            let items = items
+                .map(|(i, item)| checked(scope, &format!("{path}.{i}"), item, &about["items"]));
             Ok(items.collect::<Option<Json>>()?)
         }
         (_, Json::Object(table)) => Ok(checked_table(scope, path, table, about).into()),
@@ -109,11 +160,18 @@ fn parameter(keys: &Map<String, Json>, key: &str) -> Option<Parameter> {
 fn check_order(scope: &mut Scope<'_>, path: &str, keys: &Map<String, Json>) {
     let constant = |key: &str| parameter(keys, key)?.constant();
     for (low, high) in IN_ORDER {
-        let (Some(least), Some(most)) = (constant(low), constant(high)) else { continue };
-        let given = [low, high].into_iter().find(|key| scope.document.has(&format!("{path}.{key}")));
+        let (Some(least), Some(most)) = (constant(low), constant(high)) else {
+            continue;
+        };
+        let given = [low, high]
+            .into_iter()
+            .find(|key| scope.document.has(&format!("{path}.{key}")));
         if let Some(given) = given.filter(|_| least > most) {
             let at = scope.document.at(&format!("{path}.{given}"));
-            scope.diagnostics.note(at, format!("{low} is {least}, expected at most {high}, which is {most}"));
+            scope.diagnostics.note(
+                at,
+                format!("{low} is {least}, expected at most {high}, which is {most}"),
+            );
         }
     }
 }
@@ -123,8 +181,12 @@ fn shape(scope: &mut Scope<'_>, path: &str, keys: &mut Map<String, Json>) -> Opt
     let given = ["polygon", "ellipse"].map(|key| scope.document.has(&format!("{path}.{key}")));
     let ellipse = format!("{path}.ellipse");
     match given {
-        [true, false] => keys.remove("polygon").map(|corners| json!({ "Corners": corners })),
-        [false, true] => keys.remove("ellipse").map(|ellipse| json!({ "Ellipse": ellipse })),
+        [true, false] => keys
+            .remove("polygon")
+            .map(|corners| json!({ "Corners": corners })),
+        [false, true] => keys
+            .remove("ellipse")
+            .map(|ellipse| json!({ "Ellipse": ellipse })),
         [true, true] => scope.refuse(&ellipse, "is given with polygon, expected one of them"),
         [false, false] => {
             scope.note_missing(&ellipse, "ellipse or polygon");
@@ -135,17 +197,27 @@ fn shape(scope: &mut Scope<'_>, path: &str, keys: &mut Map<String, Json>) -> Opt
 
 /// The variable that receives a policy's options, if it has any.
 fn sets(scope: &mut Scope<'_>, path: &str, keys: &mut Map<String, Json>) -> Option<Option<u16>> {
-    let Some(Json::String(name)) = keys.remove("sets") else { return Some(None) };
+    let Some(Json::String(name)) = keys.remove("sets") else {
+        return Some(None);
+    };
     let at = format!("{path}.sets");
     let of_texts = |variable: &&Variable| matches!(&variable.kind, VariableKind::Text(_));
     match scope.variable(&name) {
         Some((index, variable)) if of_texts(&variable) => Some(Some(index)),
         _ => {
-            let known: Vec<&str> =
-                scope.variables.iter().filter(of_texts).map(|variable| variable.name.as_str()).collect();
+            let known: Vec<&str> = scope
+                .variables
+                .iter()
+                .filter(of_texts)
+                .map(|variable| variable.name.as_str())
+                .collect();
             let expected = match known.as_slice() {
                 [] => "a variable with `values`, but [variables] has none".to_owned(),
-                _ => format!("one of the variables with texts, {}{}", known.join(", "), did_you_mean(&name, &known)),
+                _ => format!(
+                    "one of the variables with texts, {}{}",
+                    known.join(", "),
+                    did_you_mean(&name, &known)
+                ),
             };
             scope.refuse(&at, &format!("is {name:?}, expected {expected}"))
         }
@@ -156,10 +228,14 @@ fn sets(scope: &mut Scope<'_>, path: &str, keys: &mut Map<String, Json>) -> Opti
 fn misfit(scope: &Scope<'_>, model: &PolicyModel, sets: Option<u16>) -> Option<String> {
     let has_options = model.spec.action == ActionSpace::Options;
     let Some(variable) = sets.map(|index| &scope.variables[usize::from(index)]) else {
-        return has_options
-            .then(|| "it chooses among options, expected `sets` with the variable that receives them".to_owned());
+        return has_options.then(|| {
+            "it chooses among options, expected `sets` with the variable that receives them"
+                .to_owned()
+        });
     };
-    let VariableKind::Text(texts) = &variable.kind else { return None };
+    let VariableKind::Text(texts) = &variable.kind else {
+        return None;
+    };
     if !has_options {
         return Some(format!(
             "it chooses a course and a speed, expected one that chooses a value of {}",
@@ -167,11 +243,20 @@ fn misfit(scope: &Scope<'_>, model: &PolicyModel, sets: Option<u16>) -> Option<S
         ));
     }
     let names = model.options();
-    let found =
-        names.as_ref().map_or_else(|| model.actions().unwrap_or_default().to_string(), |names| names.join(", "));
-    let is_fit = names.map_or(model.actions() == Some(texts.len()), |names| names == *texts);
+    let found = names.as_ref().map_or_else(
+        || model.actions().unwrap_or_default().to_string(),
+        |names| names.join(", "),
+    );
+    let is_fit = names.map_or(model.actions() == Some(texts.len()), |names| {
+        names == *texts
+    });
     (!is_fit).then(|| {
-        let expected = format!("the {} values of {}: {}", texts.len(), variable.name, texts.join(", "));
+        let expected = format!(
+            "the {} values of {}: {}",
+            texts.len(),
+            variable.name,
+            texts.join(", ")
+        );
         format!("its options are {found}, expected {expected}")
     })
 }
@@ -188,9 +273,14 @@ fn model(
     let given = |key: &str| scope.document.has(&format!("{path}.{key}"));
     let at = format!("{path}.model");
     let Some(file) = file.as_ref().and_then(Json::as_str) else {
-        let of_models = ["observation", "action", "period_s"].into_iter().find(|key| given(key));
+        let of_models = ["observation", "action", "period_s"]
+            .into_iter()
+            .find(|key| given(key));
         return match of_models {
-            Some(key) => scope.refuse(&format!("{path}.{key}"), "is given without model, expected only with it"),
+            Some(key) => scope.refuse(
+                &format!("{path}.{key}"),
+                "is given without model, expected only with it",
+            ),
             None => Some(None),
         };
     };
@@ -201,7 +291,10 @@ fn model(
         return None;
     }
     if given("by") {
-        return scope.refuse(&format!("{path}.by"), "is given with model, expected one of them");
+        return scope.refuse(
+            &format!("{path}.by"),
+            "is given with model, expected one of them",
+        );
     }
     let said = PartialSpec {
         observation: observation.and_then(|space| serde_json::from_value(space).ok()),
@@ -218,8 +311,15 @@ fn model(
 }
 
 /// Whether a behaviour may run in each mode.
-fn in_modes(scope: &mut Scope<'_>, path: &str, modes: &[Mode], given: Option<&[Json]>) -> Vec<bool> {
-    let Some(given) = given else { return vec![true; modes.len()] };
+fn in_modes(
+    scope: &mut Scope<'_>,
+    path: &str,
+    modes: &[Mode],
+    given: Option<&[Json]>,
+) -> Vec<bool> {
+    let Some(given) = given else {
+        return vec![true; modes.len()];
+    };
     let mut allowed = vec![false; modes.len()];
     let given = given.iter().map(|name| name.as_str().unwrap_or_default());
     for (i, name) in given.enumerate().filter(|(_, name)| !name.is_empty()) {
@@ -228,7 +328,10 @@ fn in_modes(scope: &mut Scope<'_>, path: &str, modes: &[Mode], given: Option<&[J
             None => {
                 let names: Vec<&str> = modes.iter().map(|mode| mode.name.as_str()).collect();
                 let guess = did_you_mean(name, &names);
-                let message = format!("has {name:?}, expected one of the modes {}{guess}", names.join(", "));
+                let message = format!(
+                    "has {name:?}, expected one of the modes {}{guess}",
+                    names.join(", ")
+                );
                 scope.note(&format!("{path}.in.{i}"), &message);
             }
         }
@@ -245,7 +348,11 @@ fn posts(scope: &mut Scope<'_>, path: &str, given: &Json) -> Vec<Post> {
     for at in Moment::all() {
         let values = raw::Values::deserialize(&given[at.name()]).unwrap_or_default();
         let set = set(scope, &format!("{path}.{}", at.name()), &values);
-        posts.extend(set.into_iter().map(|(variable, value)| Post { at: *at, variable, value }));
+        posts.extend(set.into_iter().map(|(variable, value)| Post {
+            at: *at,
+            variable,
+            value,
+        }));
     }
     posts
 }

@@ -21,16 +21,32 @@ pub(super) struct Parsed {
 impl Parsed {
     /// The offset of a part in the virtual text.
     pub(super) fn place(&self, part: &IdedExpr) -> usize {
-        let start = self.places.as_ref().and_then(|places| places.offset_for(part.id)).map_or(0, |(start, _)| start);
-        self.offsets.get(start as usize).or(self.offsets.last()).copied().unwrap_or(0)
+        let start = self
+            .places
+            .as_ref()
+            .and_then(|places| places.offset_for(part.id))
+            .map_or(0, |(start, _)| start);
+        self.offsets
+            .get(start as usize)
+            .or(self.offsets.last())
+            .copied()
+            .unwrap_or(0)
     }
 }
 
 /// Parses the expression of `key` at `at`; reports syntax errors.
-pub(super) fn parse(diagnostics: &mut Diagnostics, key: &str, at: usize, text: &str) -> Option<Parsed> {
+pub(super) fn parse(
+    diagnostics: &mut Diagnostics,
+    key: &str,
+    at: usize,
+    text: &str,
+) -> Option<Parsed> {
     let length = text.chars().count();
     if length > LONGEST {
-        diagnostics.note(at, format!("{key} is {length} characters long, expected at most {LONGEST}"));
+        diagnostics.note(
+            at,
+            format!("{key} is {length} characters long, expected at most {LONGEST}"),
+        );
         return None;
     }
     let offsets = offsets(diagnostics.sources.text_from(at), at, text);
@@ -40,8 +56,17 @@ pub(super) fn parse(diagnostics: &mut Diagnostics, key: &str, at: usize, text: &
             // The parser reports the places of parts only for invalid syntax: a surplus bracket
             // makes it invalid.
             let places = parser().parse(&format!("{text}\n)")).err();
-            let places = places.and_then(|errors| errors.errors.into_iter().find_map(|error| error.source_info));
-            Some(Parsed { root, places, offsets })
+            let places = places.and_then(|errors| {
+                errors
+                    .errors
+                    .into_iter()
+                    .find_map(|error| error.source_info)
+            });
+            Some(Parsed {
+                root,
+                places,
+                offsets,
+            })
         }
         Err(errors) => {
             let error = errors.errors.first()?;
@@ -60,7 +85,11 @@ fn byte_at(text: &str, (line, column): (isize, isize)) -> usize {
     let start: usize = text.split_inclusive('\n').take(lines).map(str::len).sum();
     let rest = text.get(start..).unwrap_or_default();
     let columns = (column - 1).max(0) as usize;
-    start + rest.char_indices().nth(columns).map_or(rest.len(), |(byte, _)| byte)
+    start
+        + rest
+            .char_indices()
+            .nth(columns)
+            .map_or(rest.len(), |(byte, _)| byte)
 }
 
 /// The parser's error in the terms of these files; `rest` is the expression from the error on.
@@ -69,7 +98,11 @@ fn complaint(message: &str, rest: &str) -> String {
         return format!("is nested too deeply, expected at most {DEEPEST} levels of brackets");
     }
     if rest.trim().is_empty() {
-        let wanted = if message.starts_with("expected") { message } else { "expected a value there" };
+        let wanted = if message.starts_with("expected") {
+            message
+        } else {
+            "expected a value there"
+        };
         return format!("ends too early, {wanted}");
     }
     let token = token(rest);
@@ -84,8 +117,12 @@ fn complaint(message: &str, rest: &str) -> String {
         _ if message.contains("expecting <EOF>") => {
             format!("has {token:?} here, expected an operator or the end{guess}")
         }
-        "unexpected token" | "unexpected character" => format!("has {token:?} here, expected a value{guess}"),
-        _ if message.starts_with("unexpected single") => format!("has {token:?} here, expected an operator{guess}"),
+        "unexpected token" | "unexpected character" => {
+            format!("has {token:?} here, expected a value{guess}")
+        }
+        _ if message.starts_with("unexpected single") => {
+            format!("has {token:?} here, expected an operator{guess}")
+        }
         _ if message.starts_with("reserved identifier") => {
             format!("has {token:?} here, expected a name that CEL does not reserve")
         }
@@ -108,11 +145,16 @@ fn token(rest: &str) -> &str {
 /// The offset of each byte of a string value, and of its end, if the value as written begins
 /// `source`, at `start`.
 fn offsets(source: &str, start: usize, value: &str) -> Vec<usize> {
-    let opening = ["\"\"\"", "'''", "\"", "'"].into_iter().find(|quotes| source.starts_with(quotes)).unwrap_or("");
+    let opening = ["\"\"\"", "'''", "\"", "'"]
+        .into_iter()
+        .find(|quotes| source.starts_with(quotes))
+        .unwrap_or("");
     let has_escapes = opening.starts_with('"');
     let mut at = opening.len();
     if opening.len() == 3 {
-        let newline = ["\r\n", "\n"].into_iter().find(|newline| source[at..].starts_with(newline));
+        let newline = ["\r\n", "\n"]
+            .into_iter()
+            .find(|newline| source[at..].starts_with(newline));
         at += newline.map_or(0, str::len);
     }
     let mut offsets = vec![];
@@ -158,7 +200,14 @@ mod tests {
 
     #[test]
     fn a_line_and_a_column_are_a_byte() {
-        for (pos, want) in [((1, 1), 0), ((1, 3), 3), ((2, 1), 5), ((2, 9), 7), ((0, 0), 0), ((9, 9), 7)] {
+        for (pos, want) in [
+            ((1, 1), 0),
+            ((1, 3), 3),
+            ((2, 1), 5),
+            ((2, 9), 7),
+            ((0, 0), 0),
+            ((9, 9), 7),
+        ] {
             assert_eq!(byte_at("aéb\ncd", pos), want, "{pos:?}");
         }
     }

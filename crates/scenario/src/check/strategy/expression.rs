@@ -17,8 +17,20 @@ pub(super) const CALLS: [&str; 3] = ["min", "max", "mates"];
 type Read = (Expression, Kind);
 
 /// The expression parsed for `key`, which must be of the kind `wanted`; reports faults.
-pub(super) fn read(scope: &mut Scope<'_>, key: &str, parsed: &Parsed, wanted: &Kind) -> Option<Expression> {
-    Reader { scope, key, parsed, among_mates: false, depth: 0 }.of_kind(&parsed.root, wanted)
+pub(super) fn read(
+    scope: &mut Scope<'_>,
+    key: &str,
+    parsed: &Parsed,
+    wanted: &Kind,
+) -> Option<Expression> {
+    Reader {
+        scope,
+        key,
+        parsed,
+        among_mates: false,
+        depth: 0,
+    }
+    .of_kind(&parsed.root, wanted)
 }
 
 struct Reader<'a, 'b> {
@@ -34,7 +46,9 @@ impl Reader<'_, '_> {
     /// Reports a fault of a part.
     fn refuse<T>(&mut self, part: &IdedExpr, message: &str) -> Option<T> {
         let message = format!("{} {message}", self.key);
-        self.scope.diagnostics.note(self.parsed.place(part), message);
+        self.scope
+            .diagnostics
+            .note(self.parsed.place(part), message);
         None
     }
 
@@ -43,13 +57,26 @@ impl Reader<'_, '_> {
         if found == *wanted {
             return Some(expression);
         }
-        let wanted = if *wanted == Kind::Truth { "true or false, such as a comparison" } else { "a number" };
-        self.refuse(part, &format!("has {} here, expected {wanted}", in_words(&expression, &found)))
+        let wanted = if *wanted == Kind::Truth {
+            "true or false, such as a comparison"
+        } else {
+            "a number"
+        };
+        self.refuse(
+            part,
+            &format!(
+                "has {} here, expected {wanted}",
+                in_words(&expression, &found)
+            ),
+        )
     }
 
     fn any(&mut self, part: &IdedExpr) -> Option<Read> {
         if self.depth > DEEPEST {
-            return self.refuse(part, &format!("is nested too deeply here, expected at most {DEEPEST} levels"));
+            return self.refuse(
+                part,
+                &format!("is nested too deeply here, expected at most {DEEPEST} levels"),
+            );
         }
         match &part.expr {
             Expr::Literal(literal) => self.literal(part, literal),
@@ -73,7 +100,10 @@ impl Reader<'_, '_> {
     fn not_allowed<T>(&mut self, part: &IdedExpr, what: &str) -> Option<T> {
         let allowed = "numbers, texts, true, false, names, ! - + * / < <= > >= == != && || ?:, min(), max(), mates()";
         let measures = Measure::names().join("(), ");
-        self.refuse(part, &format!("has {what} here, expected only {allowed} and the measures {measures}()"))
+        self.refuse(
+            part,
+            &format!("has {what} here, expected only {allowed} and the measures {measures}()"),
+        )
     }
 
     fn literal(&mut self, part: &IdedExpr, literal: &LiteralValue) -> Option<Read> {
@@ -83,7 +113,10 @@ impl Reader<'_, '_> {
             LiteralValue::Double(value) => number(*value.inner()),
             LiteralValue::Int(value) => number(*value.inner() as f64),
             LiteralValue::UInt(value) => number(*value.inner() as f64),
-            LiteralValue::String(text) => Some((Expression::Constant(0.0), Kind::Text(vec![text.inner().to_owned()]))),
+            LiteralValue::String(text) => Some((
+                Expression::Constant(0.0),
+                Kind::Text(vec![text.inner().to_owned()]),
+            )),
             LiteralValue::Bytes(_) => self.not_allowed(part, "a string of bytes"),
             LiteralValue::Null => self.not_allowed(part, "null"),
         }
@@ -104,11 +137,20 @@ impl Reader<'_, '_> {
             return Some((Expression::Fact(fact), Kind::of(fact.is_truth())));
         }
         if Place::by_name(name).is_some() {
-            let message = format!("has the place {name} here, expected it in a measure, as in distance({name})");
+            let message = format!(
+                "has the place {name} here, expected it in a measure, as in distance({name})"
+            );
             return self.refuse(part, &message);
         }
-        let mut known: Vec<&str> = variables.iter().map(|variable| variable.name.as_str()).collect();
-        let listed = if known.is_empty() { String::new() } else { format!(" ({})", known.join(", ")) };
+        let mut known: Vec<&str> = variables
+            .iter()
+            .map(|variable| variable.name.as_str())
+            .collect();
+        let listed = if known.is_empty() {
+            String::new()
+        } else {
+            format!(" ({})", known.join(", "))
+        };
         known.extend(Fact::names());
         let message = format!(
             "has {name:?} here, which is unknown, expected a variable{listed}, a fact such as tagged or time_s, or a call \
@@ -119,7 +161,10 @@ impl Reader<'_, '_> {
     }
 
     fn refuse_to_mates<T>(&mut self, part: &IdedExpr, name: &str, what: &str) -> Option<T> {
-        self.refuse(part, &format!("uses {name} in mates(), which is {what}, expected a shared variable"))
+        self.refuse(
+            part,
+            &format!("uses {name} in mates(), which is {what}, expected a shared variable"),
+        )
     }
 
     fn call(&mut self, part: &IdedExpr, call: &CallExpr) -> Option<Read> {
@@ -128,26 +173,36 @@ impl Reader<'_, '_> {
         let sign = name.trim_matches('_');
         let join = Join::by_name(sign).filter(|_| CALLS.contains(&sign) == (sign == name));
         match (join, name, call.args.as_slice()) {
-            (Some(join @ (Join::Equal | Join::Unequal)), _, [a, b]) => self.equality(part, join, a, b),
+            (Some(join @ (Join::Equal | Join::Unequal)), _, [a, b]) => {
+                self.equality(part, join, a, b)
+            }
             (Some(join), _, [a, b]) => {
                 let wanted = Kind::of(matches!(join, Join::And | Join::Or));
                 let a = self.of_kind(a, &wanted);
                 let b = self.of_kind(b, &wanted);
-                Some((Expression::Join(join, Box::new((a?, b?))), Kind::of(join.is_truth())))
+                Some((
+                    Expression::Join(join, Box::new((a?, b?))),
+                    Kind::of(join.is_truth()),
+                ))
             }
-            (_, operators::LOGICAL_NOT, [a]) => {
-                Some((Expression::Not(Box::new(self.of_kind(a, &Kind::Truth)?)), Kind::Truth))
+            (_, operators::LOGICAL_NOT, [a]) => Some((
+                Expression::Not(Box::new(self.of_kind(a, &Kind::Truth)?)),
+                Kind::Truth,
+            )),
+            (_, operators::NEGATE, [a]) => Some((
+                Expression::Minus(Box::new(self.of_kind(a, &Kind::Number)?)),
+                Kind::Number,
+            )),
+            (_, operators::CONDITIONAL, [condition, then, otherwise]) => {
+                self.choice(condition, then, otherwise)
             }
-            (_, operators::NEGATE, [a]) => {
-                Some((Expression::Minus(Box::new(self.of_kind(a, &Kind::Number)?)), Kind::Number))
-            }
-            (_, operators::CONDITIONAL, [condition, then, otherwise]) => self.choice(condition, then, otherwise),
             (_, operators::MODULO, _) => self.not_allowed(part, "%"),
             (_, operators::IN, _) => self.not_allowed(part, "in"),
             (_, operators::INDEX, _) => self.not_allowed(part, "an index [...]"),
-            (_, "mates", [_]) if self.among_mates => {
-                self.refuse(part, "has mates() within mates(), expected shared variables")
-            }
+            (_, "mates", [_]) if self.among_mates => self.refuse(
+                part,
+                "has mates() within mates(), expected shared variables",
+            ),
             (_, "mates", [condition]) => {
                 self.among_mates = true;
                 let condition = self.of_kind(condition, &Kind::Truth);
@@ -162,26 +217,38 @@ impl Reader<'_, '_> {
     fn measure(&mut self, part: &IdedExpr, name: &str, arguments: &[IdedExpr]) -> Option<Read> {
         let given = format!("passes {} arguments to {name}(), expected", arguments.len());
         match (Measure::by_name(name), arguments) {
-            (Some(_), _) if self.among_mates => self.refuse_to_mates(part, &format!("{name}()"), "a measure"),
-            (Some(measure), [place]) => {
-                Some((Expression::Measure(measure, self.place(place, name)?), Kind::of(measure.is_truth())))
+            (Some(_), _) if self.among_mates => {
+                self.refuse_to_mates(part, &format!("{name}()"), "a measure")
             }
+            (Some(measure), [place]) => Some((
+                Expression::Measure(measure, self.place(place, name)?),
+                Kind::of(measure.is_truth()),
+            )),
             (Some(measure), [from, to]) if measure.is_of_two() => {
                 let from = self.place(from, name);
                 let to = self.place(to, name);
-                Some((Expression::Between(measure, Box::new((from?, to?))), Kind::of(measure.is_truth())))
+                Some((
+                    Expression::Between(measure, Box::new((from?, to?))),
+                    Kind::of(measure.is_truth()),
+                ))
             }
             (Some(measure), _) if measure.is_of_two() => {
                 self.refuse(part, &format!("{given} one place or boat, or two"))
             }
             (Some(_), _) => self.refuse(part, &format!("{given} one place or boat")),
-            _ if name == "mates" => self.refuse(part, &format!("{given} one condition, or none as in mates > 0")),
+            _ if name == "mates" => self.refuse(
+                part,
+                &format!("{given} one condition, or none as in mates > 0"),
+            ),
             _ if CALLS.contains(&name) => self.refuse(part, &format!("{given} two numbers")),
             _ => {
                 let known = [&CALLS[..], &Measure::names()].concat();
                 let all = known.join("(), ");
                 let guess = did_you_mean(name, &known);
-                self.refuse(part, &format!("calls {name}(), expected one of {all}(){guess}"))
+                self.refuse(
+                    part,
+                    &format!("calls {name}(), expected one of {all}(){guess}"),
+                )
             }
         }
     }
@@ -191,53 +258,89 @@ impl Reader<'_, '_> {
             Expr::Ident(name) => name.as_str(),
             Expr::Literal(LiteralValue::String(name)) => name.inner(),
             _ => {
-                return self
-                    .refuse(part, &format!("passes a value to {measure}(), expected the name of a place or boat"));
+                return self.refuse(
+                    part,
+                    &format!("passes a value to {measure}(), expected the name of a place or boat"),
+                );
             }
         };
         Place::by_name(name).or_else(|| {
             let known = Place::names();
             let guess = did_you_mean(name, &known.iter().map(String::as_str).collect::<Vec<_>>());
             let expected = Place::names_in_short();
-            self.refuse(part, &format!("uses the {measure} of {name:?}, expected {expected}{guess}"))
+            self.refuse(
+                part,
+                &format!("uses the {measure} of {name:?}, expected {expected}{guess}"),
+            )
         })
     }
 
-    fn equality(&mut self, part: &IdedExpr, join: Join, a: &IdedExpr, b: &IdedExpr) -> Option<Read> {
+    fn equality(
+        &mut self,
+        part: &IdedExpr,
+        join: Join,
+        a: &IdedExpr,
+        b: &IdedExpr,
+    ) -> Option<Read> {
         let left = self.any(a);
         let right = self.any(b);
         let (left, left_kind) = left?;
         let (right, right_kind) = right?;
         let is_variable = |side: &Expression| side.as_variable().is_some();
         let sides = match (&left_kind, &right_kind) {
-            (Kind::Text(values), Kind::Text(text)) if is_variable(&left) && !is_variable(&right) => {
+            (Kind::Text(values), Kind::Text(text))
+                if is_variable(&left) && !is_variable(&right) =>
+            {
                 (left, self.text(a, b, values, &text[0])?)
             }
-            (Kind::Text(text), Kind::Text(values)) if is_variable(&right) && !is_variable(&left) => {
+            (Kind::Text(text), Kind::Text(values))
+                if is_variable(&right) && !is_variable(&left) =>
+            {
                 (self.text(b, a, values, &text[0])?, right)
             }
             (Kind::Text(_), Kind::Text(_)) => {
-                return self.refuse(part, "compares two texts, expected a text variable and one of its values");
+                return self.refuse(
+                    part,
+                    "compares two texts, expected a text variable and one of its values",
+                );
             }
             _ if left_kind == right_kind => (left, right),
             _ => {
                 let left = in_words(&left, &left_kind);
                 let right = in_words(&right, &right_kind);
-                return self
-                    .refuse(part, &format!("compares {left} with {right}, expected two values of the same kind"));
+                return self.refuse(
+                    part,
+                    &format!("compares {left} with {right}, expected two values of the same kind"),
+                );
             }
         };
         Some((Expression::Join(join, Box::new(sides)), Kind::Truth))
     }
 
     /// The index of `text` among the values of a variable.
-    fn text(&mut self, variable: &IdedExpr, part: &IdedExpr, values: &[String], text: &str) -> Option<Expression> {
-        let name = if let Expr::Ident(name) = &variable.expr { name } else { "a text" };
-        let wrong = |allowed| self.refuse(part, &format!("compares {name} with {text:?}, {allowed}"));
+    fn text(
+        &mut self,
+        variable: &IdedExpr,
+        part: &IdedExpr,
+        values: &[String],
+        text: &str,
+    ) -> Option<Expression> {
+        let name = if let Expr::Ident(name) = &variable.expr {
+            name
+        } else {
+            "a text"
+        };
+        let wrong =
+            |allowed| self.refuse(part, &format!("compares {name} with {text:?}, {allowed}"));
         text_value(values, text).map_or_else(wrong, Some)
     }
 
-    fn choice(&mut self, condition: &IdedExpr, then: &IdedExpr, otherwise: &IdedExpr) -> Option<Read> {
+    fn choice(
+        &mut self,
+        condition: &IdedExpr,
+        then: &IdedExpr,
+        otherwise: &IdedExpr,
+    ) -> Option<Read> {
         let condition = self.of_kind(condition, &Kind::Truth);
         let Some((first, kind)) = self.any(then) else {
             self.any(otherwise);
@@ -245,10 +348,16 @@ impl Reader<'_, '_> {
         };
         if let Kind::Text(_) = kind {
             let found = in_words(&first, &kind);
-            return self.refuse(then, &format!("has {found} here, expected a number, or true or false"));
+            return self.refuse(
+                then,
+                &format!("has {found} here, expected a number, or true or false"),
+            );
         }
         let second = self.of_kind(otherwise, &kind);
-        Some((Expression::Choose(Box::new((condition?, first, second?))), kind))
+        Some((
+            Expression::Choose(Box::new((condition?, first, second?))),
+            kind,
+        ))
     }
 }
 
@@ -270,8 +379,10 @@ pub(super) fn is_reserved(name: &str) -> bool {
 pub(super) fn text_value(values: &[String], text: &str) -> Result<Expression, String> {
     let known: Vec<&str> = values.iter().map(String::as_str).collect();
     let place = known.iter().position(|value| *value == text);
-    place.map(|place| Expression::Constant(place as f64)).ok_or_else(|| {
-        let guess = did_you_mean(text, &known);
-        format!("expected one of {}{guess}", known.join(", "))
-    })
+    place
+        .map(|place| Expression::Constant(place as f64))
+        .ok_or_else(|| {
+            let guess = did_you_mean(text, &known);
+            format!("expected one of {}{guess}", known.join(", "))
+        })
 }

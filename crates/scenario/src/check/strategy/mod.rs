@@ -35,7 +35,9 @@ pub(crate) fn strategy_file(
         return Some(kept.clone());
     }
     let strategy: Strategy = diagnostics.read(path, asked_at, owner)?;
-    Arc::make_mut(&mut diagnostics.kept).strategies.insert(key, strategy.clone());
+    Arc::make_mut(&mut diagnostics.kept)
+        .strategies
+        .insert(key, strategy.clone());
     Some(strategy)
 }
 
@@ -44,7 +46,10 @@ impl ScenarioFile for Strategy {
     const NAME: &'static str = "strategy";
     const FOLDER: &'static str = "strategies";
 
-    fn check(diagnostics: &mut Diagnostics, document: &Document<raw::Strategy>) -> Option<Strategy> {
+    fn check(
+        diagnostics: &mut Diagnostics,
+        document: &Document<raw::Strategy>,
+    ) -> Option<Strategy> {
         let raw = &document.raw;
         let roles = match &raw.roles {
             Some(given) => {
@@ -59,8 +64,12 @@ impl ScenarioFile for Strategy {
                 vec![program::program(diagnostics, document)?]
             }
         };
-        let strategy =
-            Strategy { name: document.name.clone(), about: raw.about.clone(), roles, assignment: raw.assignment };
+        let strategy = Strategy {
+            name: document.name.clone(),
+            about: raw.about.clone(),
+            roles,
+            assignment: raw.assignment,
+        };
         document.is_faultless(diagnostics).then_some(strategy)
     }
 }
@@ -94,31 +103,64 @@ impl StrategyFiles {
 
 /// Reports program keys in a file with roles.
 fn refuse_program(diagnostics: &mut Diagnostics, document: &Document<raw::Strategy>) {
-    let keys = ["helm", "unsafe_i_know", "unsafe_because", "variables", "mode", "rule"].map(str::to_owned);
-    let behaviours = document.raw.behaviour.keys().map(|name| format!("behaviour.{name}"));
-    for key in keys.into_iter().chain(behaviours).filter(|key| document.has(key)) {
+    let keys = [
+        "helm",
+        "unsafe_i_know",
+        "unsafe_because",
+        "variables",
+        "mode",
+        "rule",
+    ]
+    .map(str::to_owned);
+    let behaviours = document
+        .raw
+        .behaviour
+        .keys()
+        .map(|name| format!("behaviour.{name}"));
+    for key in keys
+        .into_iter()
+        .chain(behaviours)
+        .filter(|key| document.has(key))
+    {
         let message = format!("{key} is given with roles, expected in the files listed in roles");
         diagnostics.note(document.at(&key), message);
     }
 }
 
 /// The programs of a file's roles. A file that is referenced twice is read once.
-fn roles(diagnostics: &mut Diagnostics, document: &Document<raw::Strategy>, given: &[raw::FilePath]) -> Vec<Program> {
+fn roles(
+    diagnostics: &mut Diagnostics,
+    document: &Document<raw::Strategy>,
+    given: &[raw::FilePath],
+) -> Vec<Program> {
     let mut read: BTreeMap<PathBuf, Option<Program>> = BTreeMap::new();
     let mut roles = vec![];
-    for (i, role) in given.iter().enumerate().filter(|(_, role)| !role.0.is_empty()) {
+    for (i, role) in given
+        .iter()
+        .enumerate()
+        .filter(|(_, role)| !role.0.is_empty())
+    {
         let at = document.at(&format!("roles.{i}"));
         let path = diagnostics.resolve(at, &role.0);
-        let program = read.entry(path.clone()).or_insert_with(|| one_role(diagnostics, at, &role.0, &path));
+        let program = read
+            .entry(path.clone())
+            .or_insert_with(|| one_role(diagnostics, at, &role.0, &path));
         roles.extend(program.clone());
     }
     roles
 }
 
 fn one_role(diagnostics: &mut Diagnostics, at: usize, role: &str, path: &Path) -> Option<Program> {
-    let document = read::document::<raw::Strategy>(diagnostics, Kind::STRATEGY, path, Some(at), Strategy::NAME)?;
+    let document = read::document::<raw::Strategy>(
+        diagnostics,
+        Kind::STRATEGY,
+        path,
+        Some(at),
+        Strategy::NAME,
+    )?;
     if document.raw.roles.is_some() {
-        let message = format!("roles has {role:?}, which has roles itself, expected a program file");
+        let message =
+            format!("roles has {role:?}, which has roles itself, expected a program file");
         diagnostics.note(at, message);
         return None;
     }

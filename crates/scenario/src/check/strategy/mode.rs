@@ -12,7 +12,12 @@ const DEEPEST: usize = 20;
 pub(super) fn modes(scope: &mut Scope<'_>) -> Option<Vec<Mode>> {
     let given = &scope.document.raw.mode;
     if given.is_empty() {
-        return Some(vec![Mode { name: "active".to_owned(), parent: None, when: None, enter: vec![] }]);
+        return Some(vec![Mode {
+            name: "active".to_owned(),
+            parent: None,
+            when: None,
+            enter: vec![],
+        }]);
     }
     let faults = scope.diagnostics.faults();
     let mut modes: Vec<Mode> = vec![];
@@ -22,9 +27,17 @@ pub(super) fn modes(scope: &mut Scope<'_>) -> Option<Vec<Mode>> {
             let message = format!("{name:?} is used twice, expected a unique name for each mode");
             scope.note(&format!("mode.{i}.name"), &message);
         }
-        let parent = mode.r#in.as_ref().and_then(|parent| self::parent(scope, &modes, i, parent));
+        let parent = mode
+            .r#in
+            .as_ref()
+            .and_then(|parent| self::parent(scope, &modes, i, parent));
         let enter = set(scope, &format!("mode.{i}.set"), &mode.set);
-        modes.push(Mode { name, parent, when: None, enter });
+        modes.push(Mode {
+            name,
+            parent,
+            when: None,
+            enter,
+        });
     }
     check_conditions(scope, &modes);
     let is_tree = scope.document.is_sound("mode") && scope.diagnostics.faults() == faults;
@@ -38,18 +51,37 @@ fn parent(scope: &mut Scope<'_>, before: &[Mode], mode: usize, parent: &str) -> 
     let path = format!("mode.{mode}.in");
     let Some(found) = before.iter().position(|mode| mode.name == parent) else {
         let names: Vec<&str> = before.iter().map(|mode| mode.name.as_str()).collect();
-        let message = if scope.document.raw.mode.iter().any(|mode| mode.name.0 == parent) {
+        let message = if scope
+            .document
+            .raw
+            .mode
+            .iter()
+            .any(|mode| mode.name.0 == parent)
+        {
             format!("is {parent:?}, which comes later, expected an earlier mode")
         } else {
-            let known = if names.is_empty() { "but there is none".to_owned() } else { names.join(", ") };
-            format!("is {parent:?}, expected an earlier mode, {known}{}", did_you_mean(parent, &names))
+            let known = if names.is_empty() {
+                "but there is none".to_owned()
+            } else {
+                names.join(", ")
+            };
+            format!(
+                "is {parent:?}, expected an earlier mode, {known}{}",
+                did_you_mean(parent, &names)
+            )
         };
         scope.note(&path, &message);
         return None;
     };
     let depth = std::iter::successors(Some(found), |mode| before[*mode].parent).count();
     if depth >= DEEPEST {
-        scope.note(&path, &format!("is nested {} levels deep, expected at most {DEEPEST}", depth + 1));
+        scope.note(
+            &path,
+            &format!(
+                "is nested {} levels deep, expected at most {DEEPEST}",
+                depth + 1
+            ),
+        );
     }
     Some(found)
 }
@@ -60,18 +92,27 @@ fn check_conditions(scope: &mut Scope<'_>, modes: &[Mode]) {
     // Undecidable with an unknown parent.
     let is_known = |mode: usize| given[mode].r#in.is_some() == modes[mode].parent.is_some();
     for (i, mode) in modes.iter().enumerate().filter(|(i, _)| is_known(*i)) {
-        let next = (i + 1..modes.len()).find(|other| modes[*other].parent == mode.parent && is_known(*other));
+        let next = (i + 1..modes.len())
+            .find(|other| modes[*other].parent == mode.parent && is_known(*other));
         let name = &mode.name;
         let path = format!("mode.{i}.when");
         match (&given[i].when, next) {
             (None, Some(next)) => {
                 let next = &modes[next].name;
-                scope.note_missing(&path, &format!("a condition: without one for {name}, {next} is never active"));
+                scope.note_missing(
+                    &path,
+                    &format!("a condition: without one for {name}, {next} is never active"),
+                );
             }
             (Some(_), None) => {
                 let part_of = |parent: usize| format!("part of {}", modes[parent].name);
                 let of = mode.parent.map_or_else(|| "mode".to_owned(), part_of);
-                scope.note(&path, &format!("is given for {name}, the last {of}, expected none: it is the fallback"));
+                scope.note(
+                    &path,
+                    &format!(
+                        "is given for {name}, the last {of}, expected none: it is the fallback"
+                    ),
+                );
             }
             _ => {}
         }

@@ -9,16 +9,30 @@ use crate::diagnostics::Diagnostics;
 use crate::guess::nearest;
 use crate::raw;
 use crate::read::Document;
-use crate::strategy::{Behaviour, FUNCTIONS_MAX, NEAREST_MAX, Named, Program, Rule, Task, Trigger, What, Who};
+use crate::strategy::{
+    Behaviour, FUNCTIONS_MAX, NEAREST_MAX, Named, Program, Rule, Task, Trigger, What, Who,
+};
 
-pub(super) fn program(diagnostics: &mut Diagnostics, document: &Document<raw::Strategy>) -> Option<Program> {
+pub(super) fn program(
+    diagnostics: &mut Diagnostics,
+    document: &Document<raw::Strategy>,
+) -> Option<Program> {
     let raw = &document.raw;
     let faults = diagnostics.faults();
     let variables = variables(diagnostics, document);
-    let mut scope = Scope { diagnostics, document, variables: &variables };
+    let mut scope = Scope {
+        diagnostics,
+        document,
+        variables: &variables,
+    };
     let modes = modes(&mut scope);
     let behaviours = behaviours(&mut scope, modes.as_deref());
-    let rules = raw.rule.iter().enumerate().map(|(i, given)| rule(&mut scope, i, given)).collect();
+    let rules = raw
+        .rule
+        .iter()
+        .enumerate()
+        .map(|(i, given)| rule(&mut scope, i, given))
+        .collect();
     safety::check_reason(&mut scope);
     // Faults of a part may cause faults of the whole.
     if scope.diagnostics.faults() > faults || !document.is_sound("") {
@@ -48,7 +62,12 @@ fn check_functions(scope: &mut Scope<'_>, program: &Program) {
             Task::CutRange(_) => 2,
             _ => 1,
         };
-        let functions: usize = program.behaviours.iter().filter(|b| b.modes[leaf]).map(most).sum();
+        let functions: usize = program
+            .behaviours
+            .iter()
+            .filter(|b| b.modes[leaf])
+            .map(most)
+            .sum();
         if functions > FUNCTIONS_MAX {
             let message = format!(
                 "could ask for {functions} functions at once, expected at most {FUNCTIONS_MAX}: {NEAREST_MAX} for each \
@@ -68,7 +87,10 @@ fn rule(scope: &mut Scope<'_>, rule: usize, given: &raw::Rule) -> Rule {
         scope.note(&path("set"), "is empty, expected values for variables");
     }
     Rule {
-        on: given.on.as_ref().and_then(|on| trigger(scope, &path("on"), on)),
+        on: given
+            .on
+            .as_ref()
+            .and_then(|on| trigger(scope, &path("on"), on)),
         when: scope.condition(&path("when"), given.when.as_deref()),
         set: set(scope, &path("set"), &given.set),
     }
@@ -82,9 +104,14 @@ fn trigger(scope: &mut Scope<'_>, path: &str, on: &str) -> Option<Trigger> {
         return Some(Trigger { who, what });
     }
     let guess = nearest(who, &Who::names()).zip(nearest(what, &What::names()));
-    let guess = guess.map(|(who, what)| format!(" (did you mean {who} {what}?)")).unwrap_or_default();
+    let guess = guess
+        .map(|(who, what)| format!(" (did you mean {who} {what}?)"))
+        .unwrap_or_default();
     let who = Who::names().join(", ");
     let what = What::names().join(", ");
-    scope.note(path, &format!("is {on:?}, expected one of {who}, then one of {what}{guess}"));
+    scope.note(
+        path,
+        &format!("is {on:?}, expected one of {who}, then one of {what}{guess}"),
+    );
     None
 }

@@ -18,9 +18,16 @@ const MOST_TERMS: usize = u16::MAX as usize;
 
 /// Reports every unreachable mode, but not its children.
 pub(super) fn check(scope: &mut Scope<'_>, program: &Program) {
-    let mut terms = Terms { program, index: BTreeMap::new(), values: vec![] };
-    let conditions: Vec<Option<Expression>> =
-        program.modes.iter().map(|mode| mode.when.as_ref().map(|when| terms.formula(when))).collect();
+    let mut terms = Terms {
+        program,
+        index: BTreeMap::new(),
+        values: vec![],
+    };
+    let conditions: Vec<Option<Expression>> = program
+        .modes
+        .iter()
+        .map(|mode| mode.when.as_ref().map(|when| terms.formula(when)))
+        .collect();
     let laws = laws().map(|law| terms.formula(&law));
     if terms.values.len() > MOST_TERMS {
         return;
@@ -30,7 +37,13 @@ pub(super) fn check(scope: &mut Scope<'_>, program: &Program) {
         values.dedup();
     }
     let tried = vec![None; terms.values.len()];
-    let mut search = Search { laws: &laws, values: terms.values, tried, cases: 0, steps: 0 };
+    let mut search = Search {
+        laws: &laws,
+        values: terms.values,
+        tried,
+        cases: 0,
+        steps: 0,
+    };
     let mut never = vec![false; program.modes.len()];
     for (i, mode) in program.modes.iter().enumerate() {
         never[i] = mode.parent.is_some_and(|parent| never[parent]);
@@ -38,8 +51,13 @@ pub(super) fn check(scope: &mut Scope<'_>, program: &Program) {
             continue;
         }
         never[i] = true;
-        let before: Vec<&str> = before(program, i).map(|other| program.modes[other].name.as_str()).collect();
-        let why = if conditions[i].as_ref().is_some_and(|when| !search.is_possible(&[(when, true)])) {
+        let before: Vec<&str> = before(program, i)
+            .map(|other| program.modes[other].name.as_str())
+            .collect();
+        let why = if conditions[i]
+            .as_ref()
+            .is_some_and(|when| !search.is_possible(&[(when, true)]))
+        {
             format!("its when never holds{}", only_ever(program, i))
         } else if before.is_empty() {
             "its when never holds in its parent modes".to_owned()
@@ -57,7 +75,9 @@ fn only_ever(program: &Program, mode: usize) -> String {
     when.for_each(|when| when.walk(&mut |part| asked.extend(part.as_variable())));
     let mut words = String::new();
     for index in asked {
-        let Some(values) = given_to(program, index) else { continue };
+        let Some(values) = given_to(program, index) else {
+            continue;
+        };
         let word = |value: &f64| program.value_text(index, &Expression::Constant(*value));
         let values: Vec<String> = values.iter().map(word).collect();
         let name = &program.variables[usize::from(index)].name;
@@ -72,13 +92,21 @@ fn before(program: &Program, mode: usize) -> impl Iterator<Item = usize> {
 }
 
 /// The conditions that must hold, and those that must not, for a mode to be active.
-fn wanted<'a>(program: &Program, conditions: &'a [Option<Expression>], mode: usize) -> Vec<(&'a Expression, bool)> {
+fn wanted<'a>(
+    program: &Program,
+    conditions: &'a [Option<Expression>],
+    mode: usize,
+) -> Vec<(&'a Expression, bool)> {
     let condition = |mode: usize| conditions[mode].as_ref();
     let mut wanted = vec![];
     let mut at = Some(mode);
     while let Some(mode) = at {
         wanted.extend(condition(mode).map(|when| (when, true)));
-        wanted.extend(before(program, mode).filter_map(condition).map(|when| (when, false)));
+        wanted.extend(
+            before(program, mode)
+                .filter_map(condition)
+                .map(|when| (when, false)),
+        );
         at = program.modes[mode].parent;
     }
     wanted
@@ -89,7 +117,11 @@ fn laws() -> [Expression; 3] {
     let fact = Expression::Fact;
     let join = |join, a, b| Expression::Join(join, Box::new((a, b)));
     let implies = |a, b| join(Join::Or, Expression::Not(Box::new(a)), b);
-    let some_in_zone = join(Join::More, fact(Fact::EnemiesInZone), Expression::Constant(0.0));
+    let some_in_zone = join(
+        Join::More,
+        fact(Fact::EnemiesInZone),
+        Expression::Constant(0.0),
+    );
     [
         join(Join::Equal, fact(Fact::EnemyInZone), some_in_zone),
         implies(fact(Fact::HasFlag), fact(Fact::EnemyFlagTaken)),
@@ -114,18 +146,26 @@ impl Terms<'_> {
         }
         match condition {
             Expression::Not(inner) => Expression::Not(Box::new(self.formula(inner))),
-            Expression::Join(join, sides) if self.joins_truths(*join, sides) => {
-                Expression::Join(*join, Box::new((self.formula(&sides.0), self.formula(&sides.1))))
-            }
+            Expression::Join(join, sides) if self.joins_truths(*join, sides) => Expression::Join(
+                *join,
+                Box::new((self.formula(&sides.0), self.formula(&sides.1))),
+            ),
             Expression::Join(join, sides) => {
-                match (self.compared(&sides.0, &sides.1), self.compared(&sides.1, &sides.0)) {
+                match (
+                    self.compared(&sides.0, &sides.1),
+                    self.compared(&sides.1, &sides.0),
+                ) {
                     (Some(left), Some(right)) => Expression::Join(*join, Box::new((left, right))),
                     _ => self.term(condition),
                 }
             }
             Expression::Choose(parts) => {
                 let (condition, then, otherwise) = &**parts;
-                Expression::Choose(Box::new((self.formula(condition), self.formula(then), self.formula(otherwise))))
+                Expression::Choose(Box::new((
+                    self.formula(condition),
+                    self.formula(then),
+                    self.formula(otherwise),
+                )))
             }
             _ => self.term(condition),
         }
@@ -138,7 +178,10 @@ impl Terms<'_> {
     }
 
     fn term(&mut self, term: &Expression) -> Expression {
-        let index = *self.index.entry(format!("{term:?}")).or_insert(self.values.len());
+        let index = *self
+            .index
+            .entry(format!("{term:?}"))
+            .or_insert(self.values.len());
         if index == self.values.len() {
             self.values.push(self.values_of(term).0);
         }
@@ -153,8 +196,13 @@ impl Terms<'_> {
         let constant = other.constant().filter(|_| side.asks())?;
         let variable = self.term(side);
         if let (values, Some(is_whole)) = self.values_of(side) {
-            let above = constant.next_up().max(if is_whole { constant.floor() + 1.0 } else { f64::NEG_INFINITY });
-            let is_possible = |value: &f64| *value >= values[0] && (!is_whole || value.fract() == 0.0);
+            let above = constant.next_up().max(if is_whole {
+                constant.floor() + 1.0
+            } else {
+                f64::NEG_INFINITY
+            });
+            let is_possible =
+                |value: &f64| *value >= values[0] && (!is_whole || value.fract() == 0.0);
             let index = usize::from(variable.as_variable()?);
             self.values[index].extend([constant, above].into_iter().filter(is_possible));
         }
@@ -169,16 +217,23 @@ impl Terms<'_> {
             Expression::Measure(Measure::Closing, _) | Expression::Between(Measure::Closing, _) => {
                 number(f64::NEG_INFINITY, false)
             }
-            Expression::Measure(measure, _) | Expression::Between(measure, _) if !measure.is_truth() => {
+            Expression::Measure(measure, _) | Expression::Between(measure, _)
+                if !measure.is_truth() =>
+            {
                 number(0.0, measure.is_whole())
             }
             Expression::Mates(_) => number(0.0, true),
             Expression::Variable(index) => {
-                match (given_to(self.program, *index), &self.program.variables[usize::from(*index)].kind) {
+                match (
+                    given_to(self.program, *index),
+                    &self.program.variables[usize::from(*index)].kind,
+                ) {
                     (Some(values), _) => (values, None),
                     (None, Kind::Number) => number(f64::NEG_INFINITY, false),
                     (None, Kind::Truth) => (vec![0.0, 1.0], None),
-                    (None, Kind::Text(texts)) => ((0..texts.len()).map(|text| text as f64).collect(), None),
+                    (None, Kind::Text(texts)) => {
+                        ((0..texts.len()).map(|text| text as f64).collect(), None)
+                    }
                 }
             }
             _ => (vec![0.0, 1.0], None),
@@ -189,13 +244,22 @@ impl Terms<'_> {
 /// All values of a variable, if only constants are assigned to it.
 fn given_to(program: &Program, variable: u16) -> Option<Vec<f64>> {
     let sets = |task: &Task| matches!(task, Task::Policy(policy) if policy.sets == Some(variable));
-    if program.behaviours.iter().any(|behaviour| sets(&behaviour.task)) {
+    if program
+        .behaviours
+        .iter()
+        .any(|behaviour| sets(&behaviour.task))
+    {
         return None;
     }
     let entered = program.modes.iter().flat_map(|mode| &mode.enter);
     let ruled = program.rules.iter().flat_map(|rule| &rule.set);
-    let set = entered.chain(ruled).map(|(variable, value)| (*variable, value));
-    let posts = program.behaviours.iter().flat_map(|behaviour| &behaviour.posts);
+    let set = entered
+        .chain(ruled)
+        .map(|(variable, value)| (*variable, value));
+    let posts = program
+        .behaviours
+        .iter()
+        .flat_map(|behaviour| &behaviour.posts);
     let set = set.chain(posts.map(|post| (post.variable, &post.value)));
     let mut values = vec![program.variables[usize::from(variable)].initial];
     for (_, value) in set.filter(|(index, _)| *index == variable) {
@@ -257,7 +321,9 @@ impl Search<'_> {
         match formula {
             Expression::Constant(value) => Ok(*value),
             Expression::Variable(term) => self.tried[usize::from(*term)].ok_or(usize::from(*term)),
-            Expression::Not(inner) => self.value(inner).map(|value| f64::from(u8::from(value == 0.0))),
+            Expression::Not(inner) => self
+                .value(inner)
+                .map(|value| f64::from(u8::from(value == 0.0))),
             Expression::Join(join, sides) => {
                 let a = self.value(&sides.0);
                 let b = self.value(&sides.1);

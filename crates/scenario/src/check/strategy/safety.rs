@@ -9,12 +9,17 @@ pub(super) fn check_reason(scope: &mut Scope<'_>) {
     let raw = &scope.document.raw;
     match (raw.unsafe_i_know, &raw.unsafe_because) {
         (false, Some(_)) => {
-            scope.note("unsafe_because", "is given without unsafe_i_know = true, expected both or neither");
+            scope.note(
+                "unsafe_because",
+                "is given without unsafe_i_know = true, expected both or neither",
+            );
         }
         (true, None) => {
             let at = scope.document.at("unsafe_i_know");
             if scope.document.is_sound("unsafe_because") {
-                scope.diagnostics.note_missing(at, "unsafe_because", "the reason");
+                scope
+                    .diagnostics
+                    .note_missing(at, "unsafe_because", "the reason");
             }
         }
         (true, Some(because)) if because.trim().is_empty() => {
@@ -31,12 +36,18 @@ pub(super) fn check(scope: &mut Scope<'_>, program: &mut Program) {
     let mut is_lacking = false;
     for leaf in program.leaves() {
         for (kind, all) in [("op_region", ""), ("avoid_collision", " for all contacts")] {
-            let of_kind = || program.behaviours.iter().filter(|b| b.task.kind() == kind && b.modes[leaf]);
+            let of_kind = || {
+                program
+                    .behaviours
+                    .iter()
+                    .filter(|b| b.task.kind() == kind && b.modes[leaf])
+            };
             if of_kind().any(Behaviour::is_guard) {
                 continue;
             }
             is_lacking = true;
-            let other = of_kind().find_map(|b| Some(format!(" ({} is not: {})", b.name, b.no_guard_since()?)));
+            let other = of_kind()
+                .find_map(|b| Some(format!(" ({} is not: {})", b.name, b.no_guard_since()?)));
             let message = format!(
                 "has no reliable {kind}{}, expected one{all} without when or duration_s, with a \
                  constant weight above 0; or set unsafe_i_know = true and unsafe_because",
@@ -64,12 +75,21 @@ fn hold_below_guards(scope: &mut Scope<'_>, program: &mut Program) {
         // than the field, or an expression with such a value. Guards therefore have constants
         // within limits, and nothing outweighs them.
         let weight = |kind: &str| {
-            let guards = program.behaviours.iter().filter(|b| b.task.kind() == kind && b.modes[leaf] && b.is_guard());
-            guards.filter_map(|b| b.weight.constant()).fold(0.0, f64::max)
+            let guards = program
+                .behaviours
+                .iter()
+                .filter(|b| b.task.kind() == kind && b.modes[leaf] && b.is_guard());
+            guards
+                .filter_map(|b| b.weight.constant())
+                .fold(0.0, f64::max)
         };
         let most = weight("op_region").min(weight("avoid_collision"));
         let path = program.path(leaf);
-        for behaviour in program.behaviours.iter_mut().filter(|b| b.modes[leaf] && !b.task.is_safety()) {
+        for behaviour in program
+            .behaviours
+            .iter_mut()
+            .filter(|b| b.modes[leaf] && !b.task.is_safety())
+        {
             match behaviour.weight.constant() {
                 Some(weight) if weight > most => {
                     let message = format!(
@@ -88,7 +108,8 @@ impl Behaviour {
     /// Whether this is a safety behaviour that always works: for the whole field or all other
     /// boats, without condition or end, with a weight and effective numbers.
     pub fn is_guard(&self) -> bool {
-        matches!(self.task, Task::OpRegion(_) | Task::AvoidCollision(_)) && self.no_guard_since().is_none()
+        matches!(self.task, Task::OpRegion(_) | Task::AvoidCollision(_))
+            && self.no_guard_since().is_none()
     }
 
     /// The reason why this op_region or avoid_collision is not reliable, if any.
@@ -99,7 +120,11 @@ impl Behaviour {
                 ("save_m", &task.save_m, (1.0, f64::INFINITY)),
                 ("lookahead_s", &task.lookahead_s, (1.0, f64::INFINITY)),
                 ("exit_s", &task.exit_s, (0.0, 10.0)),
-                ("recovery_speed_m_s", &task.recovery_speed_m_s, (0.1, f64::INFINITY)),
+                (
+                    "recovery_speed_m_s",
+                    &task.recovery_speed_m_s,
+                    (0.1, f64::INFINITY),
+                ),
             ]
             .to_vec(),
             Task::AvoidCollision(task) if task.contacts != Contacts::All => {
@@ -123,11 +148,16 @@ impl Behaviour {
             return Some("weight is 0".to_owned());
         }
         let weight = [("weight", &self.weight, (0.0, f64::INFINITY))];
-        weight.into_iter().chain(numbers).find_map(|(key, number, (least, most))| match number.constant() {
-            None => Some(format!("{key} is not constant")),
-            Some(value) if value < least => Some(format!("{key} is {value}, less than {least}")),
-            Some(value) if value > most => Some(format!("{key} is {value}, more than {most}")),
-            Some(_) => None,
-        })
+        weight
+            .into_iter()
+            .chain(numbers)
+            .find_map(|(key, number, (least, most))| match number.constant() {
+                None => Some(format!("{key} is not constant")),
+                Some(value) if value < least => {
+                    Some(format!("{key} is {value}, less than {least}"))
+                }
+                Some(value) if value > most => Some(format!("{key} is {value}, more than {most}")),
+                Some(_) => None,
+            })
     }
 }

@@ -17,7 +17,10 @@ pub(super) struct Scope<'a> {
 impl<'a> Scope<'a> {
     /// The variable with this name, and its index.
     pub(super) fn variable(&self, name: &str) -> Option<(u16, &'a Variable)> {
-        let index = self.variables.iter().position(|variable| variable.name == name)?;
+        let index = self
+            .variables
+            .iter()
+            .position(|variable| variable.name == name)?;
         Some((index as u16, &self.variables[index]))
     }
 
@@ -41,7 +44,8 @@ impl<'a> Scope<'a> {
     /// Reports a fault of a mode.
     pub(super) fn note_mode(&mut self, program: &Program, mode: usize, message: &str) {
         let at = self.document.at(&format!("mode.{mode}"));
-        self.diagnostics.note(at, format!("mode {} {message}", program.path(mode)));
+        self.diagnostics
+            .note(at, format!("mode {} {message}", program.path(mode)));
     }
 
     /// The condition at `path`, if valid.
@@ -50,22 +54,43 @@ impl<'a> Scope<'a> {
     }
 
     /// The expression at `path`, if it is valid and of the kind `wanted`.
-    pub(super) fn expression(&mut self, path: &str, text: &str, wanted: &Kind) -> Option<Expression> {
+    pub(super) fn expression(
+        &mut self,
+        path: &str,
+        text: &str,
+        wanted: &Kind,
+    ) -> Option<Expression> {
         // A stand-in for a faulty value is not the user's text.
         let given = self.document.is_sound(path).then_some(text)?;
-        let parsed = cel::parse(self.diagnostics, key_of(path), self.document.at(path), given)?;
+        let parsed = cel::parse(
+            self.diagnostics,
+            key_of(path),
+            self.document.at(path),
+            given,
+        )?;
         expression::read(self, key_of(path), &parsed, wanted)
     }
 
     /// The number or expression at `path`, limited to the range in the schema `about`.
-    pub(super) fn parameter(&mut self, path: &str, given: &Json, about: &Json) -> Option<Parameter> {
+    pub(super) fn parameter(
+        &mut self,
+        path: &str,
+        given: &Json,
+        about: &Json,
+    ) -> Option<Parameter> {
         let range = (about["minimum"].as_f64()?, about["maximum"].as_f64()?);
         let expression = match given.as_str() {
             Some(text) => self.expression(path, text, &Kind::Number)?,
             None => Expression::Constant(given.as_f64()?),
         };
-        if let Some(value) = expression.constant().filter(|value| !(range.0..=range.1).contains(value)) {
-            return self.refuse(path, &format!("is {value}, expected {} to {}", range.0, range.1));
+        if let Some(value) = expression
+            .constant()
+            .filter(|value| !(range.0..=range.1).contains(value))
+        {
+            return self.refuse(
+                path,
+                &format!("is {value}, expected {} to {}", range.0, range.1),
+            );
         }
         Some(Parameter { expression, range })
     }
@@ -73,5 +98,7 @@ impl<'a> Scope<'a> {
 
 /// The key at the end of a path.
 fn key_of(path: &str) -> &str {
-    path.rsplit('.').find(|part| part.parse::<usize>().is_err()).unwrap_or(path)
+    path.rsplit('.')
+        .find(|part| part.parse::<usize>().is_err())
+        .unwrap_or(path)
 }

@@ -12,17 +12,33 @@ use crate::strategy::{Expression, Fact, Kind, Measure, Named, Place, SHARED_MAX,
 const MOST: usize = 1000;
 
 /// Checks the variables, by name.
-pub(super) fn variables(diagnostics: &mut Diagnostics, document: &Document<raw::Strategy>) -> Vec<Variable> {
+pub(super) fn variables(
+    diagnostics: &mut Diagnostics,
+    document: &Document<raw::Strategy>,
+) -> Vec<Variable> {
     let given = &document.raw.variables;
-    let mut scope = Scope { diagnostics, document, variables: &[] };
+    let mut scope = Scope {
+        diagnostics,
+        document,
+        variables: &[],
+    };
     if given.len() > MOST {
-        scope.note("variables", &format!("has {} entries, expected at most {MOST}", given.len()));
+        scope.note(
+            "variables",
+            &format!("has {} entries, expected at most {MOST}", given.len()),
+        );
         return vec![];
     }
-    let variables: Vec<Variable> = given.iter().filter_map(|(name, given)| one(&mut scope, name, given)).collect();
+    let variables: Vec<Variable> = given
+        .iter()
+        .filter_map(|(name, given)| one(&mut scope, name, given))
+        .collect();
     let shared = variables.iter().filter(|variable| variable.shared).count();
     if shared > SHARED_MAX {
-        scope.note("variables", &format!("has {shared} shared entries, expected at most {SHARED_MAX}"));
+        scope.note(
+            "variables",
+            &format!("has {shared} shared entries, expected at most {SHARED_MAX}"),
+        );
     }
     variables
 }
@@ -40,7 +56,12 @@ fn one(scope: &mut Scope<'_>, name: &str, given: &raw::Variable) -> Option<Varia
             (kind, initial, table.shared)
         }
     };
-    Some(Variable { name: name.to_owned(), kind, initial, shared })
+    Some(Variable {
+        name: name.to_owned(),
+        kind,
+        initial,
+        shared,
+    })
 }
 
 /// Whether a variable may have this name: a CEL identifier that is not in use.
@@ -50,15 +71,24 @@ fn is_free(scope: &mut Scope<'_>, path: &str, name: &str) -> bool {
         return false;
     }
     let taken = [
-        (name.starts_with(|c: char| c.is_ascii_digit()), "begins with a digit"),
+        (
+            name.starts_with(|c: char| c.is_ascii_digit()),
+            "begins with a digit",
+        ),
         (is_reserved(name), "is a reserved word in CEL"),
         (Fact::by_name(name).is_some(), "is a fact"),
         (Place::by_name(name).is_some(), "is a place or a boat"),
-        (CALLS.contains(&name) || Measure::by_name(name).is_some(), "is a function"),
+        (
+            CALLS.contains(&name) || Measure::by_name(name).is_some(),
+            "is a function",
+        ),
     ];
     let taken = taken.into_iter().find(|(is_so, _)| *is_so);
     if let Some((_, taken)) = taken {
-        scope.diagnostics.note(at, format!("variable is {name:?}, which {taken}, expected another name"));
+        scope.diagnostics.note(
+            at,
+            format!("variable is {name:?}, which {taken}, expected another name"),
+        );
     }
     taken.is_none()
 }
@@ -66,9 +96,21 @@ fn is_free(scope: &mut Scope<'_>, path: &str, name: &str) -> bool {
 /// A variable's kind and initial value.
 fn kind_of(scope: &mut Scope<'_>, path: &str, table: &raw::VariableTable) -> Option<(Kind, f64)> {
     let initial_path = format!("{path}.initial");
-    let texts: Vec<String> = table.values.iter().flatten().map(|value| value.0.clone()).collect();
-    for (i, text) in texts.iter().enumerate().filter(|(i, text)| !text.is_empty() && texts[..*i].contains(text)) {
-        scope.note(&format!("{path}.values.{i}"), &format!("has {text:?} twice, expected unique values"));
+    let texts: Vec<String> = table
+        .values
+        .iter()
+        .flatten()
+        .map(|value| value.0.clone())
+        .collect();
+    for (i, text) in texts
+        .iter()
+        .enumerate()
+        .filter(|(i, text)| !text.is_empty() && texts[..*i].contains(text))
+    {
+        scope.note(
+            &format!("{path}.values.{i}"),
+            &format!("has {text:?} twice, expected unique values"),
+        );
     }
     let has_values = table.values.is_some();
     match &table.initial {
@@ -90,9 +132,14 @@ fn kind_of(scope: &mut Scope<'_>, path: &str, table: &raw::VariableTable) -> Opt
             &initial_path,
             &format!("is the string {text:?}, expected the allowed texts as well: values = [...]"),
         ),
-        Some(other) => {
-            scope.refuse(&initial_path, &format!("is {}, expected one of {}", in_words(other), texts.join(", ")))
-        }
+        Some(other) => scope.refuse(
+            &initial_path,
+            &format!(
+                "is {}, expected one of {}",
+                in_words(other),
+                texts.join(", ")
+            ),
+        ),
     }
 }
 
@@ -110,16 +157,36 @@ fn in_words(given: &raw::Value) -> String {
     }
 }
 
-pub(super) fn set(scope: &mut Scope<'_>, path: &str, given: &raw::Values) -> Vec<(u16, Expression)> {
-    given.iter().filter_map(|(name, value)| assigned(scope, &format!("{path}.{name}"), name, value)).collect()
+pub(super) fn set(
+    scope: &mut Scope<'_>,
+    path: &str,
+    given: &raw::Values,
+) -> Vec<(u16, Expression)> {
+    given
+        .iter()
+        .filter_map(|(name, value)| assigned(scope, &format!("{path}.{name}"), name, value))
+        .collect()
 }
 
-fn assigned(scope: &mut Scope<'_>, path: &str, name: &str, given: &raw::Value) -> Option<(u16, Expression)> {
+fn assigned(
+    scope: &mut Scope<'_>,
+    path: &str,
+    name: &str,
+    given: &raw::Value,
+) -> Option<(u16, Expression)> {
     let Some((index, variable)) = scope.variable(name) else {
-        let known: Vec<&str> = scope.variables.iter().map(|variable| variable.name.as_str()).collect();
+        let known: Vec<&str> = scope
+            .variables
+            .iter()
+            .map(|variable| variable.name.as_str())
+            .collect();
         let expected = match known.as_slice() {
             [] => "a variable, but [variables] has none".to_owned(),
-            _ => format!("one of the variables {}{}", known.join(", "), did_you_mean(name, &known)),
+            _ => format!(
+                "one of the variables {}{}",
+                known.join(", "),
+                did_you_mean(name, &known)
+            ),
         };
         return scope.refuse(path, &format!("is unknown, expected {expected}"));
     };
@@ -134,7 +201,10 @@ fn assigned(scope: &mut Scope<'_>, path: &str, name: &str, given: &raw::Value) -
                 Kind::Truth => "true, false or an expression".to_owned(),
                 Kind::Number => "a finite number or an expression".to_owned(),
             };
-            return scope.refuse(path, &format!("is {}, expected {expected}", in_words(other)));
+            return scope.refuse(
+                path,
+                &format!("is {}, expected {expected}", in_words(other)),
+            );
         }
     };
     Some((index, value))

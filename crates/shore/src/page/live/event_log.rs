@@ -30,12 +30,20 @@ pub(super) struct EventLog {
 impl EventLog {
     /// A log that still lacks all earlier events.
     pub(super) fn new() -> EventLog {
-        EventLog { has_gap: true, revision: 1, ..EventLog::default() }
+        EventLog {
+            has_gap: true,
+            revision: 1,
+            ..EventLog::default()
+        }
     }
 
     /// Adds an event from a frame, unless the sim has already listed it.
     pub(super) fn add(&mut self, event: EventOutcome) {
-        let mut recent = self.events.iter().rev().take_while(|known| known.tick >= event.tick);
+        let mut recent = self
+            .events
+            .iter()
+            .rev()
+            .take_while(|known| known.tick >= event.tick);
         if !recent.any(|known| *known == event) {
             self.events.push_back(event);
             self.trim();
@@ -49,7 +57,9 @@ impl EventLog {
 
     /// Whether to query the sim for all events now; a caller that gets `true` must do so.
     pub(super) fn should_query(&mut self, now: Instant) -> bool {
-        let rested = self.asked.is_none_or(|asked| now.saturating_duration_since(asked) >= ASK_AGAIN);
+        let rested = self
+            .asked
+            .is_none_or(|asked| now.saturating_duration_since(asked) >= ASK_AGAIN);
         let asks = self.has_gap && rested;
         if asks {
             (self.has_gap, self.asked) = (false, Some(now));
@@ -60,11 +70,14 @@ impl EventLog {
     /// Replaces all events up to a moment with those from the sim. Later events from frames stay.
     pub(super) fn replace(&mut self, mut all: Vec<EventOutcome>) {
         let last = all.last().map_or(0, |event| event.tick);
-        let later = |event: &&EventOutcome| event.tick > last || (event.tick == last && !all.contains(event));
+        let later = |event: &&EventOutcome| {
+            event.tick > last || (event.tick == last && !all.contains(event))
+        };
         let rest: Vec<EventOutcome> = self.events.iter().filter(later).cloned().collect();
         all.extend(rest);
-        let goes_on =
-            self.first == 0 && all.len() >= self.events.len() && self.events.iter().eq(&all[..self.events.len()]);
+        let goes_on = self.first == 0
+            && all.len() >= self.events.len()
+            && self.events.iter().eq(&all[..self.events.len()]);
         if !goes_on {
             self.revision += 1;
             self.first = 0;
@@ -80,10 +93,21 @@ impl EventLog {
         cursor: EventCursor,
     ) -> Option<(bool, impl Iterator<Item = &EventOutcome>, EventCursor)> {
         let reset = cursor.revision != self.revision;
-        let from = if reset { self.first } else { cursor.next.max(self.first) };
+        let from = if reset {
+            self.first
+        } else {
+            cursor.next.max(self.first)
+        };
         let next = self.first + self.events.len() as u64;
         let unread = self.events.range((from - self.first) as usize..);
-        (reset || from < next).then_some((reset, unread, EventCursor { revision: self.revision, next }))
+        (reset || from < next).then_some((
+            reset,
+            unread,
+            EventCursor {
+                revision: self.revision,
+                next,
+            },
+        ))
     }
 
     fn trim(&mut self) {
@@ -99,12 +123,21 @@ mod tests {
     use bus::clock;
 
     fn event(tick: u64, word: &str) -> EventOutcome {
-        EventOutcome { tick, at_s: 0.0, event: word.into(), vehicle: None, other: None, team: None }
+        EventOutcome {
+            tick,
+            at_s: 0.0,
+            event: word.into(),
+            vehicle: None,
+            other: None,
+            team: None,
+        }
     }
 
     /// The events that a reader receives.
     fn read(event_log: &EventLog, cursor: &mut EventCursor) -> (bool, Vec<u64>) {
-        let Some((reset, unread, next)) = event_log.unread(*cursor) else { return (false, vec![]) };
+        let Some((reset, unread, next)) = event_log.unread(*cursor) else {
+            return (false, vec![]);
+        };
         let sent = (reset, unread.map(|event| event.tick).collect());
         *cursor = next;
         assert!(event_log.unread(*cursor).is_none());
@@ -115,11 +148,18 @@ mod tests {
     fn a_newcomer_gets_all_and_then_news() {
         let mut event_log = EventLog::new();
         let mut cursor = EventCursor::default();
-        assert_eq!(read(&event_log, &mut cursor), (true, vec![]), "even if there is nothing");
+        assert_eq!(
+            read(&event_log, &mut cursor),
+            (true, vec![]),
+            "even if there is nothing"
+        );
         event_log.add(event(5, "a"));
         event_log.add(event(5, "b"));
         assert_eq!(read(&event_log, &mut cursor), (false, vec![5, 5]));
-        assert_eq!(read(&event_log, &mut EventCursor::default()), (true, vec![5, 5]));
+        assert_eq!(
+            read(&event_log, &mut EventCursor::default()),
+            (true, vec![5, 5])
+        );
     }
 
     #[test]
@@ -133,7 +173,12 @@ mod tests {
         event_log.replace(vec![event(5, "a"), event(7, "b")]);
         assert_eq!(read(&event_log, &mut cursor), (true, vec![5, 7, 9]));
         // A reply without news changes nothing. An event of a later frame is not added twice.
-        event_log.replace(vec![event(5, "a"), event(7, "b"), event(9, "c"), event(9, "d")]);
+        event_log.replace(vec![
+            event(5, "a"),
+            event(7, "b"),
+            event(9, "c"),
+            event(9, "d"),
+        ]);
         event_log.add(event(9, "d"));
         assert_eq!(read(&event_log, &mut cursor), (false, vec![9]));
     }

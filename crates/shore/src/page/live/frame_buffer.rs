@@ -33,15 +33,24 @@ impl FrameBuffer {
         if at < self.stamp.valid_ns {
             self.past.clear();
         }
-        if self.past.back().is_none_or(|(last, _)| (at - *last).as_s() >= TRAIL_STEP_S) {
+        if self
+            .past
+            .back()
+            .is_none_or(|(last, _)| (at - *last).as_s() >= TRAIL_STEP_S)
+        {
             self.past.push_back((at, Outgoing::past(cdr)));
         }
-        while self.past.front().is_some_and(|(first, _)| (at - *first).as_s() > TRAIL_S) {
+        while self
+            .past
+            .front()
+            .is_some_and(|(first, _)| (at - *first).as_s() > TRAIL_S)
+        {
             self.past.pop_front();
         }
         // The sim's own bytes: the page decodes CDR by the `.msg` texts in the first message, so no
         // second encoding can diverge.
-        (self.stamp, self.is_over, self.newest) = (frame.stamp, frame.over, Some(Outgoing::now(cdr)));
+        (self.stamp, self.is_over, self.newest) =
+            (frame.stamp, frame.over, Some(Outgoing::now(cdr)));
         (self.count, self.came) = (self.count + 1, Some(now));
         self.measure(now);
         missed
@@ -54,7 +63,9 @@ impl FrameBuffer {
     }
 
     pub(super) fn rate_hz(&self, now: Instant) -> f64 {
-        let is_late = self.counted.is_none_or(|(since, _)| now.saturating_duration_since(since) > 2 * METER);
+        let is_late = self
+            .counted
+            .is_none_or(|(since, _)| now.saturating_duration_since(since) > 2 * METER);
         if is_late { 0.0 } else { self.rate_hz }
     }
 
@@ -74,8 +85,15 @@ mod tests {
     use bus::clock;
 
     fn frame(seq: u64) -> Frame {
-        let stamp = Stamp { valid_ns: SimTime(100_000_000 * seq as i64), seq, version: 3 };
-        Frame { stamp, ..Frame::default() }
+        let stamp = Stamp {
+            valid_ns: SimTime(100_000_000 * seq as i64),
+            seq,
+            version: 3,
+        };
+        Frame {
+            stamp,
+            ..Frame::default()
+        }
     }
 
     #[test]
@@ -83,7 +101,11 @@ mod tests {
         let start = clock::now();
         let mut frames = FrameBuffer::default();
         for seq in 0..2000 {
-            assert!(!frames.take(&frame(seq), &seq.to_le_bytes(), start + Duration::from_millis(100) * seq as u32));
+            assert!(!frames.take(
+                &frame(seq),
+                &seq.to_le_bytes(),
+                start + Duration::from_millis(100) * seq as u32
+            ));
         }
         assert_eq!(frames.newest, Some(Outgoing::now(&1999_u64.to_le_bytes())));
         let past = frames.past();
@@ -98,7 +120,10 @@ mod tests {
     fn a_gap_is_noticed_and_a_new_beginning_forgets_the_past() {
         let start = clock::now();
         let mut frames = FrameBuffer::default();
-        assert!(!frames.take(&frame(7), &[], start), "frames before the first are not missed");
+        assert!(
+            !frames.take(&frame(7), &[], start),
+            "frames before the first are not missed"
+        );
         assert!(!frames.take(&frame(8), &[], start) && frames.take(&frame(10), &[], start));
         assert!(!frames.take(&frame(0), &[], start));
         assert!(frames.past().is_empty());

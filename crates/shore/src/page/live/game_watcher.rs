@@ -7,8 +7,8 @@ use super::{Command, SharedState};
 use bus::clock;
 use bus::game_search::{self, Missing};
 use bus::{
-    ANSWER, Bus, BusError, Declaration, Delivery, Inbox, NodeThread, Patience, Place, PlacedSession, Priority,
-    Publisher, SimState, SimWatch, Watched, inbox,
+    ANSWER, Bus, BusError, Declaration, Delivery, Inbox, NodeThread, Patience, Place,
+    PlacedSession, Priority, Publisher, SimState, SimWatch, Watched, inbox,
 };
 use messages::picture::Picture;
 use messages::run_state::RunState;
@@ -31,8 +31,11 @@ const ATTEMPTS: u64 = 20;
 const REQUESTS: usize = 16;
 /// How long a sim's token may be missing, at first or after a cut: a short interruption does not
 /// mean that the sim has gone.
-const PATIENCE: Patience =
-    Patience { silence: Duration::from_secs(5), missing: Duration::from_secs(1), unheard: Duration::from_secs(1) };
+const PATIENCE: Patience = Patience {
+    silence: Duration::from_secs(5),
+    missing: Duration::from_secs(1),
+    unheard: Duration::from_secs(1),
+};
 /// Minimum interval between estimates, however fast the game is.
 const PICTURE_AGAIN: Duration = Duration::from_millis(50);
 
@@ -92,18 +95,30 @@ impl GameWatcher {
         let (bus, name, info) = game_search::find_game(&self.place, self.game.as_ref(), session)?;
         // Older sims do not reply; the water is then drawn flat.
         let water = bus.ask(&topic::water(&name), Vec::new(), ANSWER)?;
-        let water: Water = water.and_then(|bytes| serde_json::from_slice(&bytes).ok()).unwrap_or_default();
-        Ok(GameSession::begin(&self.shared, bus, LiveGame::new(name, info, &water))?)
+        let water: Water = water
+            .and_then(|bytes| serde_json::from_slice(&bytes).ok())
+            .unwrap_or_default();
+        Ok(GameSession::begin(
+            &self.shared,
+            bus,
+            LiveGame::new(name, info, &water),
+        )?)
     }
 
     fn run_until_gone(&self, mut session: GameSession) {
         let left = Arc::new(Watched::new(false));
-        let queries =
-            QueryThread { shared: Arc::clone(&self.shared), bus: session.bus.clone(), game: Arc::clone(&session.game) };
+        let queries = QueryThread {
+            shared: Arc::clone(&self.shared),
+            bus: session.bus.clone(),
+            game: Arc::clone(&session.game),
+        };
         let until = Arc::clone(&left);
         // The game is shown even without these threads.
-        let no_thread =
-            |e: &std::io::Error| (self.shared.tell)(&format!("cannot start a thread for queries to the game: {e}"));
+        let no_thread = |e: &std::io::Error| {
+            (self.shared.tell)(&format!(
+                "cannot start a thread for queries to the game: {e}"
+            ))
+        };
         let query_thread = NodeThread::start(move || queries.ask(&until)).inspect_err(no_thread);
         let (requests, requested) = inbox(REQUESTS);
         let shared = Arc::clone(&self.shared);
@@ -112,7 +127,8 @@ impl GameWatcher {
         let until = Arc::clone(&left);
         // The sim may reply slowly, and a stop must not wait for that.
         let request_thread =
-            NodeThread::start(move || request(&shared, &bus, &game, (&requested, &until))).inspect_err(no_thread);
+            NodeThread::start(move || request(&shared, &bus, &game, (&requested, &until)))
+                .inspect_err(no_thread);
         while !self.shared.is_closing() && session.sim.state() == SimState::Alive {
             // Every round handles steering; a command to steer only starts a round.
             if let Some(Command::Control(control)) = self.commands.take(ROUND) {
@@ -133,9 +149,16 @@ impl GameWatcher {
 }
 
 /// Sends requests that the sim may refuse, until the game is left.
-fn request(shared: &SharedState, bus: &Bus, game: &GameName, (requested, left): (&Inbox<Control>, &Watched<bool>)) {
+fn request(
+    shared: &SharedState,
+    bus: &Bus,
+    game: &GameName,
+    (requested, left): (&Inbox<Control>, &Watched<bool>),
+) {
     while !left.visit(|left| *left) {
-        let Some(control) = requested.take(ROUND) else { continue };
+        let Some(control) = requested.take(ROUND) else {
+            continue;
+        };
         if let Err(error) = bus::control(bus, game, control) {
             (shared.tell)(&format!("{control:?} from the page failed: {error}"));
         }
@@ -154,16 +177,33 @@ impl GameSession {
             state.generation
         };
         shared.news.send_replace(());
-        let boats: Vec<String> = game.scenario().externals().map(|boat| game.name_of(boat).to_owned()).collect();
+        let boats: Vec<String> = game
+            .scenario()
+            .externals()
+            .map(|boat| game.name_of(boat).to_owned())
+            .collect();
         shared.stops.join(&bus, &game.name, &boats)?;
-        let subscriptions = Subscriptions { shared: Arc::clone(shared), generation };
-        let mut standing = vec![subscriptions.clone().frames(&bus, &game)?, subscriptions.clone().run(&bus, &game)?];
+        let subscriptions = Subscriptions {
+            shared: Arc::clone(shared),
+            generation,
+        };
+        let mut standing = vec![
+            subscriptions.clone().frames(&bus, &game)?,
+            subscriptions.clone().run(&bus, &game)?,
+        ];
         for vehicle in game.scenario().externals() {
             standing.push(subscriptions.clone().status(&bus, &game, vehicle)?);
         }
         let policies = BTreeMap::new();
         let pictures = BTreeMap::new();
-        Ok(GameSession { bus, game, policies, pictures, sim, _standing: standing })
+        Ok(GameSession {
+            bus,
+            game,
+            policies,
+            pictures,
+            sim,
+            _standing: standing,
+        })
     }
 
     /// Publishes set-points for steered boats, stamped with the newest frame.
@@ -172,15 +212,28 @@ impl GameSession {
             let mut state = shared.state.lock();
             (std::mem::take(&mut state.steering), state.frames.stamp)
         };
-        let stamp = Stamp { version: PolicyProposal::VERSION, ..stamp };
+        let stamp = Stamp {
+            version: PolicyProposal::VERSION,
+            ..stamp
+        };
         for (vehicle, (course_rad, speed_m_s)) in steering {
             if !self.policies.contains_key(&vehicle) {
                 let key = topic::policy(&self.game.name, self.game.scenario(), vehicle);
-                let Ok(publisher) = self.bus.publisher_with(key, Priority::Normal, Delivery::Newest) else { continue };
+                let Ok(publisher) =
+                    self.bus
+                        .publisher_with(key, Priority::Normal, Delivery::Newest)
+                else {
+                    continue;
+                };
                 self.policies.insert(vehicle, publisher);
             }
             if let Some(publisher) = self.policies.get(&vehicle) {
-                drop(publisher.send(&PolicyProposal { stamp, vehicle, course_rad, speed_m_s }));
+                drop(publisher.send(&PolicyProposal {
+                    stamp,
+                    vehicle,
+                    course_rad,
+                    speed_m_s,
+                }));
             }
         }
     }
@@ -198,13 +251,19 @@ impl GameSession {
             state.forget_unwanted();
             (state.wanted(), state.generation)
         };
-        let teams: BTreeSet<TeamId> = wanted.keys().map(|vehicle| self.game.scenario().team_of(*vehicle)).collect();
+        let teams: BTreeSet<TeamId> = wanted
+            .keys()
+            .map(|vehicle| self.game.scenario().team_of(*vehicle))
+            .collect();
         self.pictures.retain(|team, _| teams.contains(team));
         for team in teams {
             if self.pictures.contains_key(&team) {
                 continue;
             }
-            let subscriptions = Subscriptions { shared: Arc::clone(shared), generation };
+            let subscriptions = Subscriptions {
+                shared: Arc::clone(shared),
+                generation,
+            };
             if let Ok(standing) = subscriptions.pictures(&self.bus, &self.game, team) {
                 self.pictures.insert(team, standing);
             }
@@ -245,7 +304,12 @@ impl Subscriptions {
         })
     }
 
-    fn status(self, bus: &Bus, game: &LiveGame, vehicle: VehicleId) -> Result<Declaration, BusError> {
+    fn status(
+        self,
+        bus: &Bus,
+        game: &LiveGame,
+        vehicle: VehicleId,
+    ) -> Result<Declaration, BusError> {
         bus.subscribe_status(&game.name, game.name_of(vehicle), move |status| {
             self.update(|state| drop(state.statuses.insert(vehicle, Arc::new(status))));
         })
@@ -253,17 +317,21 @@ impl Subscriptions {
 
     fn pictures(self, bus: &Bus, game: &LiveGame, team: TeamId) -> Result<Declaration, BusError> {
         let taken: Mutex<Option<Instant>> = Mutex::new(None);
-        bus.subscribe(topic::picture(&game.name, game.scenario(), team), move |bytes| {
-            let mut taken = taken.lock();
-            let now = clock::now();
-            if taken.is_some_and(|before| now.saturating_duration_since(before) < PICTURE_AGAIN) {
-                return;
-            }
-            if let Ok(picture) = codec::decode::<Picture>(bytes) {
-                *taken = Some(now);
-                self.update(|state| state.take_picture(&picture));
-            }
-        })
+        bus.subscribe(
+            topic::picture(&game.name, game.scenario(), team),
+            move |bytes| {
+                let mut taken = taken.lock();
+                let now = clock::now();
+                if taken.is_some_and(|before| now.saturating_duration_since(before) < PICTURE_AGAIN)
+                {
+                    return;
+                }
+                if let Ok(picture) = codec::decode::<Picture>(bytes) {
+                    *taken = Some(now);
+                    self.update(|state| state.take_picture(&picture));
+                }
+            },
+        )
     }
 }
 
@@ -287,7 +355,13 @@ mod tests {
             searched.is_closing.store(true, Ordering::Relaxed);
             Err("there is no network".to_owned())
         };
-        GameWatcher { shared, place: Place::new(place), game: None, commands: to_do }.run();
+        GameWatcher {
+            shared,
+            place: Place::new(place),
+            game: None,
+            commands: to_do,
+        }
+        .run();
         assert!(finds.recv().unwrap());
     }
 }

@@ -126,7 +126,9 @@ impl LiveState {
     }
 
     pub(super) fn take_frame(&mut self, frame: &Frame, cdr: &[u8], now: Instant) {
-        let Some(game) = self.game.clone() else { return };
+        let Some(game) = self.game.clone() else {
+            return;
+        };
         if !is_of(frame, game.scenario()) {
             return;
         }
@@ -134,31 +136,62 @@ impl LiveState {
             self.event_log.note_gap();
         }
         for event in frame.logged(game.scenario()) {
-            self.event_log.add(EventOutcome::new(game.scenario(), &event));
+            self.event_log
+                .add(EventOutcome::new(game.scenario(), &event));
         }
     }
 
     pub(super) fn take_run(&mut self, run: RunState) {
         let gist = |run: &RunState| {
-            let recording = run.recording.as_ref().map(|recording| (recording.file.clone(), recording.failed.clone()));
-            (run.phase, run.speed, run.minds.clone(), run.gateways.clone(), recording)
+            let recording = run
+                .recording
+                .as_ref()
+                .map(|recording| (recording.file.clone(), recording.failed.clone()));
+            (
+                run.phase,
+                run.speed,
+                run.minds.clone(),
+                run.gateways.clone(),
+                recording,
+            )
         };
-        let is_news = self.run.as_ref().is_none_or(|before| gist(before) != gist(&run));
+        let is_news = self
+            .run
+            .as_ref()
+            .is_none_or(|before| gist(before) != gist(&run));
         self.run_news += u64::from(is_news);
         self.run = Some(run);
     }
 
     pub(super) fn take_picture(&mut self, picture: &Picture) {
-        let selected: Vec<VehicleId> = self.selected.values().map(|(vehicle, _)| *vehicle).collect();
-        for boat in picture.own.iter().filter(|boat| selected.contains(&boat.vehicle)) {
-            self.estimates.insert(boat.vehicle, Arc::new((*boat, picture.stamp.valid_ns)));
+        let selected: Vec<VehicleId> = self
+            .selected
+            .values()
+            .map(|(vehicle, _)| *vehicle)
+            .collect();
+        for boat in picture
+            .own
+            .iter()
+            .filter(|boat| selected.contains(&boat.vehicle))
+        {
+            self.estimates
+                .insert(boat.vehicle, Arc::new((*boat, picture.stamp.valid_ns)));
         }
     }
 
     /// Selects a boat's helm for a page, with or without utilities.
-    pub(super) fn select(&mut self, page: u64, selection: Option<&(String, bool)>) -> Result<(), String> {
-        let (Some((name, functions)), Some(game)) = (selection, &self.game) else { return Ok(()) };
-        let vehicle = game.scenario().vehicle_named(name).map_err(|e| e.to_string())?;
+    pub(super) fn select(
+        &mut self,
+        page: u64,
+        selection: Option<&(String, bool)>,
+    ) -> Result<(), String> {
+        let (Some((name, functions)), Some(game)) = (selection, &self.game) else {
+            return Ok(());
+        };
+        let vehicle = game
+            .scenario()
+            .vehicle_named(name)
+            .map_err(|e| e.to_string())?;
         self.selected.insert(page, (vehicle, *functions));
         Ok(())
     }
@@ -174,8 +207,11 @@ impl LiveState {
 
     /// The boats whose modes any page wants.
     pub(super) fn listed(&self) -> Vec<VehicleId> {
-        let count =
-            self.game.as_ref().filter(|_| !self.listed.is_empty()).map_or(0, |game| game.scenario().vehicles.len());
+        let count = self
+            .game
+            .as_ref()
+            .filter(|_| !self.listed.is_empty())
+            .map_or(0, |game| game.scenario().vehicles.len());
         (0..count).map(VehicleId::at).collect()
     }
 
@@ -183,8 +219,12 @@ impl LiveState {
     pub(super) fn take_mode(&mut self, vehicle: VehicleId, report: Option<&HelmReport>) {
         let Some(game) = &self.game else { return };
         self.modes.resize(game.scenario().vehicles.len(), None);
-        let Some(known) = self.modes.get_mut(vehicle.index()) else { return };
-        let mode = report.map(|report| report.mode.clone()).filter(|mode| !mode.is_empty());
+        let Some(known) = self.modes.get_mut(vehicle.index()) else {
+            return;
+        };
+        let mode = report
+            .map(|report| report.mode.clone())
+            .filter(|mode| !mode.is_empty());
         self.modes_at_s = report.map_or(self.modes_at_s, |report| report.at.as_s());
         self.modes_news += u64::from(*known != mode);
         *known = mode;
@@ -194,12 +234,16 @@ impl LiveState {
     pub(super) fn forget_unwanted(&mut self) {
         let wanted = self.wanted();
         self.helms.retain(|vehicle, _| wanted.contains_key(vehicle));
-        self.estimates.retain(|vehicle, _| wanted.contains_key(vehicle));
+        self.estimates
+            .retain(|vehicle, _| wanted.contains_key(vehicle));
     }
 
     /// The phase of the run, in the protocol's terms.
     pub(super) fn phase(&self, now: Instant) -> &'static str {
-        let still = self.frames.came.is_none_or(|came| now.saturating_duration_since(came) > STILL);
+        let still = self
+            .frames
+            .came
+            .is_none_or(|came| now.saturating_duration_since(came) > STILL);
         match (&self.run, self.is_gone) {
             (_, true) => "gone",
             (Some(run), _) => run.phase.into(),

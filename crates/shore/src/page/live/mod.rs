@@ -80,7 +80,12 @@ impl LiveView {
     ) -> std::io::Result<LiveView> {
         let (commands, to_do) = inbox(COMMANDS_MAX);
         let shared = Arc::new(SharedState::new(commands, tell, read_mission)?);
-        let watcher = GameWatcher { shared: Arc::clone(&shared), place, game, commands: to_do };
+        let watcher = GameWatcher {
+            shared: Arc::clone(&shared),
+            place,
+            game,
+            commands: to_do,
+        };
         start_thread("page-live", move || watcher.run())?;
         let late = Arc::clone(&shared);
         start_thread("page-late", move || stopping::tell_late(&late))?;
@@ -89,7 +94,11 @@ impl LiveView {
 
     /// Whether the game shown has real boats.
     pub fn has_real_boats(&self) -> bool {
-        self.shared.state.lock().on().is_ok_and(|game| game.has_real_boats())
+        self.shared
+            .state
+            .lock()
+            .on()
+            .is_ok_and(|game| game.has_real_boats())
     }
 }
 
@@ -112,7 +121,11 @@ impl View for LiveView {
 }
 
 impl SharedState {
-    fn new(commands: InboxSender<Command>, tell: Tell, read_mission: ReadMission) -> std::io::Result<SharedState> {
+    fn new(
+        commands: InboxSender<Command>,
+        tell: Tell,
+        read_mission: ReadMission,
+    ) -> std::io::Result<SharedState> {
         Ok(SharedState {
             state: Mutex::default(),
             news: Changes::default(),

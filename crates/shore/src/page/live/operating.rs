@@ -45,7 +45,12 @@ impl Operating {
     }
 
     /// Starts a command, unless one of its kind is in progress for the same boat.
-    fn begin(&mut self, page: u64, vehicle: VehicleId, command: &OperatorCommand) -> Result<(), String> {
+    fn begin(
+        &mut self,
+        page: u64,
+        vehicle: VehicleId,
+        command: &OperatorCommand,
+    ) -> Result<(), String> {
         self.replies.entry(page).or_default();
         if self.under_way.insert((vehicle, command.needs_token())) {
             return Ok(());
@@ -55,7 +60,11 @@ impl Operating {
 
     fn end(&mut self, page: u64, needs_token: bool, operated: Operated) {
         self.under_way.remove(&(operated.vehicle, needs_token));
-        if let Some(replies) = self.replies.get_mut(&page).filter(|replies| replies.len() < REPLIES_MAX) {
+        if let Some(replies) = self
+            .replies
+            .get_mut(&page)
+            .filter(|replies| replies.len() < REPLIES_MAX)
+        {
             replies.push_back(operated);
         }
     }
@@ -70,11 +79,20 @@ pub(super) fn operate(
     command: OperatorCommand,
 ) -> Result<(), String> {
     let game = state.on()?;
-    let vehicle = game.scenario().vehicle_named(name).map_err(|e| e.to_string())?;
-    if !game.scenario().externals().any(|external| external == vehicle) {
+    let vehicle = game
+        .scenario()
+        .vehicle_named(name)
+        .map_err(|e| e.to_string())?;
+    if !game
+        .scenario()
+        .externals()
+        .any(|external| external == vehicle)
+    {
         return Err(format!("{name} is simulated and has no gateway"));
     }
-    let Some(bus) = state.bus.clone() else { return Err("the game is no longer running".to_owned()) };
+    let Some(bus) = state.bus.clone() else {
+        return Err("the game is no longer running".to_owned());
+    };
     state.operating.begin(page, vehicle, &command)?;
     // A stop takes every path, and this query is one of them. The latest command counts.
     let stop = StopCommand::of(&command);
@@ -92,7 +110,9 @@ pub(super) fn operate(
         let reply = ask(&bus, &game, vehicle, &command);
         if let (Err(_), Some(stop)) = (&reply, stop) {
             // Without the token no reply counts, but the boat's status does.
-            at_work.stops.wait(ANSWER, |orders| orders.is_shown(&named, stop));
+            at_work
+                .stops
+                .wait(ANSWER, |orders| orders.is_shown(&named, stop));
         }
         let mut state = at_work.state.lock();
         // No page waits for a reply from a game that has gone.
@@ -103,10 +123,24 @@ pub(super) fn operate(
                     refused
                 }
                 // The boat's status shows that the command arrived by another path.
-                Err(_) if stop.is_some_and(|stop| at_work.stops.visit(|orders| orders.is_shown(&named, stop))) => None,
+                Err(_)
+                    if stop.is_some_and(|stop| {
+                        at_work.stops.visit(|orders| orders.is_shown(&named, stop))
+                    }) =>
+                {
+                    None
+                }
                 Err(reason) => Some(reason),
             };
-            state.operating.end(page, needs_token, Operated { vehicle, command: word, refused });
+            state.operating.end(
+                page,
+                needs_token,
+                Operated {
+                    vehicle,
+                    command: word,
+                    refused,
+                },
+            );
             drop(state);
             at_work.news.send_replace(());
         }
@@ -117,15 +151,25 @@ pub(super) fn operate(
     })
 }
 
-fn ask(bus: &Bus, game: &LiveGame, vehicle: VehicleId, command: &OperatorCommand) -> Result<OperatorReply, String> {
+fn ask(
+    bus: &Bus,
+    game: &LiveGame,
+    vehicle: VehicleId,
+    command: &OperatorCommand,
+) -> Result<OperatorReply, String> {
     let name = game.name_of(vehicle);
     let reply: Result<Option<OperatorReply>, BusError> =
         bus.request_node(&topic::operate(&game.name, name), command, ANSWER);
-    let reply = reply.map_err(|e| e.to_string())?.ok_or_else(|| format!("no gateway of {name} answers"))?;
+    let reply = reply
+        .map_err(|e| e.to_string())?
+        .ok_or_else(|| format!("no gateway of {name} answers"))?;
     if reply.status.vehicle == name {
         Ok(reply)
     } else {
-        Err(format!("the gateway of {} answered a request meant for {name}", reply.status.vehicle))
+        Err(format!(
+            "the gateway of {} answered a request meant for {name}",
+            reply.status.vehicle
+        ))
     }
 }
 
@@ -139,22 +183,45 @@ mod tests {
     fn a_stop_waits_for_no_other_command_and_a_flood_is_refused() {
         let mut operating = Operating::default();
         assert_eq!(operating.begin(7, BOAT, &OperatorCommand::Arm), Ok(()));
-        for command in [OperatorCommand::Arm, OperatorCommand::Release, OperatorCommand::StationKeep] {
+        for command in [
+            OperatorCommand::Arm,
+            OperatorCommand::Release,
+            OperatorCommand::StationKeep,
+        ] {
             assert!(operating.begin(7, BOAT, &command).is_err(), "{command:?}");
         }
-        assert_eq!(operating.begin(7, VehicleId(2), &OperatorCommand::Arm), Ok(()), "another boat");
+        assert_eq!(
+            operating.begin(7, VehicleId(2), &OperatorCommand::Arm),
+            Ok(()),
+            "another boat"
+        );
         assert_eq!(operating.begin(7, BOAT, &OperatorCommand::Disarm), Ok(()));
-        assert!(operating.begin(7, BOAT, &OperatorCommand::EStop).is_err(), "a stop is in progress");
-        let operated =
-            |refused: Option<&str>| Operated { vehicle: BOAT, command: "arm", refused: refused.map(str::to_owned) };
+        assert!(
+            operating.begin(7, BOAT, &OperatorCommand::EStop).is_err(),
+            "a stop is in progress"
+        );
+        let operated = |refused: Option<&str>| Operated {
+            vehicle: BOAT,
+            command: "arm",
+            refused: refused.map(str::to_owned),
+        };
         operating.end(7, true, operated(Some("missing: a fresh order")));
         assert_eq!(operating.begin(7, BOAT, &OperatorCommand::Arm), Ok(()));
         assert_eq!(operating.reply(8), None, "the reply is for another page");
-        assert_eq!(operating.reply(7), Some(operated(Some("missing: a fresh order"))));
+        assert_eq!(
+            operating.reply(7),
+            Some(operated(Some("missing: a fresh order")))
+        );
         (0..2 * REPLIES_MAX).for_each(|_| operating.end(7, true, operated(None)));
-        assert_eq!(std::iter::from_fn(|| operating.reply(7)).count(), REPLIES_MAX);
+        assert_eq!(
+            std::iter::from_fn(|| operating.reply(7)).count(),
+            REPLIES_MAX
+        );
         operating.forget(7);
         operating.end(7, true, operated(None));
-        assert!(operating.replies.is_empty(), "no reply is kept for a page that has left");
+        assert!(
+            operating.replies.is_empty(),
+            "no reply is kept for a page that has left"
+        );
     }
 }

@@ -54,24 +54,45 @@ struct Turn {
 impl QuerySchedule {
     /// The helm to query now, if any: the one that has waited longest. Selected helms precede those
     /// of which only the mode is wanted.
-    fn next(&mut self, wanted: &BTreeMap<VehicleId, bool>, listed: &[VehicleId], now: Instant) -> Option<Turn> {
-        self.asked.retain(|vehicle, _| wanted.contains_key(vehicle) || listed.contains(vehicle));
+    fn next(
+        &mut self,
+        wanted: &BTreeMap<VehicleId, bool>,
+        listed: &[VehicleId],
+        now: Instant,
+    ) -> Option<Turn> {
+        self.asked
+            .retain(|vehicle, _| wanted.contains_key(vehicle) || listed.contains(vehicle));
         if self.rest.is_some_and(|rest| now < rest) {
             return None;
         }
         let start = |turn: &Turn| self.asked.get(&turn.vehicle).map(|(start, _)| *start);
         let is_due = |turn: &Turn| {
-            let interval = if turn.is_listed { LIST_INTERVAL } else { HELM_INTERVAL };
+            let interval = if turn.is_listed {
+                LIST_INTERVAL
+            } else {
+                HELM_INTERVAL
+            };
             self.asked.get(&turn.vehicle).is_none_or(|(start, had)| {
                 (turn.functions && !had) || now.saturating_duration_since(*start) >= interval
             })
         };
-        let selected = wanted.iter().map(|(vehicle, functions)| (*vehicle, *functions, false));
-        let others =
-            listed.iter().filter(|vehicle| !wanted.contains_key(vehicle)).map(|vehicle| (*vehicle, false, true));
-        let turns =
-            selected.chain(others).map(|(vehicle, functions, is_listed)| Turn { vehicle, functions, is_listed });
-        turns.filter(is_due).min_by_key(|turn| (turn.is_listed, start(turn)))
+        let selected = wanted
+            .iter()
+            .map(|(vehicle, functions)| (*vehicle, *functions, false));
+        let others = listed
+            .iter()
+            .filter(|vehicle| !wanted.contains_key(vehicle))
+            .map(|vehicle| (*vehicle, false, true));
+        let turns = selected
+            .chain(others)
+            .map(|(vehicle, functions, is_listed)| Turn {
+                vehicle,
+                functions,
+                is_listed,
+            });
+        turns
+            .filter(is_due)
+            .min_by_key(|turn| (turn.is_listed, start(turn)))
     }
 
     /// Records a query from `start` to `end`. A lockstep game waits while a mind answers, and one
@@ -105,44 +126,81 @@ impl QueryThread {
 
     /// Queries the sim for all events if some were missed.
     fn ask_events(&self) {
-        if !self.shared.state.lock().event_log.should_query(clock::now()) {
+        if !self
+            .shared
+            .state
+            .lock()
+            .event_log
+            .should_query(clock::now())
+        {
             return;
         }
-        let answer = self.bus.ask(&topic::events(&self.game.name), Vec::new(), EVENTS_ANSWER);
+        let answer = self
+            .bus
+            .ask(&topic::events(&self.game.name), Vec::new(), EVENTS_ANSWER);
         // Older sims do not reply; the log then has only events from frames.
-        let events = answer.ok().flatten().and_then(|bytes| serde_json::from_slice::<Vec<EventOutcome>>(&bytes).ok());
+        let events = answer
+            .ok()
+            .flatten()
+            .and_then(|bytes| serde_json::from_slice::<Vec<EventOutcome>>(&bytes).ok());
         if let Some(events) = events {
             self.shared.state.lock().event_log.replace(events);
             self.shared.news.send_replace(());
         }
     }
 
-    fn ask_helm(&self, Turn { vehicle, functions, is_listed }: Turn) {
+    fn ask_helm(
+        &self,
+        Turn {
+            vehicle,
+            functions,
+            is_listed,
+        }: Turn,
+    ) {
         let question = serde_json::to_vec(&HelmQuestion { functions }).unwrap_or_default();
         let key = topic::helm(&self.game.name, self.game.scenario(), vehicle);
-        let answer = self.bus.ask_node(&key, question, HELM_ANSWER).ok().flatten();
+        let answer = self
+            .bus
+            .ask_node(&key, question, HELM_ANSWER)
+            .ok()
+            .flatten();
         let name = self.game.name_of(vehicle);
-        let answer = match answer.map(|bytes| serde_json::from_slice::<Option<HelmReport>>(&bytes)) {
-            Some(Ok(Some(report))) => HelmAnswer { report: Some(report), ..HelmAnswer::default() },
+        let answer = match answer.map(|bytes| serde_json::from_slice::<Option<HelmReport>>(&bytes))
+        {
+            Some(Ok(Some(report))) => HelmAnswer {
+                report: Some(report),
+                ..HelmAnswer::default()
+            },
             Some(Ok(None)) => because(format!("the mind of {name} has no helm")),
             Some(Err(_)) => because(format!("the mind of {name} runs another version of Squall")),
             None => because(format!("no agent runs {name} now")),
         };
-        self.shared.state.lock().take_mode(vehicle, answer.report.as_ref());
+        self.shared
+            .state
+            .lock()
+            .take_mode(vehicle, answer.report.as_ref());
         if is_listed {
             self.shared.news.send_replace(());
             return;
         }
         // Encoding a full report takes long, so the state is unlocked meanwhile.
-        let full = functions.then(|| helm_text(self.game.scenario(), vehicle, true, answer.clone()));
+        let full =
+            functions.then(|| helm_text(self.game.scenario(), vehicle, true, answer.clone()));
         let light = helm_text(self.game.scenario(), vehicle, false, answer);
-        self.shared.state.lock().helms.insert(vehicle, Arc::new(HelmMessage { light, full }));
+        self.shared
+            .state
+            .lock()
+            .helms
+            .insert(vehicle, Arc::new(HelmMessage { light, full }));
         self.shared.news.send_replace(());
     }
 }
 
 fn because(reason: String) -> HelmAnswer {
-    HelmAnswer { reason: Some(reason), ..HelmAnswer::default() }
+    HelmAnswer {
+        reason: Some(reason),
+        ..HelmAnswer::default()
+    }
 }
 
 #[cfg(test)]
@@ -177,11 +235,24 @@ mod tests {
     #[test]
     fn long_answers_leave_most_of_the_time_to_the_game_however_many_boats_are_looked_at() {
         for boats in 1..=BOATS.len() {
-            let wanted: BTreeMap<VehicleId, bool> = BOATS[..boats].iter().map(|boat| (*boat, true)).collect();
+            let wanted: BTreeMap<VehicleId, bool> =
+                BOATS[..boats].iter().map(|boat| (*boat, true)).collect();
             let all = asked((&wanted, &[]), 400, 12_000, true);
-            assert_eq!(all.iter().map(|(_, at_ms)| *at_ms).collect::<Vec<_>>(), [0, 2000, 4000, 6000, 8000, 10_000]);
-            let schedule: Vec<VehicleId> = BOATS[..boats].iter().copied().cycle().take(all.len()).collect();
-            assert_eq!(all.iter().map(|(boat, _)| *boat).collect::<Vec<_>>(), schedule, "all are queried in turn");
+            assert_eq!(
+                all.iter().map(|(_, at_ms)| *at_ms).collect::<Vec<_>>(),
+                [0, 2000, 4000, 6000, 8000, 10_000]
+            );
+            let schedule: Vec<VehicleId> = BOATS[..boats]
+                .iter()
+                .copied()
+                .cycle()
+                .take(all.len())
+                .collect();
+            assert_eq!(
+                all.iter().map(|(boat, _)| *boat).collect::<Vec<_>>(),
+                schedule,
+                "all are queried in turn"
+            );
         }
     }
 
@@ -190,7 +261,11 @@ mod tests {
         let wanted = BTreeMap::from([(BOATS[0], false), (BOATS[1], false)]);
         let all = asked((&wanted, &[]), 0, 2000, true);
         for boat in &BOATS[..2] {
-            assert_eq!(all.iter().filter(|(asked, _)| asked == boat).count(), 20, "{all:?}");
+            assert_eq!(
+                all.iter().filter(|(asked, _)| asked == boat).count(),
+                20,
+                "{all:?}"
+            );
         }
     }
 
@@ -198,8 +273,12 @@ mod tests {
     fn in_a_game_that_stands_a_miss_is_soon_asked_for_again() {
         let wanted = BTreeMap::from([(BOATS[0], true)]);
         let took_ms = HELM_ANSWER.as_millis() as u64;
-        let times =
-            |is_going| asked((&wanted, &[]), took_ms, 6000, is_going).iter().map(|(_, at)| *at).collect::<Vec<_>>();
+        let times = |is_going| {
+            asked((&wanted, &[]), took_ms, 6000, is_going)
+                .iter()
+                .map(|(_, at)| *at)
+                .collect::<Vec<_>>()
+        };
         assert_eq!(times(true), [0, 5000]);
         assert_eq!(times(false), [0, 1050, 2100, 3150, 4200, 5250]);
     }
@@ -208,16 +287,27 @@ mod tests {
     fn who_wants_utilities_too_does_not_wait_for_the_next_round() {
         let mut schedule = QuerySchedule::default();
         let start = clock::now();
-        let turn = |functions| Turn { vehicle: BOATS[0], functions, is_listed: false };
+        let turn = |functions| Turn {
+            vehicle: BOATS[0],
+            functions,
+            is_listed: false,
+        };
         schedule.update(turn(false), start, start, true);
-        assert_eq!(schedule.next(&BTreeMap::from([(BOATS[0], false)]), &[], start), None);
-        assert_eq!(schedule.next(&BTreeMap::from([(BOATS[0], true)]), &[], start), Some(turn(true)));
+        assert_eq!(
+            schedule.next(&BTreeMap::from([(BOATS[0], false)]), &[], start),
+            None
+        );
+        assert_eq!(
+            schedule.next(&BTreeMap::from([(BOATS[0], true)]), &[], start),
+            Some(turn(true))
+        );
     }
 
     #[test]
     fn modes_of_all_boats_cost_little_and_keep_no_boat_that_is_looked_at_waiting() {
         let wanted = BTreeMap::from([(BOATS[0], true)]);
-        let of = |all: &[(VehicleId, u64)], boat| all.iter().filter(|(asked, _)| *asked == boat).count();
+        let of =
+            |all: &[(VehicleId, u64)], boat| all.iter().filter(|(asked, _)| *asked == boat).count();
         let quick = asked((&wanted, &BOATS), 0, 4000, true);
         assert_eq!(BOATS.map(|boat| of(&quick, boat)), [40, 2, 2], "{quick:?}");
         // With no boat selected: a twentieth of the time, each in turn.

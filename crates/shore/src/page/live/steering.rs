@@ -39,7 +39,8 @@ impl SteeringLocks {
     /// Releases the boats of silent pages. Returns whether there were any.
     pub(super) fn expire(&mut self, now: Instant) -> bool {
         let before = self.0.len();
-        self.0.retain(|_, (_, at)| now.saturating_duration_since(*at) < SILENCE);
+        self.0
+            .retain(|_, (_, at)| now.saturating_duration_since(*at) < SILENCE);
         self.0.len() != before
     }
 
@@ -71,9 +72,14 @@ mod tests {
                 && steering_locks.acquire(b, 2, start)
         );
         assert!(
-            !steering_locks.release(a, 2) && steering_locks.release(a, 1) && steering_locks.acquire(a, 2, later(1.9))
+            !steering_locks.release(a, 2)
+                && steering_locks.release(a, 1)
+                && steering_locks.acquire(a, 2, later(1.9))
         );
-        assert!(!steering_locks.expire(later(1.0)) && steering_locks.expire(later(2.5)), "b is free");
+        assert!(
+            !steering_locks.expire(later(1.0)) && steering_locks.expire(later(2.5)),
+            "b is free"
+        );
         assert_eq!(steering_locks.held().collect::<Vec<_>>(), [a]);
         assert!(
             steering_locks.acquire(a, 2, later(3.0))

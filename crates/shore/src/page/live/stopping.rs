@@ -17,7 +17,11 @@ const THREADS_MAX: usize = 256;
 const ROUND: Duration = Duration::from_millis(500);
 
 /// Stops boats. Gateways are reachable even without a game.
-pub(super) fn stop(shared: &Arc<SharedState>, state: &LiveState, control: Control) -> Result<(), String> {
+pub(super) fn stop(
+    shared: &Arc<SharedState>,
+    state: &LiveState,
+    control: Control,
+) -> Result<(), String> {
     if control == Control::EStop && !shared.stops.gateways().is_empty() {
         shared.stops.stop(None, StopCommand::EStop);
         return Ok(());
@@ -28,7 +32,10 @@ pub(super) fn stop(shared: &Arc<SharedState>, state: &LiveState, control: Contro
     } else if let (Some(bus), Some(game)) = (state.bus.clone(), state.game.clone()) {
         begin(shared, move |shared| {
             let stopped = bus::control(&bus, &game.name, control);
-            stopped.err().iter().for_each(|e| (shared.tell)(&format!("{control:?} from the page failed: {e}")));
+            stopped
+                .err()
+                .iter()
+                .for_each(|e| (shared.tell)(&format!("{control:?} from the page failed: {e}")));
         })?;
     }
     Ok(())
@@ -40,7 +47,10 @@ pub(super) fn tell_late(shared: &SharedState) {
         for news in shared.stops.news(ROUND) {
             let late = match news {
                 StopNews::Late { vehicle, command } => {
-                    format!("{} from the page: {vehicle} does not confirm it", command.operator_command())
+                    format!(
+                        "{} from the page: {vehicle} does not confirm it",
+                        command.operator_command()
+                    )
                 }
                 StopNews::Sim(Err(reason)) => format!("an E-stop from the page failed: {reason}"),
                 _ => continue,
@@ -51,7 +61,10 @@ pub(super) fn tell_late(shared: &SharedState) {
 }
 
 /// Runs `work` in its own thread.
-fn begin(shared: &Arc<SharedState>, work: impl FnOnce(&SharedState) + Send + 'static) -> Result<(), String> {
+fn begin(
+    shared: &Arc<SharedState>,
+    work: impl FnOnce(&SharedState) + Send + 'static,
+) -> Result<(), String> {
     let under_way = &shared.stopping;
     if under_way.fetch_add(1, Ordering::SeqCst) >= THREADS_MAX {
         under_way.fetch_sub(1, Ordering::SeqCst);

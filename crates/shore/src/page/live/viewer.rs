@@ -5,7 +5,9 @@ use super::operating::Operated;
 use super::{Command, SharedState, operating, stopping};
 use crate::page::message::{EventMessage, Mode, PageMessage, seconds};
 use crate::page::request::PageRequest;
-use crate::page::view::{Access, Budget, ESTIMATE_INTERVAL, MODES_INTERVAL, Outgoing, SEND_INTERVAL, Viewer};
+use crate::page::view::{
+    Access, Budget, ESTIMATE_INTERVAL, MODES_INTERVAL, Outgoing, SEND_INTERVAL, Viewer,
+};
 use messages::Control;
 use messages::external::{GatewayStatus, OperatorCommand};
 use messages::picture::OwnBoat;
@@ -50,7 +52,14 @@ struct Sent {
 
 impl PageViewer {
     pub(super) fn new(shared: Arc<SharedState>, access: Access, page: u64) -> PageViewer {
-        PageViewer { shared, access, page, selection: None, wants_modes: false, sent: Sent::default() }
+        PageViewer {
+            shared,
+            access,
+            page,
+            selection: None,
+            wants_modes: false,
+            sent: Sent::default(),
+        }
     }
 
     /// Forwards a command to this game. The state stays locked meanwhile, so that the next game
@@ -113,13 +122,21 @@ impl PageViewer {
         }
     }
 
-    fn drive(&self, name: &str, course_deg: f64, speed_m_s: f64, now: Instant) -> Result<(), String> {
+    fn drive(
+        &self,
+        name: &str,
+        course_deg: f64,
+        speed_m_s: f64,
+        now: Instant,
+    ) -> Result<(), String> {
         let mut state = self.shared.state.lock();
         let game = state.on()?;
         let scenario = game.scenario();
         let vehicle = scenario.vehicle_named(name).map_err(|e| e.to_string())?;
         if !scenario.strategy_of(vehicle).is_steered() {
-            return Err(format!("{name} cannot be driven: its strategy does not accept an external policy"));
+            return Err(format!(
+                "{name} cannot be driven: its strategy does not accept an external policy"
+            ));
         }
         if !course_deg.is_finite() || !speed_m_s.is_finite() {
             return Err("course and speed must be finite".to_owned());
@@ -137,16 +154,30 @@ impl PageViewer {
         if is_news {
             self.shared.news.send_replace(());
         }
-        if is_on_its_way { Ok(()) } else { self.send(Command::Steer) }
+        if is_on_its_way {
+            Ok(())
+        } else {
+            self.send(Command::Steer)
+        }
     }
 
     fn operate(&self, name: &str, command: OperatorCommand) -> Result<(), String> {
-        operating::operate(&self.shared, &mut self.shared.state.lock(), self.page, name, command)
+        operating::operate(
+            &self.shared,
+            &mut self.shared.state.lock(),
+            self.page,
+            name,
+            command,
+        )
     }
 
     fn release(&self, name: &str) -> Result<(), String> {
         let mut state = self.shared.state.lock();
-        let vehicle = state.on()?.scenario().vehicle_named(name).map_err(|e| e.to_string())?;
+        let vehicle = state
+            .on()?
+            .scenario()
+            .vehicle_named(name)
+            .map_err(|e| e.to_string())?;
         let had = state.steering_locks.release(vehicle, self.page);
         drop(state);
         if had {
@@ -164,24 +195,35 @@ impl Viewer for PageViewer {
     fn ask(&mut self, ask: &PageRequest, now: Instant) -> Result<(), String> {
         match ask {
             PageRequest::Ack => Ok(()),
-            PageRequest::Select { vehicle, functions } => self.select(vehicle.as_deref(), *functions),
+            PageRequest::Select { vehicle, functions } => {
+                self.select(vehicle.as_deref(), *functions)
+            }
             PageRequest::Modes { wanted } => {
                 self.list(*wanted);
                 Ok(())
             }
-            PageRequest::Speed { factor } | PageRequest::Control { what: Control::Speed(factor) } => {
-                self.set_speed(*factor)
-            }
+            PageRequest::Speed { factor }
+            | PageRequest::Control {
+                what: Control::Speed(factor),
+            } => self.set_speed(*factor),
             PageRequest::Control { what } => self.control(&self.shared.state.lock(), *what),
-            PageRequest::Drive { vehicle, course_deg, speed_m_s } => self.drive(vehicle, *course_deg, *speed_m_s, now),
+            PageRequest::Drive {
+                vehicle,
+                course_deg,
+                speed_m_s,
+            } => self.drive(vehicle, *course_deg, *speed_m_s, now),
             PageRequest::LetGo { vehicle } => self.release(vehicle),
             PageRequest::Operate { vehicle, command } => self.operate(vehicle, command.clone()),
             PageRequest::Mission { vehicle, lines } => {
                 let mission = (self.shared.read_mission)(lines)?;
                 self.operate(vehicle, OperatorCommand::Mission(mission))
             }
-            PageRequest::Step { .. } | PageRequest::Seek { .. } => Err("a running game cannot be rewound".to_owned()),
-            PageRequest::Curves { .. } => Err("curves need a recording: this game is still running".to_owned()),
+            PageRequest::Step { .. } | PageRequest::Seek { .. } => {
+                Err("a running game cannot be rewound".to_owned())
+            }
+            PageRequest::Curves { .. } => {
+                Err("curves need a recording: this game is still running".to_owned())
+            }
         }
     }
 
@@ -190,11 +232,17 @@ impl Viewer for PageViewer {
         let Some(game) = state.game.clone() else {
             let is_new = self.sent.missing != state.missing;
             self.sent.missing.clone_from(&state.missing);
-            let missing = PageMessage::Preparing { text: &state.missing, failed: true };
+            let missing = PageMessage::Preparing {
+                text: &state.missing,
+                failed: true,
+            };
             return is_new.then(|| Outgoing::Text(missing.json()));
         };
         if self.sent.generation != state.generation {
-            self.sent = Sent { generation: state.generation, ..Sent::default() };
+            self.sent = Sent {
+                generation: state.generation,
+                ..Sent::default()
+            };
             // This game may not have the boat; the page then selects another.
             drop(state.select(self.page, self.selection.as_ref()));
             if self.wants_modes {
@@ -212,17 +260,40 @@ impl Viewer for PageViewer {
         let reply = state.operating.reply(self.page);
         let sent = &mut self.sent;
         let text = reply
-            .map(|Operated { vehicle, command, refused }| {
-                let vehicle = game.name_of(vehicle);
-                let refused = refused.as_deref();
-                PageMessage::Operated { vehicle, command, refused }.json()
-            })
+            .map(
+                |Operated {
+                     vehicle,
+                     command,
+                     refused,
+                 }| {
+                    let vehicle = game.name_of(vehicle);
+                    let refused = refused.as_deref();
+                    PageMessage::Operated {
+                        vehicle,
+                        command,
+                        refused,
+                    }
+                    .json()
+                },
+            )
             .or_else(|| sent.next_events(&state))
             .or_else(|| sent.next_run(&state, &game, now))
             .or_else(|| sent.next_steering(&state, &game, self.page))
             .or_else(|| sent.next_status(&state, &game))
-            .or_else(|| if budget == Budget::All { sent.next_selected(&state, &game, self.page, now) } else { None })
-            .or_else(|| if budget == Budget::All && self.wants_modes { sent.next_modes(&state, now) } else { None });
+            .or_else(|| {
+                if budget == Budget::All {
+                    sent.next_selected(&state, &game, self.page, now)
+                } else {
+                    None
+                }
+            })
+            .or_else(|| {
+                if budget == Budget::All && self.wants_modes {
+                    sent.next_modes(&state, now)
+                } else {
+                    None
+                }
+            });
         match text {
             Some(text) => Some(Outgoing::Text(text)),
             None if budget >= Budget::Frames => sent.next_frame(&state),
@@ -232,9 +303,18 @@ impl Viewer for PageViewer {
 
     fn due(&self, now: Instant) -> Option<Instant> {
         let run = self.sent.run.map(|(_, at)| at + SEND_INTERVAL);
-        let estimate = self.sent.estimate.as_ref().map(|(_, at)| *at + ESTIMATE_INTERVAL).filter(|at| *at > now);
-        let modes =
-            self.sent.modes.filter(|_| self.wants_modes).map(|(_, at)| at + MODES_INTERVAL).filter(|at| *at > now);
+        let estimate = self
+            .sent
+            .estimate
+            .as_ref()
+            .map(|(_, at)| *at + ESTIMATE_INTERVAL)
+            .filter(|at| *at > now);
+        let modes = self
+            .sent
+            .modes
+            .filter(|_| self.wants_modes)
+            .map(|(_, at)| at + MODES_INTERVAL)
+            .filter(|at| *at > now);
         run.into_iter().chain(estimate).chain(modes).min()
     }
 }
@@ -255,12 +335,19 @@ impl Sent {
     fn next_events(&mut self, state: &LiveState) -> Option<String> {
         let (reset, unread, cursor) = state.event_log.unread(self.events)?;
         self.events = cursor;
-        Some(PageMessage::Events { reset, events: unread.map(EventMessage::new).collect() }.json())
+        Some(
+            PageMessage::Events {
+                reset,
+                events: unread.map(EventMessage::new).collect(),
+            }
+            .json(),
+        )
     }
 
     fn next_run(&mut self, state: &LiveState, game: &LiveGame, now: Instant) -> Option<String> {
-        let is_sent =
-            |(news, at): (u64, Instant)| news == state.run_news && now.saturating_duration_since(at) < SEND_INTERVAL;
+        let is_sent = |(news, at): (u64, Instant)| {
+            news == state.run_news && now.saturating_duration_since(at) < SEND_INTERVAL
+        };
         if self.run.is_some_and(is_sent) {
             return None;
         }
@@ -269,7 +356,11 @@ impl Sent {
         let is_sent = state.run.is_some();
         let tell = PageMessage::State {
             phase: state.phase(now),
-            now_s: if is_sent { run.now_s } else { seconds(state.frames.stamp.valid_ns) },
+            now_s: if is_sent {
+                run.now_s
+            } else {
+                seconds(state.frames.stamp.valid_ns)
+            },
             pace: if is_sent { &run.pace } else { &game.info.pace },
             speed: run.speed,
             rate: run.rate,
@@ -285,30 +376,72 @@ impl Sent {
     }
 
     fn next_steering(&mut self, state: &LiveState, game: &LiveGame, page: u64) -> Option<String> {
-        let by =
-            |vehicle| state.steering_locks.holder(vehicle).map(|holder| if holder == page { "you" } else { "other" });
-        let mut known = self.steering_locks.keys().copied().chain(state.steering_locks.held());
-        let vehicle = known.find(|vehicle| self.steering_locks.get(vehicle).copied() != by(*vehicle))?;
+        let by = |vehicle| {
+            state
+                .steering_locks
+                .holder(vehicle)
+                .map(|holder| if holder == page { "you" } else { "other" })
+        };
+        let mut known = self
+            .steering_locks
+            .keys()
+            .copied()
+            .chain(state.steering_locks.held());
+        let vehicle =
+            known.find(|vehicle| self.steering_locks.get(vehicle).copied() != by(*vehicle))?;
         match by(vehicle) {
             Some(who) => self.steering_locks.insert(vehicle, who),
             None => self.steering_locks.remove(&vehicle),
         };
-        Some(PageMessage::Drive { vehicle: game.name_of(vehicle), by: by(vehicle) }.json())
+        Some(
+            PageMessage::Drive {
+                vehicle: game.name_of(vehicle),
+                by: by(vehicle),
+            }
+            .json(),
+        )
     }
 
     fn next_status(&mut self, state: &LiveState, game: &LiveGame) -> Option<String> {
-        let is_sent = |vehicle, status| self.statuses.get(vehicle).is_some_and(|sent| Arc::ptr_eq(sent, status));
-        let (vehicle, status) = state.statuses.iter().find(|(vehicle, status)| !is_sent(vehicle, status))?;
+        let is_sent = |vehicle, status| {
+            self.statuses
+                .get(vehicle)
+                .is_some_and(|sent| Arc::ptr_eq(sent, status))
+        };
+        let (vehicle, status) = state
+            .statuses
+            .iter()
+            .find(|(vehicle, status)| !is_sent(vehicle, status))?;
         self.statuses.insert(*vehicle, Arc::clone(status));
-        Some(PageMessage::Status { vehicle: game.name_of(*vehicle), status }.json())
+        Some(
+            PageMessage::Status {
+                vehicle: game.name_of(*vehicle),
+                status,
+            }
+            .json(),
+        )
     }
 
     /// The next message about the selected boat.
-    fn next_selected(&mut self, state: &LiveState, game: &LiveGame, page: u64, now: Instant) -> Option<String> {
+    fn next_selected(
+        &mut self,
+        state: &LiveState,
+        game: &LiveGame,
+        page: u64,
+        now: Instant,
+    ) -> Option<String> {
         let (vehicle, functions) = *state.selected.get(&page)?;
-        let is_sent = |helm: &Arc<HelmMessage>| self.helm.as_ref().is_some_and(|sent| Arc::ptr_eq(sent, helm));
+        let is_sent = |helm: &Arc<HelmMessage>| {
+            self.helm
+                .as_ref()
+                .is_some_and(|sent| Arc::ptr_eq(sent, helm))
+        };
         if let Some(helm) = state.helms.get(&vehicle).filter(|helm| !is_sent(helm)) {
-            let text = if functions { helm.full.as_ref() } else { Some(&helm.light) };
+            let text = if functions {
+                helm.full.as_ref()
+            } else {
+                Some(&helm.light)
+            };
             if let Some(text) = text {
                 self.helm = Some(Arc::clone(helm));
                 return Some(text.clone());
@@ -328,13 +461,20 @@ impl Sent {
 
     /// The modes of all boats, if any has changed.
     fn next_modes(&mut self, state: &LiveState, now: Instant) -> Option<String> {
-        let is_sent =
-            |(news, at): (u64, Instant)| news == state.modes_news || now.saturating_duration_since(at) < MODES_INTERVAL;
+        let is_sent = |(news, at): (u64, Instant)| {
+            news == state.modes_news || now.saturating_duration_since(at) < MODES_INTERVAL
+        };
         if state.modes.is_empty() || self.modes.is_some_and(is_sent) {
             return None;
         }
         self.modes = Some((state.modes_news, now));
-        Some(PageMessage::Modes { at_s: state.modes_at_s, modes: &state.modes }.json())
+        Some(
+            PageMessage::Modes {
+                at_s: state.modes_at_s,
+                modes: &state.modes,
+            }
+            .json(),
+        )
     }
 
     /// The newest frame or, before the first one, the next past frame.
@@ -342,7 +482,11 @@ impl Sent {
         if state.frames.count == self.frame {
             return None;
         }
-        if let Some(past) = self.past.get_or_insert_with(|| state.frames.past()).pop_front() {
+        if let Some(past) = self
+            .past
+            .get_or_insert_with(|| state.frames.past())
+            .pop_front()
+        {
             return Some(past);
         }
         self.frame = state.frames.count;
@@ -361,19 +505,41 @@ mod tests {
 
     #[test]
     fn what_is_told_of_the_selected_boat_waits_until_there_is_room() {
-        let shared = Arc::new(SharedState::new(inbox(1).0, Box::new(|_| ()), |_| Err(String::new())).unwrap());
+        let shared = Arc::new(
+            SharedState::new(inbox(1).0, Box::new(|_| ()), |_| Err(String::new())).unwrap(),
+        );
         let scenario = scenario();
         let now = clock::now();
-        let info = GameInfo { version: String::new(), pace: "lockstep".to_owned(), scenario };
+        let info = GameInfo {
+            version: String::new(),
+            pace: "lockstep".to_owned(),
+            scenario,
+        };
         let name = GameName::new("pond").unwrap();
-        shared.state.lock().begin(Arc::new(LiveGame::new(name, info, &Water::default())));
+        shared
+            .state
+            .lock()
+            .begin(Arc::new(LiveGame::new(name, info, &Water::default())));
         let mut viewer = PageViewer::new(Arc::clone(&shared), Access::Watch, 1);
-        let mut say = |budget| std::iter::from_fn(|| viewer.next_message(now, budget)).collect::<Vec<Outgoing>>();
+        let mut say = |budget| {
+            std::iter::from_fn(|| viewer.next_message(now, budget)).collect::<Vec<Outgoing>>()
+        };
         say(Budget::None);
-        shared.state.lock().select(1, Some(&("red_one".to_owned(), false))).unwrap();
+        shared
+            .state
+            .lock()
+            .select(1, Some(&("red_one".to_owned(), false)))
+            .unwrap();
         let light = "a helm report".to_owned();
-        let helm = HelmMessage { light: light.clone(), full: None };
-        shared.state.lock().helms.insert(VehicleId(2), Arc::new(helm));
+        let helm = HelmMessage {
+            light: light.clone(),
+            full: None,
+        };
+        shared
+            .state
+            .lock()
+            .helms
+            .insert(VehicleId(2), Arc::new(helm));
         shared.state.lock().frames.take(&Frame::default(), &[], now);
         assert_eq!(say(Budget::None), []);
         assert_eq!(say(Budget::Frames), [Outgoing::now(&[])]);

@@ -24,12 +24,17 @@ pub(super) struct Plotter {
 impl Plotter {
     /// A plotter for this recording; reads nothing yet.
     pub(super) fn new(recording: Arc<Recording>) -> Plotter {
-        Plotter { recording: Some(recording), series: None }
+        Plotter {
+            recording: Some(recording),
+            series: None,
+        }
     }
 
     /// The score and a boat's curves, as a message to the page.
     pub(super) fn curves(&mut self, vehicle: Option<VehicleId>) -> String {
-        let Some(recording) = &self.recording else { return PageMessage::Curves(&Curves::default()).json() };
+        let Some(recording) = &self.recording else {
+            return PageMessage::Curves(&Curves::default()).json();
+        };
         let series = self.series.get_or_insert_with(|| {
             let boats = recording.scenario().vehicles.len();
             GameSeries::of_at_most(recording, SAMPLES.saturating_mul(boats).min(SAMPLES_MAX))
@@ -39,7 +44,13 @@ impl Plotter {
             vehicle: boat.map(|boat| boat.name.as_str()),
             t_s: series.times_s.iter().copied().map(rounded).collect(),
             score: (0..series.teams.len())
-                .map(|team| series.score.iter().map(|score| score.get(team).copied().unwrap_or(0)).collect())
+                .map(|team| {
+                    series
+                        .score
+                        .iter()
+                        .map(|score| score.get(team).copied().unwrap_or(0))
+                        .collect()
+                })
                 .collect(),
             boat: vehicle
                 .filter(|_| boat.is_some())
@@ -52,7 +63,10 @@ impl Plotter {
 fn boat_curves(series: &GameSeries, field: &Field, vehicle: VehicleId) -> BoatCurves {
     let boat = &series.boats[vehicle.index()];
     let each = |of: &dyn Fn(&Sample) -> Option<f64>| -> Vec<f64> {
-        boat.samples.iter().map(|sample| rounded(of(sample).unwrap_or(f64::NAN))).collect()
+        boat.samples
+            .iter()
+            .map(|sample| rounded(of(sample).unwrap_or(f64::NAN)))
+            .collect()
     };
     let ordered_speed = |sample: &Sample| match sample.order {
         Order::Steer { speed_m_s, .. } | Order::Turn { speed_m_s, .. } => Some(speed_m_s),
@@ -65,7 +79,10 @@ fn boat_curves(series: &GameSeries, field: &Field, vehicle: VehicleId) -> BoatCu
     };
     let course = |sample: &Sample| {
         let velocity = sample.truth.velocity_m_s();
-        Some(compass_deg_from_rad(math::atan2(velocity.east, velocity.north)))
+        Some(compass_deg_from_rad(math::atan2(
+            velocity.east,
+            velocity.north,
+        )))
     };
     BoatCurves {
         x_m: each(&|sample| Some(sample.truth.east_m)),
@@ -92,19 +109,30 @@ fn flag_distances(series: &GameSeries, field: &Field, vehicle: VehicleId) -> Vec
     let mut distances = Vec::with_capacity(boat.samples.len());
     for (sample, time_s) in series.times_s.iter().enumerate() {
         while let Some(logged) = events.next_if(|logged| logged.at.as_s() <= time_s + 1e-6) {
-            let Some(flag) = logged.event.flag() else { continue };
+            let Some(flag) = logged.event.flag() else {
+                continue;
+            };
             if let Some(carrier) = carriers.get_mut(usize::from(flag.0)) {
-                *carrier =
-                    logged.event.vehicle().filter(|_| matches!(logged.event, rules::event::Event::Grabbed { .. }));
+                *carrier = logged
+                    .event
+                    .vehicle()
+                    .filter(|_| matches!(logged.event, rules::event::Event::Grabbed { .. }));
             }
         }
         let at = boat.samples[sample].truth.at();
         let place = |flag: usize| -> Ned {
             let carrier = carriers[flag].and_then(|carrier| series.boats.get(carrier.index()));
-            carrier.map_or(field.flags[flag].home, |carrier| carrier.samples[sample].truth.at())
+            carrier.map_or(field.flags[flag].home, |carrier| {
+                carrier.samples[sample].truth.at()
+            })
         };
-        let others = (0..field.flags.len()).filter(|flag| field.flags[*flag].team.index() != boat.team);
-        distances.push(rounded(others.map(|flag| at.distance(place(flag))).fold(f64::INFINITY, f64::min)));
+        let others =
+            (0..field.flags.len()).filter(|flag| field.flags[*flag].team.index() != boat.team);
+        distances.push(rounded(
+            others
+                .map(|flag| at.distance(place(flag)))
+                .fold(f64::INFINITY, f64::min),
+        ));
     }
     distances
 }

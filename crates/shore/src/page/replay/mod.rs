@@ -41,14 +41,31 @@ impl ReplayView {
     }
 
     /// Shows a recording with a text about its origin.
-    pub fn about(about: Option<String>, source: Arc<Recorded>, helms: Option<Box<dyn Helms>>) -> ReplayView {
+    pub fn about(
+        about: Option<String>,
+        source: Arc<Recorded>,
+        helms: Option<Box<dyn Helms>>,
+    ) -> ReplayView {
         let news = Changes::default();
         let scenario = source.recording.scenario().clone();
         let chart = chart(&scenario, &source.recording.header().water);
         let plotter = Plotter::new(Arc::clone(&source.recording));
-        let queries = QueryThread::open(Sources { scenario, helms, plotter }, news.clone());
+        let queries = QueryThread::open(
+            Sources {
+                scenario,
+                helms,
+                plotter,
+            },
+            news.clone(),
+        );
         ReplayView {
-            shared: Arc::new(SharedReplay { source, chart, about, queries, viewers: AtomicU64::new(0) }),
+            shared: Arc::new(SharedReplay {
+                source,
+                chart,
+                about,
+                queries,
+                viewers: AtomicU64::new(0),
+            }),
             news,
         }
     }

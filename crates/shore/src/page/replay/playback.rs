@@ -20,12 +20,20 @@ pub(super) struct Playback {
 impl Playback {
     /// A paused playback at the beginning.
     pub(super) fn new(from: SimTime, to: SimTime) -> Playback {
-        Playback { from, to, at: from, since: None, speed: 1.0 }
+        Playback {
+            from,
+            to,
+            at: from,
+            since: None,
+            speed: 1.0,
+        }
     }
 
     /// The moment shown.
     pub(super) fn at(&self, now: Instant) -> SimTime {
-        let Some(since) = self.since else { return self.at };
+        let Some(since) = self.since else {
+            return self.at;
+        };
         let passed_s = now.saturating_duration_since(since).as_secs_f64() * self.speed;
         (self.at + SimTime::from_s(passed_s)).min(self.to)
     }
@@ -38,13 +46,18 @@ impl Playback {
     /// When a moment will be shown without further commands; `None` if never.
     pub(super) fn when(&self, moment: SimTime) -> Option<Instant> {
         let ahead_s = (moment - self.at).as_s().max(0.0) / self.speed;
-        self.since?.checked_add(Duration::try_from_secs_f64(ahead_s).ok()?)
+        self.since?
+            .checked_add(Duration::try_from_secs_f64(ahead_s).ok()?)
     }
 
     /// Plays. At the end, restarts from the beginning.
     pub(super) fn play(&mut self, now: Instant) {
         if self.since.is_none() {
-            self.at = if self.at >= self.to { self.from } else { self.at };
+            self.at = if self.at >= self.to {
+                self.from
+            } else {
+                self.at
+            };
             self.since = Some(now);
         }
     }
@@ -87,14 +100,21 @@ mod tests {
         let start = clock::now();
         let later = |s: f64| start + Duration::from_secs_f64(s);
         let mut playback = Playback::new(SimTime::from_s(10.0), SimTime::from_s(20.0));
-        assert_eq!(playback.at(later(5.0)), SimTime::from_s(10.0), "a playback starts paused");
+        assert_eq!(
+            playback.at(later(5.0)),
+            SimTime::from_s(10.0),
+            "a playback starts paused"
+        );
         playback.play(start);
         assert_eq!(playback.at(later(2.0)), SimTime::from_s(12.0));
         playback.set_speed(Some(4.0), later(2.0));
         assert_eq!(playback.at(later(3.0)), SimTime::from_s(16.0));
         assert_eq!(playback.when(SimTime::from_s(20.0)), Some(later(4.0)));
         assert!(!playback.end(later(3.9)) && playback.end(later(9.0)) && !playback.end(later(9.0)));
-        assert_eq!((playback.is_playing(), playback.at(later(9.0))), (false, SimTime::from_s(20.0)));
+        assert_eq!(
+            (playback.is_playing(), playback.at(later(9.0))),
+            (false, SimTime::from_s(20.0))
+        );
         playback.play(later(9.0));
         assert_eq!(playback.at(later(9.0)), SimTime::from_s(10.0));
     }

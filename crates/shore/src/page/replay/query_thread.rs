@@ -81,13 +81,18 @@ impl QueryThread {
         let server = Arc::clone(&counter);
         let serve = move || serve(&server, sources, &news);
         // Without a thread no query is answered, and pages show that.
-        drop(std::thread::Builder::new().name("page-queries".to_owned()).spawn(serve));
+        drop(
+            std::thread::Builder::new()
+                .name("page-queries".to_owned())
+                .spawn(serve),
+        );
         QueryThread(counter)
     }
 
     /// Queues a viewer's query, replacing its earlier one of the same kind.
     pub(super) fn request(&self, viewer: u64, query: Query) {
-        self.0.visit(|queue| queue.requests.insert((viewer, query.kind()), query));
+        self.0
+            .visit(|queue| queue.requests.insert((viewer, query.kind()), query));
     }
 
     /// Takes the newest helm report for a viewer, encoded for the page.
@@ -100,7 +105,9 @@ impl QueryThread {
 
     /// Takes another reply for a viewer, encoded for the page.
     pub(super) fn take_other(&self, viewer: u64) -> Option<String> {
-        self.0.visit(|queue| (1..=2).find_map(|kind| queue.answers.remove(&(viewer, kind)))).map(|(_, text)| text)
+        self.0
+            .visit(|queue| (1..=2).find_map(|kind| queue.answers.remove(&(viewer, kind))))
+            .map(|(_, text)| text)
     }
 
     pub(super) fn remove(&self, viewer: u64) {
@@ -127,10 +134,17 @@ fn serve(shared: &Watched<Queue>, mut sources: Sources, news: &Changes) {
         if shared.visit(|queue| queue.is_closed) {
             return;
         }
-        let Some(query) = shared.visit(Queue::next) else { continue };
+        let Some(query) = shared.visit(Queue::next) else {
+            continue;
+        };
         let text = sources.answer(query);
         // If the viewer has left meanwhile, the reply is dropped.
-        shared.visit(|queue| queue.current.take().map(|asker| queue.answers.insert(asker, (query, text))));
+        shared.visit(|queue| {
+            queue
+                .current
+                .take()
+                .map(|asker| queue.answers.insert(asker, (query, text)))
+        });
         news.send_replace(());
     }
 }
@@ -138,7 +152,11 @@ fn serve(shared: &Watched<Queue>, mut sources: Sources, news: &Changes) {
 impl Sources {
     fn answer(&mut self, query: Query) -> String {
         match query {
-            Query::Helm(HelmRequest { vehicle, decision, functions }) => {
+            Query::Helm(HelmRequest {
+                vehicle,
+                decision,
+                functions,
+            }) => {
                 let answer = match &mut self.helms {
                     Some(helms) => helms.report(vehicle, decision, functions),
                     None => HelmAnswer {
@@ -149,8 +167,16 @@ impl Sources {
                 helm_text(&self.scenario, vehicle, functions, answer)
             }
             Query::Modes(decision, at) => {
-                let modes = self.helms.as_mut().map(|helms| helms.modes(decision)).unwrap_or_default();
-                PageMessage::Modes { at_s: seconds(at), modes: &modes }.json()
+                let modes = self
+                    .helms
+                    .as_mut()
+                    .map(|helms| helms.modes(decision))
+                    .unwrap_or_default();
+                PageMessage::Modes {
+                    at_s: seconds(at),
+                    modes: &modes,
+                }
+                .json()
             }
             Query::Curves(vehicle) => self.plotter.curves(vehicle),
         }
@@ -160,7 +186,11 @@ impl Sources {
 impl Queue {
     fn next(&mut self) -> Option<Query> {
         let later = (Bound::Excluded(self.last), Bound::Unbounded);
-        let after = self.requests.range(later).next().or_else(|| self.requests.iter().next());
+        let after = self
+            .requests
+            .range(later)
+            .next()
+            .or_else(|| self.requests.iter().next());
         let asker = *after?.0;
         (self.last, self.current) = (asker, Some(asker));
         self.requests.remove(&asker)
@@ -193,9 +223,19 @@ mod tests {
         let (began, begins) = channel();
         let (go, goes) = channel();
         let helms: Option<Box<dyn Helms>> = Some(Box::new(SlowHelms(began, goes)));
-        let thread =
-            QueryThread::open(Sources { scenario: scenario(), helms, plotter: Plotter::default() }, Changes::default());
-        let request = HelmRequest { vehicle: VehicleId::at(0), decision: 1, functions: false };
+        let thread = QueryThread::open(
+            Sources {
+                scenario: scenario(),
+                helms,
+                plotter: Plotter::default(),
+            },
+            Changes::default(),
+        );
+        let request = HelmRequest {
+            vehicle: VehicleId::at(0),
+            decision: 1,
+            functions: false,
+        };
         for (viewer, leaves) in [(1, true), (2, false), (3, false)] {
             thread.request(viewer, Query::Helm(request));
             begins.recv().unwrap();
@@ -205,9 +245,14 @@ mod tests {
             go.send(()).unwrap();
         }
         // The third starts only after the second was handed out.
-        let kept: Vec<u64> = thread
-            .0
-            .visit(|queue| queue.answers.keys().map(|(viewer, _)| *viewer).filter(|viewer| *viewer < 3).collect());
+        let kept: Vec<u64> = thread.0.visit(|queue| {
+            queue
+                .answers
+                .keys()
+                .map(|(viewer, _)| *viewer)
+                .filter(|viewer| *viewer < 3)
+                .collect()
+        });
         assert_eq!(kept, [2]);
     }
 }

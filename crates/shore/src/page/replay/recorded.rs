@@ -32,10 +32,20 @@ impl Recorded {
         let scenario = recording.scenario();
         let sent = |topic: String| {
             let bag = recording.bag();
-            bag.places(&topic).map(|place| (bag.message(place).at, place)).collect::<Vec<_>>()
+            bag.places(&topic)
+                .map(|place| (bag.message(place).at, place))
+                .collect::<Vec<_>>()
         };
-        let pictures = scenario.teams.iter().map(|team| sent(picture(&team.name))).collect();
-        let statuses = scenario.vehicles.iter().map(|vehicle| sent(format!("status/{}", vehicle.name))).collect();
+        let pictures = scenario
+            .teams
+            .iter()
+            .map(|team| sent(picture(&team.name)))
+            .collect();
+        let statuses = scenario
+            .vehicles
+            .iter()
+            .map(|vehicle| sent(format!("status/{}", vehicle.name)))
+            .collect();
         let mut recorded = Recorded {
             recording: Arc::clone(&recording),
             file,
@@ -47,10 +57,16 @@ impl Recorded {
             events: Vec::new(),
         };
         for (number, frame) in recording.frames().enumerate() {
-            let Some(frame) = recorded.damaged.sound(frame) else { continue };
+            let Some(frame) = recorded.damaged.sound(frame) else {
+                continue;
+            };
             recorded.frames.push(number);
             recorded.frame_times.push(frame.stamp.valid_ns);
-            recorded.events.extend(frame.logged(scenario).map(|logged| EventOutcome::new(scenario, &logged)));
+            recorded.events.extend(
+                frame
+                    .logged(scenario)
+                    .map(|logged| EventOutcome::new(scenario, &logged)),
+            );
         }
         recorded.add_failsafes();
         recorded
@@ -62,7 +78,9 @@ impl Recorded {
         for (vehicle, sent) in scenario.vehicles.iter().zip(&self.statuses) {
             let mut known = 0;
             for (at, place) in sent {
-                let Some(status) = self.status_at(*place) else { continue };
+                let Some(status) = self.status_at(*place) else {
+                    continue;
+                };
                 // A restarted gateway counts from zero.
                 known = known.min(status.failsafes.len());
                 for failsafe in &status.failsafes[known..] {
@@ -91,7 +109,12 @@ impl Recorded {
 
     /// A boat's own position estimate at a frame.
     pub fn estimate(&self, vehicle: VehicleId, frame: usize) -> Option<OwnBoat> {
-        let team = self.recording.scenario().vehicles.get(vehicle.index())?.team;
+        let team = self
+            .recording
+            .scenario()
+            .vehicles
+            .get(vehicle.index())?
+            .team;
         let place = last_until(&self.pictures[team.index()], *self.frame_times.get(frame)?)?;
         let picture: Picture = self.recording.bag().message(place).read().ok()?;
         picture.own(vehicle).copied()

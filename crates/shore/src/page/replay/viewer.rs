@@ -6,8 +6,8 @@ use super::query_thread::{HelmRequest, Query};
 use crate::page::message::{EventMessage, Mode, PageMessage, seconds};
 use crate::page::request::PageRequest;
 use crate::page::view::{
-    Access, Budget, ESTIMATE_INTERVAL, HELM_INTERVAL, MODES_INTERVAL, Outgoing, SEND_INTERVAL, TRAIL_S, TRAIL_STEP_S,
-    Viewer,
+    Access, Budget, ESTIMATE_INTERVAL, HELM_INTERVAL, MODES_INTERVAL, Outgoing, SEND_INTERVAL,
+    TRAIL_S, TRAIL_STEP_S, Viewer,
 };
 use messages::Control;
 use messages::external::GatewayStatus;
@@ -53,14 +53,30 @@ impl PageViewer {
         let from = times.first().copied().unwrap_or_default();
         let to = times.last().copied().unwrap_or_default();
         let Header { game, info, .. } = shared.source.recording.header();
-        let gateways = info.scenario.externals().map(|vehicle| (vehicle, None)).collect();
-        let hello =
-            PageMessage::hello(&info.version, Mode::Replay, access, (game, shared.about.as_deref()), &shared.chart);
+        let gateways = info
+            .scenario
+            .externals()
+            .map(|vehicle| (vehicle, None))
+            .collect();
+        let hello = PageMessage::hello(
+            &info.version,
+            Mode::Replay,
+            access,
+            (game, shared.about.as_deref()),
+            &shared.chart,
+        );
         let events = shared.source.events.iter().map(EventMessage::new).collect();
         PageViewer {
             viewer,
             playback: Playback::new(from, to),
-            greeting: VecDeque::from([hello.json(), PageMessage::Events { reset: true, events }.json()]),
+            greeting: VecDeque::from([
+                hello.json(),
+                PageMessage::Events {
+                    reset: true,
+                    events,
+                }
+                .json(),
+            ]),
             sent_playback: None,
             shown: None,
             past: VecDeque::new(),
@@ -80,22 +96,31 @@ impl PageViewer {
     fn frame_at(&self, moment: SimTime) -> Option<usize> {
         let times = &self.shared.source.frame_times;
         let after = times.partition_point(|time| *time <= moment);
-        after.checked_sub(1).or(if times.is_empty() { None } else { Some(0) })
+        after
+            .checked_sub(1)
+            .or(if times.is_empty() { None } else { Some(0) })
     }
 
     fn jump(&mut self, moment: SimTime, now: Instant) {
         self.playback.seek(moment, now);
         self.shown = None;
-        self.past = self.frame_at(self.playback.at(now)).map(|frame| self.trail(frame)).unwrap_or_default();
+        self.past = self
+            .frame_at(self.playback.at(now))
+            .map(|frame| self.trail(frame))
+            .unwrap_or_default();
     }
 
     /// The past frames that lead to this one.
     fn trail(&self, frame: usize) -> VecDeque<usize> {
         let times = &self.shared.source.frame_times;
         let steps = (TRAIL_S / TRAIL_STEP_S) as i64;
-        let moments = (1..=steps).rev().map(|back| times[frame] - SimTime::from_s(TRAIL_STEP_S) * back);
-        let mut trail: VecDeque<usize> =
-            moments.filter(|moment| *moment >= times[0]).filter_map(|moment| self.frame_at(moment)).collect();
+        let moments = (1..=steps)
+            .rev()
+            .map(|back| times[frame] - SimTime::from_s(TRAIL_STEP_S) * back);
+        let mut trail: VecDeque<usize> = moments
+            .filter(|moment| *moment >= times[0])
+            .filter_map(|moment| self.frame_at(moment))
+            .collect();
         trail.make_contiguous().sort_unstable();
         let mut last = None;
         trail.retain(|one| *one < frame && last.replace(*one) != Some(*one));
@@ -105,8 +130,12 @@ impl PageViewer {
     fn step(&mut self, by: i64, now: Instant) {
         self.playback.pause(now);
         let times = &self.shared.source.frame_times;
-        let Some(frame) = self.frame_at(self.playback.at(now)) else { return };
-        let to = (frame as i64).saturating_add(by).clamp(0, times.len() as i64 - 1) as usize;
+        let Some(frame) = self.frame_at(self.playback.at(now)) else {
+            return;
+        };
+        let to = (frame as i64)
+            .saturating_add(by)
+            .clamp(0, times.len() as i64 - 1) as usize;
         let one_on = to == frame + 1;
         let moment = times[to];
         if one_on {
@@ -150,14 +179,20 @@ impl PageViewer {
 
     fn next_helm(&mut self, frame: usize, now: Instant) -> Option<Outgoing> {
         let (vehicle, functions) = self.selected?;
-        let request = HelmRequest { vehicle, decision: self.decision(frame)?, functions };
+        let request = HelmRequest {
+            vehicle,
+            decision: self.decision(frame)?,
+            functions,
+        };
         let is_due = self.requested.is_none_or(|(before, at)| {
             let chosen_anew = (before.vehicle, before.functions) != (vehicle, functions);
             before != request && (chosen_anew || now.saturating_duration_since(at) >= HELM_INTERVAL)
         });
         if is_due {
             self.requested = Some((request, now));
-            self.shared.queries.request(self.viewer, Query::Helm(request));
+            self.shared
+                .queries
+                .request(self.viewer, Query::Helm(request));
         }
         let (answered, text) = self.shared.queries.take_helm(self.viewer)?;
         (answered.vehicle == vehicle).then_some(Outgoing::Text(text))
@@ -169,18 +204,34 @@ impl PageViewer {
             before != decision && now.saturating_duration_since(at) >= MODES_INTERVAL
         };
         if let Some(decision) = self.decision(frame).filter(|_| self.wants_modes)
-            && self.requested_modes.is_none_or(|requested| is_due(requested, decision))
+            && self
+                .requested_modes
+                .is_none_or(|requested| is_due(requested, decision))
         {
             self.requested_modes = Some((decision, now));
             let at = self.shared.source.frame_times[frame];
-            self.shared.queries.request(self.viewer, Query::Modes(decision, at));
+            self.shared
+                .queries
+                .request(self.viewer, Query::Modes(decision, at));
         }
-        self.shared.queries.take_other(self.viewer).map(Outgoing::Text)
+        self.shared
+            .queries
+            .take_other(self.viewer)
+            .map(Outgoing::Text)
     }
 
     fn request_curves(&self, vehicle: Option<&str>) -> Result<(), String> {
-        let named = |name: &str| self.shared.source.recording.scenario().vehicle_named(name).map_err(|e| e.to_string());
-        self.shared.queries.request(self.viewer, Query::Curves(vehicle.map(named).transpose()?));
+        let named = |name: &str| {
+            self.shared
+                .source
+                .recording
+                .scenario()
+                .vehicle_named(name)
+                .map_err(|e| e.to_string())
+        };
+        self.shared
+            .queries
+            .request(self.viewer, Query::Curves(vehicle.map(named).transpose()?));
         Ok(())
     }
 
@@ -198,8 +249,9 @@ impl PageViewer {
 
     fn next_estimate(&mut self, frame: usize, now: Instant) -> Option<Outgoing> {
         let (vehicle, _) = self.selected?;
-        let is_sent =
-            |(sent, at): (usize, Instant)| sent == frame || now.saturating_duration_since(at) < ESTIMATE_INTERVAL;
+        let is_sent = |(sent, at): (usize, Instant)| {
+            sent == frame || now.saturating_duration_since(at) < ESTIMATE_INTERVAL
+        };
         if self.estimated.is_some_and(is_sent) {
             return None;
         }
@@ -207,11 +259,15 @@ impl PageViewer {
         let boat = self.shared.source.estimate(vehicle, frame)?;
         let at = self.shared.source.frame_times[frame];
         let name = &self.shared.source.recording.scenario().vehicles[vehicle.index()].name;
-        Some(Outgoing::Text(PageMessage::estimate(name, &boat, at).json()))
+        Some(Outgoing::Text(
+            PageMessage::estimate(name, &boat, at).json(),
+        ))
     }
 
     fn next_status(&mut self, frame: usize, now: Instant) -> Option<Outgoing> {
-        let is_sent = |(sent, at): (usize, Instant)| sent == frame || now.saturating_duration_since(at) < SEND_INTERVAL;
+        let is_sent = |(sent, at): (usize, Instant)| {
+            sent == frame || now.saturating_duration_since(at) < SEND_INTERVAL
+        };
         if self.statuses.is_empty() && !self.looked.is_some_and(is_sent) {
             self.looked = Some((frame, now));
             let source = &self.shared.source;
@@ -223,7 +279,13 @@ impl PageViewer {
                 }
                 if let Some(status) = &status {
                     let name = &source.recording.scenario().vehicles[vehicle.index()].name;
-                    self.statuses.push_back(PageMessage::Status { vehicle: name, status }.json());
+                    self.statuses.push_back(
+                        PageMessage::Status {
+                            vehicle: name,
+                            status,
+                        }
+                        .json(),
+                    );
                 }
                 *sent = status;
             }
@@ -254,8 +316,17 @@ impl Viewer for PageViewer {
         match ask {
             PageRequest::Ack => {}
             PageRequest::Select { vehicle: None, .. } => self.selected = None,
-            PageRequest::Select { vehicle: Some(name), functions } => {
-                let vehicle = self.shared.source.recording.scenario().vehicle_named(name).map_err(|e| e.to_string())?;
+            PageRequest::Select {
+                vehicle: Some(name),
+                functions,
+            } => {
+                let vehicle = self
+                    .shared
+                    .source
+                    .recording
+                    .scenario()
+                    .vehicle_named(name)
+                    .map_err(|e| e.to_string())?;
                 let is_other = self.selected.is_none_or(|(before, _)| before != vehicle);
                 self.selected = Some((vehicle, *functions));
                 if is_other {
@@ -267,12 +338,20 @@ impl Viewer for PageViewer {
                 self.requested_modes = None;
             }
             PageRequest::Curves { vehicle } => self.request_curves(vehicle.as_deref())?,
-            PageRequest::Control { what: Control::Pause } => self.playback.pause(now),
-            PageRequest::Control { what: Control::Resume } => self.play(now),
-            PageRequest::Control { what: Control::Step } => self.step(1, now),
+            PageRequest::Control {
+                what: Control::Pause,
+            } => self.playback.pause(now),
+            PageRequest::Control {
+                what: Control::Resume,
+            } => self.play(now),
+            PageRequest::Control {
+                what: Control::Step,
+            } => self.step(1, now),
             PageRequest::Step { by } => self.step(*by, now),
             PageRequest::Seek { t_s } if t_s.is_finite() => self.jump(SimTime::from_s(*t_s), now),
-            PageRequest::Speed { factor } if factor.is_none_or(|factor| factor.is_finite() && factor > 0.0) => {
+            PageRequest::Speed { factor }
+                if factor.is_none_or(|factor| factor.is_finite() && factor > 0.0) =>
+            {
                 self.playback.set_speed(*factor, now);
             }
             PageRequest::Seek { .. } | PageRequest::Speed { .. } => {
@@ -308,28 +387,50 @@ impl Viewer for PageViewer {
                 return Some(said);
             }
         }
-        if budget >= Budget::Frames { self.next_frame(now) } else { None }
+        if budget >= Budget::Frames {
+            self.next_frame(now)
+        } else {
+            None
+        }
     }
 
     fn due(&self, now: Instant) -> Option<Instant> {
         let playing = self.playback.is_playing();
         let times = &self.shared.source.frame_times;
-        let next = self.shown.and_then(|frame| times.get(frame + 1)).and_then(|time| self.playback.when(*time));
-        let sent = self.sent_playback.as_ref().filter(|_| playing).map(|(_, at)| *at + SEND_INTERVAL);
+        let next = self
+            .shown
+            .and_then(|frame| times.get(frame + 1))
+            .and_then(|time| self.playback.when(*time));
+        let sent = self
+            .sent_playback
+            .as_ref()
+            .filter(|_| playing)
+            .map(|(_, at)| *at + SEND_INTERVAL);
         // Messages delayed because the same kind was sent shortly before.
         let is_old = |frame: usize| self.shown.is_some_and(|shown| shown != frame);
         let selected = self.selected.is_some();
-        let estimate =
-            self.estimated.filter(|(frame, _)| selected && is_old(*frame)).map(|(_, at)| at + ESTIMATE_INTERVAL);
+        let estimate = self
+            .estimated
+            .filter(|(frame, _)| selected && is_old(*frame))
+            .map(|(_, at)| at + ESTIMATE_INTERVAL);
         let helm = self
             .requested
             .filter(|(request, _)| selected && self.is_outdated(*request))
             .map(|(_, at)| at + HELM_INTERVAL);
-        let status = self.looked.filter(|(frame, _)| is_old(*frame)).map(|(_, at)| at + SEND_INTERVAL);
-        let is_old_mode = |decision| self.shown.and_then(|frame| self.decision(frame)) != Some(decision);
-        let modes = self.requested_modes.filter(|(decision, _)| self.wants_modes && is_old_mode(*decision));
+        let status = self
+            .looked
+            .filter(|(frame, _)| is_old(*frame))
+            .map(|(_, at)| at + SEND_INTERVAL);
+        let is_old_mode =
+            |decision| self.shown.and_then(|frame| self.decision(frame)) != Some(decision);
+        let modes = self
+            .requested_modes
+            .filter(|(decision, _)| self.wants_modes && is_old_mode(*decision));
         let modes = modes.map(|(_, at)| at + MODES_INTERVAL);
-        let due = [next, sent, estimate, helm, status, modes].into_iter().flatten().min();
+        let due = [next, sent, estimate, helm, status, modes]
+            .into_iter()
+            .flatten()
+            .min();
         due.map(|due| due.max(now + FRAME_AGAIN))
     }
 }
