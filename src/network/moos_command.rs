@@ -2,7 +2,8 @@
 
 use crate::screen;
 use crate::stop;
-use anyhow::{Context, Result, anyhow, bail};
+use anyhow::{Context, Result, anyhow};
+use command_line::explain::UsageError;
 use command_line::leaf_args::LeafArgs;
 use command_line::number::{address, seconds, whole};
 use moos::bridge::{self, News};
@@ -63,9 +64,12 @@ fn resolved(place: &String) -> Result<SocketAddr> {
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     if args.vehicle.is_empty() && args.team.is_none() && args.shore.is_none() {
-        bail!(
-            "nothing to connect: use --vehicle NAME or --team TEAM for boats, --shore :9000 for pMarineViewer"
-        );
+        return Err(UsageError(
+            "nothing to connect: use --vehicle NAME or --team TEAM for boats, --shore :9000 for \
+             pMarineViewer"
+                .to_owned(),
+        )
+        .into());
     }
     let stop = stop::on_ctrl_c()?;
     stop::exit_when_late(&stop);

@@ -25,7 +25,7 @@ mod trail;
 mod waypoint;
 
 pub(crate) use loiter::corners_of;
-pub(crate) use output::{BehaviourOutput, Functions};
+pub(crate) use output::{BehaviourOutput, Functions, WeightedFunction};
 
 use crate::policy::BoardPolicy;
 use crate::situation::Situation;

@@ -9,7 +9,7 @@ mod report;
 mod run_state;
 mod steadiness;
 
-use crate::behaviour::{BehaviourLogic, BehaviourOutput, Functions, logic_of};
+use crate::behaviour::{BehaviourLogic, BehaviourOutput, Functions, WeightedFunction, logic_of};
 use crate::ivp::{Choice, Decision, Grid, Preference};
 use crate::mind::{Mind, Proposal};
 use crate::situation::Situation;
@@ -21,7 +21,7 @@ use rules::event::EventRecord;
 use run_state::BehaviourRun;
 use scenario::Scenario;
 use scenario::fault::{Fault, FaultKind};
-use scenario::strategy::{Expression, Moment, Parameter, Program, Proposer, Rule, What, Who};
+use scenario::strategy::{Expression, Moment, Parameter, Program, Proposer, Rule, Task, What, Who};
 use steadiness::Steadiness;
 
 /// A behaviour of the program.
@@ -260,12 +260,20 @@ impl HelmMind {
             Decided::Steer(choice) => Some(choice.decision),
             Decided::Hold(_) => None,
         };
-        // A share of all weights, at most a tenth (checked when the file is loaded): it can delay a
-        // change of mind, but not outweigh safety.
+        // A share of the weights, at most a tenth (checked when the file is loaded): it can delay a
+        // change of mind, but not outweigh safety. An edge does not move, so noise about it turns no
+        // boat round, while its share would hold a boat beside it that has work elsewhere.
+        let moves = |function: &&WeightedFunction| {
+            !matches!(
+                self.program.behaviours[function.behaviour].task,
+                Task::OpRegion(_)
+            )
+        };
         let weights: f64 = self
             .functions
             .list
             .iter()
+            .filter(moves)
             .map(|function| function.weight)
             .sum();
         let steadiness = last.and_then(|last| {

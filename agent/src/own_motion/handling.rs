@@ -9,8 +9,11 @@ const MEAN_OF_STEADY: f64 = 0.7;
 const DECISION_S: f64 = 0.45;
 /// Mean yaw rate of a turn as a share of its initial rate, since the error decreases.
 const MEAN_OF_FIRST: f64 = 0.6;
-/// Minimum turn rate as a share of the maximum: the helm keeps asking for more during a turn.
+/// Minimum turn rate of a boat with thrusters as a share of the maximum: the helm keeps asking for
+/// more during a turn.
 const LEAST_OF_MOST: f64 = 0.3;
+/// The same for a point boat, which takes half a minute for the last degrees of a turn.
+const LEAST_OF_POINT_BOAT: f64 = 0.1;
 /// Time constant of the observed turn rate, s of turning.
 const MEMORY_S: f64 = 8.0;
 /// Turning time after which observation counts as much as the file, s.
@@ -30,6 +33,8 @@ pub(crate) struct Handling {
     pub(crate) reaction_s: f64,
     /// The largest mean yaw rate of a turn, rad/s.
     pub(crate) turn_rad_s: f64,
+    /// The least mean yaw rate of a turn, rad/s.
+    turn_least_rad_s: f64,
     /// Yaw rate per radian of heading error, 1/s.
     turn_per_rad_s: f64,
     /// Acceleration and deceleration, m/s².
@@ -58,6 +63,7 @@ impl Handling {
         Handling {
             reaction_s: 0.7,
             turn_rad_s,
+            turn_least_rad_s: turn_rad_s,
             turn_per_rad_s: 1e9,
             acceleration_m_s2: AT_ONCE_M_S2,
             deceleration_m_s2: AT_ONCE_M_S2,
@@ -70,6 +76,7 @@ impl Handling {
     pub(crate) fn turning(self, share: f64) -> Handling {
         Handling {
             turn_rad_s: share * self.turn_rad_s,
+            turn_least_rad_s: share * self.turn_least_rad_s,
             turn_per_rad_s: share * self.turn_per_rad_s,
             ..self
         }
@@ -84,11 +91,10 @@ impl Handling {
     #[inline(always)]
     pub(crate) fn mean_turn_rad_s(&self, by_rad: f64) -> f64 {
         let first_rad_s = MEAN_OF_FIRST * self.turn_per_rad_s * by_rad.abs();
-        let least_rad_s = LEAST_OF_MOST * self.turn_rad_s;
-        let rad_s = if first_rad_s > least_rad_s {
+        let rad_s = if first_rad_s > self.turn_least_rad_s {
             first_rad_s
         } else {
-            least_rad_s
+            self.turn_least_rad_s
         };
         if rad_s < self.turn_rad_s {
             rad_s
@@ -126,9 +132,11 @@ fn of_thrusters(hull: &Hull, thruster: &Thruster, autopilot: &Autopilot) -> Hand
     let sway_kg_s =
         (hull.sway_linear_kg_s + 0.5 * hull.sway_lift_kg_m * autopilot.speed_max_m_s).max(1e-6);
     let mass_kg = hull.mass_kg + hull.added_surge_kg;
+    let turn_rad_s = MEAN_OF_STEADY * steady_rad_s;
     Handling {
         reaction_s: DECISION_S + thruster.lag_s + thruster.flaws.latency_s,
-        turn_rad_s: MEAN_OF_STEADY * steady_rad_s,
+        turn_rad_s,
+        turn_least_rad_s: LEAST_OF_MOST * turn_rad_s,
         turn_per_rad_s: 0.5 * autopilot.heading_bandwidth_rad_s / autopilot.heading_damping,
         // Half of the thrusters' capability, because changing thrust takes time.
         acceleration_m_s2: ahead_newton / mass_kg,
@@ -139,11 +147,13 @@ fn of_thrusters(hull: &Hull, thruster: &Thruster, autopilot: &Autopilot) -> Hand
 }
 
 /// The point boat's law (see `sim::kinematic`): the heading loop sets the rudder, per cent per
-/// degree, and the yaw rate is proportional to rudder and thrust. It reaches half of the
-/// acceleration limits.
+/// degree and per degree a second, and the yaw rate is proportional to rudder and thrust. With k for
+/// the yaw rate per rudder at full thrust, r = k (p e - d r) gives k p / (1 + k d) per error. It
+/// reaches half of the acceleration limits.
 fn of_kinematic(kinematic: &Kinematic) -> Handling {
     let per_rudder_rad_s = kinematic.turn_rate.to_radians() / 100.0 * (kinematic.thrust_max / 50.0);
-    let rudder_per_rad = kinematic.heading_pid.p.abs().to_degrees();
+    let [rudder_per_rad, rudder_per_rad_s] =
+        [kinematic.heading_pid.p, kinematic.heading_pid.d].map(|gain| gain.abs().to_degrees());
     let limit = |configured_m_s2: f64| {
         if configured_m_s2 > 0.0 {
             0.5 * configured_m_s2
@@ -151,10 +161,13 @@ fn of_kinematic(kinematic: &Kinematic) -> Handling {
             AT_ONCE_M_S2
         }
     };
+    let turn_rad_s = MEAN_OF_STEADY * per_rudder_rad_s * kinematic.rudder_max;
     Handling {
         reaction_s: DECISION_S,
-        turn_rad_s: MEAN_OF_STEADY * per_rudder_rad_s * kinematic.rudder_max,
-        turn_per_rad_s: per_rudder_rad_s * rudder_per_rad,
+        turn_rad_s,
+        turn_least_rad_s: LEAST_OF_POINT_BOAT * turn_rad_s,
+        turn_per_rad_s: per_rudder_rad_s * rudder_per_rad
+            / (1.0 + per_rudder_rad_s * rudder_per_rad_s),
         acceleration_m_s2: limit(kinematic.acceleration_max_m_s2),
         deceleration_m_s2: limit(kinematic.deceleration_max_m_s2),
         slide_s: 0.0,

@@ -26,6 +26,9 @@ const TURN_MAX_RAD: f64 = 2.6;
 /// A point boat whose thrust follows the order brakes at full deceleration when its order is lower
 /// by the speed that it then loses in this time, s.
 const BRAKES_S: f64 = 1.0;
+/// A point boat that has this far to turn, rad, is ordered more speed than it has, so that it has
+/// thrust to turn with; from the second angle on, all of it.
+const STEERS_FROM_RAD: (f64, f64) = (0.35, 1.0);
 /// A turn at least this large keeps its initial side, rad.
 const LARGE_TURN_RAD: f64 = 2.2;
 
@@ -39,6 +42,8 @@ enum SpeedReference {
         /// For a boat that steers by differential thrust, with thrust proportional to the ordered
         /// speed: it brakes at full deceleration when its order is lower by this much, m/s.
         brakes_by_m_s: Option<f64>,
+        /// How much more speed to order in a turn, m/s.
+        steers_by_m_s: f64,
     },
 }
 
@@ -72,6 +77,7 @@ impl OwnMotion {
                 let brakes = point.speed_factor > 0.0 && point.deceleration_max_m_s2 > 0.0;
                 SpeedReference::Water {
                     brakes_by_m_s: brakes.then_some(BRAKES_S * point.deceleration_max_m_s2),
+                    steers_by_m_s: 0.5 * point.speed_max_m_s,
                 }
             }
         };
@@ -199,9 +205,23 @@ impl OwnMotion {
                 let (east, north) = math::sin_cos(heading_rad);
                 (speed_m_s + self.drift().dot(Ned { north, east })).clamp(0.0, self.speed_max_m_s)
             }
-            // With its final low speed ordered at once, it could not steer while it brakes.
-            SpeedReference::Water { brakes_by_m_s } => {
-                brakes_by_m_s.map_or(speed_m_s, |by| speed_m_s.max(self.surge_m_s - by))
+            // A point boat turns by thrust. With its final low speed ordered at once, it would cut
+            // its thrust and coast straight on while it brakes; at rest, it would not turn at all.
+            // It needs no lower order in a turn, because full rudder costs it most of its speed.
+            SpeedReference::Water {
+                brakes_by_m_s,
+                steers_by_m_s,
+            } => {
+                let turn_rad = wrap_pi(ordered_rad - self.psi_rad).abs();
+                let (from_rad, to_rad) = STEERS_FROM_RAD;
+                let share = ((turn_rad - from_rad) / (to_rad - from_rad)).min(1.0);
+                let steers_m_s = if share > 0.0 && speed_m_s > 0.0 {
+                    (self.surge_m_s + share * steers_by_m_s).min(self.speed_max_m_s)
+                } else {
+                    0.0
+                };
+                let brakes_m_s = brakes_by_m_s.map_or(0.0, |by| self.surge_m_s - by);
+                speed_m_s.max(brakes_m_s).max(steers_m_s)
             }
         };
         Order::Steer {
@@ -326,11 +346,18 @@ mod tests {
     }
 
     #[test]
-    fn a_boat_that_steers_by_its_thrust_keeps_some_while_it_brakes() {
-        for (boat, speed_m_s, want_m_s) in [
-            ("large_usv_kinematic", 0.3, 5.5),
-            ("large_usv_kinematic", 7.0, 7.0),
-            ("surveyor_kinematic", 0.3, 0.3),
+    fn a_boat_that_steers_by_its_thrust_keeps_some_while_it_brakes_and_more_in_a_turn() {
+        for (boat, surge_m_s, turn_rad, speed_m_s, want_m_s) in [
+            ("large_usv_kinematic", 6.0, 0.1, 0.3, 5.5),
+            ("large_usv_kinematic", 6.0, 0.1, 7.0, 7.0),
+            ("surveyor_kinematic", 2.0, 0.1, 0.3, 0.3),
+            // It would cut its thrust, and with it its rudder, until it has slowed down.
+            ("surveyor_kinematic", 1.0, 2.0, 0.3, 2.5),
+            ("surveyor_kinematic", 2.0, 2.0, 0.3, 3.0),
+            ("surveyor_kinematic", 0.0, 0.675, 0.1, 0.75),
+            // A boat that is to stop need not turn, and one with two thrusters turns at rest.
+            ("surveyor_kinematic", 1.0, 2.0, 0.0, 0.0),
+            ("surveyor_m1_8", 0.0, 2.0, 0.3, 0.3),
         ] {
             let mut motion = motion(boat);
             show(
@@ -338,19 +365,19 @@ mod tests {
                 0.0,
                 1.0,
                 Nav {
-                    surge_m_s: 6.0,
+                    surge_m_s,
                     ..Nav::default()
                 },
             );
             let Order::Steer {
                 speed_m_s: got_m_s, ..
-            } = motion.order(1.0, speed_m_s)
+            } = motion.order(turn_rad, speed_m_s)
             else {
                 panic!("expected a steer order")
             };
             assert!(
                 (got_m_s - want_m_s).abs() < 1e-9,
-                "{boat} at {speed_m_s}: ordered {got_m_s}, want {want_m_s}"
+                "{boat} at {surge_m_s}, {turn_rad} rad to turn, {speed_m_s} wanted: ordered {got_m_s}, want {want_m_s}"
             );
         }
     }
@@ -390,10 +417,10 @@ mod tests {
         // stop.
         let large = motion("large_usv_kinematic").handling();
         assert!((large.deceleration_m_s2 - 0.25).abs() < 1e-9, "{large:?}");
-        // An error of half a radian sets a rudder of 0.35 % per degree, which at 70 % thrust turns
-        // it at 0.12 rad/s.
+        // An error of half a radian sets a rudder of 0.35 % per degree, less 0.07 % per degree a
+        // second, which at 70 % thrust turns it at 0.117 rad/s.
         assert!(
-            (large.yaw_rate_rad_s(0.5) - 0.1225).abs() < 0.001,
+            (large.yaw_rate_rad_s(0.5) - 0.1168).abs() < 0.001,
             "{large:?}"
         );
         let mut motion = motion("surveyor_m1_8");

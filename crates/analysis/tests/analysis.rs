@@ -5,10 +5,10 @@ mod game;
 
 use analysis::{Comparison, GameSeries, Incomparable, Summary, alog, gateway_of, table};
 use game::{bytes_of, decision, ending, header, recording};
+use messages::Order;
 use messages::input::Input;
-use messages::{Message, Order};
 use primitives::{SimTime, VehicleId};
-use recording::{Bag, Decision, Entry, Facts, Header, Kind, Opening, Recording, Writer};
+use recording::{Bag, Entry, Facts, Header, Kind, Opening, Recording, Writer};
 use std::io::Cursor;
 
 #[test]

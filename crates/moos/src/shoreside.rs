@@ -203,20 +203,25 @@ impl Shoreside<'_> {
             }
             for boat in &self.boats {
                 boat.visit(|boat| {
-                    let command = msg
-                        .key
-                        .strip_suffix(&format!("_{}", boat.name.to_uppercase()));
-                    let command = command.or_else(|| msg.key.strip_suffix("_ALL"));
-                    command.into_iter().for_each(|command| {
-                        boat.command(Msg {
-                            key: command.to_owned(),
-                            ..msg.clone()
-                        })
-                    });
+                    command_to(&boat.name, &msg)
+                        .into_iter()
+                        .for_each(|command| boat.command(command));
                 });
             }
         }
     }
+}
+
+/// The command in this message if it is meant for this boat, as `DEPLOY_BLUE_ONE` and `DEPLOY_ALL`
+/// are.
+fn command_to(boat: &str, msg: &Msg) -> Option<Msg> {
+    let own_suffix = format!("_{}", boat.to_uppercase());
+    let command = msg.key.strip_suffix(&own_suffix);
+    let command = command.or_else(|| msg.key.strip_suffix("_ALL"))?;
+    Some(Msg {
+        key: command.to_owned(),
+        ..msg.clone()
+    })
 }
 
 /// Whether the node's keys, if any, let it see the true state.

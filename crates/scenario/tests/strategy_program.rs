@@ -91,6 +91,7 @@ turn = "clockwise"
 "#;
 
 #[test]
+#[expect(clippy::too_many_lines, reason = "one table")]
 fn a_program_says_what_its_file_says() {
     let program = program(FULL);
     assert_eq!(

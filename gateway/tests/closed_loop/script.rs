@@ -322,6 +322,7 @@ fn holds(rig: &Rig, condition: &str) -> bool {
 }
 
 /// The value with this name.
+#[expect(clippy::too_many_lines, reason = "one table")]
 fn value(rig: &Rig, name: &str) -> String {
     let boat = &rig.boat;
     let texts = || {

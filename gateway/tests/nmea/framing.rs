@@ -178,6 +178,7 @@ fn lines_end_with_cr_or_lf_or_both() {
 }
 
 #[test]
+#[expect(clippy::too_many_lines, reason = "one table")]
 fn each_fault_has_its_count() {
     let nothing = Counts::default();
     let overlong = format!("${}{COMMAND}", "x".repeat(1000));

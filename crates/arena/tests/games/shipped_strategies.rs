@@ -5,6 +5,7 @@ use agent::Mind;
 use messages::helm::HelmReport;
 use primitives::VehicleId;
 use rules::count::Counts;
+use rules::event::EventCursor;
 use scenario::{Outcome, Scenario};
 use std::collections::BTreeMap;
 
@@ -181,4 +182,32 @@ fn a_tagged_boat_does_not_lie_at_an_edge() {
         }
     }
     assert!(came_home > 3, "only {came_home} boats came home");
+}
+
+#[test]
+fn nobody_stands_still_in_a_game_of_point_boats() {
+    // A defender once stood in its corner for 125 s: the weights of the edges made the helm's
+    // hysteresis outweigh its task, and at low speed a point boat cannot turn away.
+    const STILL_S: f64 = 20.0;
+    let game = scenario::load(&shipped("games/mctf_2026.toml")).unwrap_or_else(|e| panic!("{e}"));
+    for seed in 1..=6 {
+        let scenario = game.of_seed(seed).unwrap_or_else(|e| panic!("{e}"));
+        let mut moved_at_s = vec![0.0; scenario.vehicles.len()];
+        let minds = agent::minds_of(&scenario);
+        arena::play_watched(&scenario, minds, seed, |contest| {
+            let now_s = contest.now().as_s();
+            let frame = contest.frame(&mut EventCursor::default());
+            for (i, (boat, moved_at_s)) in frame.vehicles.iter().zip(&mut moved_at_s).enumerate() {
+                if boat.nav.surge_m_s > 0.2 || boat.tagged || boat.disabled {
+                    *moved_at_s = now_s;
+                }
+                assert!(
+                    now_s - *moved_at_s < STILL_S,
+                    "seed {seed}: boat {i} has stood still since {moved_at_s} s"
+                );
+            }
+            true
+        })
+        .unwrap_or_else(|e| panic!("{e}"));
+    }
 }

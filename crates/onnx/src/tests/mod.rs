@@ -409,6 +409,7 @@ fn nodes_that_cannot_be_evaluated_are_refused_by_name() {
 }
 
 #[test]
+#[expect(clippy::too_many_lines, reason = "one table")]
 fn arrangements_that_do_not_fit_are_refused() {
     fn with_integers(graph: &mut GraphProto, operator: &str, integers: &[&[i64]]) {
         let names: Vec<String> = (0..integers.len())
