@@ -77,7 +77,7 @@ enum Command {
     Tournament(tournament_command::Args),
     /// Measures how much disturbance strategies tolerate: wind, noise and failures.
     #[command(
-        after_help = "Examples:\n  squall sweep wind\n  squall sweep wind --until \"strategy_4.win_share < 0.5\"\n  squall sweep storm --find out_of_bounds"
+        after_help = "Examples:\n  squall sweep wind\n  squall sweep wind --resume"
     )]
     Sweep(sweep_command::Args),
     /// Trains a policy against itself, earlier versions of itself and scripted strategies.

@@ -41,16 +41,6 @@ pub(super) fn open(path: &Path, stop: &Arc<AtomicBool>) -> Result<Arc<dyn Report
     if TrainingReport::is_in(folder) {
         return Ok(Arc::new(TrainingReport::open(folder, games)?));
     }
-    if let Some(file) = ["until.json", "find.json"]
-        .map(|name| folder.join(name))
-        .into_iter()
-        .find(|file| file.exists())
-    {
-        bail!(
-            "there is no page for a search of a sweep; its result is in {}",
-            file.display()
-        );
-    }
     bail!(
         "there is no report in {}, expected report.json (of a league or a sweep) or updates.csv (of a training run)",
         folder.display()

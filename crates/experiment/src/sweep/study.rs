@@ -353,7 +353,7 @@ fn write_plan(folder: &Path, plan: &Plan) -> Result<(), StudyError> {
 
 /// The text of a file; empty if there is none.
 // Anything else in its place is an error: writing to a named pipe would wait for a reader.
-pub(super) fn text_if_any(path: &Path) -> Result<String, StudyError> {
+fn text_if_any(path: &Path) -> Result<String, StudyError> {
     match text(path) {
         Err(StudyError::Io { error, .. }) if error.kind() == std::io::ErrorKind::NotFound => {
             Ok(String::new())
@@ -371,7 +371,7 @@ fn write(path: &Path, text: &str) -> Result<(), StudyError> {
     output_file::write(path, text).map_err(io("write", path))
 }
 
-pub(crate) fn io(doing: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> StudyError {
+fn io(doing: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> StudyError {
     let path = path.to_owned();
     move |error| StudyError::Io { doing, path, error }
 }
