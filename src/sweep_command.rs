@@ -6,7 +6,7 @@ use crate::{output_file, screen, stop};
 use anyhow::{Context, Result};
 use command_line::number::whole;
 use experiment::sweep::{self, Plan, Study, Sweep};
-use scenario::{Kind, load_file};
+use scenario::{Kind, argument_for, load_file};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -76,8 +76,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let report = study.report(&plan)?;
     screen::print(&sweep::text(&report));
     screen::print(&format!(
-        "\nreport with curves: {}\n",
-        folder.join("report.html").display()
+        "\nreport with curves: squall view {}\n",
+        argument_for(&folder)
     ));
     if study.done() < plan.games() {
         screen::remark("stopped; continue with --resume");

@@ -85,7 +85,6 @@ fn a_study_that_was_cut_anywhere_and_taken_up_again_is_the_same_bytes_on_any_num
             "games.parquet",
             "plan.json",
             "plan.txt",
-            "report.html",
             "report.json",
             "sums.txt"
         ]
@@ -288,7 +287,7 @@ fn a_named_pipe_in_place_of_a_table_is_refused_and_not_waited_for() {
         );
         std::fs::remove_dir_all(&folder).unwrap();
     }
-    for name in ["report.html", "report.json", "games.parquet"] {
+    for name in ["report.json", "games.parquet"] {
         let study = Study::begin(&folder, &plan).unwrap();
         assert!(
             std::process::Command::new("mkfifo")

@@ -9,7 +9,6 @@
 mod axis;
 mod effects;
 mod file;
-mod html;
 mod metric;
 mod plan;
 mod play;
@@ -21,7 +20,6 @@ mod text;
 pub use axis::{Axis, AxisValue};
 pub use effects::{Effect, Interaction, Level};
 pub use file::{Design, Sweep};
-pub use html::served;
 pub use metric::{METRICS, Metric, Metrics};
 pub use plan::{Job, Plan, Point};
 pub use play::{BoatRow, Played, play};

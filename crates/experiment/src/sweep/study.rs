@@ -5,7 +5,6 @@
 //! whose lines are complete and match their checksums. Lines torn off when the machine stopped, or
 //! changed since, are replaced by playing their games again.
 
-use super::html;
 use super::plan::Plan;
 use super::play::{BoatRow, Played};
 use super::report::Report;
@@ -216,7 +215,7 @@ impl Study {
         Ok(())
     }
 
-    /// Writes the report on all games so far: `report.json`, `report.html` and `games.parquet`.
+    /// Writes the report on all games so far: `report.json` and `games.parquet`.
     ///
     /// # Errors
     /// [`StudyError`] if a file cannot be read or written.
@@ -228,10 +227,6 @@ impl Study {
             what: "report.json",
             why: error.to_string(),
         })? + "\n";
-        write(
-            &self.folder.join("report.html"),
-            &html::page(&report.sweep, &json),
-        )?;
         write(&self.folder.join("report.json"), &json)?;
         let path = self.folder.join("games.parquet");
         let table = table::parquet(plan, &rows);
