@@ -78,15 +78,6 @@ export class Sweep {
   constructor(place) {
     place.classList.add('sweep');
     place.innerHTML = SECTIONS;
-    let width = innerWidth;
-    addEventListener('resize', () => {
-      // The keyboard of a phone changes the height alone.
-      if (innerWidth === width || report === null) return;
-      width = innerWidth;
-      requestAnimationFrame(() => drawCurves());
-    });
-    addEventListener('beforeprint', () => drawCurves(PRINTED_WIDTH));
-    addEventListener('afterprint', () => drawCurves());
   }
 
   /** The report is complete. */
@@ -106,6 +97,15 @@ export class Sweep {
     draw();
     makeGames();
     drawFailures();
+    let width = innerWidth;
+    addEventListener('resize', () => {
+      // The keyboard of a phone changes the height alone.
+      if (innerWidth === width) return;
+      width = innerWidth;
+      requestAnimationFrame(() => drawCurves());
+    });
+    addEventListener('beforeprint', () => drawCurves(PRINTED_WIDTH));
+    addEventListener('afterprint', () => drawCurves());
     const { games, games_done: done, failures } = report;
     const chip = done < games ? [`not finished: ${done} of ${games} games played`, 'warn'] : [`all ${games} games played`, 'good'];
     return { name: report.sweep, facts: report.about, chip, remarks: [failures.length > 0 ? `${failures.length} games could not start.` : ''] };
