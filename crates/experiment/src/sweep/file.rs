@@ -192,116 +192,85 @@ fn checked(diagnostics: &mut Diagnostics, document: &Document<Sweep>) -> Option<
 }
 
 fn check_axis(diagnostics: &mut Diagnostics, document: &Document<Sweep>, at: &str, axis: &Axis) {
-    let place = |key: &str| document.at(&format!("{at}.{key}"));
     let given: Vec<&str> = ["values", "range", "normal", "log_normal"]
         .into_iter()
         .filter(|key| document.has(&format!("{at}.{key}")))
         .collect();
-    let sort = |value: &AxisValue| std::mem::discriminant(value);
-    let wrong = |key: &str, message: String| Some((place(key), message));
-    let files = || "files as values, as in values = [\"../seas/calm.toml\"]";
+    let found = match &given[..] {
+        [] => "none".to_owned(),
+        all => all.join(" and "),
+    };
+    let key = &axis.key;
     let problem = if !axis.is_of_files()
         && let Err(error) = axis.setting("team", &AxisValue::Number(0.0), Path::new(""))
     {
-        wrong(
-            "key",
-            format!(
-                "key is {:?}, expected sea, boat, rules, field, opponent or a longer key: {error}",
-                axis.key
-            ),
-        )
+        let expected = "expected sea, boat, rules, field, opponent or a longer key";
+        Some(("key", format!("key is {key:?}, {expected}: {error}")))
     } else if given.len() != 1 {
-        let found = if given.is_empty() {
-            "none".to_owned()
-        } else {
-            given.join(" and ")
-        };
-        wrong(
-            "key",
-            format!(
-                "{} has {found}, expected one of values, range, normal, log_normal",
-                axis.key
-            ),
-        )
-    } else if axis.is_of_files()
-        && !axis
-            .values
-            .iter()
-            .all(|value| matches!(value, AxisValue::Text(_)))
-    {
-        wrong(
-            "values",
-            format!("values of {} are not files, expected {}", axis.key, files()),
-        )
-    } else if axis.is_of_files() && axis.values.is_empty() {
-        wrong(
-            given[0],
-            format!("{} has no values, expected {}", axis.key, files()),
-        )
-    } else if axis.values.is_empty() && given[0] == "values" {
-        wrong(
-            "values",
-            format!("{} has no values, expected at least one", axis.key),
-        )
-    } else if axis
-        .values
+        let expected = "expected one of values, range, normal, log_normal";
+        Some(("key", format!("{key} has {found}, {expected}")))
+    } else if given[0] == "values" || axis.is_of_files() {
+        let message = values_problem(axis).map(|message| (given[0], message));
+        message.or_else(|| log_problem(axis))
+    } else {
+        distribution_problem(axis)
+    };
+    if let Some((key, message)) = problem {
+        diagnostics.note(document.at(&format!("{at}.{key}")), message);
+    }
+}
+
+/// What is wrong with the listed values of an axis.
+fn values_problem(axis: &Axis) -> Option<String> {
+    let Axis { key, values, .. } = axis;
+    let kind = |value: &AxisValue| std::mem::discriminant(value);
+    let is_text = |value: &AxisValue| matches!(value, AxisValue::Text(_));
+    let files = "files as values, as in values = [\"../seas/calm.toml\"]";
+    if axis.is_of_files() && !values.iter().all(is_text) {
+        Some(format!("values of {key} are not files, expected {files}"))
+    } else if axis.is_of_files() && values.is_empty() {
+        Some(format!("{key} has no values, expected {files}"))
+    } else if values.is_empty() {
+        Some(format!("{key} has no values, expected at least one"))
+    } else if values
         .windows(2)
-        .any(|pair| sort(&pair[0]) != sort(&pair[1]))
+        .any(|pair| kind(&pair[0]) != kind(&pair[1]))
     {
-        wrong(
-            "values",
-            format!(
-                "values of {} have different types, expected all numbers or all texts",
-                axis.key
-            ),
-        )
-    } else if axis
-        .values
-        .iter()
-        .enumerate()
-        .any(|(k, value)| axis.values[..k].contains(value))
-    {
-        wrong(
-            "values",
-            format!(
-                "values of {} contains a duplicate, expected unique values",
-                axis.key
-            ),
-        )
-    } else if let Some([low, high]) = axis.range.filter(|[low, high]| low >= high) {
-        wrong(
-            "range",
-            format!("range is [{low}, {high}], expected the lower number first"),
-        )
-    } else if let Some([low, _]) = axis.range.filter(|[low, _]| axis.log && *low <= 0.0) {
-        wrong(
-            "range",
-            format!("range begins at {low}, expected more than 0 with log"),
-        )
-    } else if axis.log && axis.range.is_none() {
-        wrong(
-            "log",
-            "log is given without range, which it requires".to_owned(),
-        )
-    } else if let Some([_, sigma]) = axis.normal.filter(|[_, sigma]| *sigma <= 0.0) {
-        wrong(
-            "normal",
-            format!("normal has a deviation of {sigma}, expected more than 0"),
-        )
-    } else if let Some(pair) = axis
-        .log_normal
-        .filter(|[median, sigma]| *median <= 0.0 || !(0.0..=10.0).contains(sigma) || *sigma == 0.0)
-    {
-        wrong(
-            "log_normal",
-            format!(
-                "log_normal is {pair:?}, expected a median above 0 and a deviation of at most 10"
-            ),
-        )
+        Some(format!(
+            "values of {key} have different types, expected all numbers or all texts"
+        ))
+    } else if (1..values.len()).any(|k| values[..k].contains(&values[k])) {
+        Some(format!(
+            "values of {key} contains a duplicate, expected unique values"
+        ))
     } else {
         None
-    };
-    if let Some((at, message)) = problem {
-        diagnostics.note(at, message);
+    }
+}
+
+fn log_problem(axis: &Axis) -> Option<(&'static str, String)> {
+    let message = "log is given without range, which it requires";
+    (axis.log && axis.range.is_none()).then(|| ("log", message.to_owned()))
+}
+
+/// What is wrong with the range or the distribution of an axis, with its key.
+fn distribution_problem(axis: &Axis) -> Option<(&'static str, String)> {
+    if let Some([low, high]) = axis.range.filter(|[low, high]| low >= high) {
+        let message = format!("range is [{low}, {high}], expected the lower number first");
+        Some(("range", message))
+    } else if let Some([low, _]) = axis.range.filter(|[low, _]| axis.log && *low <= 0.0) {
+        let message = format!("range begins at {low}, expected more than 0 with log");
+        Some(("range", message))
+    } else if let Some(problem) = log_problem(axis) {
+        Some(problem)
+    } else if let Some([_, sigma]) = axis.normal.filter(|[_, sigma]| *sigma <= 0.0) {
+        let message = format!("normal has a deviation of {sigma}, expected more than 0");
+        Some(("normal", message))
+    } else {
+        let pair = axis.log_normal.filter(|[median, sigma]| {
+            *median <= 0.0 || !(0.0..=10.0).contains(sigma) || *sigma == 0.0
+        })?;
+        let expected = "expected a median above 0 and a deviation of at most 10";
+        Some(("log_normal", format!("log_normal is {pair:?}, {expected}")))
     }
 }
