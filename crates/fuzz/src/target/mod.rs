@@ -60,7 +60,10 @@ pub fn named(name: &str) -> Option<Target> {
 }
 
 fn mutations(seeds: Vec<Vec<u8>>) -> Change {
-    Box::new(move |dice| change(dice.one_of(&seeds), &seeds, dice))
+    Box::new(move |dice| {
+        let seed = &seeds[dice.roll(seeds.len())];
+        change(seed, &seeds, dice)
+    })
 }
 
 /// What `read` makes of bytes in pieces of any size, which must be the same as at once.

@@ -254,7 +254,10 @@ fn change_record(file: &mut Vec<Record>, pool: &[Vec<u8>], all_facts: &[Vec<u8>]
             let other = dice.roll(file.len());
             file.swap(at, other);
         }
-        3 => file[at].1 = mutated(dice.one_of(pool), pool, dice),
+        3 => {
+            let body = &pool[dice.roll(pool.len())];
+            file[at].1 = mutated(body, pool, dice);
+        }
         _ => match facts_of(&file[at]) {
             Some((name, mut facts)) if !facts.is_empty() => {
                 let key = facts
