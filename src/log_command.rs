@@ -1,6 +1,5 @@
 //! `squall log`: analyses a recorded game.
 
-use crate::plot::game as plot;
 use crate::style::Names;
 use crate::water_args::within;
 use crate::{output_file, recording_file, screen};
@@ -15,7 +14,6 @@ use std::process::ExitCode;
 
 mod difference;
 mod export;
-mod gif;
 mod page;
 mod quality;
 
@@ -38,25 +36,16 @@ pub(crate) struct Args {
     /// Writes the CSV to this file instead of standard output
     #[arg(long, value_name = "FILE", requires = "csv")]
     out: Option<PathBuf>,
-    /// Plots tracks, score, and each boat's speed, heading and navigation as SVG and PNG files in
-    /// this folder
-    #[arg(long, value_name = "DIR", conflicts_with = "compare")]
-    plot: Option<PathBuf>,
     /// Writes MOOS logs for the shoreside and every boat to this folder; if the name ends in .alog,
     /// writes only the shoreside log, to this file
     #[arg(long, value_name = "DIR", conflicts_with = "compare")]
     alog: Option<PathBuf>,
-    /// Writes an animation of the game to this GIF file
-    #[arg(long, value_name = "FILE", conflicts_with = "compare")]
-    gif: Option<PathBuf>,
-    #[command(flatten)]
-    film: gif::FilmArgs,
     /// Compares two recordings, for example a game on the water and its simulation
     #[arg(long, conflicts_with = "events")]
     compare: bool,
     /// Reports the quality of play in these recordings: chatter, standing still, edges, contacts,
     /// orbits
-    #[arg(long, conflicts_with_all = ["events", "csv", "plot", "alog", "gif", "compare"])]
+    #[arg(long, conflicts_with_all = ["events", "csv", "alog", "compare"])]
     quality: bool,
     /// With --compare: maximum time between matching events, s
     #[arg(long, value_name = "S", default_value_t = 5.0, value_parser = within(0.0, 3600.0, "s"), requires = "compare")]
@@ -93,10 +82,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 
 fn look_at(args: &Args, file: &Path) -> Result<()> {
     let bag = recording_file::open_any(file, "read")?;
-    let wants_page = [&args.plot, &args.alog, &args.gif]
-        .iter()
-        .all(|file| file.is_none())
-        && args.csv.is_none();
+    let wants_page = args.alog.is_none() && args.csv.is_none();
     if bag.kind == Kind::Gateway {
         if let Some(topic) = &args.csv {
             return csv(args, file, (&bag, None), topic);
@@ -126,16 +112,6 @@ fn look_at(args: &Args, file: &Path) -> Result<()> {
         let is_shown = wants_page && !args.events;
         remarks.extend(damaged.remark().filter(|_| !is_shown));
     }
-    if let Some(dir) = &args.plot {
-        output_file::make_folder(dir)?;
-        let series = GameSeries::of(&recording);
-        remarks.extend(series.damaged.remark().into_iter().chain(series.remark()));
-        let files = plot::write(dir, recording.header(), &series)?;
-        screen::remark(&format!(
-            "wrote {files} plots to {}, each as SVG and PNG",
-            dir.display()
-        ));
-    }
     if let Some(path) = &args.alog {
         let (files, damaged) = export::alog(&recording, path)?;
         screen::remark(&format!(
@@ -143,11 +119,6 @@ fn look_at(args: &Args, file: &Path) -> Result<()> {
             if files == 1 { "" } else { "s" },
             path.display()
         ));
-        remarks.extend(damaged.remark());
-    }
-    if let Some(path) = &args.gif {
-        let (pictures, damaged) = gif::write(path, &recording, &args.film)?;
-        screen::remark(&format!("wrote {pictures} frames to {}", path.display()));
         remarks.extend(damaged.remark());
     }
     // Every pass over the file finds the same damage.

@@ -76,9 +76,7 @@ enum Command {
     )]
     Tournament(tournament_command::Args),
     /// Measures how much disturbance strategies tolerate: wind, noise and failures.
-    #[command(
-        after_help = "Examples:\n  squall sweep wind\n  squall sweep wind --until \"strategy_4.win_share < 0.5\"\n  squall sweep storm --find out_of_bounds"
-    )]
+    #[command(after_help = "Examples:\n  squall sweep wind\n  squall sweep wind --resume")]
     Sweep(sweep_command::Args),
     /// Trains a policy against itself, earlier versions of itself and scripted strategies.
     #[command(after_help = "Examples:\n  squall train first\n  squall train first --resume")]
@@ -86,9 +84,9 @@ enum Command {
     /// Lists recorded games, the newest first.
     #[command(after_help = "Examples:\n  squall runs")]
     Runs(runs_command::Args),
-    /// Analyses a recorded game: summary, tables, plots, MOOS logs, comparison with another game.
+    /// Analyses a recorded game: summary, tables, MOOS logs, comparison with another game.
     #[command(
-        after_help = "Examples:\n  squall log\n  squall log strategy_4_vs_3 --gif game.gif --from 120 --to 190\n  squall log --compare strategy_4_vs_3 surveyor_2v2"
+        after_help = "Examples:\n  squall log\n  squall log strategy_4_vs_3 --csv events\n  squall log --compare strategy_4_vs_3 surveyor_2v2"
     )]
     Log(log_command::Args),
     /// Describes and plots a sea and its effects on a boat.

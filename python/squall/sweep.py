@@ -56,7 +56,7 @@ def main(words: list[str] | None = None) -> int:
         remark(f"Error: {failed}\n{study.done} of {plan.games} games are kept; use --resume to continue")
         return 1
     text, failures = study.report()
-    print(f"{text}\nwith curves: {folder / 'report.html'}", flush=True)
+    print(f"{text}\nwith curves: squall view {folder}", flush=True)
     if study.done < plan.games:
         remark("stopped; use --resume to continue")
         return 130

@@ -37,7 +37,7 @@ key = "sea"
 values = ["{scenarios}/seas/calm.toml", "{scenarios}/seas/fresh_breeze.toml"]
 """
 TABLES = ("games.csv", "boats.csv")
-FILES = (*TABLES, "plan.txt", "plan.json", "report.json", "report.html", "games.parquet", "sums.txt")
+FILES = (*TABLES, "plan.txt", "plan.json", "report.json", "games.parquet", "sums.txt")
 
 
 def write_sweep(folder: Path, scenarios: str = str(SCENARIOS)) -> Path:

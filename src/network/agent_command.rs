@@ -1,10 +1,10 @@
 //! `squall agent`: makes the decisions of boats in a game.
 
+use super::join_args::JoinArgs;
 use crate::screen;
 use crate::stop;
 use agent::node::{MindMaker, News, Settings};
 use anyhow::{Context, Result};
-use command_line::leaf_args::LeafArgs;
 use command_line::number::seconds;
 use scenario::strategy::Strategy;
 use std::path::PathBuf;
@@ -17,14 +17,7 @@ pub(crate) struct Args {
     #[arg(long, required = true, num_args = 1.., value_name = "NAME")]
     vehicle: Vec<String>,
     #[command(flatten)]
-    leaf: LeafArgs,
-    /// How long to look for the sim and wait for its vehicles to become free, s
-    #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
-    wait_s: f64,
-    /// How long to wait for a picture before treating the sim as dead, s (5 s if the sim leaves the
-    /// network)
-    #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
-    silence_s: f64,
+    join: JoinArgs,
     /// Strategy to follow instead of the one in the sim's scenario: a file or a name
     #[arg(long, value_name = "STRATEGY", value_parser = crate::scenario_files::file_of(scenario::Kind::STRATEGY))]
     strategy: Option<PathBuf>,
@@ -50,11 +43,11 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     };
     let mind = args.strategy.as_ref().map(load).transpose()?.map(by);
     let settings = Settings {
-        game: args.leaf.game.clone(),
-        place: args.leaf.place()?,
+        game: args.join.leaf.game.clone(),
+        place: args.join.leaf.place()?,
         vehicles: args.vehicle.clone(),
-        wait: Duration::from_secs_f64(args.wait_s),
-        silence: Duration::from_secs_f64(args.silence_s),
+        wait: Duration::from_secs_f64(args.join.wait_s),
+        silence: Duration::from_secs_f64(args.join.silence_s),
         mind,
         policy_wait: Duration::from_secs_f64(args.policy_wait_s),
         stop: stop.clone(),

@@ -8,6 +8,7 @@ mod helm_command;
 mod helm_page;
 mod helm_query;
 mod hub_args;
+mod join_args;
 mod keys_command;
 mod list_command;
 mod moos_command;

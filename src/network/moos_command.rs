@@ -1,11 +1,11 @@
 //! `squall moos`: connects MOOS applications to a game.
 
+use super::join_args::JoinArgs;
 use crate::screen;
 use crate::stop;
 use anyhow::{Context, Result, anyhow};
 use command_line::explain::UsageError;
-use command_line::leaf_args::LeafArgs;
-use command_line::number::{address, seconds, whole};
+use command_line::number::{address, whole};
 use moos::bridge::{self, News};
 use moos::community::Address;
 use std::net::{SocketAddr, ToSocketAddrs};
@@ -35,14 +35,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "IP:PORT", requires = "shore", value_parser = address)]
     pshare_listen: Option<SocketAddr>,
     #[command(flatten)]
-    leaf: LeafArgs,
-    /// How long to look for the sim and wait for its boats to become free, s
-    #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
-    wait_s: f64,
-    /// How long to wait for a picture before treating the sim as dead, s (5 s if the sim leaves the
-    /// network)
-    #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
-    silence_s: f64,
+    join: JoinArgs,
 }
 
 /// Parses a boat and, optionally, the address of its database.
@@ -74,10 +67,10 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let stop = stop::on_ctrl_c()?;
     stop::exit_when_late(&stop);
     let settings = bridge::Settings {
-        game: args.leaf.game.clone(),
-        place: args.leaf.place()?,
-        wait: Duration::from_secs_f64(args.wait_s),
-        silence: Duration::from_secs_f64(args.silence_s),
+        game: args.join.leaf.game.clone(),
+        place: args.join.leaf.place()?,
+        wait: Duration::from_secs_f64(args.join.wait_s),
+        silence: Duration::from_secs_f64(args.join.silence_s),
         stop: stop.clone(),
         boats: args.vehicle.clone(),
         team: args.team.clone(),

@@ -20,14 +20,14 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-mod chart;
 mod helm;
+mod state;
 
 #[derive(clap::Args)]
 pub(crate) struct Args {
     #[command(flatten)]
     leaf: LeafArgs,
-    /// Shows this vehicle's helm instead of the field: mode, decision, behaviours
+    /// Shows this vehicle's helm instead of all boats: mode, decision, behaviours
     #[arg(long, value_name = "NAME")]
     helm: Option<String>,
     /// Updates per second
@@ -47,7 +47,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let pause = Duration::from_secs_f64(1.0 / f64::from(args.rate));
     match &args.helm {
         Some(name) => helm::watch(&observer, name, pause, &stop)?,
-        None => watch_field(&observer, pause, &stop)?,
+        None => watch_boats(&observer, pause, &stop)?,
     }
     observer.bus.close();
     Ok(ExitCode::SUCCESS)
@@ -76,8 +76,8 @@ impl Seen {
     }
 }
 
-/// Shows the field at this interval until the game is over.
-fn watch_field(observer: &Observer, pause: Duration, stop: &AtomicBool) -> Result<()> {
+/// Shows the boats at this interval until the game is over.
+fn watch_boats(observer: &Observer, pause: Duration, stop: &AtomicBool) -> Result<()> {
     let Observer { bus, game, info } = observer;
     let seen = Arc::new(Watched::new(Seen::default()));
     let incoming = Arc::clone(&seen);
@@ -104,9 +104,9 @@ fn watch_field(observer: &Observer, pause: Duration, stop: &AtomicBool) -> Resul
             .map(|logged| sentence(&info.scenario, logged))
             .collect();
         let is_read = if live {
-            screen::is_seen(&names.paint(&chart::page(info, game, &frame, &events, &rates)))
+            screen::is_seen(&names.paint(&state::page(info, game, &frame, &events, &rates)))
         } else {
-            screen::is_read(&chart::line(&info.scenario, &frame, &rates))
+            screen::is_read(&state::line(&info.scenario, &frame, &rates))
         };
         if !is_read || frame.over {
             break;

@@ -1,10 +1,6 @@
-//! Plots as SVG and PNG files: panels with axes and units, each with a few lines and a legend.
+//! Plots as SVG files: panels with axes and units, each with a few lines and a legend.
 
 mod axis;
-pub(crate) mod colour;
-pub(crate) mod field;
-pub(crate) mod film;
-pub(crate) mod game;
 pub(crate) mod sea;
 pub(crate) mod trial;
 
@@ -14,10 +10,7 @@ use anyhow::Context;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use resvg::tiny_skia::{Pixmap, Transform};
-use resvg::usvg::{Options, Tree, fontdb};
 use std::path::Path;
-use std::sync::{Arc, OnceLock};
 
 /// A page of panels.
 pub(crate) struct Page {
@@ -51,10 +44,7 @@ pub(crate) struct Panel {
 
 impl Panel {
     fn coloured(&self) -> impl Iterator<Item = (&Line, RGBColor)> {
-        self.lines
-            .iter()
-            .zip(COLOURS.iter().cycle())
-            .map(|(line, colour)| (line, line.colour.unwrap_or(*colour)))
+        self.lines.iter().zip(COLOURS.iter().copied().cycle())
     }
 
     /// A panel with these lines, independent axes and no marks. Without lines it shows the text
@@ -86,8 +76,6 @@ pub(crate) struct Line {
     pub(crate) points: Vec<(f64, f64)>,
     /// Whether the area between the line and 0 is filled.
     pub(crate) filled: bool,
-    /// Its colour; by default that of its position among the lines.
-    pub(crate) colour: Option<RGBColor>,
 }
 
 /// A named dot.
@@ -111,8 +99,8 @@ impl Line {
 
 /// The usual size of a panel, pixels.
 pub(crate) const PANEL: (u32, u32) = (560, 400);
-pub(crate) const TITLE_HEIGHT: u32 = 44;
-pub(crate) const FONT: &str = "sans-serif";
+const TITLE_HEIGHT: u32 = 44;
+const FONT: &str = "sans-serif";
 const CAPTION: (&str, u32) = (FONT, 16);
 /// Left edge of a panel's title, height of a title row, and length of a line sample in the legend,
 /// pixels.
@@ -122,7 +110,7 @@ const KEY: i32 = 18;
 /// Opacity of filled areas.
 const FILLING: f64 = 0.25;
 /// Colours that people with any colour vision tell apart (Okabe and Ito 2008).
-pub(crate) const COLOURS: [RGBColor; 6] = [
+const COLOURS: [RGBColor; 6] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
     RGBColor(0, 158, 115),
@@ -132,113 +120,48 @@ pub(crate) const COLOURS: [RGBColor; 6] = [
 ];
 
 /// A part of the drawing; the program draws only SVG.
-pub(crate) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-/// A drawing that can be written to a file.
-pub(crate) trait Drawing {
-    /// Width and height, pixels.
-    fn size(&self) -> (u32, u32);
-
-    /// Draws it on a white background of this size.
-    fn draw(&self, root: &Area<'_>) -> Drawn;
-}
-
-pub(crate) type Drawn<T = ()> = Result<T, DrawingAreaErrorKind<std::io::Error>>;
-
-pub(crate) fn svg(drawing: &impl Drawing) -> anyhow::Result<String> {
-    let mut svg = String::new();
-    draw_on(&mut svg, drawing).context("cannot draw")?;
-    Ok(svg)
-}
-
-pub(crate) fn write_svg(path: &Path, drawing: &impl Drawing) -> anyhow::Result<()> {
-    let svg = svg(drawing).with_context(|| path.display().to_string())?;
-    output_file::write(path, "the plot", svg)
-}
-
-pub(crate) fn pixels(drawing: &impl Drawing) -> anyhow::Result<Pixmap> {
-    pixels_of(&svg(drawing)?)
-}
-
-/// Renders an SVG, one picture pixel for each of its pixels.
-fn pixels_of(svg: &str) -> anyhow::Result<Pixmap> {
-    static FONTS: OnceLock<Arc<fontdb::Database>> = OnceLock::new();
-    let fonts = FONTS.get_or_init(|| {
-        let mut fonts = fontdb::Database::new();
-        fonts.load_font_data(epaint_default_fonts::UBUNTU_LIGHT.to_vec());
-        let family = fonts
-            .faces()
-            .next()
-            .and_then(|face| face.families.first())
-            .map(|(name, _)| name.clone());
-        family
-            .into_iter()
-            .for_each(|family| fonts.set_sans_serif_family(family));
-        Arc::new(fonts)
-    });
-    let tree = Tree::from_str(
-        svg,
-        &Options {
-            fontdb: Arc::clone(fonts),
-            ..Options::default()
-        },
-    )?;
-    let size = tree.size().to_int_size();
-    let mut picture =
-        Pixmap::new(size.width(), size.height()).context("the picture is too large")?;
-    resvg::render(&tree, Transform::identity(), &mut picture.as_mut());
-    Ok(picture)
-}
-
-/// Writes the drawing to an SVG and a PNG file with this name.
-pub(crate) fn write_both(stem: &Path, drawing: &impl Drawing) -> anyhow::Result<()> {
-    write_svg(&stem.with_extension("svg"), drawing)?;
-    let path = stem.with_extension("png");
-    let picture = pixels(drawing).and_then(|picture| Ok(picture.encode_png()?));
-    output_file::write(
-        &path,
-        "the plot",
-        picture.with_context(|| format!("cannot draw {}", path.display()))?,
-    )
-}
-
-fn draw_on(svg: &mut String, drawing: &impl Drawing) -> Drawn {
-    provide_font();
-    let root = SVGBackend::with_string(svg, drawing.size()).into_drawing_area();
-    root.fill(&WHITE)?;
-    drawing.draw(&root)?;
-    root.present()
-}
+type Drawn<T = ()> = Result<T, DrawingAreaErrorKind<std::io::Error>>;
 
 impl Page {
-    fn rows(&self) -> usize {
-        self.panels.len().div_ceil(self.columns)
-    }
-}
-
-impl Drawing for Page {
-    fn size(&self) -> (u32, u32) {
-        (
-            self.panel.0 * self.columns as u32,
-            TITLE_HEIGHT + self.panel.1 * self.rows() as u32,
+    /// Writes the page to a file.
+    pub(crate) fn write(&self, path: &Path) -> anyhow::Result<()> {
+        let svg = self.svg().context("cannot draw");
+        output_file::write(
+            path,
+            "the plot",
+            svg.with_context(|| path.display().to_string())?,
         )
     }
 
-    fn draw(&self, root: &Area<'_>) -> Drawn {
+    fn svg(&self) -> Drawn<String> {
+        let mut svg = String::new();
+        provide_font();
+        let rows = self.panels.len().div_ceil(self.columns);
+        let size = (
+            self.panel.0 * self.columns as u32,
+            TITLE_HEIGHT + self.panel.1 * rows as u32,
+        );
+        let root = SVGBackend::with_string(&mut svg, size).into_drawing_area();
+        root.fill(&WHITE)?;
         let (top, rest) = root.split_vertically(TITLE_HEIGHT);
         top.draw(&Text::new(
             self.title.clone(),
             (24, 14),
             (FONT, 20).into_font(),
         ))?;
-        let areas = rest.split_evenly((self.rows(), self.columns));
-        areas
-            .iter()
-            .zip(&self.panels)
-            .try_for_each(|(area, panel)| match panel.lines.is_empty() {
-                true => draw_absent(area, panel),
-                false => draw_lines(area, panel),
-            })
+        let areas = rest.split_evenly((rows, self.columns));
+        for (area, panel) in areas.iter().zip(&self.panels) {
+            if panel.lines.is_empty() {
+                draw_absent(area, panel)?;
+            } else {
+                draw_lines(area, panel)?;
+            }
+        }
+        root.present()?;
+        drop((root, top, rest, areas));
+        Ok(svg)
     }
 }
 
@@ -414,9 +337,6 @@ fn pieces(points: &[(f64, f64)]) -> Vec<&[(f64, f64)]> {
 /// The range of a panel's points in one direction, with a margin and a minimum for its unit: a
 /// millimetre is not a navigation error.
 fn extent(panel: &Panel, axis: &str, of: impl Fn(&(f64, f64)) -> f64) -> (f64, f64) {
-    if axis == COMPASS {
-        return (0.0, 360.0);
-    }
     let numbers = panel
         .lines
         .iter()
@@ -448,9 +368,6 @@ fn extent(panel: &Panel, axis: &str, of: impl Fn(&(f64, f64)) -> f64) -> (f64, f
     about_middle(low, high, wide)
 }
 
-/// The axis title for compass headings.
-pub(crate) const COMPASS: &str = "compass heading in degrees";
-
 /// Minimum range of an axis, by unit.
 const LEAST: [(&str, f64); 5] = [
     ("m", 0.2),
@@ -466,7 +383,7 @@ fn about_middle(low: f64, high: f64, width: f64) -> (f64, f64) {
     (middle - 0.5 * width, middle + 0.5 * width)
 }
 
-/// Registers the font with which the plotting library measures texts and draws into pictures.
+/// Registers the font with which the plotting library measures texts.
 fn provide_font() {
     let font = epaint_default_fonts::UBUNTU_LIGHT;
     // Registration fails only for an invalid font; a plot would then report it.
@@ -486,7 +403,6 @@ mod tests {
             name: name.into(),
             points: points.clone(),
             filled: !name.is_empty(),
-            colour: None,
         };
         let mark = |at: &(f64, f64)| Mark {
             name: "here".into(),
@@ -511,7 +427,7 @@ mod tests {
     }
 
     fn drawn(points: Vec<(f64, f64)>) -> String {
-        svg(&page(points)).expect("it can be drawn")
+        page(points).svg().expect("it can be drawn")
     }
 
     #[test]
@@ -559,28 +475,5 @@ mod tests {
         );
         let (low, high) = range("loss", &[5.0, 5.0 + 1e-13]);
         assert!(low < 4.6 && high > 5.4);
-        assert_eq!(range(COMPASS, &[10.0, 20.0]), (0.0, 360.0));
-    }
-
-    #[test]
-    fn pixels_show_letters_with_spaces_between_words() {
-        let width = |text: &str| {
-            let svg = format!(
-                "<svg xmlns='http://www.w3.org/2000/svg' width='300' height='40'><text x='5' y='25' font-family='sans-serif' font-size='20'>{text}</text></svg>"
-            );
-            let picture = pixels_of(&svg).expect("it is SVG");
-            let dark = |x: &u32| {
-                (0..40).any(|y| picture.pixel(*x, y).is_some_and(|pixel| pixel.alpha() > 64))
-            };
-            (0..300)
-                .filter(|x| !dark(x) && (0..*x).any(|x| dark(&x)) && (*x..300).any(|x| dark(&x)))
-                .count()
-        };
-        assert!(
-            width("time in s") > width("timeins") + 4,
-            "{} {}",
-            width("time in s"),
-            width("timeins")
-        );
     }
 }

@@ -40,15 +40,13 @@ pub(crate) fn write(
         wind(sea, model),
         drift(track),
     ];
-    plot::write_svg(
-        path,
-        &Page {
-            title,
-            columns: 2,
-            panel: plot::PANEL,
-            panels,
-        },
-    )
+    Page {
+        title,
+        columns: 2,
+        panel: plot::PANEL,
+        panels,
+    }
+    .write(path)
 }
 
 /// Bars and curve are both densities: the area of a bar is the variance of the components in its
@@ -74,7 +72,6 @@ fn spectrum(sea: &Sea, model: &SeaModel) -> Panel {
                     .flat_map(corners)
                     .collect(),
                 filled: true,
-                colour: None,
             },
             Line::of(
                 "specified",

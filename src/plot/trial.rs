@@ -39,15 +39,13 @@ pub(crate) fn write(path: &Path, title: &str, samples: &[Sample]) -> Result<()> 
     ];
     let drive = drive(samples);
     let panels = panels.into_iter().chain(drive).collect();
-    plot::write_svg(
-        path,
-        &Page {
-            title: title.to_owned(),
-            columns: 2,
-            panel: plot::PANEL,
-            panels,
-        },
-    )
+    Page {
+        title: title.to_owned(),
+        columns: 2,
+        panel: plot::PANEL,
+        panels,
+    }
+    .write(path)
 }
 
 /// Panels of thrusts if the boat has thrusters; otherwise of commands in per cent.

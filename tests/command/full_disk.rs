@@ -74,7 +74,6 @@ fn results_that_cannot_be_written_are_an_error() {
         "run attack_1v1 --in-process --no-record --set game.duration_s=5 --json /dev/full",
         &format!("log {game} --json /dev/full"),
         &format!("log {game} --csv frame --out /dev/full"),
-        &format!("log {game} --gif /dev/full --width 200 --to 1"),
         &format!("log --compare {game} {game} --json /dev/full"),
         &format!("log --quality {game} --json /dev/full"),
         "tournament simple --games 2 --jobs 1 --json /dev/full",

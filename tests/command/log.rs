@@ -125,100 +125,6 @@ fn every_topic_comes_as_csv() {
 }
 
 #[test]
-fn plots_are_drawn_as_svg_and_png() {
-    let game = game();
-    let dir = tempfile::tempdir().unwrap();
-    let plots = dir.path().join("plots");
-    log(&[&game.recording, "--plot", plots.to_str().unwrap()]);
-    let names: Vec<String> = std::fs::read_dir(&plots)
-        .unwrap()
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .collect();
-    let boats = names
-        .iter()
-        .filter(|name| name.starts_with("boat_") && name.ends_with(".svg"))
-        .count();
-    assert_eq!((boats, names.len()), (2, 8), "{names:?}");
-    for name in ["tracks", "score"] {
-        let svg = std::fs::read_to_string(plots.join(format!("{name}.svg"))).unwrap();
-        assert!(
-            svg.ends_with("</svg>\n") && svg.contains("attack_1v1") && svg.contains("blue"),
-            "{name}"
-        );
-        let picture =
-            resvg::tiny_skia::Pixmap::load_png(plots.join(format!("{name}.png"))).unwrap();
-        assert!(picture.width() > 500, "{name}");
-    }
-}
-
-#[test]
-fn a_film_has_a_picture_for_each_tenth_of_a_second_that_it_is_looked_at() {
-    let dir = tempfile::tempdir().unwrap();
-    let path = text(dir.path().join("film.gif"));
-    let film = |more: &[&str]| {
-        log(&[
-            &[game().recording.as_str(), "--gif", &path, "--width", "300"],
-            more,
-        ]
-        .concat());
-        let mut options = gif::DecodeOptions::new();
-        options.set_color_output(gif::ColorOutput::RGBA);
-        let mut film = options
-            .read_info(std::fs::File::open(&path).unwrap())
-            .unwrap();
-        let size = (film.width(), film.height());
-        let mut delays = vec![];
-        let mut pixels = vec![];
-        while let Some(picture) = film.read_next_frame().unwrap() {
-            let is_whole = (picture.width, picture.height) == size;
-            assert_eq!(
-                is_whole,
-                delays.is_empty(),
-                "the first is whole, the others are what changed"
-            );
-            delays.push(picture.delay);
-            pixels.push(
-                picture
-                    .buffer
-                    .chunks(4)
-                    .filter(|pixel| pixel[3] > 0)
-                    .count(),
-            );
-        }
-        (size, delays, pixels)
-    };
-    // From 10 s to 20 s at 5x: a picture every half second.
-    let (size, delays, pixels) = film(&["--from", "10", "--to", "20", "--speed", "5x"]);
-    assert_eq!((size.0, delays.len()), (300, 21), "{delays:?}");
-    assert!(
-        delays[..20].iter().all(|delay| *delay == 10) && delays[20] > 100,
-        "{delays:?}"
-    );
-    assert!(
-        pixels[1..]
-            .iter()
-            .all(|changed| (10..10_000).contains(changed)),
-        "boats move, the field does not: {pixels:?}"
-    );
-    let all = game().result["duration_s"].as_f64().unwrap();
-    let (_, delays, _) = film(&["--speed", "40x"]);
-    assert_eq!(delays.len() as f64, (all / 4.0).floor() + 1.0);
-    for (words, why) in [
-        (
-            &["--from", "20", "--to", "10"][..],
-            "--to is 10 s, expected more than --from, 20 s",
-        ),
-        (&["--from", "99999"], "has no frame after 99999 s"),
-    ] {
-        let said = program::refusal(
-            &dir,
-            &[&["log", &game().recording, "--gif", "other.gif"], words].concat(),
-        );
-        assert!(said.contains(why), "{said}");
-    }
-}
-
-#[test]
 fn moos_logs_are_written_for_shore_and_boats() {
     let game = game();
     let dir = tempfile::tempdir().unwrap();
@@ -282,7 +188,7 @@ fn mistakes_are_explained() {
             &["--quality", recording, "nowhere.mcap"],
             "there is no file nowhere.mcap",
         ),
-        (&[recording, "--plot", toml], "cannot create the folder"),
+        (&[recording, "--alog", toml], "cannot create the folder"),
     ] {
         let refused = program::refusal(program::project(), &[&["log"], args].concat());
         assert!(

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 const END_MAX: Duration = Duration::from_secs(2);
 
 /// Commands, with the words that this test fills in.
-const COMMANDS: [&str; 21] = [
+const COMMANDS: [&str; 20] = [
     "run LONG --in-process --no-record",
     "run LONG --no-record",
     "run mixed_2v2 --emulate --pace realtime --no-record",
@@ -17,7 +17,6 @@ const COMMANDS: [&str; 21] = [
     "tournament paper_2023 --games 100000 --jobs 1",
     "tournament simple --games 100000 --jobs 1 --league DIR/league",
     "sweep wind --games 100000 --jobs 1 --out DIR/wind",
-    "sweep storm --find out_of_bounds --search-games 10000 --jobs 1 --out DIR/storm",
     "train options --jobs 1 --out DIR/options",
     "log --quality RECORDINGS",
     "trial surveyor_m1_8 --manoeuvre zigzag --duration-s 86000 --csv DIR/track.csv --plot DIR/track.svg",

@@ -121,13 +121,6 @@ impl GameSeries {
             .map_or(0.0, |(last, first)| last - first)
     }
 
-    /// Index of the sample at this time: the last one not later.
-    pub fn sample_at(&self, at_s: f64) -> usize {
-        self.times_s
-            .partition_point(|time_s| *time_s <= at_s + 1e-6)
-            .saturating_sub(1)
-    }
-
     /// The boat with this name.
     pub fn boat(&self, name: &str) -> Option<&BoatSeries> {
         self.boats.iter().find(|boat| boat.name == name)

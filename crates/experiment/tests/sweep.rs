@@ -2,11 +2,11 @@
 //! reported before any game.
 
 use experiment::sweep::Sweep;
-use experiment::sweep::{self, Condition, Journal, Plan, SearchError, Study, StudyError};
+use experiment::sweep::{self, Plan, Study, StudyError};
 use scenario::{Overrides, load_file, load_with};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 fn shipped(file: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -85,7 +85,6 @@ fn a_study_that_was_cut_anywhere_and_taken_up_again_is_the_same_bytes_on_any_num
             "games.parquet",
             "plan.json",
             "plan.txt",
-            "report.html",
             "report.json",
             "sums.txt"
         ]
@@ -288,7 +287,7 @@ fn a_named_pipe_in_place_of_a_table_is_refused_and_not_waited_for() {
         );
         std::fs::remove_dir_all(&folder).unwrap();
     }
-    for name in ["report.html", "report.json", "games.parquet"] {
+    for name in ["report.json", "games.parquet"] {
         let study = Study::begin(&folder, &plan).unwrap();
         assert!(
             std::process::Command::new("mkfifo")
@@ -381,145 +380,4 @@ fn a_folder_keeps_one_sweep_and_says_so() {
         Study::resume(&folder, &other),
         Err(StudyError::Other { .. })
     ));
-}
-
-#[test]
-fn the_breaking_point_is_found_where_it_is() {
-    // A team's boats are outside the field for longer in longer games: the condition depends on the
-    // duration alone.
-    let dir = tempfile::tempdir().unwrap();
-    let more = "[[axis]]\nkey = \"sea.wind.speed_m_s\"\nvalues = [3]\n";
-    let ranged = text(more).replace("values = [30]", "range = [10, 90]");
-    let plan = plan_of(dir.path(), &ranged.replace("games = 4", "games = 32"));
-    let condition = Condition::parse("easy.duration_s > 37", plan.sweep()).unwrap();
-    let jobs = (NonZeroUsize::MIN, &AtomicBool::new(false));
-    let mut journal = Journal::begin(dir.path(), &plan).unwrap();
-    let point = sweep::breaking_point(
-        &plan,
-        &condition,
-        Some("game.duration_s"),
-        &mut journal,
-        jobs,
-        |_| {},
-    )
-    .unwrap();
-    let low = point.low.unwrap();
-    let high = point.high.unwrap();
-    assert!(
-        low < 37.0 && 37.0 < high && high - low < 1.0,
-        "{low} to {high}"
-    );
-    for text in [
-        "easy.duration_s",
-        "nobody.score < 1",
-        "easy.speed < 1",
-        "score < 1",
-    ] {
-        assert!(Condition::parse(text, plan.sweep()).is_err(), "{text}");
-    }
-}
-
-#[test]
-fn a_search_that_was_stopped_anywhere_goes_on_without_playing_its_games_again() {
-    let dir = tempfile::tempdir().unwrap();
-    let plan = plan_of(
-        dir.path(),
-        &text("[[axis]]\nkey = \"sea.wind.speed_m_s\"\nrange = [1, 12]\n"),
-    );
-    let condition = Condition::parse("easy.closest_m < 9", plan.sweep()).unwrap();
-    let find = |journal: &mut Journal, stop: &AtomicBool, after: usize| {
-        let mut rounds = 0;
-        sweep::find(
-            &plan,
-            &condition,
-            120,
-            journal,
-            (NonZeroUsize::MIN, stop),
-            |_, _| {
-                rounds += 1;
-                stop.store(rounds == after, Ordering::Relaxed);
-            },
-        )
-    };
-    let whole = dir.path().join("whole");
-    let mut journal = Journal::begin(&whole, &plan).unwrap();
-    let want = find(&mut journal, &AtomicBool::new(false), 99).unwrap();
-    assert!(
-        want.failures > 0 && want.games == 120 && journal.games() == 120,
-        "{want:?}"
-    );
-
-    let cut = dir.path().join("cut");
-    let mut journal = Journal::begin(&cut, &plan).unwrap();
-    assert!(matches!(
-        find(&mut journal, &AtomicBool::new(false), 1),
-        Err(SearchError::Stopped)
-    ));
-    assert_eq!(journal.games(), 100);
-    drop(journal);
-    assert!(matches!(
-        Journal::begin(&cut, &plan),
-        Err(StudyError::Exists { games: 100, .. })
-    ));
-    let file = cut.join("search.csv");
-    let bytes = std::fs::read(&file).unwrap();
-    std::fs::write(&file, &bytes[..bytes.len() - 5]).unwrap();
-    let mut journal = Journal::resume(&cut, &plan).unwrap();
-    assert_eq!(
-        journal.games(),
-        99,
-        "the truncated part does not count as a game"
-    );
-    assert_eq!(
-        find(&mut journal, &AtomicBool::new(false), 99).unwrap(),
-        want
-    );
-    assert_eq!(
-        std::fs::read(&file).unwrap(),
-        std::fs::read(whole.join("search.csv")).unwrap()
-    );
-
-    // With a changed digit, a game in the middle is played again.
-    drop(journal);
-    let mut bytes = std::fs::read(&file).unwrap();
-    let middle = (bytes.len() / 2..)
-        .find(|i| bytes[*i].is_ascii_digit())
-        .unwrap();
-    bytes[middle] = if bytes[middle] == b'1' { b'2' } else { b'1' };
-    std::fs::write(&file, bytes).unwrap();
-    let mut journal = Journal::resume(&cut, &plan).unwrap();
-    assert_eq!(journal.games(), 119);
-    assert_eq!(
-        find(&mut journal, &AtomicBool::new(false), 99).unwrap(),
-        want
-    );
-
-    // A breaking point requires other games; no known game is lost.
-    let condition = Condition::parse("easy.score < 1", plan.sweep()).unwrap();
-    let search = |plan: &Plan, condition: &Condition, journal: &mut Journal, is_stopped: bool| {
-        let threads = (NonZeroUsize::MIN, &AtomicBool::new(is_stopped));
-        sweep::breaking_point(
-            plan,
-            condition,
-            Some("sea.wind.speed_m_s"),
-            journal,
-            threads,
-            |_| {},
-        )
-    };
-    search(&plan, &condition, &mut journal, false).unwrap();
-    assert!(journal.games() > 120);
-    drop(journal);
-    let mut again = Journal::resume(&cut, &plan).unwrap();
-    // With no thread to play, all games must be in the journal.
-    search(&plan, &condition, &mut again, true).unwrap();
-    let other = plan_of(dir.path(), &text(WIND));
-    assert!(matches!(
-        Journal::resume(&cut, &other),
-        Err(StudyError::Other { .. })
-    ));
-    let condition = Condition::parse("easy.score < 2", other.sweep()).unwrap();
-    let mut new = Journal::begin(&dir.path().join("new"), &other).unwrap();
-    let none = search(&other, &condition, &mut new, true);
-    assert!(matches!(none, Err(SearchError::Stopped)), "{none:?}");
 }

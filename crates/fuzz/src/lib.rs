@@ -1,9 +1,9 @@
 //! Fuzzes every reader of external data: checks its guarantees on mutated real inputs.
 //!
-//! A [`Target`] is a kind of input. `soak` runs one on stable Rust, with mutations that respect the
-//! format of the input. libFuzzer runs the same checks.
+//! A [`Target`] is a kind of input. `soak` runs one on stable Rust, with mutations of words,
+//! numbers and bytes. libFuzzer runs the same checks.
 
-pub mod change;
+mod change;
 mod dice;
 pub mod played;
 pub mod soak;

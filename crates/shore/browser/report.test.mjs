@@ -210,8 +210,8 @@ test('the worst games of a sweep are watched from its page', async (t) => {
   const sight = await Sight.load(t, browser, await view(t, out));
   await sight.page.waitForSelector('#worst-list .watch');
   assert(await isText(sight));
-  assert.equal(await sight.text('#about'), HOSTILE);
-  assert.equal(await sight.get(() => getComputedStyle(document.querySelector('.tornado .bar')).position), 'absolute', 'the style sheet is served');
+  assert.equal(await sight.text('#facts'), HOSTILE);
+  assert.equal(await sight.get(() => getComputedStyle(document.querySelector('.tornado .effect')).position), 'absolute', 'the style sheet is served');
   await sight.press('#worst-list .watch');
   await sight.until('the game is shown', () => window.squall?.mode === 'replay' && squall.frame !== null);
   assert.match(await sight.text('#about'), /strategy_4 \(\w+\) at sea.wind.speed_m_s \d+, seed \d+; rerun, identical to the report/);
@@ -242,7 +242,7 @@ test('from a point of a sweep to all its games, to a replay of one, and back', a
   await sight.page.selectOption('#games-filter', 'won');
   assert.deepEqual(await listed(), rows(own.filter((game) => result(game) === 'won')));
   await sight.page.selectOption('#games-filter', 'all');
-  await sight.press('#legend button >> nth=1');
+  await sight.press('#entries button >> nth=1');
   assert.deepEqual(await listed(), rows(own.filter((game) => game.entry === 'strategy_4')), 'a hidden entry');
 
   // The last game has another seed and side than the point's command.

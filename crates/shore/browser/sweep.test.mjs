@@ -1,12 +1,10 @@
-// The page of a sweep: one file on a disk, opened without a network.
+// The report of a sweep on the page.
 
 import assert from 'node:assert/strict';
-import { readdirSync, writeFileSync } from 'node:fs';
+import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { pathToFileURL } from 'node:url';
 import { after, before, test } from 'node:test';
-import { folder, gameFile, openBrowser, readJson, scenario, squall } from './harness.mjs';
-import { writePage } from './sweep_page.mjs';
+import { Program, Sight, folder, gameFile, openBrowser, readJson, scenario, squall } from './harness.mjs';
 
 let browser;
 before(async () => { browser = await openBrowser(); });
@@ -27,27 +25,16 @@ async function sweep(t, more = '') {
     + `${entry('strategy_4')}${entry('strategy_5')}${axes}`);
   const out = join(place, 'out');
   await squall(t, 'sweep', file, '--out', out, '--jobs', '2');
-  const report = readJson(join(out, 'report.json'));
-  const page = join(out, 'report.html');
-  // To work on the page without building the program, as for the live page.
-  return { out, report, page: process.env.SQUALL_WEB ? writePage(report, page) : pathToFileURL(page).href };
+  return { out, report: readJson(join(out, 'report.json')) };
 }
 
-/** Opens a page without a network. The test fails on console output and on requests. */
-async function open(t, address, more = {}) {
+/** Opens the report in a folder, or a modified one. */
+async function open(t, { out }, { report = null, hash = '', ...more } = {}) {
+  if (report) writeFileSync(join(out, 'report.json'), JSON.stringify(report));
+  const url = await new Program(t, 'view', out, '--listen', '127.0.0.1:0').url();
   const permissions = ['clipboard-read', 'clipboard-write'];
-  const context = await browser.newContext({ viewport: { width: 1400, height: 900 }, offline: true, permissions, ...more });
-  const page = await context.newPage();
-  const [said, asked] = [[], []];
-  page.on('console', (message) => said.push(message.text()));
-  page.on('pageerror', (error) => said.push(error.stack ?? error.message));
-  page.on('request', (request) => /^(file|http|ws)/.test(request.url()) && asked.push(request.url()));
-  t.after(async () => {
-    await context.close();
-    assert.deepEqual(said, [], 'output on the page\'s console');
-    assert.deepEqual(asked.filter((url) => url.split('#')[0] !== address.split('#')[0]), [], 'requests other than for the page');
-  });
-  await page.goto(address);
+  const { page } = await Sight.load(t, browser, `${url}${hash}`, { size: { width: 1400, height: 900 }, permissions, ...more });
+  await page.waitForSelector('#points-table tbody tr');
   return page;
 }
 
@@ -56,11 +43,12 @@ const metric = (report, name) => report.metrics.findIndex((each) => each.name ==
 const percent = (mean) => `${Number((100 * mean).toPrecision(3))}`.replace('-', '−');
 
 test('the page of a sweep shows the report as curves, a heat map and a tornado chart', async (t) => {
-  const { page: address, report } = await sweep(t);
-  const page = await open(t, address);
-  assert.equal(await page.title(), report.sweep);
-  assert.equal(await page.textContent('#about'), HOSTILE);
-  assert.match(await page.textContent('#chips'), new RegExp(`all ${report.games} games played`));
+  const played = await sweep(t);
+  const { report } = played;
+  const page = await open(t, played);
+  assert.equal(await page.title(), `${report.sweep} – Squall`);
+  assert.equal(await page.textContent('#facts'), HOSTILE);
+  assert.equal(await page.textContent('#state'), `all ${report.games} games played`);
 
   const charts = page.locator('#curve-charts .card');
   assert.equal(await charts.count(), report.axes.length);
@@ -82,7 +70,7 @@ test('the page of a sweep shows the report as curves, a heat map and a tornado c
 
   for (const [i, entry] of report.entries.entries()) {
     const tornado = page.locator('#tornado-charts .card').nth(i);
-    assert.equal(await tornado.locator('.bar').count(), report.axes.length);
+    assert.equal(await tornado.locator('.effect').count(), report.axes.length);
     const means = report.effects.filter((effect) => effect.entry === entry).map((effect) => [effect.axis, Math.abs(effect.contrasts[wins].mean)]);
     const sorted = means.sort(([, a], [, b]) => b - a).map(([key]) => key);
     assert.deepEqual(await tornado.locator('li').evaluateAll((all) => all.map((row) => row.dataset.axis)), sorted);
@@ -90,11 +78,12 @@ test('the page of a sweep shows the report as curves, a heat map and a tornado c
 });
 
 test('axes and metrics have titles and units, and the page can be switched to dark', async (t) => {
-  const { out, report } = await sweep(t);
+  const played = await sweep(t);
+  const { report } = played;
   // From the reference of scenario files.
   assert.deepEqual(report.axis_meanings, ['Mean speed at 10 m height, m/s.', 'Standard deviation of white noise, per axis, m.']);
   const faults = { ...report, axes: ['sea.wind.speed_m_s', 'fault.link.every_s'], axis_meanings: [report.axis_meanings[0], 'Instead of `at_s`: mean time to the next fault, s.'] };
-  const page = await open(t, writePage(faults, join(out, 'faults.html')));
+  const page = await open(t, played, { report: faults });
   const cards = page.locator('#curve-charts .card');
   assert.deepEqual(await cards.locator('h3').allTextContents(), ['Wind speed (m/s) ', 'Fault link every (s) logarithmic scale']);
   assert.deepEqual(await cards.locator('.about-axis').allTextContents(), ['Mean speed at 10 m height sea.wind.speed_m_s', 'Mean time to the next fault fault.link.every_s']);
@@ -121,8 +110,9 @@ test('axes and metrics have titles and units, and the page can be switched to da
 });
 
 test('the metric that is chosen changes every chart, and an entry that is hidden leaves them', async (t) => {
-  const { page: address, report } = await sweep(t);
-  const page = await open(t, address);
+  const played = await sweep(t);
+  const { report } = played;
+  const page = await open(t, played);
   const places = ['#curve-charts', '#heat-charts', '#tornado-charts', '#differences-table', '#points-table'];
   const shown = () => Promise.all(places.map((place) => page.innerHTML(place)));
   const before = await shown();
@@ -133,7 +123,7 @@ test('the metric that is chosen changes every chart, and an entry that is hidden
   await page.reload();
   assert.equal(await page.inputValue('#metric'), 'distance_m', 'the address keeps the metric');
 
-  await page.click('#legend button >> nth=0');
+  await page.click('#entries button >> nth=0');
   assert.equal(await page.locator('#curve-charts .card >> nth=0 >> path.line').count(), report.entries.length - 1);
   assert.equal(await page.locator('#tornado-charts .card').count(), report.entries.length - 1);
   // No metric causes an error: at the end the console must be empty.
@@ -141,8 +131,9 @@ test('the metric that is chosen changes every chart, and an entry that is hidden
 });
 
 test('the values of a level are shown to a pointer and to a keyboard', async (t) => {
-  const { page: address, report } = await sweep(t);
-  const page = await open(t, address);
+  const played = await sweep(t);
+  const { report } = played;
+  const page = await open(t, played);
   const card = page.locator('#curve-charts .card').first();
   const { levels } = report.effects[0];
   const wins = metric(report, 'win_share');
@@ -168,14 +159,15 @@ test('the values of a level are shown to a pointer and to a keyboard', async (t)
 });
 
 test('a command that is copied is the command of the report', async (t) => {
-  const { page: address, report } = await sweep(t);
-  const page = await open(t, address);
+  const played = await sweep(t);
+  const { report } = played;
+  const page = await open(t, played);
   const copied = () => page.evaluate(() => navigator.clipboard.readText());
   const rows = page.locator('#points-table tbody tr');
   assert.equal(await rows.count(), report.points.length);
   for (const at of [0, report.points.length - 1]) {
     await rows.nth(at).getByRole('button', { name: 'Copy' }).click();
-    await page.waitForFunction((at) => document.querySelectorAll('#points-table tbody button')[at].textContent === 'Copied', at);
+    await page.waitForFunction((at) => document.querySelectorAll('#points-table .command button')[at].textContent === 'Copied', at);
     assert.equal(await copied(), report.points[at].command);
     assert.equal(await rows.nth(at).locator('code').textContent(), report.points[at].command);
   }
@@ -187,8 +179,9 @@ test('a command that is copied is the command of the report', async (t) => {
 });
 
 test('the points are sorted by the column that is pressed', async (t) => {
-  const { page: address, report } = await sweep(t);
-  const page = await open(t, `${address}#metric=distance_m`);
+  const played = await sweep(t);
+  const { report } = played;
+  const page = await open(t, played, { hash: '#metric=distance_m' });
   const column = page.getByRole('columnheader', { name: report.entries[1] }).last().getByRole('button');
   const order = () => page.locator('#points-table tbody th').evaluateAll((all) => all.map((head) => Number(head.textContent)));
   const mean = (point) => report.points[point].entries[1].metrics[metric(report, 'distance_m')].mean;
@@ -200,12 +193,13 @@ test('the points are sorted by the column that is pressed', async (t) => {
 });
 
 test('texts of a report are texts, and never script', async (t) => {
-  const { out, report } = await sweep(t);
+  const played = await sweep(t);
+  const { report } = played;
   const command = `squall run '${HOSTILE}'`;
   const hostile = { ...report, entries: report.entries.map(() => HOSTILE), axes: report.axes.map((key) => `${key}${HOSTILE}`),
     failures: Array.from({ length: 30 }, (_, game) => ({ game, why: HOSTILE, command })) };
-  const page = await open(t, writePage(hostile, join(out, 'hostile.html')));
-  assert.equal(await page.title(), report.sweep);
+  const page = await open(t, played, { report: hostile });
+  assert.equal(await page.title(), `${report.sweep} – Squall`);
   assert.equal(await page.locator('img').count(), 0);
   const cards = page.locator('#failures-list .game');
   assert.equal(await cards.count(), 20, 'a page of them');
@@ -213,32 +207,32 @@ test('texts of a report are texts, and never script', async (t) => {
   assert.equal(await cards.first().locator('code').textContent(), command);
   await page.getByRole('navigation', { name: 'Pages of failures' }).getByRole('button', { name: 'Next' }).click();
   assert.equal(await cards.count(), 10);
-  assert.match(await page.textContent('#chips'), /30 could not start/);
+  assert.match(await page.textContent('#remarks'), /30 games could not start/);
 });
 
 test('an unfinished sweep says so, and shows its results so far', async (t) => {
-  const { out, report } = await sweep(t);
+  const played = await sweep(t);
+  const { report } = played;
   const none = (list) => list.map(() => null);
   const point = (each, i) => (i < 3 ? each : { ...each, seeds: 0, entries: each.entries.map((one) => ({ ...one, metrics: none(one.metrics) })),
     differences: each.differences.map((one) => ({ ...one, metrics: none(one.metrics) })) });
   const level = (each, i) => (i === 0 ? each : { ...each, metrics: none(each.metrics) });
   const effects = report.effects.map((effect) => ({ ...effect, contrasts: none(effect.contrasts), levels: effect.levels.map(level) }));
   const unfinished = { ...report, games_done: report.games / 2, points: report.points.map(point), interactions: [], effects };
-  const page = await open(t, writePage(unfinished, join(out, 'unfinished.html')));
-  assert.match(await page.textContent('#chips'), new RegExp(`not finished: ${report.games / 2} of ${report.games} games`));
+  const page = await open(t, played, { report: unfinished });
+  assert.match(await page.textContent('#state'), new RegExp(`not finished: ${report.games / 2} of ${report.games} games`));
   assert.equal(await page.locator('#heat-charts .card >> nth=0 >> td.none').count(), report.points.length - 3);
-  assert.equal(await page.locator('#tornado-charts .bar').count(), 0);
+  assert.equal(await page.locator('#tornado-charts .effect').count(), 0);
   assert(!/NaN|undefined|null|Infinity/.test(await page.innerText('body')), 'an invalid number');
 });
 
 test('the page fits screens from a phone to a desk', async (t) => {
   const files = ['strategy_3', 'strategy_4_assigned'].map((name) => scenario(`strategies/${name}.toml`));
   const axes = `[[axis]]\nkey = "opponent"\nvalues = ${JSON.stringify(files)}\n`;
-  const { page: address, out } = await sweep(t, axes);
-  assert.deepEqual(readdirSync(out).filter((name) => name.endsWith('.html')), ['report.html']);
+  const played = await sweep(t, axes);
   for (const [width, height] of [[390, 844], [1400, 900], [1920, 1080]]) {
     for (const colorScheme of ['light', 'dark']) {
-      const page = await open(t, address, { viewport: { width, height }, colorScheme });
+      const page = await open(t, played, { size: { width, height }, colorScheme });
       assert(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `wider than ${width}`);
       assert(!(await page.isVisible('#heat')), 'one axis has no heat map');
     }

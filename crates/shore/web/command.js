@@ -24,7 +24,7 @@ async function copy(text) {
 /** A command, and a button that copies it; `what` it does. */
 export function commandOf(text, what) {
   // A browser would break `--seed` after its first dash.
-  const code = make('code', '', '', ...text.split(/(\s+)/).map((word) => (/\S/.test(word) ? make('span', '', word) : word)));
+  const code = make('code', '', '', ...text.split(/(\s+)/).map((word) => (/^\S{1,30}$/.test(word) ? make('span', '', word) : word)));
   const button = make('button', '', 'Copy');
   button.type = 'button';
   button.setAttribute('aria-label', `Copy the command that ${what}`);

@@ -1,5 +1,6 @@
 // The page of a report. Texts from a report are only ever inserted as text.
 
+import { Sweep } from './sweep.js';
 import { Theme } from './theme.js';
 import { Tournament } from './tournament.js';
 import { Training } from './training.js';
@@ -7,7 +8,7 @@ import { make, plain, show, write } from './words.js';
 
 /** Refresh interval for a training run in progress, ms. */
 const AGAIN_MS = 10_000;
-const KINDS = { tournament: Tournament, training: Training };
+const KINDS = { sweep: Sweep, tournament: Tournament, training: Training };
 
 const byId = (id) => document.getElementById(id);
 

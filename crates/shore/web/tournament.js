@@ -4,7 +4,7 @@
 import { addressOfGame, keepAddress } from './address.js';
 import { CurveChart } from './curve_chart.js';
 import { cell, head, sortedTable, tableOf, watch } from './table.js';
-import { clockShort, make, number, options, plain, show } from './words.js';
+import { clockShort, make, number, options, plain, show, stem } from './words.js';
 
 /** Number of games listed at first, and added each time. */
 const LISTED = 100;
@@ -15,8 +15,6 @@ const RESULTS = [['', 'all'], ['won', 'won'], ['drawn', 'drawn'], ['lost', 'lost
 const COUNTS = [['Points', 'score'], ['Grabs', 'grabs'], ['Captures', 'captures'], ['Tags', 'tags'], ['Tagged', 'tagged'],
   ['Out of bounds', 'out_of_bounds'], ['Collisions', 'collisions']];
 
-/** A file by its name. */
-const stem = (path) => path.split('/').at(-1).replace(/\.toml$/, '');
 const percent = (count, of) => Math.round((100 * count) / Math.max(1, of));
 const signed = (value) => `${value > 0 ? '+' : ''}${number(value, 2)}`;
 export class Tournament {

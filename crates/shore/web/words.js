@@ -58,6 +58,9 @@ export function bytes(count) {
   return count < 1e9 ? `${(count / 1e6).toFixed(1)} MB` : `${(count / 1e9).toFixed(2)} GB`;
 }
 
+/** A scenario file by its name. */
+export const stem = (path) => path.split('/').at(-1).replace(/\.toml$/, '');
+
 /** `blue_one` as shown to people. */
 export const plain = (name) => String(name).replaceAll('_', ' ');
 

@@ -16,44 +16,22 @@ use std::sync::atomic::AtomicBool;
 /// Size limit of a report file, bytes.
 const BYTES_MAX: u64 = 256 << 20;
 
-/// The path of the page that shows tournaments and training runs.
-pub(super) const PAGE: &str = "/report.html";
-
 /// Opens the report at a path: a file, or the folder that contains it.
 pub(super) fn open(path: &Path, stop: &Arc<AtomicBool>) -> Result<Arc<dyn Report>> {
     let games = Games::new(stop)?;
-    // For the HTML page of a report, open the data file beside it.
-    let is_page = path.extension().is_some_and(|end| end == "html");
-    let folder = if is_page {
-        path.parent()
-            .filter(|folder| *folder != Path::new(""))
-            .unwrap_or(Path::new("."))
-    } else {
-        path
-    };
-    if !folder.is_dir() {
-        return of_file(folder, games);
+    if !path.is_dir() {
+        return of_file(path, games);
     }
-    let file = folder.join("report.json");
+    let file = path.join("report.json");
     if file.exists() {
         return of_file(&file, games);
     }
-    if TrainingReport::is_in(folder) {
-        return Ok(Arc::new(TrainingReport::open(folder, games)?));
-    }
-    if let Some(file) = ["until.json", "find.json"]
-        .map(|name| folder.join(name))
-        .into_iter()
-        .find(|file| file.exists())
-    {
-        bail!(
-            "there is no page for a search of a sweep; its result is in {}",
-            file.display()
-        );
+    if TrainingReport::is_in(path) {
+        return Ok(Arc::new(TrainingReport::open(path, games)?));
     }
     bail!(
         "there is no report in {}, expected report.json (of a league or a sweep) or updates.csv (of a training run)",
-        folder.display()
+        path.display()
     )
 }
 
@@ -160,10 +138,6 @@ fn place_of(name: &str, games: usize) -> Result<usize> {
 }
 
 impl Report for TournamentReport {
-    fn page(&self) -> &'static str {
-        PAGE
-    }
-
     fn file(&self, path: &str) -> Option<Vec<u8>> {
         (path == "/report.json").then(|| self.json.clone())
     }
@@ -178,9 +152,9 @@ const GAMES_OF_POINT: &str = "/sweep_games/";
 /// Maximum number of listed games of a point.
 const LISTED_MAX: usize = 10_000;
 
-/// The report of a sweep: its own page and its games.
+/// The report of a sweep and its games.
 struct SweepReport {
-    files: [(&'static str, String); 4],
+    json: Vec<u8>,
     plan: Result<sweep::Plan, String>,
     /// The results from the table beside the report, in game order.
     rows: Result<Vec<sweep::Row>, String>,
@@ -221,8 +195,9 @@ impl SweepReport {
             ))
         };
         let digests = worst.filter_map(digest).collect();
+        let json = json!({"kind": "sweep", "report": value, "playable": plan.is_ok()});
         Ok(SweepReport {
-            files: sweep::served(value, plan.is_ok()),
+            json: json.to_string().into_bytes(),
             plan,
             rows,
             digests,
@@ -306,10 +281,6 @@ fn unpacked(path: &Path) -> Result<sweep::Plan> {
 }
 
 impl Report for SweepReport {
-    fn page(&self) -> &'static str {
-        self.files[0].0
-    }
-
     fn file(&self, path: &str) -> Option<Vec<u8>> {
         if let Some(point) = path
             .strip_prefix(GAMES_OF_POINT)
@@ -319,10 +290,7 @@ impl Report for SweepReport {
                 .games_at(point.parse().ok()?)
                 .map(|games| games.to_string().into_bytes());
         }
-        self.files
-            .iter()
-            .find(|(name, _)| *name == path)
-            .map(|(_, text)| text.clone().into_bytes())
+        (path == "/report.json").then(|| self.json.clone())
     }
 
     fn game(&self, name: &str) -> Shown {

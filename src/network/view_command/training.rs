@@ -1,7 +1,7 @@
 //! A training run's folder on the page: learning curves, evaluation results and recorded episodes.
 
 use super::games::{Game, Games, Source};
-use super::report::{PAGE, read};
+use super::report::read;
 use anyhow::{Context, Result, bail};
 use scenario::argument_for;
 use serde_json::{Value, json};
@@ -280,10 +280,6 @@ fn number(cell: &str) -> Result<Value> {
 }
 
 impl Report for TrainingReport {
-    fn page(&self) -> &'static str {
-        PAGE
-    }
-
     fn file(&self, path: &str) -> Option<Vec<u8>> {
         // If a table can no longer be read, show the error instead of the curves.
         let problem = |why: anyhow::Error| json!({"kind": "training", "problem": command_line::explain::line(&why)});

@@ -192,88 +192,85 @@ fn checked(diagnostics: &mut Diagnostics, document: &Document<Sweep>) -> Option<
 }
 
 fn check_axis(diagnostics: &mut Diagnostics, document: &Document<Sweep>, at: &str, axis: &Axis) {
-    let given: Vec<&'static str> = ["values", "range", "normal", "log_normal"]
+    let given: Vec<&str> = ["values", "range", "normal", "log_normal"]
         .into_iter()
         .filter(|key| document.has(&format!("{at}.{key}")))
         .collect();
-    let problem = problem_of_key(axis, &given)
-        .map(|message| ("key", message))
-        .or_else(|| problem_of_values(axis, given[0]))
-        .or_else(|| problem_of_distribution(axis));
+    let found = match &given[..] {
+        [] => "none".to_owned(),
+        all => all.join(" and "),
+    };
+    let key = &axis.key;
+    let problem = if !axis.is_of_files()
+        && let Err(error) = axis.setting("team", &AxisValue::Number(0.0), Path::new(""))
+    {
+        let expected = "expected sea, boat, rules, field, opponent or a longer key";
+        Some(("key", format!("key is {key:?}, {expected}: {error}")))
+    } else if given.len() != 1 {
+        let expected = "expected one of values, range, normal, log_normal";
+        Some(("key", format!("{key} has {found}, {expected}")))
+    } else if given[0] == "values" || axis.is_of_files() {
+        let message = values_problem(axis).map(|message| (given[0], message));
+        message.or_else(|| log_problem(axis))
+    } else {
+        distribution_problem(axis)
+    };
     if let Some((key, message)) = problem {
         diagnostics.note(document.at(&format!("{at}.{key}")), message);
     }
 }
 
-fn problem_of_key(axis: &Axis, given: &[&str]) -> Option<String> {
-    let key = &axis.key;
-    if !axis.is_of_files()
-        && let Err(error) = axis.setting("team", &AxisValue::Number(0.0), Path::new(""))
-    {
-        return Some(format!(
-            "key is {key:?}, expected sea, boat, rules, field, opponent or a longer key: {error}"
-        ));
-    }
-    let found = match given {
-        [_] => return None,
-        [] => "none".to_owned(),
-        several => several.join(" and "),
-    };
-    Some(format!(
-        "{key} has {found}, expected one of values, range, normal, log_normal"
-    ))
-}
-
-fn problem_of_values(axis: &Axis, given: &'static str) -> Option<(&'static str, String)> {
+/// What is wrong with the listed values of an axis.
+fn values_problem(axis: &Axis) -> Option<String> {
     let Axis { key, values, .. } = axis;
-    let files = "files as values, as in values = [\"../seas/calm.toml\"]";
     let kind = |value: &AxisValue| std::mem::discriminant(value);
     let is_text = |value: &AxisValue| matches!(value, AxisValue::Text(_));
+    let files = "files as values, as in values = [\"../seas/calm.toml\"]";
     if axis.is_of_files() && !values.iter().all(is_text) {
-        let message = format!("values of {key} are not files, expected {files}");
-        Some(("values", message))
+        Some(format!("values of {key} are not files, expected {files}"))
     } else if axis.is_of_files() && values.is_empty() {
-        Some((given, format!("{key} has no values, expected {files}")))
-    } else if values.is_empty() && given == "values" {
-        let message = format!("{key} has no values, expected at least one");
-        Some(("values", message))
+        Some(format!("{key} has no values, expected {files}"))
+    } else if values.is_empty() {
+        Some(format!("{key} has no values, expected at least one"))
     } else if values
         .windows(2)
         .any(|pair| kind(&pair[0]) != kind(&pair[1]))
     {
-        let message =
-            format!("values of {key} have different types, expected all numbers or all texts");
-        Some(("values", message))
+        Some(format!(
+            "values of {key} have different types, expected all numbers or all texts"
+        ))
     } else if (1..values.len()).any(|k| values[..k].contains(&values[k])) {
-        let message = format!("values of {key} contains a duplicate, expected unique values");
-        Some(("values", message))
+        Some(format!(
+            "values of {key} contains a duplicate, expected unique values"
+        ))
     } else {
         None
     }
 }
 
-fn problem_of_distribution(axis: &Axis) -> Option<(&'static str, String)> {
+fn log_problem(axis: &Axis) -> Option<(&'static str, String)> {
+    let message = "log is given without range, which it requires";
+    (axis.log && axis.range.is_none()).then(|| ("log", message.to_owned()))
+}
+
+/// What is wrong with the range or the distribution of an axis, with its key.
+fn distribution_problem(axis: &Axis) -> Option<(&'static str, String)> {
     if let Some([low, high]) = axis.range.filter(|[low, high]| low >= high) {
         let message = format!("range is [{low}, {high}], expected the lower number first");
         Some(("range", message))
     } else if let Some([low, _]) = axis.range.filter(|[low, _]| axis.log && *low <= 0.0) {
         let message = format!("range begins at {low}, expected more than 0 with log");
         Some(("range", message))
-    } else if axis.log && axis.range.is_none() {
-        let message = "log is given without range, which it requires".to_owned();
-        Some(("log", message))
+    } else if let Some(problem) = log_problem(axis) {
+        Some(problem)
     } else if let Some([_, sigma]) = axis.normal.filter(|[_, sigma]| *sigma <= 0.0) {
         let message = format!("normal has a deviation of {sigma}, expected more than 0");
         Some(("normal", message))
     } else {
-        let is_bad = |[median, sigma]: &[f64; 2]| {
+        let pair = axis.log_normal.filter(|[median, sigma]| {
             *median <= 0.0 || !(0.0..=10.0).contains(sigma) || *sigma == 0.0
-        };
-        axis.log_normal.filter(is_bad).map(|pair| {
-            let message = format!(
-                "log_normal is {pair:?}, expected a median above 0 and a deviation of at most 10"
-            );
-            ("log_normal", message)
-        })
+        })?;
+        let expected = "expected a median above 0 and a deviation of at most 10";
+        Some(("log_normal", format!("log_normal is {pair:?}, {expected}")))
     }
 }

@@ -7,12 +7,8 @@
 //! on the number of threads, on which machine played which games, or on interruptions.
 
 mod axis;
-mod condition;
 mod effects;
 mod file;
-mod find;
-mod html;
-mod journal;
 mod metric;
 mod plan;
 mod play;
@@ -20,20 +16,14 @@ mod report;
 mod study;
 mod table;
 mod text;
-mod until;
 
 pub use axis::{Axis, AxisValue};
-pub use condition::{Condition, ConditionError};
 pub use effects::{Effect, Interaction, Level};
 pub use file::{Design, Sweep};
-pub use find::{Found, find};
-pub use html::served;
-pub use journal::{Journal, SearchError};
 pub use metric::{METRICS, Metric, Metrics};
 pub use plan::{Job, Plan, Point};
 pub use play::{BoatRow, Played, play};
 pub use report::{Difference, EntryAtPoint, Failure, PointReport, Report, Worst};
 pub use study::{GAMES, PACKED_PLAN, Study, StudyError, lines, rows_in};
 pub use table::Row;
-pub use text::{found_text, text};
-pub use until::{BreakingPoint, Tried, breaking_point};
+pub use text::text;

@@ -23,8 +23,6 @@ pub struct Plan {
     seeds: u64,
     points: Vec<Point>,
     files: Arc<Files>,
-    /// The number of these files required for its own points.
-    files_needed: usize,
 }
 
 /// A point of the space: a value for each axis.
@@ -51,7 +49,7 @@ impl Plan {
     /// # Errors
     /// All problems at any point, and a grid of more than 100,000 points.
     pub fn new(sweep: &Sweep) -> Result<Plan, Problems> {
-        let mut plan = Plan::unchecked(sweep, Arc::default())?;
+        let plan = Plan::unchecked(sweep, Arc::default())?;
         let mut problems = vec![];
         // At other points, entries and sides differ only in strategies.
         let of_points = (0..plan.points.len()).map(|point| (point, 0));
@@ -63,7 +61,6 @@ impl Plan {
         problems.extend(too_many_games(plan.games(), &sweep.path));
         problems.sort();
         problems.dedup();
-        plan.files_needed = plan.files.list().len();
         if problems.is_empty() {
             Ok(plan)
         } else {
@@ -75,40 +72,13 @@ impl Plan {
     fn unchecked(sweep: &Sweep, files: Arc<Files>) -> Result<Plan, Problems> {
         let teams = teams_of(&sweep.game, &files)?;
         let points = points(sweep)?;
-        let files_needed = files.list().len();
         Ok(Plan {
             sweep: sweep.clone(),
             teams,
             seeds: u64::from(sweep.games).div_ceil(2),
             points,
             files,
-            files_needed,
         })
-    }
-
-    /// The same sweep at other points, with `seeds` seeds at each, starting at `first_seed`.
-    pub(crate) fn at(&self, points: Vec<Point>, (first_seed, seeds): (u64, u64)) -> Plan {
-        Plan {
-            sweep: Sweep {
-                seed: first_seed,
-                ..self.sweep.clone()
-            },
-            points,
-            seeds,
-            ..self.clone()
-        }
-    }
-
-    /// The same sweep with one entry alone.
-    pub(crate) fn of_entry(&self, entry: usize) -> Plan {
-        let entries = vec![self.sweep.entries[entry].clone()];
-        Plan {
-            sweep: Sweep {
-                entries,
-                ..self.sweep.clone()
-            },
-            ..self.clone()
-        }
     }
 
     /// The sweep.
@@ -207,13 +177,6 @@ impl Plan {
         format!("{command} --seed {}", job.seed)
     }
 
-    /// The required files, in the order in which they are requested.
-    fn files(&self) -> Vec<(PathBuf, Arc<[u8]>)> {
-        let mut files = self.files.list();
-        files.truncate(self.files_needed);
-        files
-    }
-
     /// Identifies the plan: a study is resumed only with the same digest. It depends on the
     /// contents of files, not on their location: moved files with the same references to each other
     /// give the same digest.
@@ -236,12 +199,12 @@ impl Plan {
             axes: axes.iter().map(axis).collect(),
             ..self.sweep.clone()
         };
-        digest_of(&format!("{sweep:?}"), &self.files())
+        digest_of(&format!("{sweep:?}"), &self.files.list())
     }
 
     /// The plan with all required files, for a process on another machine.
     pub fn pack(&self) -> Packed {
-        Packed::new(&self.sweep, self.files(), self.digest())
+        Packed::new(&self.sweep, self.files.list(), self.digest())
     }
 
     /// A plan packed elsewhere. Its points are not checked again.

@@ -76,18 +76,6 @@ pub fn play<E>(
     play_in_order(to.saturating_sub(from), (threads, stop), one, take)
 }
 
-/// The same for any games of a plan, in the given order.
-pub(crate) fn play_jobs<E>(
-    plan: &Plan,
-    order: &[Job],
-    threads: NonZeroUsize,
-    stop: &AtomicBool,
-    take: impl FnMut(Played) -> Result<(), E>,
-) -> Result<(), E> {
-    let one = |loaded: &mut Loaded, i: usize, stop: Stop<'_>| one(plan, order[i], loaded, stop);
-    play_in_order(order.len(), (threads, stop), one, take)
-}
-
 fn one(plan: &Plan, job: Job, loaded: &mut Loaded, stop: Stop<'_>) -> Played {
     let scenario = match loaded.scenario(plan, &job) {
         Ok(scenario) => scenario

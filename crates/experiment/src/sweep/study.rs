@@ -5,7 +5,6 @@
 //! whose lines are complete and match their checksums. Lines torn off when the machine stopped, or
 //! changed since, are replaced by playing their games again.
 
-use super::html;
 use super::plan::Plan;
 use super::play::{BoatRow, Played};
 use super::report::Report;
@@ -216,7 +215,7 @@ impl Study {
         Ok(())
     }
 
-    /// Writes the report on all games so far: `report.json`, `report.html` and `games.parquet`.
+    /// Writes the report on all games so far: `report.json` and `games.parquet`.
     ///
     /// # Errors
     /// [`StudyError`] if a file cannot be read or written.
@@ -228,10 +227,6 @@ impl Study {
             what: "report.json",
             why: error.to_string(),
         })? + "\n";
-        write(
-            &self.folder.join("report.html"),
-            &html::page(&report.sweep, &json),
-        )?;
         write(&self.folder.join("report.json"), &json)?;
         let path = self.folder.join("games.parquet");
         let table = table::parquet(plan, &rows);
@@ -353,7 +348,7 @@ fn write_plan(folder: &Path, plan: &Plan) -> Result<(), StudyError> {
 
 /// The text of a file; empty if there is none.
 // Anything else in its place is an error: writing to a named pipe would wait for a reader.
-pub(super) fn text_if_any(path: &Path) -> Result<String, StudyError> {
+fn text_if_any(path: &Path) -> Result<String, StudyError> {
     match text(path) {
         Err(StudyError::Io { error, .. }) if error.kind() == std::io::ErrorKind::NotFound => {
             Ok(String::new())
@@ -371,7 +366,7 @@ fn write(path: &Path, text: &str) -> Result<(), StudyError> {
     output_file::write(path, text).map_err(io("write", path))
 }
 
-pub(crate) fn io(doing: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> StudyError {
+fn io(doing: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> StudyError {
     let path = path.to_owned();
     move |error| StudyError::Io { doing, path, error }
 }

@@ -156,9 +156,7 @@ pub(super) fn csv_rows<'a>(
 }
 
 /// The cells of a game's measurements; empty if it could not start.
-pub(super) fn metrics_cells(
-    result: &Result<Metrics, String>,
-) -> impl Iterator<Item = String> + use<> {
+fn metrics_cells(result: &Result<Metrics, String>) -> impl Iterator<Item = String> + use<> {
     let numbers = result
         .as_ref()
         .map_or([f64::NAN; METRICS.len()], |metrics| metrics.0);
@@ -175,7 +173,7 @@ pub(super) fn cell_of(number: f64) -> String {
 }
 
 /// The measurements that the first cells contain as [`metrics_cells`] wrote them.
-pub(super) fn metrics_in<'a>(cells: impl Iterator<Item = &'a str>) -> Option<Metrics> {
+fn metrics_in<'a>(cells: impl Iterator<Item = &'a str>) -> Option<Metrics> {
     let numbers: Option<Vec<f64>> = cells.take(METRICS.len()).map(number_of).collect();
     Some(Metrics(numbers?.try_into().ok()?))
 }

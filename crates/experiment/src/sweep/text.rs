@@ -1,11 +1,9 @@
 //! The report for the terminal.
 
 use super::effects::{Effect, Interaction};
-use super::find::Found;
 use super::metric::Metric;
 use super::report::{PointReport, Report};
 use crate::estimate::{Estimate, OBSERVATIONS_MIN};
-use std::fmt::Write as _;
 
 /// The columns shown for each level: the metric, its heading, its factor, and decimal places.
 const COLUMNS: [(&str, &str, f64, usize); 5] = [
@@ -139,35 +137,4 @@ fn interactions(all: &[Interaction], line: &mut impl FnMut(String)) {
             "    both low {low:.2}, second high {second:.2}, first high {first:.2}, both high {both:.2}"
         ));
     }
-}
-
-/// The result of a search for rare failures, as text.
-pub fn found_text(found: &Found) -> String {
-    let Found {
-        entry,
-        condition,
-        games,
-        failures,
-        rate,
-        ..
-    } = found;
-    let interval = rate
-        .low
-        .zip(rate.high)
-        .map(|(low, high)| format!(" ({low:.4} to {high:.4})"));
-    let interval = interval.unwrap_or_default();
-    let mut text = format!(
-        "{entry}: {condition} in {failures} of {games} games, {:.4}{interval} of all\n",
-        rate.mean
-    );
-    for named in found.named.iter().take(SHOWN) {
-        let _ = writeln!(
-            text,
-            "  {:.3} at {}\n    {}",
-            named.value,
-            named.values.join(", "),
-            named.command
-        );
-    }
-    text
 }

@@ -1,6 +1,6 @@
 //! One-line inputs from users and nodes: link addresses, game names, tokens, node keys.
 
-use super::{Target, check_shown, texts};
+use super::{Target, check_shown, mutations};
 use bus::Token;
 use gateway::link::LinkAddress;
 use messages::topic::{self, GameName};
@@ -8,7 +8,7 @@ use messages::topic::{self, GameName};
 pub(super) const TARGET: Target = Target {
     name: "address",
     seeds,
-    change: texts,
+    change: mutations,
     check,
     allocated_max: (100_000, 200),
 };

@@ -1,13 +1,13 @@
 //! The conversation between a sonde and its clients: it gives the same measurements however it is
 //! split, and every number has a name.
 
-use super::{Target, in_pieces, texts};
+use super::{Target, in_pieces, mutations};
 use gateway::payload::exo2::{Conversation, Measurement, Sonde};
 
 pub(super) const TARGET: Target = Target {
     name: "exo2",
     seeds,
-    change: texts,
+    change: mutations,
     check,
     allocated_max: (1 << 20, 2000),
 };

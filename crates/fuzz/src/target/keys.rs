@@ -1,7 +1,7 @@
 //! Keys of a node: the authority's certificate, the node's certificate and its key, each decoded
 //! from PEM and preceded by its length. Real ones are created for every run.
 
-use super::{Target, binaries, check_shown};
+use super::{Target, check_shown, mutations};
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use bus::keys::{Bundle, Identity, make};
@@ -12,7 +12,7 @@ use tempfile::TempDir;
 pub(super) const TARGET: Target = Target {
     name: "keys",
     seeds,
-    change: binaries,
+    change: mutations,
     check,
     allocated_max: (4 << 20, 500),
 };

@@ -1,6 +1,6 @@
 //! MAVLink frames from boats and ground stations.
 
-use super::{Target, binaries, in_pieces};
+use super::{Target, in_pieces, mutations};
 use gateway::config::{BoatProtocol, Gateway};
 use gateway::emulator::{ArduPilot, FrontSeat};
 use gateway::mavlink::{Counts, FRAME_MAX, Framer, Received, Writer};
@@ -10,7 +10,7 @@ use primitives::SimTime;
 pub(super) const TARGET: Target = Target {
     name: "mavlink",
     seeds,
-    change: binaries,
+    change: mutations,
     check,
     allocated_max: (1 << 24, 20_000),
 };

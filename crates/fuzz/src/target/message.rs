@@ -1,6 +1,6 @@
 //! Messages of every tick (CDR): their decoding, and their effect on sim, minds and observers.
 
-use super::{Target, binaries, check_shown};
+use super::{Target, check_shown, mutations};
 use crate::played::{self, Played, mixed, played};
 use agent::MindRunner;
 use agent::node::team_inbox::TeamInbox;
@@ -24,7 +24,7 @@ use std::cell::RefCell;
 pub(super) const TARGET: Target = Target {
     name: "message",
     seeds,
-    change: binaries,
+    change: mutations,
     check,
     allocated_max: (32 << 20, 500),
 };

@@ -15,6 +15,7 @@ mod scenario;
 mod sheet;
 
 use crate::Dice;
+use crate::change::change;
 use std::fmt::{Debug, Display};
 
 /// Generates a new input from real ones.
@@ -58,13 +59,11 @@ pub fn named(name: &str) -> Option<Target> {
     TARGETS.into_iter().find(|target| target.name == name)
 }
 
-fn texts(seeds: Vec<Vec<u8>>) -> Change {
-    let pieces = crate::change::text::Pieces::of(&seeds);
-    Box::new(move |dice| pieces.change(&seeds, dice))
-}
-
-fn binaries(seeds: Vec<Vec<u8>>) -> Change {
-    Box::new(move |dice| crate::change::binary::change(&seeds, dice))
+fn mutations(seeds: Vec<Vec<u8>>) -> Change {
+    Box::new(move |dice| {
+        let seed = &seeds[dice.roll(seeds.len())];
+        change(seed, &seeds, dice)
+    })
 }
 
 /// What `read` makes of bytes in pieces of any size, which must be the same as at once.

@@ -1,7 +1,7 @@
 //! Trained policies (ONNX): a file is rejected, or its network responds to any input, and always in
 //! the same way.
 
-use super::{Target, binaries, check_shown};
+use super::{Target, check_shown, mutations};
 use onnx::{Head, Layer, Network, Perceptron};
 use scenario::action::ActionSpace;
 use scenario::observation::ObservationSpace;
@@ -13,7 +13,7 @@ use std::path::Path;
 pub(super) const TARGET: Target = Target {
     name: "model",
     seeds,
-    change: binaries,
+    change: mutations,
     check,
     allocated_max: (256 << 20, 1000),
 };

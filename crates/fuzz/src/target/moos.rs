@@ -1,14 +1,14 @@
 //! Packets of MOOS clients and datagrams of pShare: how a stream is split does not matter, what was
 //! read can be written and read again, and a database survives it.
 
-use super::{Target, binaries, in_pieces};
+use super::{Target, in_pieces, mutations};
 use moos::database::Database;
 use moos::wire::{self, Framer, Kind, Malformed, Msg};
 
 pub(super) const TARGET: Target = Target {
     name: "moos",
     seeds,
-    change: binaries,
+    change: mutations,
     check,
     allocated_max: (1 << 20, 2000),
 };

@@ -1,6 +1,6 @@
 //! NMEA sentences from boats.
 
-use super::{Target, in_pieces, texts};
+use super::{Target, in_pieces, mutations};
 use gateway::nmea::{ACCEPTED_MAX, Counts, EMITTED_MAX, Framer, Sentence, checksum};
 
 /// Sentence addresses that the codec reads; random fields would rarely match one.
@@ -12,7 +12,7 @@ const ADDRESSES: [&str; 16] = [
 pub(super) const TARGET: Target = Target {
     name: "nmea",
     seeds,
-    change: texts,
+    change: mutations,
     check,
     allocated_max: (1 << 20, 2000),
 };

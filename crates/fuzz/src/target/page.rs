@@ -1,7 +1,7 @@
 //! Browser messages to a page (JSON over WebSocket), showing a recording or a game. Each line is a
 //! message: `~` starts a pong, `!` a binary message.
 
-use super::{Target, texts};
+use super::{Target, mutations};
 use crate::played::{self, played};
 use bus::{Place, clock};
 use recording::Recording;
@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 pub(super) const TARGET: Target = Target {
     name: "page",
     seeds,
-    change: texts,
+    change: mutations,
     check,
     allocated_max: (16 << 20, 5000),
 };

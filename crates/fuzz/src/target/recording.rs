@@ -3,8 +3,7 @@
 
 use super::{Change, Target, check_shown, page};
 use crate::Dice;
-use crate::change::binary;
-use crate::change::text::Pieces;
+use crate::change::change as mutated;
 use crate::played::{self, mixed, played};
 use analysis::table::{self, TableError};
 use analysis::{Comparison, GameSeries, Summary, alog};
@@ -225,21 +224,20 @@ fn change(seeds: Vec<Vec<u8>>) -> Change {
         .filter_map(facts_of)
         .flat_map(|(_, facts)| facts.into_values())
         .collect();
-    let pieces = Pieces::of(&facts);
     Box::new(move |dice| {
         let which = dice.roll(files.len());
         if dice.roll(4) == 0 {
-            return binary::change(&seeds[which..=which], dice);
+            return mutated(&seeds[which], &seeds, dice);
         }
         let mut file = files[which].clone();
         for _ in 0..=dice.roll(3) {
-            change_record(&mut file, &pools[which], &pieces, dice);
+            change_record(&mut file, &pools[which], &facts, dice);
         }
         written(&file)
     })
 }
 
-fn change_record(file: &mut Vec<Record>, pool: &[Vec<u8>], pieces: &Pieces, dice: &mut Dice) {
+fn change_record(file: &mut Vec<Record>, pool: &[Vec<u8>], all_facts: &[Vec<u8>], dice: &mut Dice) {
     if file.is_empty() {
         return;
     }
@@ -256,7 +254,10 @@ fn change_record(file: &mut Vec<Record>, pool: &[Vec<u8>], pieces: &Pieces, dice
             let other = dice.roll(file.len());
             file.swap(at, other);
         }
-        3 => file[at].1 = binary::change(&[file[at].1.clone(), dice.one_of(pool).clone()], dice),
+        3 => {
+            let body = &pool[dice.roll(pool.len())];
+            file[at].1 = mutated(body, pool, dice);
+        }
         _ => match facts_of(&file[at]) {
             Some((name, mut facts)) if !facts.is_empty() => {
                 let key = facts
@@ -264,11 +265,11 @@ fn change_record(file: &mut Vec<Record>, pool: &[Vec<u8>], pieces: &Pieces, dice
                     .nth(dice.roll(facts.len()))
                     .cloned()
                     .unwrap_or_default();
-                let changed = pieces.change(&[facts[&key].clone()], dice);
+                let changed = mutated(&facts[&key], all_facts, dice);
                 facts.insert(key, changed);
                 file[at].1 = metadata(&name, &facts);
             }
-            _ => file[at].1 = binary::change(&[file[at].1.clone()], dice),
+            _ => file[at].1 = mutated(&file[at].1, pool, dice),
         },
     }
 }

@@ -1,7 +1,7 @@
 //! The control plane (JSON): requests with their proofs, replies, states, and the registry of this
 //! machine.
 
-use super::{Target, check_shown, texts};
+use super::{Target, check_shown, mutations};
 use crate::played::{self, mixed, played};
 use bus::token::{self, Checked, Guard, Token};
 use bus::{Entry, GATEWAY_PORT_KEY, GatewayEntry};
@@ -24,7 +24,7 @@ use std::sync::LazyLock;
 pub(super) const TARGET: Target = Target {
     name: "request",
     seeds,
-    change: texts,
+    change: mutations,
     check,
     allocated_max: (1 << 20, 5000),
 };

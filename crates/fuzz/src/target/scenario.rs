@@ -1,7 +1,7 @@
 //! Scenario files of every kind (TOML): a line with the folder of the kind, then the file. Bases
 //! and references are files in the tree.
 
-use super::{Target, check_shown, texts};
+use super::{Target, check_shown, mutations};
 use crate::played::scenarios;
 use experiment::sweep::Sweep;
 use experiment::tournament::Tournament;
@@ -17,7 +17,7 @@ use tempfile::TempDir;
 pub(super) const TARGET: Target = Target {
     name: "scenario",
     seeds,
-    change: texts,
+    change: mutations,
     check,
     allocated_max: (1 << 30, 10_000),
 };

@@ -1,6 +1,6 @@
 //! Tables of numbers from trials (CSV): commands to replay, and logs to fit.
 
-use super::{Target, check_shown, texts};
+use super::{Target, check_shown, mutations};
 use crate::played::scenarios;
 use primitives::SimTime;
 use scenario::boat::Boat;
@@ -12,7 +12,7 @@ use trial::{Engine, LONGEST_S, Mistake, Orders, Sheet};
 pub(super) const TARGET: Target = Target {
     name: "sheet",
     seeds,
-    change: texts,
+    change: mutations,
     check,
     allocated_max: (1 << 20, 1000),
 };

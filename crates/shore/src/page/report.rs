@@ -6,9 +6,6 @@ use tokio::sync::watch;
 
 /// A summary of many games: a tournament, a sweep or a training run.
 pub trait Report: Send + Sync {
-    /// The path of its page.
-    fn page(&self) -> &'static str;
-
     /// The report's own file at this path, such as `/report.json`, if any. May take some time.
     fn file(&self, path: &str) -> Option<Vec<u8>>;
 

@@ -203,12 +203,9 @@ async fn file(State(app): State<AppState>, method: Method, uri: Uri) -> Response
         return response;
     }
     let path = uri.path().to_owned();
-    if let Some(report) = app
-        .report
-        .get()
-        .filter(|_| path == "/" && value(uri.query(), "game").is_none())
-    {
-        return asset::elsewhere(report.page());
+    let is_root = path == "/" && value(uri.query(), "game").is_none();
+    if is_root && app.report.get().is_some() {
+        return asset::elsewhere("/report.html");
     }
     match app
         .of_report(move |report| report.file(&path))

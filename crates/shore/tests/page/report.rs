@@ -13,10 +13,6 @@ struct OneGame {
 }
 
 impl Report for OneGame {
-    fn page(&self) -> &'static str {
-        "/report.html"
-    }
-
     fn file(&self, path: &str) -> Option<Vec<u8>> {
         (path == "/report.json").then(|| b"{\"kind\":\"x\"}".to_vec())
     }

@@ -1,17 +1,11 @@
-//! The field in characters: boats as arrows, flags, the scrimmage line.
+//! The state of a game as text: score, boats and events.
 
 use super::Rates;
 use crate::style;
 use messages::topic::GameName;
 use messages::{Frame, GameInfo, VehicleTruth};
-use primitives::Ned;
 use primitives::angle::compass_deg_from_rad;
 use scenario::Scenario;
-
-/// Columns and rows of the chart. A character is twice as high as wide, a field twice as wide as
-/// deep.
-const COLUMNS: usize = 78;
-const ROWS: usize = 20;
 
 /// One picture of the game.
 pub(super) fn page(
@@ -32,14 +26,6 @@ pub(super) fn page(
         rates.frames_hz
     );
     text += &format!("{}\n", score(scenario, frame));
-    let mut cells = vec![vec![" ".to_owned(); COLUMNS]; ROWS];
-    draw_field(scenario, frame, &mut cells);
-    draw_boats(scenario, frame, &mut cells);
-    text += &format!("+{}+\n", "-".repeat(COLUMNS));
-    cells
-        .iter()
-        .for_each(|row| text += &format!("|{}|\n", row.concat()));
-    text += &format!("+{}+\n", "-".repeat(COLUMNS));
     boats(scenario, frame).for_each(|line| text += &format!("{line}\n"));
     events.iter().for_each(|line| text += &format!("{line}\n"));
     text
@@ -68,48 +54,6 @@ fn score(scenario: &Scenario, frame: &Frame) -> String {
         .map(|(team, score)| format!("{} {score}", team.name))
         .collect::<Vec<_>>()
         .join("  ")
-}
-
-/// The cell of a position; positions off the field are shown at its edge. The field's far side is
-/// at the top.
-fn cell(scenario: &Scenario, at: Ned) -> (usize, usize) {
-    let plan = &scenario.field.plan;
-    let (along_m, across_m) = scenario.field.along_across(at);
-    let index =
-        |share: f64, count: usize| (share * count as f64).clamp(0.0, count as f64 - 1.0) as usize;
-    (
-        ROWS - 1 - index(across_m / plan.depth_m, ROWS),
-        index(along_m / plan.width_m, COLUMNS),
-    )
-}
-
-fn paint(cells: &mut [Vec<String>], (row, column): (usize, usize), team: usize, letter: &str) {
-    cells[row][column] = style::team(team, letter);
-}
-
-fn draw_field(scenario: &Scenario, frame: &Frame, cells: &mut [Vec<String>]) {
-    for row in cells.iter_mut() {
-        ":".clone_into(&mut row[COLUMNS / 2]);
-    }
-    for (flag, view) in scenario.field.flags.iter().zip(&frame.flags) {
-        let letter = if view.carrier < 0 { "F" } else { "f" };
-        paint(cells, cell(scenario, flag.home), flag.team.index(), letter);
-    }
-}
-
-fn draw_boats(scenario: &Scenario, frame: &Frame, cells: &mut [Vec<String>]) {
-    const ARROWS: [&str; 8] = ["↑", "↗", "→", "↘", "↓", "↙", "←", "↖"];
-    for (vehicle, boat) in scenario.vehicles.iter().zip(&frame.vehicles) {
-        // The chart shows the field level, so headings are rotated with it.
-        let heading_deg = boat.nav.psi_rad.to_degrees() + 90.0 - scenario.field.plan.along_deg;
-        let eighth = (compass_deg_from_rad(heading_deg.to_radians()) / 45.0).round() as usize % 8;
-        paint(
-            cells,
-            cell(scenario, boat.nav.at()),
-            vehicle.team.index(),
-            ARROWS[eighth],
-        );
-    }
 }
 
 /// One line for each boat, for small fleets.

@@ -1,257 +1,19 @@
-<!doctype html>
-<!-- The page of a sweep. It is self-contained: the report is inserted below. Only the page that `squall view` serves fetches anything. -->
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:">
-<link rel="icon" href="data:,">
-<title></title>
-<style>
-/* The colours are those of the live page. */
-:root {
-  color-scheme: light dark;
-  --paper: #fbfaf5;
-  --raised: #ffffff;
-  --ink: #12222d;
-  --faint: #4c5d69;
-  --line: #c9d2d6;
-  --grid: #dfe6e9;
-  --edge: #3f5664;
-  --accent: #7a2f8f;
-  --danger: #b3140f;
-  --on-danger: #ffffff;
-  --good: #0b6b45;
-  --warn: #8a4b00;
-  --entry-0: #0072b2;
-  --entry-1: #c24e00;
-  --entry-2: #007a5a;
-  --entry-3: #a83a79;
-  /* matplotlib's viridis at every eighth: evenly spaced to the eye whatever its colour vision. */
-  --heat: #440154, #472c7a, #3b518b, #2c718e, #21908d, #27ad81, #5cc863, #aadc32, #fde725;
-  --shadow: 0 2px 10px rgb(10 30 45 / 22%);
-  font: 15px/1.4 system-ui, -apple-system, "Segoe UI", Roboto, sans-serif;
-}
-@media screen {
-  :root[data-theme="dark"] {
-    --paper: #0f1a22;
-    --raised: #192833;
-    --ink: #eef4f7;
-    --faint: #a5b6c1;
-    --line: #2f4350;
-    --grid: #263945;
-    --edge: #a9c0cd;
-    --accent: #e3a6f5;
-    --danger: #d8322b;
-    --good: #5fd3a0;
-    --warn: #f2b155;
-    --entry-0: #4fb2ee;
-    --entry-1: #ff8a3d;
-    --entry-2: #35c79a;
-    --entry-3: #ef8fc4;
-    --shadow: 0 2px 12px rgb(0 0 0 / 60%);
-  }
-}
-* { box-sizing: border-box; }
-[hidden] { display: none !important; }
-html { scroll-padding-top: 130px; }
-body { margin: 0; background: var(--paper); color: var(--ink); overflow-wrap: break-word; }
-.entry-0 { --entry: var(--entry-0); }
-.entry-1 { --entry: var(--entry-1); }
-.entry-2 { --entry: var(--entry-2); }
-.entry-3 { --entry: var(--entry-3); }
-header, section, #bar > div { max-width: 1800px; margin: 0 auto; padding: 0 24px; }
-h1 { margin: 0; font-size: 26px; line-height: 1.2; overflow-wrap: anywhere; }
-#head { display: flex; align-items: center; gap: 12px; padding-top: 16px; }
-#head #dark { margin-left: auto; }
-button[aria-pressed="true"]#dark { background: var(--ink); color: var(--paper); border-color: var(--ink); }
-h2 { margin: 34px 0 2px; font-size: 20px; }
-h3 { margin: 0 0 4px; font-size: 15px; }
-p { margin: 4px 0 10px; max-width: 90ch; }
-.faint { color: var(--faint); }
-.hidden-text { position: absolute; width: 1px; height: 1px; overflow: hidden; clip-path: inset(50%); white-space: nowrap; }
-.chip { display: inline-block; padding: 2px 9px; border: 1px solid currentcolor; border-radius: 99px; font-size: 13px; vertical-align: middle; }
-.chip.good { color: var(--good); }
-.chip.warn { color: var(--warn); font-weight: 600; }
-.chip.bad { color: var(--on-danger); background: var(--danger); border-color: var(--danger); font-weight: 700; }
-#chips { display: flex; flex-wrap: wrap; gap: 6px; margin: 8px 0; }
-#facts { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(330px, 100%), 1fr)); gap: 4px 28px; margin: 10px 0 14px; }
-#facts div { display: grid; grid-template-columns: 5.5em minmax(0, 1fr); gap: 8px; }
-#facts .axes { grid-column: 1 / -1; }
-#facts .axes dd { display: flex; flex-wrap: wrap; gap: 2px 26px; }
-#facts strong { font-weight: 600; }
-#facts dt { color: var(--faint); }
-#facts dd { margin: 0; min-width: 0; overflow-wrap: anywhere; }
-button, select {
-  min-height: 40px;
-  min-width: 44px;
-  padding: 0 12px;
-  border: 1px solid var(--line);
-  border-radius: 8px;
-  background: var(--raised);
-  color: var(--ink);
-  font: inherit;
-  cursor: pointer;
-  touch-action: manipulation;
-}
-select { max-width: 100%; }
-button:hover:not(:disabled), select:hover { border-color: var(--edge); }
-button:disabled { color: var(--faint); background: transparent; border-style: dashed; cursor: not-allowed; }
-:focus-visible { outline: 3px solid var(--accent); outline-offset: 2px; }
+// The report of a sweep: curves, heat maps, effects, differences and interactions of its axes, its points, and games, which can be watched.
 
-/* What all charts follow */
-#bar { position: sticky; top: 0; z-index: 20; background: var(--paper); border: solid var(--line); border-width: 1px 0; }
-#bar > div { display: flex; flex-wrap: wrap; align-items: center; gap: 6px 20px; padding-top: 6px; padding-bottom: 6px; }
-#bar label { display: flex; align-items: center; gap: 8px; min-width: 0; font-weight: 600; }
-#metric { min-width: 0; }
-#about-metric { flex: 1 1 240px; max-width: none; margin: 0; color: var(--faint); }
-#legend { display: flex; flex-wrap: wrap; gap: 4px 6px; max-height: 92px; overflow: auto; padding: 3px; }
-#legend button, #legend span.one { display: inline-flex; align-items: center; gap: 7px; min-height: 36px; padding: 0 10px; font-size: 14px; }
-#legend button[aria-pressed="false"] { color: var(--faint); background: transparent; border-style: dashed; text-decoration: line-through; }
-#legend svg { flex: none; }
+import { addressOfGame, keepAddress } from './address.js';
+import { commandOf } from './command.js';
+import { ticksOf } from './diagram.js';
+import { palette } from './palette.js';
+import { stem } from './words.js';
 
-/* Charts */
-.charts { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(430px, 100%), 1fr)); gap: 16px; }
-.card { position: relative; min-width: 0; margin: 0; padding: 12px 14px; border: 1px solid var(--line); border-radius: 10px; background: var(--raised); }
-.charts:not(.wide) > .card { max-width: 900px; }
-.card h3 { overflow-wrap: anywhere; }
-.about-axis { margin: 0 0 6px; font-size: 13px; }
-.about-axis code { font-size: 12px; }
-.chart svg { display: block; width: 100%; height: auto; border-radius: 6px; font-size: 12.5px; }
-.chart text { fill: var(--faint); }
-.chart .gridline { stroke: var(--grid); }
-.chart .frame { stroke: var(--edge); fill: none; }
-.chart .line { fill: none; stroke: var(--entry); stroke-width: 2.2; stroke-linejoin: round; }
-.chart .band { fill: var(--entry); fill-opacity: 0.15; stroke: var(--entry); stroke-opacity: 0.4; }
-.chart .whisker { stroke: var(--entry); stroke-opacity: 0.6; stroke-width: 2; }
-.mark { fill: var(--entry); stroke: var(--raised); stroke-width: 1; }
-.sample { stroke: var(--entry); stroke-width: 2.4; fill: none; }
-.chart .guide { stroke: var(--edge); stroke-dasharray: 3 3; }
-.chart .none { fill: var(--faint); font-size: 14px; text-anchor: middle; }
-.values { position: absolute; z-index: 5; max-width: calc(100% - 16px); padding: 8px 11px; border: 1px solid var(--edge); border-radius: 8px; background: var(--raised); box-shadow: var(--shadow); font-size: 13.5px; pointer-events: none; font-variant-numeric: tabular-nums; }
-.values table td { padding: 1px 8px 1px 0; }
-.values td:last-child { padding-right: 0; }
-.values svg { display: block; }
-details { margin-top: 8px; font-size: 14px; }
-summary { cursor: pointer; padding: 6px 0; color: var(--faint); width: fit-content; border-radius: 4px; }
-
-/* Tables */
-.scroll { overflow-x: auto; overscroll-behavior-x: contain; border-radius: 4px; }
-table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
-.list th, .list td { padding: 5px 12px 5px 8px; border-bottom: 1px solid var(--line); text-align: left; vertical-align: middle; }
-.list thead th { border-bottom: 2px solid var(--line); vertical-align: bottom; font-weight: 600; }
-.list th.number, .list td.number { text-align: right; }
-.list td.estimate { min-width: 9.5em; text-align: right; white-space: nowrap; }
-.list td.estimate small, .list td.estimate .sure { display: block; }
-small { font-size: 13px; color: var(--faint); }
-.watch { display: inline-flex; align-items: center; flex: none; min-height: 40px; padding: 0 12px; border: 1px solid var(--line); border-radius: 8px; background: var(--raised); color: var(--ink); text-decoration: none; }
-.watch:hover { border-color: var(--edge); }
-.list td button[aria-pressed="true"] { border-color: var(--accent); color: var(--accent); font-weight: 600; }
-#games-head:focus { outline: none; }
-.list thead button { min-height: 26px; margin: -2px -8px; padding: 2px 8px; border-color: transparent; background: transparent; font-weight: 600; text-align: inherit; }
-.list .value { overflow-wrap: break-word; min-width: 4.5em; max-width: 14em; }
-.sure { font-weight: 700; font-size: 13px; }
-.sure.more { color: var(--entry-0); }
-.sure.less { color: var(--entry-1); }
-td.unsure { color: var(--faint); }
-.command { display: flex; align-items: center; gap: 8px; }
-code { font: 13px/1.45 ui-monospace, "DejaVu Sans Mono", Menlo, Consolas, monospace; overflow-wrap: anywhere; }
-.list .command code { width: 24em; white-space: nowrap; overflow: hidden; text-overflow: ellipsis; }
-code .word { white-space: nowrap; }
-.pages { display: flex; flex-wrap: wrap; align-items: center; gap: 8px; margin: 10px 0; }
-
-/* Heat maps */
-.choose { display: flex; flex-wrap: wrap; gap: 8px 20px; margin: 8px 0 12px; }
-.choose label { display: flex; align-items: center; gap: 8px; min-width: 0; }
-.choose select { min-width: 0; }
-.heat { width: 100%; font-size: 14px; }
-.heat th { padding: 4px 6px; font-weight: 400; color: var(--faint); text-align: center; min-width: 3.4em; max-width: 10em; line-height: 1.2; }
-.heat tbody th { text-align: right; }
-.heat .axis { color: var(--ink); font-weight: 600; }
-.heat td { min-width: 52px; height: 40px; padding: 4px 5px; text-align: center; white-space: nowrap; border: 2px solid var(--raised); print-color-adjust: exact; -webkit-print-color-adjust: exact; }
-.heat td.none { border: 2px dashed var(--line); color: var(--faint); }
-#heat-scale { display: flex; align-items: center; gap: 10px; margin: 10px 0; max-width: 460px; font-variant-numeric: tabular-nums; }
-#heat-scale i { flex: 1; height: 14px; border-radius: 3px; background: linear-gradient(90deg, var(--heat)); print-color-adjust: exact; -webkit-print-color-adjust: exact; }
-
-/* Tornado charts */
-.tornado { list-style: none; margin: 0; padding: 0; }
-.tornado li { padding: 5px 0; break-inside: avoid; }
-.tornado .what { display: flex; flex-wrap: wrap; justify-content: space-between; gap: 0 14px; font-size: 14px; }
-.tornado .what > span { min-width: 0; overflow-wrap: anywhere; }
-.tornado .amount { font-variant-numeric: tabular-nums; }
-.track { position: relative; height: 18px; margin-top: 2px; background: linear-gradient(var(--grid), var(--grid)) 0 50% / 100% 1px no-repeat; }
-.track .zero { position: absolute; top: -4px; bottom: -6px; width: 0; border-left: 1px solid var(--edge); }
-.track .bar { position: absolute; top: 3px; bottom: 3px; min-width: 2px; background: var(--entry); border-radius: 2px; opacity: 0.72; print-color-adjust: exact; -webkit-print-color-adjust: exact; }
-.track .span { position: absolute; top: 3px; bottom: 3px; border: solid var(--ink); border-width: 0 2px; background: linear-gradient(var(--ink), var(--ink)) 0 50% / 100% 2px no-repeat; }
-.track .span.cut-low { border-left-style: none; }
-.track .span.cut-high { border-right-style: none; }
-.ends { position: relative; height: 20px; font-size: 12.5px; color: var(--faint); font-variant-numeric: tabular-nums; }
-.ends span { position: absolute; white-space: nowrap; }
-
-/* Interactions and games */
-.cells { margin-top: 8px; font-size: 14px; }
-.cells th, .cells td { padding: 4px 10px; border: 1px solid var(--line); text-align: right; }
-.cells th { color: var(--faint); font-weight: 400; overflow-wrap: anywhere; }
-.cells th.axis { color: var(--ink); text-align: left; }
-#worst-list h3 { margin-top: 14px; }
-.game { margin-bottom: 10px; }
-.game p { margin: 0 0 6px; max-width: none; overflow-wrap: anywhere; }
-.game .why { white-space: pre-wrap; color: var(--ink); font-weight: 600; }
-.game .command { align-items: flex-start; }
-.game code { flex: 1; min-width: 0; padding: 9px 11px; border: 1px solid var(--line); border-radius: 8px; background: var(--paper); }
-.game.card { padding: 10px 12px; }
-#end { height: 60px; }
-
-@media (max-width: 600px) {
-  header, section, #bar > div { padding-left: 12px; padding-right: 12px; }
-  h1 { font-size: 22px; }
-  #about-metric { flex-basis: 100%; font-size: 13px; line-height: 1.25; }
-  #legend { max-height: 84px; flex: 1 1 100%; }
-  .card { padding: 10px; }
-  .choose label { flex: 1 1 100%; }
-  .heat { font-size: 13px; }
-  .heat th { max-width: 7em; padding: 3px; min-width: 0; }
-  .heat td { min-width: 40px; padding: 2px 3px; }
-  .game .command { flex-wrap: wrap; }
-  .game .command code { flex: 1 0 100%; }
-  .game code { width: 100%; }
-}
-@media print {
-  select, summary, .pages, .values, .choose, .command button, .on-screen, #dark, #legend button[aria-pressed="false"] { display: none !important; }
-  #legend button { border: 0; }
-  .list thead button { padding: 0; margin: 0; font-size: inherit; }
-  #bar { position: static; }
-  #bar label::after { content: attr(data-metric); }
-  .card, tr { break-inside: avoid; }
-  h2 { break-after: avoid; }
-  .scroll { overflow: visible; }
-  .charts { grid-template-columns: repeat(2, minmax(0, 1fr)); }
-  #heat-charts { grid-template-columns: minmax(0, 1fr) !important; }
-  .heat { font-size: 11px; }
-  .heat td { min-width: 0; height: 26px; padding: 1px; }
-  .heat th { min-width: 0; padding: 2px; }
-  .list, .list small, .sure { font-size: 10px; }
-  .list .value { min-width: 0; }
-  .list td.estimate { min-width: 0; }
-  .list .command code { white-space: normal; width: auto; min-width: 14em; font-size: 8px; }
-  code .word { white-space: normal; }
-  .list th, .list td { padding: 3px 5px; }
-}
-</style>
-</head>
-<body>
-<header>
-  <div id="head"><h1 id="name"></h1><button id="dark" type="button" aria-pressed="false" title="Switch between dark and light colours">Dark</button></div>
-  <p id="about"></p>
-  <div id="chips"></div>
-  <dl id="facts"></dl>
-</header>
-<div id="bar"><div>
-  <label id="metric-label">Metric <select id="metric"></select></label>
-  <p id="about-metric"></p>
-  <div id="legend" role="group" aria-label="Entries"></div>
-</div></div>
-<main>
+/** What never changes. Texts of a report only ever become text nodes. */
+const SECTIONS = `
+  <dl id="sweep-facts"></dl>
+  <div class="bar">
+    <label id="metric-label">Metric <select id="metric"></select></label>
+    <p id="about-metric"></p>
+    <div id="entries" role="group" aria-label="Entries"></div>
+  </div>
   <section id="curves" aria-labelledby="curves-head">
     <h2 id="curves-head">Each axis</h2>
     <p class="faint" id="curves-note"></p>
@@ -305,17 +67,55 @@ code .word { white-space: nowrap; }
     <h2 id="failures-head">Games that could not start</h2>
     <div id="failures-list"></div>
   </section>
-</main>
-<div id="end"></div>
-<p id="said" class="hidden-text" aria-live="polite"></p>
-<noscript><p>The charts on this page need JavaScript. The numbers are in report.json beside it.</p></noscript>
-<script>
-const report = /*REPORT*/null;
-</script>
-<script>
-'use strict';
+  <p id="said" class="hidden-text" aria-live="polite"></p>
+`;
 
-/* Elements. Texts of the report only ever become text nodes. */
+let report = null;
+/** Whether games of the report can be watched. */
+let isPlayable = false;
+
+export class Sweep {
+  constructor(place) {
+    place.classList.add('sweep');
+    place.innerHTML = SECTIONS;
+  }
+
+  /** The report is complete. */
+  get goesOn() {
+    return false;
+  }
+
+  tell(told) {
+    ({ report, playable: isPlayable } = told);
+    axisTitles = report.axes.map((key, axis) => titleOf(key, report.axis_meanings?.[axis]));
+    axisDigits = report.axes.map((_, axis) => digitsFor(axis));
+    keepAddress();
+    drawFacts();
+    drawChooser();
+    makeCurves();
+    makeHeat();
+    draw();
+    makeGames();
+    drawFailures();
+    let width = innerWidth;
+    addEventListener('resize', () => {
+      // The keyboard of a phone changes the height alone.
+      if (innerWidth === width) return;
+      width = innerWidth;
+      requestAnimationFrame(() => drawCurves());
+    });
+    addEventListener('beforeprint', () => drawCurves(PRINTED_WIDTH));
+    addEventListener('afterprint', () => drawCurves());
+    const { games, games_done: done, failures } = report;
+    const chip = done < games ? [`not finished: ${done} of ${games} games played`, 'warn'] : [`all ${games} games played`, 'good'];
+    return { name: report.sweep, facts: report.about, chip, remarks: [failures.length > 0 ? `${failures.length} games could not start.` : ''] };
+  }
+
+  /** Style sheets have the colours. */
+  draw() {}
+}
+
+/* Elements */
 
 const byId = (id) => document.getElementById(id);
 
@@ -323,7 +123,6 @@ function fill(element, attributes, children) {
   for (const [name, value] of Object.entries(attributes)) {
     if (value === null || value === undefined || value === false) continue;
     if (name.startsWith('on')) element.addEventListener(name.slice(2), value);
-    // A server that forbids styles in elements' attributes allows this.
     else if (name === 'style') element.style.cssText = value;
     else element.setAttribute(name, value === true ? '' : value);
   }
@@ -339,37 +138,6 @@ const soft = (text) => text.split(/(?<=[._/-])(?=\D..)/).flatMap((part, i) => (i
 
 function say(text) {
   byId('said').textContent = text;
-}
-
-/* Light and dark: follows the system until the user switches, like the other pages, whose setting it shares. */
-
-const THEME = 'squall.theme';
-const system = matchMedia('(prefers-color-scheme: dark)');
-let theme = null;
-try {
-  theme = localStorage.getItem(THEME);
-} catch {
-  // Then it lasts as long as the page.
-}
-const isDark = () => (['light', 'dark'].includes(theme) ? theme === 'dark' : system.matches);
-
-function applyTheme() {
-  document.documentElement.dataset.theme = isDark() ? 'dark' : 'light';
-  document.documentElement.style.colorScheme = isDark() ? 'dark' : 'light';
-  byId('dark').setAttribute('aria-pressed', String(isDark()));
-}
-
-function switchTheme() {
-  const wanted = isDark() ? 'light' : 'dark';
-  // The system's own setting is not stored, so that the page keeps following it.
-  theme = (wanted === 'dark') === system.matches ? null : wanted;
-  try {
-    if (theme === null) localStorage.removeItem(THEME);
-    else localStorage.setItem(THEME, theme);
-  } catch {
-    // Not stored.
-  }
-  applyTheme();
 }
 
 /* Titles and units: of axes from the reference of scenario files, of metrics from their names. */
@@ -412,9 +180,6 @@ function metricTitle({ name }) {
   return own === name ? title : `Opponent: ${lower(title)}`;
 }
 const metricNow = () => metricTitle(report.metrics[state.metric]);
-
-/** A file by its name. */
-const stem = (path) => path.split('/').at(-1).replace(/\.toml$/, '');
 
 /* Numbers as people read them. */
 
@@ -528,15 +293,8 @@ const entryHead = (entry) => el('h3', {}, sampleOf(entry), ' ', soft(report.entr
 /** The first seed to the digit: a number of this language has too few for all seeds. */
 const firstSeed = () => /--seed (\d+)$/.exec(report.points[0]?.command ?? '')?.[1] ?? String(report.seed);
 
-function drawHead() {
-  byId('name').textContent = report.sweep;
-  byId('about').textContent = report.about;
-  const { games, games_done: done, failures, points } = report;
-  const chips = [done < games
-    ? el('span', { class: 'chip warn' }, `not finished: ${done} of ${games} games played`)
-    : el('span', { class: 'chip good' }, `all ${games} games played`)];
-  if (failures.length > 0) chips.push(el('span', { class: 'chip bad' }, `${failures.length} could not start`));
-  byId('chips').replaceChildren(...chips);
+function drawFacts() {
+  const { games, games_done: done, points } = report;
   const seeds = report.games_per_point / 2;
   const last = BigInt(firstSeed()) + BigInt(Math.max(1, Math.round(seeds))) - 1n;
   const axis = (key, i) => {
@@ -560,7 +318,7 @@ function drawHead() {
     ['Axes', report.axes.map(axis)],
   ];
   const fact = ([term, what]) => el('div', { class: term === 'Axes' ? 'axes' : null }, el('dt', {}, term), el('dd', {}, what));
-  byId('facts').replaceChildren(...facts.map(fact));
+  byId('sweep-facts').replaceChildren(...facts.map(fact));
 }
 
 function groupOf(metric, i) {
@@ -594,20 +352,17 @@ function choose(name) {
 function putInAddress(name, value) {
   const words = new URLSearchParams(location.hash.slice(1));
   words.set(name, value);
-  try {
-    history.replaceState(null, '', `#${words}`);
-  } catch {
-    // Some browsers keep the address of a file as it is.
-  }
+  history.replaceState(null, '', `#${words}`);
+  keepAddress();
 }
 
 function drawLegend() {
   const { name, about, unit: unitName } = report.metrics[state.metric];
   byId('metric').value = name;
   byId('metric-label').dataset.metric = metricNow();
-  byId('about-metric').replaceChildren(`${capital(isShare() ? `${about}; shown as %` : `${about}${unitName ? `, ${unitName}` : ''}`)} `, el('code', { title: 'Name in tables and conditions' }, name));
+  byId('about-metric').replaceChildren(`${capital(isShare() ? `${about}; shown as %` : `${about}${unitName ? `, ${unitName}` : ''}`)} `, el('code', { title: 'Name in tables' }, name));
   const focused = document.activeElement?.dataset?.entry;
-  byId('legend').replaceChildren(...report.entries.map((entry, i) => {
+  byId('entries').replaceChildren(...report.entries.map((entry, i) => {
     if (report.entries.length === 1) return el('span', { class: 'one' }, sampleOf(i), entry);
     const toggle = () => {
       if (!state.hidden.delete(i)) state.hidden.add(i);
@@ -616,7 +371,7 @@ function drawLegend() {
     const pressed = String(!state.hidden.has(i));
     return el('button', { type: 'button', 'data-entry': i, 'aria-pressed': pressed, title: 'show or hide', onclick: toggle }, sampleOf(i), entry);
   }));
-  if (focused !== undefined) byId('legend').querySelector(`[data-entry="${focused}"]`)?.focus();
+  if (focused !== undefined) byId('entries').querySelector(`[data-entry="${focused}"]`)?.focus();
 }
 
 /* Scales */
@@ -639,18 +394,6 @@ function domainOf(estimates) {
   const margin = 0.04 * (high - low);
   return [low === 0 ? 0 : Math.max(floor, low - margin), high + margin];
 }
-
-/** About `count` round numbers of an interval. */
-function ticksOf([low, high], count) {
-  const raw = (high - low) / count;
-  const power = 10 ** Math.floor(Math.log10(raw));
-  const step = [1, 2, 2.5, 5, 10].map((times) => times * power).find((each) => each >= raw * 0.999);
-  const ticks = [];
-  for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; i += 1) ticks.push(i * step);
-  return ticks;
-}
-
-const roundTick = (x) => Number(x.toPrecision(10));
 
 /** How uneven numbers are: their standard deviation by their mean. */
 function unevenness(numbers) {
@@ -771,12 +514,12 @@ function drawCurve(axis, card, width) {
   const of = new Map(entriesShown().map((entry) => [entry, effectOf(axis, entry).levels.map((level) => metricOf(level.metrics))]));
   const all = [...of.values()].flat().filter(Boolean);
   const [low, high] = all.length > 0 ? domainOf(all) : domainOf([{ mean: 0 }]);
-  const ticks = ticksOf([low, high], 5);
+  const ticks = ticksOf(low, high, 5);
   const [right, top, deep] = [22, 10, 220];
   const { kind, places } = placesOf(levels);
   // The first of slanted names reaches to the left.
   const first = kind === 'categories' ? Math.min(widthOf(labels[0]), SLANTED_MAX) * Math.cos(SLANT) - (0.5 * wide) / labels.length : 0;
-  const left = Math.max(LEFT_LABEL_MIN, Math.min(first, 0.22 * wide), ...ticks.map((tick) => widthOf(shown(roundTick(tick))) + 12));
+  const left = Math.max(LEFT_LABEL_MIN, Math.min(first, 0.22 * wide), ...ticks.map((tick) => widthOf(shown(tick)) + 12));
   const inset = kind === 'categories' ? 0 : 14;
   const xs = places.map((place) => left + inset + place * (wide - left - right - 2 * inset));
   const y = (value) => top + deep * (1 - (value - low) / (high - low));
@@ -785,7 +528,7 @@ function drawCurve(axis, card, width) {
   const picture = svg('svg', { viewBox: `0 0 ${wide} ${tall}`, 'aria-hidden': 'true' });
   for (const tick of ticks) {
     picture.append(svg('path', { class: 'gridline', d: `M${left} ${y(tick)}H${wide - right}` }),
-      svg('text', { x: left - 8, y: y(tick) + 4, 'text-anchor': 'end' }, shown(roundTick(tick))));
+      svg('text', { x: left - 8, y: y(tick) + 4, 'text-anchor': 'end' }, shown(tick)));
   }
   below.texts.forEach((text, i) => {
     picture.append(svg('path', { class: 'frame', d: `M${xs[i]} ${top + deep}v5` }));
@@ -890,14 +633,12 @@ function drawCurves(width) {
 
 /* Heat maps */
 
-const HEAT = ['440154', '472c7a', '3b518b', '2c718e', '21908d', '27ad81', '5cc863', 'aadc32', 'fde725']
-  .map((colour) => [0, 2, 4].map((at) => Number.parseInt(colour.slice(at, at + 2), 16)));
-
 /** The colour of a share of the scale, and black or white, whichever is read better on it. */
 function heatColour(share) {
-  const place = Math.min(1, Math.max(0, share)) * (HEAT.length - 1);
-  const at = Math.min(HEAT.length - 2, Math.floor(place));
-  const colour = HEAT[at].map((low, i) => Math.round(low + (HEAT[at + 1][i] - low) * (place - at)));
+  const { heat } = palette;
+  const place = Math.min(1, Math.max(0, share)) * (heat.length - 1);
+  const at = Math.min(heat.length - 2, Math.floor(place));
+  const colour = heat[at].map((low, i) => Math.round(low + (heat[at + 1][i] - low) * (place - at)));
   const linear = colour.map((each) => (each / 255 <= 0.03928 ? each / 255 / 12.92 : ((each / 255 + 0.055) / 1.055) ** 2.4));
   const luminance = 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2];
   return { background: `rgb(${colour.join(' ')})`, ink: luminance > 0.179 ? '#000000' : '#ffffff' };
@@ -1007,7 +748,7 @@ function track(contrast, [low, high]) {
   const at = (value) => 100 * ((Math.min(high, Math.max(low, value)) - low) / (high - low));
   const piece = (name, from, to) => el('div', { class: name, style: `left: ${at(from).toFixed(2)}%; width: ${(at(to) - at(from)).toFixed(2)}%` });
   const parts = [el('div', { class: 'zero', style: `left: ${at(0).toFixed(2)}%` })];
-  if (contrast) parts.push(piece('bar', Math.min(0, contrast.mean), Math.max(0, contrast.mean)));
+  if (contrast) parts.push(piece('effect', Math.min(0, contrast.mean), Math.max(0, contrast.mean)));
   if (isBounded(contrast)) {
     const cut = `${contrast.low < low ? ' cut-low' : ''}${contrast.high > high ? ' cut-high' : ''}`;
     parts.push(piece(`span${cut}`, contrast.low, contrast.high));
@@ -1174,52 +915,9 @@ function drawInteractions() {
   byId('interactions-pages').replaceChildren(page.nav ?? '');
 }
 
-/* Commands */
-
-async function copy(text) {
-  try {
-    await navigator.clipboard.writeText(text);
-    return true;
-  } catch {
-    const field = el('textarea', { class: 'hidden-text', 'aria-hidden': 'true' });
-    field.value = text;
-    document.body.append(field);
-    field.select();
-    const done = document.execCommand('copy');
-    field.remove();
-    return done;
-  }
-}
-
-function commandOf(text, what, game) {
-  // A browser would break `--seed` after its first dash.
-  const words = text.split(/(\s+)/).map((word) => (/^\S{1,30}$/.test(word) ? el('span', { class: 'word' }, word) : word));
-  const code = el('code', {}, words);
-  const button = el('button', { type: 'button', 'aria-label': `Copy the command of ${what}`, onclick: async () => {
-    const done = await copy(text);
-    button.focus();
-    if (!done) getSelection().selectAllChildren(code);
-    button.textContent = done ? 'Copied' : 'Marked';
-    say(done ? 'Copied' : 'The command is selected, but could not be copied');
-    setTimeout(() => { button.textContent = 'Copy'; }, 2000);
-  } }, 'Copy');
-  return el('div', { class: 'command' }, game === undefined ? null : watchOf(game), button, code);
-}
-
-/** Whether a server that plays games again serves this page. */
-const hasGames = document.documentElement.dataset.games === 'true';
-
-/** A link to a game, from which the page of games leads back here. */
+/** A link to a game, if a server plays it again. */
 function watchOf(game, what = `game ${game}`) {
-  if (!hasGames) return null;
-  const keep = () => {
-    try {
-      sessionStorage.setItem('squall.report', location.hash);
-    } catch {
-      // Then the way back leads to the beginning.
-    }
-  };
-  return el('a', { class: 'watch', href: `/?game=${game}`, 'aria-label': `Watch ${what}`, onclick: keep }, 'Watch');
+  return isPlayable ? el('a', { class: 'watch', href: addressOfGame(game), 'aria-label': `Watch ${what}` }, 'Watch') : null;
 }
 
 /* All points */
@@ -1262,14 +960,14 @@ function drawPoints() {
   const entries = entriesShown();
   const heads = [head('point', 'Point', true), ...report.axes.map((_, axis) => head(`axis ${axis}`, soft(axisName(axis)), isOfNumbers(axis))),
     columnHead('Seeds', true), ...entries.map((entry) => head(`entry ${entry}`, soft(report.entries[entry]), true)),
-    hasGames ? columnHead('Games', false) : null, columnHead('Command', false)].filter(Boolean);
+    isPlayable ? columnHead('Games', false) : null, columnHead('Command', false)].filter(Boolean);
   const row = ({ point, index }) => el('tr', {}, pointHead(index), valueCells(point.values), el('td', { class: 'number' }, String(point.seeds)),
     entries.map((entry) => estimateCell(metricOf(point.entries[entry].metrics))),
-    hasGames ? el('td', {}, gamesOf(index)) : null,
-    el('td', {}, commandOf(point.command, `point ${index}`)));
+    isPlayable ? el('td', {}, gamesOf(index)) : null,
+    el('td', {}, commandOf(point.command, `plays a game of point ${index}`)));
   byId('points-note').textContent = `${metricNow()}: means per game${hasIntervals() ? ', with 95 % intervals over seeds' : ''}. `
     + "The command plays one of the point's games: that of the first seed, with the first entry as the first team."
-    + `${hasGames ? ' Games lists all of them.' : ''}`;
+    + `${isPlayable ? ' Games lists all of them.' : ''}`;
   const page = paged('points', sortedPoints(), drawPoints);
   byId('points-table').replaceChildren(scrolled('All points', tableOf(heads, page.rows.map(row))), page.nav ?? '');
 }
@@ -1336,7 +1034,7 @@ function drawGames() {
 }
 
 function makeGames() {
-  if (!hasGames) return;
+  if (!isPlayable) return;
   const filter = byId('games-filter');
   filter.replaceChildren(...Object.entries(RESULTS).map(([value, text]) => el('option', { value }, text)));
   filter.addEventListener('change', () => {
@@ -1354,7 +1052,7 @@ function worstCard(game) {
   const [own, theirs] = game.score;
   const counts = [['contacts', game.contacts], ['times out of bounds', game.out_of_bounds]].map(([what, count]) => `${number(count)} ${what}`);
   return el('div', { class: 'card game' }, el('p', {}, el('strong', {}, `${number(own)} : ${number(theirs)}`), ` at ${values}; ${counts.join(', ')} `,
-    el('small', {}, `game ${game.game}`)), commandOf(game.command, `game ${game.game}`, game.game));
+    el('small', {}, `game ${game.game}`)), el('div', { class: 'replay' }, watchOf(game.game), commandOf(game.command, `plays game ${game.game}`)));
 }
 
 function drawWorst() {
@@ -1368,7 +1066,7 @@ function drawFailures() {
   byId('failures').hidden = report.failures.length === 0;
   const page = paged('failures', report.failures, drawFailures, 20);
   const card = (failure) => el('div', { class: 'card game' }, el('p', {}, el('small', {}, `game ${failure.game}`)),
-    el('p', { class: 'why' }, failure.why), commandOf(failure.command, `game ${failure.game}`));
+    el('p', { class: 'why' }, failure.why), commandOf(failure.command, `plays game ${failure.game}`));
   byId('failures-list').replaceChildren(...page.rows.map(card), page.nav ?? '');
 }
 
@@ -1385,40 +1083,3 @@ function draw() {
   drawGames();
   drawWorst();
 }
-
-function begin() {
-  applyTheme();
-  byId('dark').addEventListener('click', switchTheme);
-  system.addEventListener('change', applyTheme);
-  if (report === null) {
-    byId('name').textContent = 'This page contains no report';
-    return;
-  }
-  axisTitles = report.axes.map((key, axis) => titleOf(key, report.axis_meanings?.[axis]));
-  axisDigits = report.axes.map((_, axis) => digitsFor(axis));
-  drawHead();
-  drawChooser();
-  makeCurves();
-  makeHeat();
-  draw();
-  makeGames();
-  drawFailures();
-  let width = innerWidth;
-  addEventListener('resize', () => {
-    // The keyboard of a phone changes the height alone.
-    if (innerWidth === width) return;
-    width = innerWidth;
-    requestAnimationFrame(() => drawCurves());
-  });
-  addEventListener('beforeprint', () => drawCurves(PRINTED_WIDTH));
-  addEventListener('afterprint', () => drawCurves());
-}
-try {
-  begin();
-} catch (error) {
-  byId('name').textContent = 'This report cannot be shown';
-  byId('about').textContent = `It is damaged or from another version of Squall: ${error.message}`;
-}
-</script>
-</body>
-</html>
