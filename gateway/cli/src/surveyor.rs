@@ -5,7 +5,6 @@ use super::{guard, preflight_report};
 use crate::link_arg::to_connect;
 use anyhow::{Context, Result};
 use bus::{Registration, Token};
-use command_line::explain::UsageError;
 use command_line::leaf_args::LeafArgs;
 use command_line::number::{address, seconds};
 use command_line::{program, stop};
@@ -13,7 +12,6 @@ use gateway::bridge::{Plan, Preflight};
 use gateway::config::Gateway;
 use gateway::link::LinkAddress;
 use gateway::node::{NodeEvent, Outside, Settings, on_enter};
-use gateway::payload::PayloadPort;
 use messages::external::{GatewayCommand, OperatorCommand};
 use recording::{NewFile, utc};
 use std::io::IsTerminal;
@@ -34,11 +32,6 @@ pub struct Args {
     /// serial:///dev/ttyUSB0?baud=38400 (4800 to 921600 baud)
     #[arg(long, value_name = "URL", value_parser = to_connect)]
     link: LinkAddress,
-    /// Payload to forward and record, for example camera=tcp://192.168.1.23:5001; append
-    /// ,listen=HOST:PORT for the address that serves it, and ,exo2 or ,exo2=http to record the
-    /// values of an EXO2 sonde; repeatable
-    #[arg(long, value_name = "NAME=URL", conflicts_with = "at_game_pace")]
-    payload: Vec<PayloadPort>,
     /// Address and port on this machine for operator commands, with or without a game; port 0
     /// selects a free port
     #[arg(long, value_name = "HOST:PORT", default_value = "127.0.0.1:0", value_parser = control_address)]
@@ -84,7 +77,6 @@ pub struct Args {
 pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
     let link = args.link.clone();
     let gateway = super::gateway_file(args.config.as_deref())?;
-    PayloadPort::check(&args.payload).map_err(|e| UsageError(format!("--payload: {e}")))?;
     let preflight = preflight(args, &link, &gateway)?;
     let stop = stop::on_ctrl_c_or_parent(args.for_parent)?;
     let record = recording(args)?;
@@ -119,13 +111,11 @@ pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
     } else {
         Some(guard::own_command()?)
     };
-    let payloads = args.payload.clone();
     let outside = Outside {
         link,
         silence,
         control: args.control_listen,
         guard,
-        payloads,
     };
     let mut last = String::new();
     let mut registration = None::<Registration>;
@@ -134,7 +124,8 @@ pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
             log.remark(format!("{}: looking for the game: {reason}", args.vehicle))
         }
         NodeEvent::Recording(file) => log.remark(format!("recording to {}", file.display())),
-        NodeEvent::Listening { what, reach } => log.remark(format!("{what} at {reach}")),
+        // Only emulated boats have other ports.
+        NodeEvent::Listening { .. } => {}
         NodeEvent::ControlPort {
             address: control,
             token,

@@ -33,15 +33,15 @@ impl GatewayLoop<'_> {
             self.counters.sentence_to_topic.summary_us(),
             self.counters.order_to_sentence.summary_us(),
         ];
-        let lost = self.recorder.as_ref().map_or([0; 2], |recorder| {
-            [recorder.state().dropped, recorder.bulk_dropped()]
-        });
+        let lost = self
+            .recorder
+            .as_ref()
+            .map_or(0, |recorder| recorder.state().dropped);
         let more = [
             ("nav reports", self.counters.reports),
             ("displaced writes", self.link.displaced()),
             ("calls dropped", self.input.calls.dropped()),
-            ("messages not recorded", lost[0]),
-            ("payload messages not recorded", lost[1]),
+            ("messages not recorded", lost),
         ];
         status.alarms.extend(self.counters.recording_fault.clone());
         status
