@@ -4,6 +4,7 @@
 use super::error::NodeError;
 use super::gateway_loop::GatewayLoop;
 use crate::bridge::{Input, NavOut, Output};
+use crate::protocol::named;
 use bus::Publisher;
 use messages::external::{GatewayStatus, LinkBytes, NavReport, Reported};
 use messages::run_state::RecordingState;
@@ -37,16 +38,13 @@ impl GatewayLoop<'_> {
             .recorder
             .as_ref()
             .map_or(0, |recorder| recorder.state().dropped);
-        let more = [
+        status.counts.extend(named([
             ("nav reports", self.counters.reports),
             ("displaced writes", self.link.displaced()),
             ("calls dropped", self.input.calls.dropped()),
             ("messages not recorded", lost),
-        ];
+        ]));
         status.alarms.extend(self.counters.recording_fault.clone());
-        status
-            .counts
-            .extend(more.map(|(name, count)| (name.to_owned(), count)));
         status
     }
 

@@ -2,7 +2,7 @@
 //! rest.
 
 use crate::boat::emulated;
-use crate::rig::plan;
+use crate::rig::datum;
 use crate::script::played;
 use crate::tamper::with_checksum;
 use gateway::emulator::{self, Emulator, Extra, FrontSeat, Port};
@@ -11,15 +11,7 @@ use messages::Order;
 use primitives::SimTime;
 
 fn boat(change: impl FnOnce(&mut emulator::Plan)) -> Emulator {
-    let mut plan = emulated(
-        plan("surveyor.toml")
-            .site
-            .expect("the rig has one")
-            .field
-            .plan
-            .datum,
-        0.0,
-    );
+    let mut plan = emulated(datum(), 0.0);
     change(&mut plan);
     Emulator::new(plan)
 }

@@ -9,7 +9,7 @@ use gateway::emulator::{self, Emulator, FrontSeat, Port};
 use messages::Order;
 use messages::external::{FleetCommand, OperatorCommand};
 use primitives::SimTime;
-use primitives::frame::Ned;
+use primitives::frame::{LatLon, Ned};
 use std::path::Path;
 
 const TELEMETRY_STEPS: u64 = 10;
@@ -70,6 +70,12 @@ pub(crate) fn plan(file: &str) -> Plan {
         site,
         ..Plan::new("blue_one", gateway)
     }
+}
+
+/// The origin of that field.
+pub(crate) fn datum() -> LatLon {
+    let site = plan("surveyor.toml").site;
+    site.expect("the rig has one").field.plan.datum
 }
 
 impl Rig {

@@ -2,7 +2,7 @@
 //!
 //! The language is described in `scenarios/README.md`.
 
-use crate::rig::{Rig, plan};
+use crate::rig::{Rig, datum, plan};
 use crate::tamper::tamper;
 use gateway::bridge::{Input, Preflight};
 use gateway::emulator::{FrontSeat, Port};
@@ -258,14 +258,7 @@ fn order_of(words: &[&str]) -> Option<Order> {
 
 /// A mission with places `x,y` on the field or `@latitude,longitude`.
 fn mission_of(words: &[&str]) -> Mission {
-    let frame = LocalFrame::new(
-        plan("surveyor.toml")
-            .site
-            .expect("the rig has one")
-            .field
-            .plan
-            .datum,
-    );
+    let frame = LocalFrame::new(datum());
     let place = |text: &str| {
         let (a, b) = text
             .trim_start_matches('@')
