@@ -4,7 +4,7 @@ use super::log_line::{Log, full};
 use super::{guard, preflight_report};
 use crate::link_arg::to_connect;
 use anyhow::{Context, Result};
-use bus::{Registration, Token};
+use bus::{GatewayEntry, Registration, Token};
 use command_line::leaf_args::LeafArgs;
 use command_line::number::{address, seconds};
 use command_line::{program, stop};
@@ -130,39 +130,16 @@ pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
             address: control,
             token,
         } => {
-            let vehicle = args.vehicle.clone();
-            let pid = std::process::id();
-            let token = token.as_ref().map(Token::hex);
-            let entry = bus::GatewayEntry {
-                vehicle,
+            let entry = GatewayEntry {
+                vehicle: args.vehicle.clone(),
                 game: game.clone(),
                 control,
-                pid,
-                token,
+                pid: std::process::id(),
+                token: token.as_ref().map(Token::hex),
             };
-            // If registration fails, operators must be given the address; nothing else is lost.
-            if let Some(registration) = &registration {
-                drop(registration.update(&entry));
-                return;
-            }
-            match bus::register_gateway(&entry) {
-                Ok(registered) => registration = Some(registered),
-                Err(error) => log.remark(format!(
-                    "operators on this machine need the address: {error}"
-                )),
-            }
-            log.remark(format!(
-                "operators reach this gateway at {control}, with or without a game"
-            ));
-            if !args.for_parent && std::io::stdin().is_terminal() {
-                log.remark("press Enter in this terminal for an E-stop of this boat".to_owned());
-                let stop = OperatorCommand::EStop;
-                let stop = GatewayCommand::Boat {
-                    name: args.vehicle.clone(),
-                    command: stop,
-                };
-                // The log shows whether the command was carried out.
-                on_enter(move || drop(bus::ask_gateway(control, None, &stop, KEY_ANSWER)));
+            match &registration {
+                Some(registration) => drop(registration.update(&entry)),
+                None => registration = announce(&entry, args.for_parent, &log),
             }
         }
         NodeEvent::Event { at_s, event } => log.event(at_s, event),
@@ -174,6 +151,30 @@ pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
     log.end(last);
     served.with_context(|| format!("the gateway of {}", args.vehicle))?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// Registers a gateway for operators on this machine, and tells them how to reach it.
+fn announce(entry: &GatewayEntry, for_parent: bool, log: &Log) -> Option<Registration> {
+    // If registration fails, operators must be given the address; nothing else is lost.
+    let registered = bus::register_gateway(entry).inspect_err(|error| {
+        log.remark(format!(
+            "operators on this machine need the address: {error}"
+        ));
+    });
+    let control = entry.control;
+    log.remark(format!(
+        "operators reach this gateway at {control}, with or without a game"
+    ));
+    if !for_parent && std::io::stdin().is_terminal() {
+        log.remark("press Enter in this terminal for an E-stop of this boat".to_owned());
+        let stop = GatewayCommand::Boat {
+            name: entry.vehicle.clone(),
+            command: OperatorCommand::EStop,
+        };
+        // The log shows whether the command was carried out.
+        on_enter(move || drop(bus::ask_gateway(control, None, &stop, KEY_ANSWER)));
+    }
+    registered.ok()
 }
 
 /// Parses the address of the control port, which other machines must be able to use.

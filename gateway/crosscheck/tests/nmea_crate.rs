@@ -8,7 +8,7 @@
 mod sentences;
 
 use chrono::{Datelike, Timelike};
-use gateway::nmea::{Date, Framer, Sentence, TimeOfDay, Vtg, checksum};
+use gateway::nmea::{Date, Framer, Sentence, TimeOfDay, Vtg, with_checksum};
 use nmea::ParseResult;
 use nmea::sentences::rmc::RmcStatusOfFix;
 use primitives::LatLon;
@@ -205,8 +205,7 @@ fn foreign() -> BoxedStrategy<String> {
         (time(), 1..=28_u8, 1..=12_u8, 1983..2100_u16)
             .prop_map(|(t, d, m, y)| format!("GPZDA,{t},{d:02},{m:02},{y},-05,00")),
     ];
-    body.prop_map(|body| format!("${body}*{:02X}\r\n", checksum(body.as_bytes())))
-        .boxed()
+    body.prop_map(|body| with_checksum(&body)).boxed()
 }
 
 proptest! {

@@ -188,6 +188,11 @@ impl Sentence {
     }
 }
 
+/// A body as a sentence: `$body*HH\r\n`.
+pub fn with_checksum(body: &str) -> String {
+    format!("${body}*{:02X}\r\n", checksum(body.as_bytes()))
+}
+
 /// The exclusive or of all bytes of a body.
 pub fn checksum(body: &[u8]) -> u8 {
     body.iter().fold(0, |sum, byte| sum ^ byte)

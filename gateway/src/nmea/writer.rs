@@ -3,7 +3,7 @@
 use super::date_time::{Date, TimeOfDay};
 use super::layout::{Field, Format, Layout, TENTHS};
 use super::position::{LATITUDE, LONGITUDE};
-use super::{EMITTED_MAX, checksum};
+use super::{EMITTED_MAX, with_checksum};
 use primitives::LatLon;
 use std::ops::Range;
 
@@ -35,8 +35,7 @@ impl Writer {
         while line.body.len() + FRAME > EMITTED_MAX {
             line.empty_the_longest();
         }
-        let sum = checksum(line.body.as_bytes());
-        format!("${}*{sum:02X}\r\n", line.body)
+        with_checksum(&line.body)
     }
 
     fn field(&mut self, field: Field<'_>) {

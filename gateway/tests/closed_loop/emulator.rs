@@ -4,9 +4,8 @@
 use crate::boat::emulated;
 use crate::rig::datum;
 use crate::script::played;
-use crate::tamper::with_checksum;
 use gateway::emulator::{self, Emulator, Extra, FrontSeat, Port};
-use gateway::nmea::Sentence;
+use gateway::nmea::{Sentence, with_checksum};
 use messages::Order;
 use primitives::SimTime;
 

@@ -3,9 +3,10 @@
 
 use crate::boat::{Boat, STEP_S, emulated};
 use crate::oracle::{Oracle, age_s};
-use crate::tamper::{Tamper, with_checksum};
+use crate::tamper::Tamper;
 use gateway::bridge::{Bridge, Event, Input, NavOut, Output, Plan, Site};
 use gateway::emulator::{self, Emulator, FrontSeat, Port};
+use gateway::nmea::with_checksum;
 use messages::Order;
 use messages::external::{FleetCommand, OperatorCommand};
 use primitives::SimTime;

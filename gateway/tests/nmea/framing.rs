@@ -1,7 +1,7 @@
 //! The NMEA framer under noise: loses no sentence, invents none, and uses bounded memory.
 
 use crate::bodies;
-use gateway::nmea::{ACCEPTED_MAX, Counts, Framer, checksum};
+use gateway::nmea::{ACCEPTED_MAX, Counts, Framer, checksum, with_checksum};
 use proptest::prelude::*;
 
 const GGA: &str = "$GPGGA,150502.00,4221.50616,N,07105.24688,W,2,11,0.98,5.5,M,-33.2,M,,*62\r\n";
@@ -66,9 +66,7 @@ fn judge(content: &[u8], found: &mut Vec<String>, counts: &mut Counts) {
 
 /// A valid sentence of `length` bytes.
 fn long(length: usize) -> String {
-    let body = "A".repeat(length - 6);
-    let sum = checksum(body.as_bytes());
-    format!("${body}*{sum:02X}\r\n")
+    with_checksum(&"A".repeat(length - 6))
 }
 
 fn framed(pieces: impl IntoIterator<Item = impl AsRef<[u8]>>) -> (Vec<String>, Counts) {
