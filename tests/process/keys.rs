@@ -119,10 +119,7 @@ fn the_control_port_of_a_gateway_with_keys_has_a_token_of_its_own() {
         bus::ask_gateway(
             port,
             token,
-            &GatewayCommand::Boat {
-                name: "blue_one".to_owned(),
-                command,
-            },
+            &GatewayCommand::boat("blue_one", command),
             LIMIT,
         )
     };

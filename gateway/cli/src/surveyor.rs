@@ -167,10 +167,7 @@ fn announce(entry: &GatewayEntry, for_parent: bool, log: &Log) -> Option<Registr
     ));
     if !for_parent && std::io::stdin().is_terminal() {
         log.remark("press Enter in this terminal for an E-stop of this boat".to_owned());
-        let stop = GatewayCommand::Boat {
-            name: entry.vehicle.clone(),
-            command: OperatorCommand::EStop,
-        };
+        let stop = GatewayCommand::boat(&entry.vehicle, OperatorCommand::EStop);
         // The log shows whether the command was carried out.
         on_enter(move || drop(bus::ask_gateway(control, None, &stop, KEY_ANSWER)));
     }
