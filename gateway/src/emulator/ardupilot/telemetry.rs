@@ -16,9 +16,9 @@ use crate::mavlink::dialect::{
     REQUEST_DATA_STREAM_DATA, SYS_STATUS_DATA, SYSTEM_TIME_DATA, VFR_HUD_DATA,
 };
 use ::mavlink::MessageData;
+use primitives::SimTime;
 use primitives::angle::compass_deg_from_rad;
 use primitives::frame::Ned;
-use primitives::{SimTime, math};
 use std::collections::BTreeMap;
 
 /// Minimum interval of a message, s.
@@ -315,7 +315,7 @@ impl ArduPilot {
         let nav = self.sensed.own?.nav;
         let has_fix = self.sensed.has_fix(now);
         let velocity = nav.velocity_m_s();
-        let course_deg = compass_deg_from_rad(math::atan2(velocity.east, velocity.north));
+        let course_deg = compass_deg_from_rad(velocity.direction_rad());
         Some(GPS_RAW_INT_DATA {
             time_usec: self.utc_us(now),
             lat,
