@@ -8,9 +8,9 @@
 //! headings, |k| is the fraction of the speed that the boat makes, and the angle of k is the
 //! compass offset: complex linear least squares.
 
+use primitives::SimTime;
 use primitives::angle::wrap_pi;
 use primitives::frame::{Ned, Rotation};
-use primitives::{SimTime, math};
 use std::collections::VecDeque;
 
 /// Number and duration, s, of the pieces of a straight run; the first lets the boat settle.
@@ -116,11 +116,11 @@ impl CompassCheck {
         if self.pieces.len() < PIECES {
             return;
         }
-        let first_rad = angle_rad(self.pieces[0].ahead);
+        let first_rad = self.pieces[0].ahead.direction_rad();
         let is_straight = self
             .pieces
             .iter()
-            .all(|piece| wrap_pi(angle_rad(piece.ahead) - first_rad).abs() < STRAIGHT_RAD);
+            .all(|piece| wrap_pi(piece.ahead.direction_rad() - first_rad).abs() < STRAIGHT_RAD);
         // After a turn the boat still slides: the first 1.5 s would show as leeway that turns with
         // the heading, like an offset.
         let settled = self.pieces.iter().skip(1);
@@ -195,7 +195,7 @@ impl CompassCheck {
         // To first order the error of the angle of k is its error across, over its length.
         let sigma_rad = scatter_m_s / (spread.sqrt() * share.length());
         (share.length() >= SHARE_MIN && sigma_rad.is_finite())
-            .then(|| (angle_rad(share), sigma_rad))
+            .then(|| (share.direction_rad(), sigma_rad))
     }
 
     /// The compass offset, rad, if it is a fault.
@@ -205,11 +205,6 @@ impl CompassCheck {
         // swing finds them.
         (offset_rad.abs() - SIGMAS * sigma_rad > OFFSET_MAX_RAD).then_some(offset_rad)
     }
-}
-
-/// The angle of a vector clockwise from north, rad.
-fn angle_rad(vector: Ned) -> f64 {
-    math::atan2(vector.east, vector.north)
 }
 
 /// The product of two complex numbers, north real and east imaginary.

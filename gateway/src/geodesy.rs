@@ -11,7 +11,7 @@
 //!   must share the map.
 
 use geographiclib_rs::{DirectGeodesic, Geodesic, InverseGeodesic};
-use primitives::{LatLon, Ned, math};
+use primitives::{LatLon, Ned};
 
 /// The map of one field.
 #[derive(Clone, Debug)]
@@ -43,7 +43,7 @@ impl LocalFrame {
 
     /// The position of a point of the field, longitude in -180 to 180.
     pub fn lat_lon(&self, at: Ned) -> LatLon {
-        let azimuth_deg = math::atan2(at.east, at.north).to_degrees();
+        let azimuth_deg = at.direction_rad().to_degrees();
         let (lat_deg, lon_deg) = self.earth.direct(
             self.datum.lat_deg,
             self.datum.lon_deg,
@@ -57,6 +57,7 @@ impl LocalFrame {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use primitives::math;
     use proptest::prelude::*;
 
     /// The pavilion from which MIT's missions are measured.

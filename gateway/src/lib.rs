@@ -2,9 +2,8 @@
 //! boat.
 //!
 //! Open [`supervisor`] first (when a boat may be driven), then [`bridge`] (how reports, orders and
-//! navigation meet), then [`protocol`] and [`nmea`]. `emulator` is the boat's end of the link, and
-//! [`payload`] handles other equipment on board. Sockets and clocks are only in [`link`] and
-//! `node`.
+//! navigation meet), then [`protocol`] and [`nmea`]. `emulator` is the boat's end of the link.
+//! Sockets and clocks are only in [`link`] and `node`.
 
 mod bow_watch;
 pub mod bridge;
@@ -25,7 +24,6 @@ mod nav_estimate;
 pub mod nmea;
 #[cfg(feature = "net")]
 pub mod node;
-pub mod payload;
 pub mod preflight;
 pub mod protocol;
 pub mod record;

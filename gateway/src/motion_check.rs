@@ -6,9 +6,9 @@
 //! cause neither.
 
 use crate::supervisor::NavFault;
+use primitives::SimTime;
 use primitives::angle::wrap_pi;
 use primitives::frame::Ned;
-use primitives::{SimTime, math};
 use std::collections::VecDeque;
 
 /// The time over which positions yield a speed, s; less is not enough.
@@ -70,7 +70,7 @@ impl MotionCheck {
     }
 
     fn take_course(&mut self, now: SimTime, is_reported: bool, velocity: Option<Ned>) {
-        let course_rad = velocity.map(|velocity| math::atan2(velocity.east, velocity.north));
+        let course_rad = velocity.map(Ned::direction_rad);
         // Between distant fixes a boat may have gone astern, and positions step where the reported
         // velocity does not.
         let is_like = |at: SimTime, reported: bool| {

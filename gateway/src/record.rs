@@ -134,7 +134,7 @@ impl StepEncoder {
 }
 
 /// The entry for a message as JSON.
-pub(crate) fn json(topic: &str, at: SimTime, message: &impl Serialize) -> Entry {
+fn json(topic: &str, at: SimTime, message: &impl Serialize) -> Entry {
     let bytes = serde_json::to_vec(message).expect("what a gateway records is JSON");
     Entry::Message {
         topic: topic.to_owned(),

@@ -162,17 +162,14 @@ fn add_step(
     link_topic: &str,
     message: &RecordedMessage<'_>,
 ) -> Result<(), RecordingError> {
-    let at = message.at;
-    let mut begin = |input: Input| {
-        steps.push(RecordedStep {
-            at,
-            input,
-            out: vec![],
-            events: vec![],
-        })
+    let begun = |input: Input| RecordedStep {
+        at: message.at,
+        input,
+        out: vec![],
+        events: vec![],
     };
     match message.topic {
-        INPUT => begin(message.read_json::<RecordedInput>()?.input),
+        INPUT => steps.push(begun(message.read_json::<RecordedInput>()?.input)),
         EVENT => match (
             message.read_json::<RecordedEvent>()?.event,
             steps.last_mut(),
@@ -184,12 +181,7 @@ fn add_step(
         topic if topic == link_topic => {
             let LinkBytes { outward, data, .. } = message.read()?;
             match (outward, steps.last_mut()) {
-                (false, _) => steps.push(RecordedStep {
-                    at,
-                    input: Input::Bytes(data),
-                    out: vec![],
-                    events: vec![],
-                }),
+                (false, _) => steps.push(begun(Input::Bytes(data))),
                 (true, Some(step)) => step.out.extend(data),
                 (true, None) => {}
             }

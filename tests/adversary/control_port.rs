@@ -60,10 +60,7 @@ impl Rig {
             control,
         };
         let is_up = |rig: &Rig| {
-            let status = GatewayCommand::Boat {
-                name: "blue_one".to_owned(),
-                command: OperatorCommand::Status,
-            };
+            let status = GatewayCommand::boat("blue_one", OperatorCommand::Status);
             ask_gateway(rig.control, None, &status, LIMIT)
                 .is_ok_and(|reply| reply.status.link == "up")
         };
@@ -76,10 +73,7 @@ impl Rig {
     }
 
     pub(crate) fn tell(&self, command: OperatorCommand) -> OperatorReply {
-        self.ask(GatewayCommand::Boat {
-            name: "blue_one".to_owned(),
-            command,
-        })
+        self.ask(GatewayCommand::boat("blue_one", command))
     }
 
     /// Arms the boat as soon as it is ready.
@@ -116,10 +110,7 @@ impl Rig {
         let tries: usize =
             std::env::var("SQUALL_TRIES").map_or(30, |text| text.parse().expect("a number"));
         let one = |i: usize| {
-            let boat = GatewayCommand::Boat {
-                name: "blue_one".to_owned(),
-                command: OperatorCommand::EStop,
-            };
+            let boat = GatewayCommand::boat("blue_one", OperatorCommand::EStop);
             let command = if i.is_multiple_of(2) {
                 boat
             } else {

@@ -2,7 +2,9 @@
 //! stops when its gateway dies.
 
 use crate::gateway::Water;
-use crate::support::{LIMIT, Process, run, squall, stderr, stdout, wait_until, wait_within};
+use crate::support::{
+    LIMIT, Process, gateway_args, run, squall, stderr, stdout, wait_until, wait_within,
+};
 use bus::Watched;
 use bus::token::TOKEN_VARIABLE;
 use gateway::link::{BoatLink, Link, LinkAddress, LinkEvent, LinkSettings};
@@ -58,17 +60,8 @@ impl Afloat {
 
     /// The command for a gateway whose game has no other node.
     fn command(&self) -> Command {
-        let args = [
-            "gateway",
-            "surveyor",
-            "--vehicle",
-            "blue_one",
-            "--no-record",
-            "--game",
-            self.game,
-            "--link",
-        ];
-        squall(&[&args[..], &[&self.link]].concat())
+        let more = ["--no-record", "--game", self.game];
+        squall(&gateway_args("blue_one", &self.link, &more))
     }
 
     fn tell(&self, command: &str) -> String {
@@ -276,19 +269,9 @@ fn the_guard_stops_a_boat_on_every_kind_of_link_when_its_gateway_is_killed_or_su
     let standby = "$PSEAC,L,0,0,0,*";
     for listen in ["tcp://127.0.0.1:0", "udp://127.0.0.1:0", "pty"] {
         let wire = Wire::listen(listen);
-        let args = [
-            "gateway",
-            "surveyor",
-            "--vehicle",
-            "blue_one",
-            "--no-record",
-            "--game",
-            "nowhere-else",
-            "--link",
-        ];
-        let mut command = squall(&[&args[..], &[&wire.address()]].concat());
-        command.stdout(Stdio::null()).stderr(Stdio::null());
-        let mut gateway = Process::start(command);
+        let more = ["--no-record", "--game", "nowhere-else"];
+        let command = squall(&gateway_args("blue_one", &wire.address(), &more));
+        let mut gateway = Process::quiet(command);
         wire.wait_for(zero, LIMIT);
         wire.wait_for(standby, LIMIT);
         let text = wire.received.visit(|text| text.clone());

@@ -1,7 +1,7 @@
 //! The operator console: stops take every path, and are complete when the boats report them.
 
 use crate::boat_alone::Wire;
-use crate::support::{LIMIT, Process, Sim, printed_by, refused, temporary};
+use crate::support::{LIMIT, Process, Sim, gateway_args, printed_by, refused, temporary};
 use std::io::{BufRead, BufReader, Write};
 use std::net::SocketAddr;
 use std::process::{ExitStatus, Stdio};
@@ -28,21 +28,9 @@ impl Fleet {
             SocketAddr::from(([127, 0, 0, 1], bus::free_port(false).expect("a free port")))
         });
         let gateways = std::array::from_fn(|i| {
-            let args = [
-                "gateway",
-                "surveyor",
-                "--vehicle",
-                BOATS[i],
-                "--no-record",
-                "--control-listen",
-            ];
-            sim.quiet(
-                &[
-                    &args[..],
-                    &[&controls[i].to_string(), "--link", &wires[i].address()],
-                ]
-                .concat(),
-            )
+            let control = controls[i].to_string();
+            let more = ["--no-record", "--control-listen", &control];
+            sim.quiet(&gateway_args(BOATS[i], &wires[i].address(), &more))
         });
         Fleet {
             sim,

@@ -7,8 +7,8 @@
 use crate::boat_alone::tell;
 use crate::proxy::{PASS, Proxy, REFUSE, SWALLOW};
 use crate::support::{
-    LIMIT, Process, Sim, newest, refusal_of, result_of, run, squall, squall_on_a_disk_of, stderr,
-    stdout, temporary, wait_until, wait_within,
+    LIMIT, Process, Sim, gateway_args, newest, refusal_of, result_of, run, squall,
+    squall_on_a_disk_of, stderr, stdout, temporary, wait_until, wait_within,
 };
 use bus::{Bus, Declaration, Watched};
 use messages::external::{GatewayStatus, OperatorCommand, OperatorReply};
@@ -277,16 +277,8 @@ impl Loop {
 
 fn start_gateway(sim: &Sim, port: u16, more: &[&str]) -> Process {
     let link = format!("tcp://127.0.0.1:{port}");
-    let args = [
-        "gateway",
-        "surveyor",
-        "--vehicle",
-        "blue_one",
-        "--link",
-        &link,
-        "--no-record",
-    ];
-    sim.quiet(&[&args[..], more].concat())
+    let more = [&["--no-record"][..], more].concat();
+    sim.quiet(&gateway_args("blue_one", &link, &more))
 }
 
 #[test]
@@ -365,18 +357,7 @@ fn a_gateway_that_cannot_record_exits_with_the_reason_and_leaves_the_boat_alone(
         (&full, 0, "File too large"),
     ] {
         let file = path.display().to_string();
-        let args = [
-            "gateway",
-            "surveyor",
-            "--vehicle",
-            "blue_one",
-            "--game",
-            "nobody",
-            "--link",
-            &link,
-            "--record",
-            &file,
-        ];
+        let args = gateway_args("blue_one", &link, &["--game", "nobody", "--record", &file]);
         let said = refusal_within(LIMIT / 4, squall_on_a_disk_of(blocks, &args));
         assert!(
             said.contains(&format!("cannot record to {file}")) && said.contains(reason),
@@ -402,18 +383,8 @@ fn a_gateway_that_cannot_record_exits_with_the_reason_and_leaves_the_boat_alone(
 fn a_gateway_that_fails_sends_its_boat_standby_first_and_ends() {
     let boat = TcpListener::bind("127.0.0.1:0").expect("a port");
     let link = format!("tcp://{}", boat.local_addr().expect("it is bound"));
-    let args = [
-        "gateway",
-        "surveyor",
-        "--vehicle",
-        "blue_one",
-        "--game",
-        "nobody",
-        "--wait-s",
-        "0.001",
-        "--no-record",
-    ];
-    let said = refusal_within(LIMIT / 4, squall(&[&args[..], &["--link", &link]].concat()));
+    let more = ["--game", "nobody", "--wait-s", "0.001", "--no-record"];
+    let said = refusal_within(LIMIT / 4, squall(&gateway_args("blue_one", &link, &more)));
     assert!(said.contains("no game to join"), "{said}");
     let mut words = String::new();
     boat.accept()

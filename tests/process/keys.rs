@@ -2,8 +2,8 @@
 
 use crate::gateway::assert_no_boat_was_lost;
 use crate::support::{
-    FOUR, LIMIT, Process, Sim, free_endpoint, game_itself, own, printed, printed_by, refusal_of,
-    refused, result_of, squall, temporary, wait_until,
+    FOUR, LIMIT, Process, Sim, free_endpoint, game_itself, gateway_args, own, printed, printed_by,
+    refusal_of, refused, result_of, squall, temporary, wait_until,
 };
 use bus::token::TOKEN_VARIABLE;
 use bus::{BusError, Token};
@@ -111,27 +111,15 @@ fn the_control_port_of_a_gateway_with_keys_has_a_token_of_its_own() {
         .trim_start_matches("tcp/")
         .parse()
         .expect("an address");
-    let gateway = [
-        "gateway",
-        "surveyor",
-        "--vehicle",
-        "blue_one",
-        "--no-record",
-        "--link",
-        &link,
-        "--keys",
-        &of("gateway"),
-    ];
-    let gateway = sim.squall(&[&gateway[..], &["--control-listen", &port.to_string()]].concat());
+    let (keys, control) = (of("gateway"), port.to_string());
+    let more = ["--no-record", "--keys", &keys, "--control-listen", &control];
+    let gateway = sim.squall(&gateway_args("blue_one", &link, &more));
     let _gateway = Process::quiet(without_token(gateway));
     let ask = |token: Option<&Token>, command: OperatorCommand| {
         bus::ask_gateway(
             port,
             token,
-            &GatewayCommand::Boat {
-                name: "blue_one".to_owned(),
-                command,
-            },
+            &GatewayCommand::boat("blue_one", command),
             LIMIT,
         )
     };

@@ -2,7 +2,8 @@
 //! themselves.
 
 use crate::support::{
-    FOUR, LIMIT, Process, Sim, free_endpoint, printed_by, squall, stdout, temporary, wait_until,
+    FOUR, LIMIT, Process, Sim, free_endpoint, gateway_args, printed_by, squall, stdout, temporary,
+    wait_until,
 };
 use bus::token::TOKEN_VARIABLE;
 use bus::{Bus, BusError, Net};
@@ -110,18 +111,8 @@ fn a_game_that_does_not_begin_is_waited_for_longer_than_a_silent_sim() {
 /// A gateway of `blue_one` for a boat that sends nothing.
 fn gateway(user: &User, game: &str, boat: &TcpListener) -> Command {
     let link = format!("tcp://{}", boat.local_addr().expect("it is bound"));
-    let args = [
-        "gateway",
-        "surveyor",
-        "--vehicle",
-        "blue_one",
-        "--game",
-        game,
-        "--link",
-        &link,
-        "--no-record",
-    ];
-    user.squall(&args)
+    let more = ["--game", game, "--no-record"];
+    user.squall(&gateway_args("blue_one", &link, &more))
 }
 
 #[test]

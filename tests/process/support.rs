@@ -39,6 +39,12 @@ pub(crate) fn squall_on_a_disk_of(blocks: u32, args: &[&str]) -> Command {
     shell
 }
 
+/// The arguments for a boat's gateway.
+pub(crate) fn gateway_args<'a>(boat: &'a str, link: &'a str, more: &[&'a str]) -> Vec<&'a str> {
+    let args = ["gateway", "surveyor", "--vehicle", boat, "--link", link];
+    [&args[..], more].concat()
+}
+
 /// The token of all test games.
 pub(crate) fn token() -> Token {
     "0123456789abcdef".repeat(4).parse().expect("64 digits")

@@ -1,4 +1,4 @@
-//! Splits the bytes of a link or payload into lines, per direction.
+//! Splits the bytes of a link into lines, per direction.
 
 /// A line of this length is returned even if it has not ended, bytes: no sentence is that long.
 const LONGEST: usize = 1024;
@@ -6,7 +6,7 @@ const LONGEST: usize = 1024;
 /// A line on a link.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Line {
-    /// Whether it goes to the boat or payload.
+    /// Whether it goes to the boat.
     pub outward: bool,
     /// The line without its line end; anything but printable ASCII is escaped.
     pub text: String,
@@ -47,24 +47,12 @@ impl Lines {
         lines
     }
 
-    /// The incomplete line in one direction, after its last byte.
-    pub fn end(&mut self, outward: bool) -> Option<Line> {
-        line(
-            std::mem::take(&mut self.begun[usize::from(outward)]),
-            outward,
-        )
-    }
-
-    /// Whether no line is incomplete.
-    pub fn is_empty(&self) -> bool {
-        self.begun.iter().all(Vec::is_empty)
-    }
-
     /// The incomplete lines.
-    pub fn rest(mut self) -> Vec<Line> {
-        [false, true]
+    pub fn rest(self) -> Vec<Line> {
+        self.begun
             .into_iter()
-            .filter_map(|outward| self.end(outward))
+            .zip([false, true])
+            .filter_map(|(bytes, outward)| line(bytes, outward))
             .collect()
     }
 }

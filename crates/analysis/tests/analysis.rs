@@ -11,33 +11,45 @@ use primitives::{SimTime, VehicleId};
 use recording::{Bag, Entry, Facts, Header, Kind, Opening, Recording, Writer};
 use std::io::Cursor;
 
+/// A gateway's recording of messages on this topic.
+fn gateway_bag(topic: &str, schema: Option<&'static str>, messages: &[String]) -> Bag {
+    let opening = Opening {
+        kind: Kind::Gateway,
+        began_utc_ns: 0,
+        facts: Facts::new(),
+        more: vec![],
+        teams: vec![],
+    };
+    let mut writer = Writer::begin(Cursor::new(Vec::new()), &opening).expect("it begins");
+    for message in messages {
+        let entry = Entry::Message {
+            topic: topic.to_owned(),
+            schema,
+            bytes: message.clone().into_bytes(),
+            at: SimTime(1),
+        };
+        writer.write(&entry, 1).expect("it is written");
+    }
+    Bag::of(writer.end(Facts::new()).expect("it ends").into_inner()).expect("a recording")
+}
+
+#[test]
+fn a_topic_of_earlier_versions_is_listed_but_has_no_table() {
+    let schema = "squall_msgs/msg/PayloadBytes";
+    let bag = gateway_bag("payload/camera", Some(schema), &["bytes".to_owned()]);
+    assert_eq!(table::topics(&bag), ["payload/camera"]);
+    let refused = table::write(&bag, None, "payload/camera", &mut |_| Ok(()));
+    assert!(refused.is_err_and(|e| e.to_string().contains("has no table")));
+}
+
 #[test]
 fn a_gateways_own_recording_begins_disarmed_and_tells_each_change() {
     let state_after = |changes: &[&str]| {
-        let kind = Kind::Gateway;
-        let facts = Facts::new();
-        let opening = Opening {
-            kind,
-            began_utc_ns: 0,
-            facts,
-            more: vec![],
-            teams: vec![],
+        let event = |to: &&str| {
+            format!("{{\"event\":{{\"state\":{{\"from\":\"disarmed\",\"to\":\"{to}\"}}}}}}")
         };
-        let mut writer = Writer::begin(Cursor::new(Vec::new()), &opening).expect("it begins");
-        for to in changes {
-            let bytes =
-                format!("{{\"event\":{{\"state\":{{\"from\":\"disarmed\",\"to\":\"{to}\"}}}}}}")
-                    .into_bytes();
-            let entry = Entry::Message {
-                topic: "event".to_owned(),
-                schema: None,
-                bytes,
-                at: SimTime(1),
-            };
-            writer.write(&entry, 1).expect("it is written");
-        }
-        let bytes = writer.end(Facts::new()).expect("it ends").into_inner();
-        let gateway = gateway_of(&Bag::of(bytes).expect("a recording"), "blue_one");
+        let events: Vec<String> = changes.iter().map(event).collect();
+        let gateway = gateway_of(&gateway_bag("event", None, &events), "blue_one");
         (
             gateway.state.expect("it begins disarmed"),
             gateway.failsafes,

@@ -216,6 +216,17 @@ pub enum GatewayCommand {
 }
 
 impl GatewayCommand {
+    /// A command for the boat with this name.
+    pub fn boat(name: &str, command: OperatorCommand) -> GatewayCommand {
+        let name = name.to_owned();
+        GatewayCommand::Boat { name, command }
+    }
+
+    /// Whether it only queries a boat's status.
+    pub fn is_status(&self) -> bool {
+        matches!(self, GatewayCommand::Boat { command, .. } if *command == OperatorCommand::Status)
+    }
+
     /// Whether the command requires the game's token.
     pub fn needs_token(&self) -> bool {
         match self {

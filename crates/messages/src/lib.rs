@@ -8,7 +8,6 @@ pub mod external;
 pub mod helm;
 pub mod input;
 pub mod order;
-pub mod payload;
 pub mod picture;
 pub mod refusal;
 pub mod ros;

@@ -1,7 +1,7 @@
 //! The `.msg` definitions, with which tools decode our messages.
 
 /// Name and text of every definition, by name.
-pub const DEFINITIONS: [(&str, &str); 22] = [
+pub const DEFINITIONS: [(&str, &str); 21] = [
     ("Contact", include_str!("../msg/Contact.msg")),
     ("EventRecord", include_str!("../msg/EventRecord.msg")),
     ("ExternalOrder", include_str!("../msg/ExternalOrder.msg")),
@@ -15,7 +15,6 @@ pub const DEFINITIONS: [(&str, &str); 22] = [
     ("NavReport", include_str!("../msg/NavReport.msg")),
     ("Orders", include_str!("../msg/Orders.msg")),
     ("OwnBoat", include_str!("../msg/OwnBoat.msg")),
-    ("PayloadBytes", include_str!("../msg/PayloadBytes.msg")),
     ("Picture", include_str!("../msg/Picture.msg")),
     ("PolicyProposal", include_str!("../msg/PolicyProposal.msg")),
     ("Say", include_str!("../msg/Say.msg")),

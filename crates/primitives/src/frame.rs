@@ -129,6 +129,12 @@ impl Ned {
         math::atan2(other.east - self.east, other.north - self.north)
     }
 
+    /// The direction of this vector, clockwise from north, rad.
+    #[inline]
+    pub fn direction_rad(self) -> f64 {
+        math::atan2(self.east, self.north)
+    }
+
     /// Whether both components are finite.
     #[inline]
     pub fn is_finite(self) -> bool {

@@ -14,8 +14,6 @@
 //! |---|---|---|
 //! | `link/<boat>` | every byte of the link, both ways | message |
 //! | `input`, `event` | all other inputs of the gateway, and its events | JSON |
-//! | `payload/<name>` | every byte between a payload of the boat and its clients, both ways | message |
-//! | `values/<name>` | decoded measurements of a sensor among the payloads | JSON |
 //!
 //! All messages are CDR, as the profile `ros2` demands: either one of ours, or a JSON object as the
 //! text of a `std_msgs/msg/String`. `log_time` is the time of the game or of the gateway's clock,
@@ -45,7 +43,7 @@ pub use bag::{Bag, RecordedMessage, RecordingError};
 pub use damaged::Damaged;
 pub use game_recording::{Ending, FRAME, Header, INPUTS, Recording, picture};
 pub use new_file::{LentFile, NewFile, stem};
-pub use recorder::{BulkRecorder, Recorder};
+pub use recorder::Recorder;
 pub use writer::{Decision, Entry, Opening, Writer};
 
 use std::collections::BTreeMap;

@@ -27,23 +27,12 @@ const WAITING: usize = 1 << 14;
 /// Writes a recording on its own thread. Dropping it completes the file without a result.
 pub struct Recorder {
     path: PathBuf,
-    queue: Queue,
-    /// None after the end.
-    thread: Option<JoinHandle<()>>,
-}
-
-/// Records optional data, such as camera images, with at most half of the queue, so that the rest
-/// fits even on a slow disk.
-#[derive(Clone)]
-pub struct BulkRecorder(Queue);
-
-/// The queue to the thread.
-#[derive(Clone)]
-struct Queue {
     jobs: SyncSender<Job>,
     /// Limit of waiting data, bytes.
     waiting_max: usize,
     shared: Arc<Shared>,
+    /// None after the end.
+    thread: Option<JoinHandle<()>>,
 }
 
 enum Job {
@@ -55,9 +44,7 @@ enum Job {
 struct Shared {
     bytes: AtomicU64,
     dropped: AtomicU64,
-    bulk_dropped: AtomicU64,
-    /// Number and size of waiting entries.
-    waiting: AtomicUsize,
+    /// Size of waiting entries.
     waiting_bytes: AtomicUsize,
     failed: OnceLock<String>,
 }
@@ -94,12 +81,8 @@ impl Recorder {
     ) -> Result<Recorder, RecordError> {
         let writer = Writer::begin(file, opening)?;
         let (sender, jobs) = sync_channel(WAITING);
-        let queue = Queue {
-            jobs: sender,
-            waiting_max,
-            shared: Arc::default(),
-        };
-        let theirs = Arc::clone(&queue.shared);
+        let shared = Arc::<Shared>::default();
+        let theirs = Arc::clone(&shared);
         let size_of = path.clone();
         let thread = std::thread::Builder::new().name("recorder".to_owned());
         // In the sim's process instead of an observer on the network, which the sim would have to
@@ -108,37 +91,34 @@ impl Recorder {
         let thread = thread.spawn(move || write(writer, &jobs, &theirs, &size_of))?;
         Ok(Recorder {
             path,
-            queue,
+            jobs: sender,
+            waiting_max,
+            shared,
             thread: Some(thread),
         })
     }
 
     /// Records an entry; drops and counts it if the disk is too slow.
     pub fn record(&self, entry: Entry) {
-        let is_taken = self.queue.offer(entry, WAITING, self.queue.waiting_max);
-        self.queue
-            .shared
-            .dropped
-            .fetch_add(u64::from(!is_taken), Ordering::Relaxed);
-    }
-
-    /// A recorder of optional data into the same file, valid as long as this recorder exists.
-    pub fn bulk(&self) -> BulkRecorder {
-        BulkRecorder(self.queue.clone())
-    }
-
-    /// The number of entries dropped by its [`BulkRecorder`]s.
-    pub fn bulk_dropped(&self) -> u64 {
-        self.queue.shared.bulk_dropped.load(Ordering::Relaxed)
+        let size = entry.size();
+        let bytes = self.shared.waiting_bytes.fetch_add(size, Ordering::Relaxed) + size;
+        // Entries that the disk is too slow for are dropped and counted, so they never delay a
+        // game. `--check` names the gaps and does not mistake them for divergence.
+        let has_room = bytes <= self.waiting_max;
+        let is_taken = has_room && self.jobs.try_send(Job::Write(entry, utc::now_ns())).is_ok();
+        if !is_taken {
+            self.shared.written(size);
+            self.shared.dropped.fetch_add(1, Ordering::Relaxed);
+        }
     }
 
     /// The state of the recording.
     pub fn state(&self) -> RecordingState {
         RecordingState {
             file: self.path.display().to_string(),
-            bytes: self.queue.shared.bytes.load(Ordering::Relaxed),
-            dropped: self.queue.shared.dropped.load(Ordering::Relaxed),
-            failed: self.queue.shared.failed.get().cloned(),
+            bytes: self.shared.bytes.load(Ordering::Relaxed),
+            dropped: self.shared.dropped.load(Ordering::Relaxed),
+            failed: self.shared.failed.get().cloned(),
         }
     }
 
@@ -147,26 +127,21 @@ impl Recorder {
     pub fn end(mut self, mut result: Facts) -> RecordingState {
         result.insert(
             "dropped".to_owned(),
-            self.queue
-                .shared
-                .dropped
-                .load(Ordering::Relaxed)
-                .to_string(),
+            self.shared.dropped.load(Ordering::Relaxed).to_string(),
         );
         self.complete(result);
         self.state()
     }
 
-    /// Completes the file, once. Later entries of bulk recorders are dropped.
+    /// Completes the file, once.
     fn complete(&mut self, result: Facts) {
         let Some(thread) = self.thread.take() else {
             return;
         };
         // If the thread has ended, it has already reported the reason.
-        drop(self.queue.jobs.send(Job::End(result)));
+        drop(self.jobs.send(Job::End(result)));
         if thread.join().is_err() {
-            self.queue
-                .shared
+            self.shared
                 .failed
                 .get_or_init(|| "its thread panicked".to_owned());
         }
@@ -179,38 +154,9 @@ impl Drop for Recorder {
     }
 }
 
-impl BulkRecorder {
-    /// Records an entry; drops and counts it if half of the queue is full.
-    pub fn record(&self, entry: Entry) {
-        let is_taken = self.0.offer(entry, WAITING / 2, self.0.waiting_max / 2);
-        self.0
-            .shared
-            .bulk_dropped
-            .fetch_add(u64::from(!is_taken), Ordering::Relaxed);
-    }
-}
-
-impl Queue {
-    /// Queues an entry if the queue then stays within these limits; returns whether it did.
-    fn offer(&self, entry: Entry, entries_max: usize, bytes_max: usize) -> bool {
-        let size = entry.size();
-        let bytes = self.shared.waiting_bytes.fetch_add(size, Ordering::Relaxed) + size;
-        let entries = self.shared.waiting.fetch_add(1, Ordering::Relaxed) + 1;
-        // Entries that the disk is too slow for are dropped and counted, so they never delay a
-        // game. `--check` names the gaps and does not mistake them for divergence.
-        let has_room = entries <= entries_max && bytes <= bytes_max;
-        let is_taken = has_room && self.jobs.try_send(Job::Write(entry, utc::now_ns())).is_ok();
-        if !is_taken {
-            self.shared.written(size);
-        }
-        is_taken
-    }
-}
-
 impl Shared {
     /// Removes an entry of this size from the count of waiting data.
     fn written(&self, size: usize) {
-        self.waiting.fetch_sub(1, Ordering::Relaxed);
         self.waiting_bytes.fetch_sub(size, Ordering::Relaxed);
     }
 }
@@ -392,43 +338,6 @@ mod tests {
         );
         for topic in [FRAME, INPUTS] {
             assert_eq!(bag.on(topic).count() + 3, recorded as usize, "{topic}");
-        }
-    }
-
-    fn message(topic: &str, size: usize) -> Entry {
-        Entry::Message {
-            topic: topic.to_owned(),
-            schema: None,
-            bytes: vec![b'1'; size],
-            at: SimTime::ZERO,
-        }
-    }
-
-    #[test]
-    fn bulk_leaves_room_for_everything_else_and_the_file_is_completed_though_somebody_still_records_bulk()
-     {
-        for (size, waiting_max) in [(1000, 100_000), (1, WAITING_BYTES)] {
-            let disk = Disk::of(usize::MAX);
-            let recorder = Recorder::over(disk.clone(), PathBuf::new(), &opening(), waiting_max)
-                .expect("it begins");
-            let stuck = disk.0.lock().expect("nobody panics");
-            let bulk = recorder.bulk();
-            while recorder.bulk_dropped() < 1000 {
-                bulk.record(message("payload/camera", size));
-            }
-            (0..40).for_each(|_| recorder.record(message("link/blue_one", size)));
-            assert_eq!(recorder.state().dropped, 0, "pieces of {size} bytes");
-            drop(stuck);
-            assert_eq!(recorder.end(Facts::new()).failed, None);
-            bulk.record(message("payload/camera", size));
-            let bag = Bag::of(disk.0.lock().expect("nobody panics").get_ref().clone())
-                .expect("a recording");
-            assert_eq!(
-                (bag.on("link/blue_one").count(), bag.is_cut),
-                (40, false),
-                "pieces of {size} bytes"
-            );
-            assert!(bag.on("payload/camera").count() > 40);
         }
     }
 }

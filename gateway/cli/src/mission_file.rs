@@ -149,15 +149,12 @@ impl Lines {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// A mission line with its checksum.
-    fn line(body: &str) -> String {
-        format!("${body}*{:02X}\r\n", checksum(body.as_bytes()))
-    }
+    use gateway::nmea::with_checksum;
 
     fn mission() -> Vec<String> {
-        let places = (0..3).map(|i| line(&format!("OIWPL,2545.491{i},N,08022.4373,W,{i}")));
-        std::iter::once(line("PSEAR,0,000,20,0,000"))
+        let places =
+            (0..3).map(|i| with_checksum(&format!("OIWPL,2545.491{i},N,08022.4373,W,{i}")));
+        std::iter::once(with_checksum("PSEAR,0,000,20,0,000"))
             .chain(places)
             .collect()
     }
@@ -165,9 +162,9 @@ mod tests {
     #[test]
     fn missions_load_with_and_without_the_commands_about_them() {
         let commands = [
-            line("PSEAC,F,4,000,000,"),
-            line("PSEAC,F,000,000,000"),
-            line("PSEAC,W,0,0,0,"),
+            with_checksum("PSEAC,F,4,000,000,"),
+            with_checksum("PSEAC,F,000,000,000"),
+            with_checksum("PSEAC,W,0,0,0,"),
         ];
         let [start, end, go] = &commands;
         let whole = format!("{start}{}{end}{go}", mission().concat());
@@ -209,27 +206,27 @@ mod tests {
                 "does not end with *",
             ),
             (
-                with(3, &line("OIWPL,2545.4912,N,08022.4373,W,3")),
+                with(3, &with_checksum("OIWPL,2545.4912,N,08022.4373,W,3")),
                 Some(4),
                 "waypoint 3, expected 2",
             ),
             (
-                with(2, &line("OIWPL,2545.4912,X,08022.4373,W,1")),
+                with(2, &with_checksum("OIWPL,2545.4912,X,08022.4373,W,1")),
                 Some(3),
                 "",
             ),
             (
-                with(2, &line("PSEAC,T,0,20,0,")),
+                with(2, &with_checksum("PSEAC,T,0,20,0,")),
                 Some(3),
                 "unexpected sentence",
             ),
             (
-                with(2, &line("PSEAR,0,000,20,0,000")),
+                with(2, &with_checksum("PSEAR,0,000,20,0,000")),
                 Some(3),
                 "a second PSEAR",
             ),
             (
-                line("PSEAC,F,3,000,000,") + &lines.concat(),
+                with_checksum("PSEAC,F,3,000,000,") + &lines.concat(),
                 Some(1),
                 "3 lines of PSEAR and OIWPL are announced, but the file has 4",
             ),

@@ -130,10 +130,7 @@ fn stopped_by_its_gateway(address: &LinkAddress) -> bool {
     else {
         return false;
     };
-    let command = GatewayCommand::Boat {
-        name: entry.vehicle.clone(),
-        command: OperatorCommand::EStop,
-    };
+    let command = GatewayCommand::boat(&entry.vehicle, OperatorCommand::EStop);
     match ask_gateway(entry.control, None, &command, ANSWER) {
         Ok(reply) if reply.refused.is_none() && reply.status.link == "up" => {
             terminal::print(&format!(

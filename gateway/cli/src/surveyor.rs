@@ -4,8 +4,7 @@ use super::log_line::{Log, full};
 use super::{guard, preflight_report};
 use crate::link_arg::to_connect;
 use anyhow::{Context, Result};
-use bus::{Registration, Token};
-use command_line::explain::UsageError;
+use bus::{GatewayEntry, Registration, Token};
 use command_line::leaf_args::LeafArgs;
 use command_line::number::{address, seconds};
 use command_line::{program, stop};
@@ -13,7 +12,6 @@ use gateway::bridge::{Plan, Preflight};
 use gateway::config::Gateway;
 use gateway::link::LinkAddress;
 use gateway::node::{NodeEvent, Outside, Settings, on_enter};
-use gateway::payload::PayloadPort;
 use messages::external::{GatewayCommand, OperatorCommand};
 use recording::{NewFile, utc};
 use std::io::IsTerminal;
@@ -34,11 +32,6 @@ pub struct Args {
     /// serial:///dev/ttyUSB0?baud=38400 (4800 to 921600 baud)
     #[arg(long, value_name = "URL", value_parser = to_connect)]
     link: LinkAddress,
-    /// Payload to forward and record, for example camera=tcp://192.168.1.23:5001; append
-    /// ,listen=HOST:PORT for the address that serves it, and ,exo2 or ,exo2=http to record the
-    /// values of an EXO2 sonde; repeatable
-    #[arg(long, value_name = "NAME=URL", conflicts_with = "at_game_pace")]
-    payload: Vec<PayloadPort>,
     /// Address and port on this machine for operator commands, with or without a game; port 0
     /// selects a free port
     #[arg(long, value_name = "HOST:PORT", default_value = "127.0.0.1:0", value_parser = control_address)]
@@ -84,7 +77,6 @@ pub struct Args {
 pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
     let link = args.link.clone();
     let gateway = super::gateway_file(args.config.as_deref())?;
-    PayloadPort::check(&args.payload).map_err(|e| UsageError(format!("--payload: {e}")))?;
     let preflight = preflight(args, &link, &gateway)?;
     let stop = stop::on_ctrl_c_or_parent(args.for_parent)?;
     let record = recording(args)?;
@@ -119,13 +111,11 @@ pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
     } else {
         Some(guard::own_command()?)
     };
-    let payloads = args.payload.clone();
     let outside = Outside {
         link,
         silence,
         control: args.control_listen,
         guard,
-        payloads,
     };
     let mut last = String::new();
     let mut registration = None::<Registration>;
@@ -134,44 +124,22 @@ pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
             log.remark(format!("{}: looking for the game: {reason}", args.vehicle))
         }
         NodeEvent::Recording(file) => log.remark(format!("recording to {}", file.display())),
-        NodeEvent::Listening { what, reach } => log.remark(format!("{what} at {reach}")),
+        // Only emulated boats have other ports.
+        NodeEvent::Listening { .. } => {}
         NodeEvent::ControlPort {
             address: control,
             token,
         } => {
-            let vehicle = args.vehicle.clone();
-            let pid = std::process::id();
-            let token = token.as_ref().map(Token::hex);
-            let entry = bus::GatewayEntry {
-                vehicle,
+            let entry = GatewayEntry {
+                vehicle: args.vehicle.clone(),
                 game: game.clone(),
                 control,
-                pid,
-                token,
+                pid: std::process::id(),
+                token: token.as_ref().map(Token::hex),
             };
-            // If registration fails, operators must be given the address; nothing else is lost.
-            if let Some(registration) = &registration {
-                drop(registration.update(&entry));
-                return;
-            }
-            match bus::register_gateway(&entry) {
-                Ok(registered) => registration = Some(registered),
-                Err(error) => log.remark(format!(
-                    "operators on this machine need the address: {error}"
-                )),
-            }
-            log.remark(format!(
-                "operators reach this gateway at {control}, with or without a game"
-            ));
-            if !args.for_parent && std::io::stdin().is_terminal() {
-                log.remark("press Enter in this terminal for an E-stop of this boat".to_owned());
-                let stop = OperatorCommand::EStop;
-                let stop = GatewayCommand::Boat {
-                    name: args.vehicle.clone(),
-                    command: stop,
-                };
-                // The log shows whether the command was carried out.
-                on_enter(move || drop(bus::ask_gateway(control, None, &stop, KEY_ANSWER)));
+            match &registration {
+                Some(registration) => drop(registration.update(&entry)),
+                None => registration = announce(&entry, args.for_parent, &log),
             }
         }
         NodeEvent::Event { at_s, event } => log.event(at_s, event),
@@ -183,6 +151,27 @@ pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
     log.end(last);
     served.with_context(|| format!("the gateway of {}", args.vehicle))?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// Registers a gateway for operators on this machine, and tells them how to reach it.
+fn announce(entry: &GatewayEntry, for_parent: bool, log: &Log) -> Option<Registration> {
+    // If registration fails, operators must be given the address; nothing else is lost.
+    let registered = bus::register_gateway(entry).inspect_err(|error| {
+        log.remark(format!(
+            "operators on this machine need the address: {error}"
+        ));
+    });
+    let control = entry.control;
+    log.remark(format!(
+        "operators reach this gateway at {control}, with or without a game"
+    ));
+    if !for_parent && std::io::stdin().is_terminal() {
+        log.remark("press Enter in this terminal for an E-stop of this boat".to_owned());
+        let stop = GatewayCommand::boat(&entry.vehicle, OperatorCommand::EStop);
+        // The log shows whether the command was carried out.
+        on_enter(move || drop(bus::ask_gateway(control, None, &stop, KEY_ANSWER)));
+    }
+    registered.ok()
 }
 
 /// Parses the address of the control port, which other machines must be able to use.

@@ -213,10 +213,7 @@ fn ports_meant(args: &Args) -> Result<Vec<Port>> {
 fn tell(args: &Args, command: &OperatorCommand) -> Result<OperatorReply> {
     let vehicle = &args.words.vehicle;
     if let Some(port) = ports_meant(args)?.first() {
-        match port.ask(&GatewayCommand::Boat {
-            name: vehicle.clone(),
-            command: command.clone(),
-        }) {
+        match port.ask(&GatewayCommand::boat(vehicle, command.clone())) {
             // That gateway may be ending; its successor is found through the game.
             Err(error @ BusError::Use { .. }) if args.gateway.is_none() => {
                 terminal::remark(&error.to_string())
@@ -252,12 +249,7 @@ pub(super) fn to_boat(
     let port = ports
         .iter()
         .find(|port| port.vehicle.as_deref() == Some(vehicle));
-    let asked = port.map(|port| {
-        port.ask(&GatewayCommand::Boat {
-            name: vehicle.to_owned(),
-            command: command.clone(),
-        })
-    });
+    let asked = port.map(|port| port.ask(&GatewayCommand::boat(vehicle, command.clone())));
     match (asked, game) {
         (Some(Ok(reply)), _) => Ok(reply),
         (None | Some(Err(BusError::Use { .. })), Some((bus, game))) => {
@@ -422,11 +414,8 @@ fn tell_all(args: &Args) -> Result<ExitCode> {
     for port in ports {
         let sender = sender.clone();
         std::thread::spawn(move || {
-            let name = port.vehicle.clone().unwrap_or_default();
-            let status = GatewayCommand::Boat {
-                name,
-                command: OperatorCommand::Status,
-            };
+            let name = port.vehicle.as_deref().unwrap_or_default();
+            let status = GatewayCommand::boat(name, OperatorCommand::Status);
             let reply = port.ask(&fleet.map_or(status, GatewayCommand::Fleet));
             drop(sender.send(Outcome::of(reply)));
         });

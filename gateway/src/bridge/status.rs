@@ -2,7 +2,7 @@
 
 use super::Bridge;
 use crate::nmea::Operator;
-use crate::protocol::Command;
+use crate::protocol::{Command, named};
 use crate::supervisor::{Cause, State};
 use messages::external::GatewayStatus;
 use primitives::SimTime;
@@ -85,17 +85,14 @@ impl Bridge {
     fn counts(&self) -> Vec<(String, u64)> {
         let counters = &self.counters;
         let [received, unknown] = self.protocol.counts();
-        let known = [
+        let known = named([
             ("orders", counters.orders),
             ("bad orders", counters.bad_orders),
             ("old orders", counters.old_orders),
             ("orders ahead of the game", counters.orders_ahead),
             ("commands out", counters.sent),
-        ];
-        let known = known
-            .into_iter()
-            .map(|(name, count)| (name.to_owned(), count));
-        received.into_iter().chain(known).chain(unknown).collect()
+        ]);
+        [received, known, unknown].concat()
     }
 }
 

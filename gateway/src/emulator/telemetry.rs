@@ -7,7 +7,7 @@ use crate::nmea::{
 };
 use messages::picture::{Imu, Nav};
 use primitives::angle::compass_deg_from_rad;
-use primitives::{LatLon, SimTime, math};
+use primitives::{LatLon, SimTime};
 
 /// Below this speed a receiver reports no course, m/s.
 const COURSE_FROM_M_S: f64 = 0.1;
@@ -76,8 +76,7 @@ impl FixReport {
             psi_rad: nav.psi_rad,
             // Blank, not zero: a reader that takes a missing course for north would get the
             // velocity of a boat at rest wrong.
-            course_rad: (speed_m_s >= COURSE_FROM_M_S)
-                .then(|| math::atan2(velocity.east, velocity.north)),
+            course_rad: (speed_m_s >= COURSE_FROM_M_S).then(|| velocity.direction_rad()),
             speed_m_s,
         }
     }

@@ -1,6 +1,6 @@
 //! Predicts how a boat coasts to rest with zero thrust, from its boat file or measured distances.
 
-use primitives::frame::Ned;
+use primitives::frame::{Ned, Rotation};
 use primitives::{SimTime, math};
 use scenario::boat::{Boat, Drive};
 use serde::{Deserialize, Serialize};
@@ -157,7 +157,7 @@ impl Coasting {
         } = *glide;
         let mut speed_m_s = water_m_s.length();
         let mut thrust_m_s = glide.thrust_m_s.min(self.speed_max_m_s);
-        let course_rad = math::atan2(water_m_s.east, water_m_s.north);
+        let course_rad = water_m_s.direction_rad();
         let until_fall_s = reaction_s + self.lag_s;
         let mut at = Ned::default();
         let mut t_s = 0.0_f64;
@@ -167,15 +167,8 @@ impl Coasting {
                 + self.yaw_s
                     * (1.0 - math::exp((reaction_s - t_s).min(0.0) / self.yaw_s.max(1e-6)));
             let turned_rad = (yaw_rate_rad_s * turned_s).clamp(-TURN_MAX_RAD, TURN_MAX_RAD);
-            let (sin, cos) = math::sin_cos(course_rad + turned_rad);
-            at = at
-                + (Ned {
-                    north: cos,
-                    east: sin,
-                }
-                .scaled(speed_m_s)
-                    + drift_m_s)
-                    .scaled(STEP_S);
+            let ahead = Rotation::from_heading(course_rad + turned_rad).ahead();
+            at = at + (ahead.scaled(speed_m_s) + drift_m_s).scaled(STEP_S);
             t_s += STEP_S;
             if t_s > until_fall_s {
                 thrust_m_s = self.fallen_thrust(thrust_m_s, 0.0, STEP_S);
@@ -192,12 +185,7 @@ impl Coasting {
             let is_over =
                 is_at_rest && (t_s >= DRIFT_S || drift_m_s == Ned::default()) || t_s >= LONGEST_S;
             if is_over {
-                at = at
-                    + Ned {
-                        north: cos,
-                        east: sin,
-                    }
-                    .scaled(self.tail_m(speed_m_s));
+                at = at + ahead.scaled(self.tail_m(speed_m_s));
             }
             if is_over || step % STEPS_PER_LEG == 0 {
                 let slack_m = if drift_m_s == Ned::default() {
@@ -273,25 +261,18 @@ impl DriftEstimate {
         ordered_m_s: f64,
         (psi_rad, velocity_m_s): (f64, Ned),
     ) {
-        let (sin, cos) = math::sin_cos(psi_rad);
-        let ahead = Ned {
-            north: cos,
-            east: sin,
-        };
+        let ahead = Rotation::from_heading(psi_rad).ahead();
         let Some(at) = self
             .at
             .replace(now)
             .filter(|at| (now - *at).as_s() <= GAP_MAX_S)
         else {
-            let surge_m_s = velocity_m_s.dot(ahead);
-            let thrust_m_s = ordered_m_s;
-            let drift_m_s = Ned::default();
             *self = DriftEstimate {
                 at: Some(now),
                 lasted_s: 0.0,
-                surge_m_s,
-                thrust_m_s,
-                drift_m_s,
+                surge_m_s: velocity_m_s.dot(ahead),
+                thrust_m_s: ordered_m_s,
+                drift_m_s: Ned::default(),
             };
             return;
         };

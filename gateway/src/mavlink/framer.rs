@@ -101,11 +101,9 @@ impl Layout {
         match *bytes {
             [MAV_STX, len, _, system, component, id, ..] => {
                 let end = 6 + usize::from(len);
-                let version = MavlinkVersion::V1;
-                let id = u32::from(id);
                 Ok(Some(Layout {
-                    version,
-                    id,
+                    version: MavlinkVersion::V1,
+                    id: u32::from(id),
                     system,
                     component,
                     payload: (6, end),
@@ -117,11 +115,9 @@ impl Layout {
             [MAV_STX_V2, len, flags, _, _, system, component, a, b, c, ..] => {
                 let end = 10 + usize::from(len);
                 let signature = if flags & SIGNED == 0 { 0 } else { SIGNATURE };
-                let version = MavlinkVersion::V2;
-                let id = u32::from_le_bytes([a, b, c, 0]);
                 Ok(Some(Layout {
-                    version,
-                    id,
+                    version: MavlinkVersion::V2,
+                    id: u32::from_le_bytes([a, b, c, 0]),
                     system,
                     component,
                     payload: (10, end),

@@ -4,7 +4,6 @@ use super::date_time::{Date, TimeOfDay};
 use super::mode::Mode;
 use super::operator::Operator;
 use super::talker::Talker;
-use super::wind::{SpeedUnit, WindReference};
 use primitives::LatLon;
 
 /// The fields of a sentence.
@@ -50,9 +49,7 @@ pub(super) enum Field<'a> {
     Mode(&'a mut Mode),
     /// An optional operator number.
     Operator(&'a mut Option<Operator>),
-    /// `A` for valid data, `V` for invalid data.
-    Valid(&'a mut bool),
-    /// The same for a fix, whose mode indicator comes this many fields later.
+    /// `A` for a valid fix, `V` for an invalid one; its mode indicator comes this many fields later.
     ValidFix(&'a mut bool, usize),
     /// An optional time `hhmmss.ss`.
     Time(&'a mut Option<TimeOfDay>),
@@ -64,13 +61,6 @@ pub(super) enum Field<'a> {
     Position(&'a mut Option<LatLon>, u32),
     /// Four fields: a required position, with this many decimals of minutes.
     Place(&'a mut LatLon, u32),
-    /// `R` or `T`.
-    WindReference(&'a mut WindReference),
-    /// Two fields: a speed, m/s, in the unit whose letter follows.
-    WindSpeed(&'a mut Option<f64>, &'a mut SpeedUnit),
-    /// Four fields: one speed in knots and again in km/h. The km/h field is read if the knots are
-    /// missing.
-    KnotsAndKmH(&'a mut Option<f64>),
 }
 
 /// The format of a number.

@@ -21,7 +21,6 @@ mod reader;
 mod standard;
 mod surveyor;
 mod talker;
-mod wind;
 mod writer;
 
 pub use date_time::{Date, TimeOfDay, date_and_time};
@@ -29,17 +28,19 @@ pub use fix_quality::FixQuality;
 pub use framer::{ACCEPTED_MAX, Counts, Framer, Rejected};
 pub use mode::Mode;
 pub use operator::Operator;
-pub use standard::{Gga, Gll, Hdg, Hdt, Mwv, Rmc, Vhw, Vtg, Zda};
+pub use standard::{Gga, Hdg, Hdt, Rmc, Vtg, Zda};
 pub use surveyor::{
     Attitude, Battery, BoatError, Command, ControlState, MissionSettings, Waypoint,
 };
 pub use talker::Talker;
-pub use wind::{M_S_PER_KN, SpeedUnit, WindReference};
 
 use layout::Layout;
 use reader::Reader;
 use thiserror::Error;
 use writer::Writer;
+
+/// A knot, m/s.
+pub const M_S_PER_KN: f64 = 1852.0 / 3600.0;
 
 /// Maximum bytes of a sentence written, with `$` and CR LF (NMEA 0183 v3.01, 5.3).
 pub const EMITTED_MAX: usize = 82;
@@ -73,12 +74,6 @@ pub enum Sentence {
     Hdg(Hdg),
     /// `ZDA`: time and date.
     Zda(Zda),
-    /// `GLL`: a position.
-    Gll(Gll),
-    /// `MWV`: wind.
-    Mwv(Mwv),
-    /// `VHW`: heading, and speed through the water.
-    Vhw(Vhw),
 }
 
 /// Why this codec rejects a body.
@@ -169,9 +164,6 @@ impl Sentence {
                 (_, "HDT") => Sentence::Hdt(Hdt::default()),
                 (_, "HDG") => Sentence::Hdg(Hdg::default()),
                 (_, "ZDA") => Sentence::Zda(Zda::default()),
-                (_, "GLL") => Sentence::Gll(Gll::default()),
-                (_, "MWV") => Sentence::Mwv(Mwv::default()),
-                (_, "VHW") => Sentence::Vhw(Vhw::default()),
                 _ => return None,
             },
         )
@@ -192,11 +184,13 @@ impl Sentence {
             Sentence::Hdt(hdt) => hdt.layout(),
             Sentence::Hdg(hdg) => hdg.layout(),
             Sentence::Zda(zda) => zda.layout(),
-            Sentence::Gll(gll) => gll.layout(),
-            Sentence::Mwv(mwv) => mwv.layout(),
-            Sentence::Vhw(vhw) => vhw.layout(),
         }
     }
+}
+
+/// A body as a sentence: `$body*HH\r\n`.
+pub fn with_checksum(body: &str) -> String {
+    format!("${body}*{:02X}\r\n", checksum(body.as_bytes()))
 }
 
 /// The exclusive or of all bytes of a body.

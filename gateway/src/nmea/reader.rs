@@ -8,7 +8,6 @@ use super::number::number;
 use super::operator::Operator;
 use super::position::{Axis, LATITUDE, LONGITUDE};
 use super::talker::Talker;
-use super::wind::{KNOT_KM_H, SpeedUnit, WindReference};
 use primitives::LatLon;
 use std::str::FromStr;
 
@@ -80,7 +79,6 @@ impl<'a> Reader<'a> {
             Field::Letter(letter) => *letter = self.next().chars().next(),
             Field::Mode(mode) => *mode = self.mode()?,
             Field::Operator(operator) => *operator = self.whole()?.map(Operator::from_number),
-            Field::Valid(valid) => *valid = self.valid()?,
             // Receivers mark dead reckoning and manual input as valid, just like a fix.
             Field::ValidFix(valid, ahead) => {
                 *valid = self.valid()? && !matches!(self.peek(ahead), "E" | "M" | "S" | "N");
@@ -97,9 +95,6 @@ impl<'a> Reader<'a> {
                     .position()?
                     .ok_or_else(|| self.wrong_at(latitude, "a latitude"))?;
             }
-            Field::WindReference(reference) => *reference = self.wind_reference()?,
-            Field::WindSpeed(speed_m_s, unit) => self.wind_speed(speed_m_s, unit)?,
-            Field::KnotsAndKmH(speed_kn) => *speed_kn = self.knots_or_km_h()?,
         }
         Ok(())
     }
@@ -225,39 +220,6 @@ impl<'a> Reader<'a> {
             (Some(size), "") if size == 0.0 => Ok(Some(size)),
             _ => Err(self.wrong("E or W")),
         }
-    }
-
-    fn wind_reference(&mut self) -> Result<WindReference, ParseError> {
-        match self.next() {
-            "R" => Ok(WindReference::Relative),
-            "T" => Ok(WindReference::Theoretical),
-            _ => Err(self.wrong("R or T")),
-        }
-    }
-
-    fn wind_speed(
-        &mut self,
-        speed_m_s: &mut Option<f64>,
-        unit: &mut SpeedUnit,
-    ) -> Result<(), ParseError> {
-        let speed = self.number()?;
-        let letter = self.next();
-        *unit = match (SpeedUnit::from_letter(letter), speed) {
-            (Some(unit), _) => unit,
-            // Without a speed, the unit does not matter.
-            (None, None) if letter.is_empty() => SpeedUnit::MetresPerSecond,
-            _ => return Err(self.wrong("K, M, N or S")),
-        };
-        *speed_m_s = speed.map(|speed| speed * unit.m_s());
-        Ok(())
-    }
-
-    fn knots_or_km_h(&mut self) -> Result<Option<f64>, ParseError> {
-        let speed_kn = self.number()?;
-        self.unit("N")?;
-        let speed_km_h = self.number()?;
-        self.unit("K")?;
-        Ok(speed_kn.or(speed_km_h.map(|speed_km_h| speed_km_h / KNOT_KM_H)))
     }
 
     /// The error that the field that was taken last is not what was `expected`.

@@ -1,9 +1,8 @@
-//! Sentences of the NMEA 0183 standard: fixes, headings, wind.
+//! Sentences of the NMEA 0183 standard: fixes, headings, time.
 
 use super::date_time::{Date, TimeOfDay};
 use super::layout::{COMPASS, Field, HUNDREDTHS, Layout, TENTHS};
 use super::talker::Talker;
-use super::wind::{SpeedUnit, WindReference};
 use primitives::LatLon;
 
 /// `GGA`, a fix: time, position and quality.
@@ -214,101 +213,6 @@ impl Zda {
         ];
         Layout {
             fields_min: 4,
-            fields,
-        }
-    }
-}
-
-/// `GLL`, a position and its time.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Gll {
-    /// The sender.
-    pub talker: Talker,
-    /// Position of the antenna.
-    pub at: Option<LatLon>,
-    /// Time of the fix.
-    pub time: Option<TimeOfDay>,
-    /// Whether the receiver marks it valid. Old receivers lack this field; without it the fix is
-    /// not valid.
-    pub valid: bool,
-}
-
-impl Gll {
-    pub(super) fn layout(&mut self) -> Layout<'_> {
-        let mode = fix_mode(self.valid);
-        let fields = vec![
-            Field::Standard(&mut self.talker, "GLL"),
-            Field::Position(&mut self.at, 5),
-            Field::Time(&mut self.time),
-            Field::ValidFix(&mut self.valid, 1),
-            Field::Constant(mode),
-        ];
-        Layout {
-            fields_min: 4,
-            fields,
-        }
-    }
-}
-
-/// `MWV`, wind: its direction relative to the bow, and its speed.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Mwv {
-    /// The sender.
-    pub talker: Talker,
-    /// The direction from which the wind blows, degrees clockwise from the bow.
-    pub angle_deg: Option<f64>,
-    /// The wind's reference.
-    pub reference: WindReference,
-    /// Wind speed, m/s, whatever the unit on the wire.
-    pub speed_m_s: Option<f64>,
-    /// The unit on the wire.
-    pub unit: SpeedUnit,
-    /// Whether the sensor marks it valid.
-    pub valid: bool,
-}
-
-impl Mwv {
-    pub(super) fn layout(&mut self) -> Layout<'_> {
-        let fields = vec![
-            Field::Standard(&mut self.talker, "MWV"),
-            Field::Number(&mut self.angle_deg, COMPASS),
-            Field::WindReference(&mut self.reference),
-            Field::WindSpeed(&mut self.speed_m_s, &mut self.unit),
-            Field::Valid(&mut self.valid),
-        ];
-        // All five: an angle and a number without reference and unit do not describe a wind.
-        Layout {
-            fields_min: 5,
-            fields,
-        }
-    }
-}
-
-/// `VHW`, the log: heading, and speed through the water.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Vhw {
-    /// The sender.
-    pub talker: Talker,
-    /// Heading, degrees true.
-    pub heading_true_deg: Option<f64>,
-    /// Heading, degrees magnetic.
-    pub heading_magnetic_deg: Option<f64>,
-    /// Speed through the water, knots.
-    pub speed_kn: Option<f64>,
-}
-
-impl Vhw {
-    pub(super) fn layout(&mut self) -> Layout<'_> {
-        let fields = vec![
-            Field::Standard(&mut self.talker, "VHW"),
-            Field::Number(&mut self.heading_true_deg, COMPASS),
-            Field::Unit("T"),
-            Field::Number(&mut self.heading_magnetic_deg, COMPASS),
-            Field::Unit("M"),
-            Field::KnotsAndKmH(&mut self.speed_kn),
-        ];
-        Layout {
-            fields_min: 6,
             fields,
         }
     }

@@ -1,10 +1,9 @@
 //! Writes a sentence by its layout: its fields one by one, then the checksum and the line's end.
 
 use super::date_time::{Date, TimeOfDay};
-use super::layout::{Field, Format, HUNDREDTHS, Layout, TENTHS};
+use super::layout::{Field, Format, Layout, TENTHS};
 use super::position::{LATITUDE, LONGITUDE};
-use super::wind::KNOT_KM_H;
-use super::{EMITTED_MAX, checksum};
+use super::{EMITTED_MAX, with_checksum};
 use primitives::LatLon;
 use std::ops::Range;
 
@@ -36,8 +35,7 @@ impl Writer {
         while line.body.len() + FRAME > EMITTED_MAX {
             line.empty_the_longest();
         }
-        let sum = checksum(line.body.as_bytes());
-        format!("${}*{sum:02X}\r\n", line.body)
+        with_checksum(&line.body)
     }
 
     fn field(&mut self, field: Field<'_>) {
@@ -74,25 +72,12 @@ impl Writer {
                 self.spare(&operator.map_or_else(String::new, |o| o.number().to_string()))
             }
             // Never omitted: without it a reader would have to guess whether a fix is valid.
-            Field::Valid(valid) | Field::ValidFix(valid, _) => {
-                self.fixed(if *valid { "A" } else { "V" })
-            }
+            Field::ValidFix(valid, _) => self.fixed(if *valid { "A" } else { "V" }),
             Field::Time(time) => self.fixed(&time.and_then(TimeOfDay::text).unwrap_or_default()),
             Field::Date(date) => self.fixed(&date.and_then(Date::text).unwrap_or_default()),
             Field::DayMonthYear(date) => self.day_month_year(*date),
             Field::Position(at, decimals) => self.position(*at, decimals),
             Field::Place(at, decimals) => self.position(Some(*at), decimals),
-            Field::WindReference(reference) => self.fixed(reference.letter()),
-            Field::WindSpeed(speed_m_s, unit) => {
-                self.number(speed_m_s.map(|speed_m_s| speed_m_s / unit.m_s()), TENTHS);
-                self.fixed(unit.letter());
-            }
-            Field::KnotsAndKmH(speed_kn) => {
-                self.number(*speed_kn, HUNDREDTHS);
-                self.fixed("N");
-                self.number(speed_kn.map(|speed_kn| speed_kn * KNOT_KM_H), HUNDREDTHS);
-                self.fixed("K");
-            }
         }
     }
 

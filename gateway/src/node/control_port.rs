@@ -169,22 +169,12 @@ impl Server {
             Some(stop) => {
                 // Before the reply is even prepared, so that nothing can delay it.
                 self.input.stop(stop);
-                GatewayCommand::Boat {
-                    name: self.vehicle.clone(),
-                    command: OperatorCommand::Status,
-                }
+                GatewayCommand::boat(&self.vehicle, OperatorCommand::Status)
             }
             None => command,
         };
         if !is_running {
-            let is_free = matches!(
-                &ask,
-                GatewayCommand::Boat {
-                    command: OperatorCommand::Status,
-                    ..
-                }
-            );
-            let refused = (!is_free).then(|| "there is no link to the boat yet".to_owned());
+            let refused = (!ask.is_status()).then(|| "there is no link to the boat yet".to_owned());
             return OperatorReply {
                 refused,
                 status: self.status_before(),
@@ -209,16 +199,9 @@ impl Server {
     /// no state to report.
     fn serve_datagram(&self, bytes: &[u8]) -> Option<Vec<u8>> {
         let request = StopRequest::decode(bytes)?;
-        let asks_status = matches!(
-            request.command,
-            GatewayCommand::Boat {
-                command: OperatorCommand::Status,
-                ..
-            }
-        );
         let count = match self.stop_in(&request.command) {
             Some(stop) => self.input.stop(stop),
-            None if asks_status => 0,
+            None if request.command.is_status() => 0,
             None => return None,
         };
         // Obeyed anyway: the loop reads the flag when it starts.
@@ -270,10 +253,7 @@ mod tests {
     const LIMIT: Duration = Duration::from_secs(10);
 
     fn boat(command: OperatorCommand) -> GatewayCommand {
-        GatewayCommand::Boat {
-            name: "blue_one".to_owned(),
-            command,
-        }
+        GatewayCommand::boat("blue_one", command)
     }
 
     fn port() -> (ControlPort, Token, super::super::loop_input::LoopOutput) {
@@ -330,10 +310,7 @@ mod tests {
             "{stopped:?}"
         );
         assert!(output.take_stop(boat_stop) && output.take_stop(fleet_stop));
-        let other = GatewayCommand::Boat {
-            name: "red_one".to_owned(),
-            command: OperatorCommand::EStop,
-        };
+        let other = GatewayCommand::boat("red_one", OperatorCommand::EStop);
         assert!(
             ask(None, other)
                 .expect("a reply")
@@ -365,10 +342,7 @@ mod tests {
         assert!(socket.recv(&mut buffer).is_err() && output.take_stop(Stop::EStop(Scope::Boat)));
         port.begin();
         output.show_state(output.stop_count(), "armed".to_owned());
-        let other = GatewayCommand::Boat {
-            name: "red_one".to_owned(),
-            command: OperatorCommand::EStop,
-        };
+        let other = GatewayCommand::boat("red_one", OperatorCommand::EStop);
         let refused = [
             other,
             boat(OperatorCommand::Arm),

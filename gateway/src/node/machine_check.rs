@@ -1,11 +1,10 @@
 //! Checks this machine before a boat is driven from it.
 
 use crate::preflight::Check;
-use std::io;
 use std::path::Path;
 
 /// Minimum free disk space for a gateway's recording, MiB; a day takes a tenth of it.
-pub(super) const SPACE_MIN_MIB: u64 = 1024;
+const SPACE_MIN_MIB: u64 = 1024;
 /// Where systemd lists its inhibitors.
 const INHIBITORS: &str = "/run/systemd/inhibit";
 
@@ -17,8 +16,9 @@ pub fn machine_checks(folder: &Path) -> Vec<Check> {
 
 fn space(folder: &Path) -> Check {
     let name = "recording space";
-    match free_mib(folder) {
-        Ok(free_mib) => {
+    match rustix::fs::statvfs(folder) {
+        Ok(disk) => {
+            let free_mib = disk.f_bavail.saturating_mul(disk.f_frsize) >> 20;
             let found = format!(
                 "{free_mib} MiB free in {}, expected {SPACE_MIN_MIB}",
                 folder.display()
@@ -27,12 +27,6 @@ fn space(folder: &Path) -> Check {
         }
         Err(e) => Check::not_done(name, format!("{}: {e}", folder.display())),
     }
-}
-
-/// Free space of the disk that holds this path, MiB.
-pub(super) fn free_mib(path: &Path) -> io::Result<u64> {
-    let about = rustix::fs::statvfs(path)?;
-    Ok(about.f_bavail.saturating_mul(about.f_frsize) >> 20)
 }
 
 fn sleep(inhibitors: &Path) -> Check {

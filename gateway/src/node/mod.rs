@@ -17,7 +17,6 @@ mod latency;
 mod loop_input;
 mod machine_check;
 mod node_event;
-mod payload;
 mod report;
 mod settings;
 #[cfg(feature = "emulator")]
@@ -38,7 +37,6 @@ pub use terminal_key::on_enter;
 use crate::bridge::{Bridge, Event};
 use crate::game_clock::GameClock;
 use crate::link::{BoatLink, Link, LinkAddress, LinkError, LinkEvent, LinkSettings, OnPort};
-use crate::payload::PayloadPort;
 use crate::protocol::Protocol;
 use crate::record::{self, StepEncoder};
 use bus::token::Guard;
@@ -48,8 +46,6 @@ use control_port::ControlPort;
 use gateway_loop::{Counters, GatewayLoop, InGame};
 use guard::Guarded;
 use loop_input::{Call, LoopInput, LoopOutput, loop_input};
-use machine_check::SPACE_MIN_MIB;
-use payload::Payloads;
 use primitives::SimTime;
 use recording::{Facts, NewFile, Recorder, utc};
 use std::net::SocketAddr;
@@ -60,8 +56,7 @@ use std::time::Duration;
 /// How often a thread that waits for something else checks whether it must end.
 const LOOK: Duration = Duration::from_millis(100);
 
-/// A gateway's connections other than the game's network: the boat, a port for operators, and the
-/// boat's payloads.
+/// A gateway's connections other than the game's network: the boat, and a port for operators.
 pub struct Outside {
     /// The address of the boat.
     pub link: LinkAddress,
@@ -72,8 +67,6 @@ pub struct Outside {
     /// Starts the process that calls [`guard()`] and stops the boat when this process cannot;
     /// `None` means no guard.
     pub guard: Option<Command>,
-    /// The boat's payloads to pass through.
-    pub payloads: Vec<PayloadPort>,
 }
 
 /// The callback for a link's events.
@@ -139,14 +132,7 @@ pub fn serve(
             on_event,
         )?))
     };
-    connect(
-        settings,
-        input,
-        file,
-        (Some(port), guarded, &outside.payloads),
-        open,
-        notify,
-    )
+    connect(settings, input, file, (Some(port), guarded), open, notify)
 }
 
 /// Warns before the gateway's time begins.
@@ -184,14 +170,7 @@ pub fn serve_over(
     open: impl FnOnce(OnLinkEvent) -> Result<Box<dyn BoatLink>, LinkError>,
     notify: &mut dyn FnMut(NodeEvent<'_>),
 ) -> Result<(), NodeError> {
-    connect(
-        settings,
-        loop_input(),
-        None,
-        (None, None, &[]),
-        open,
-        notify,
-    )
+    connect(settings, loop_input(), None, (None, None), open, notify)
 }
 
 /// Opens the link, runs the loop, and finds the game in the meantime.
@@ -199,7 +178,7 @@ fn connect(
     settings: &Settings,
     (input, output): (LoopInput, LoopOutput),
     file: Option<NewFile>,
-    (port, guarded, payloads): (Option<ControlPort>, Option<Guarded>, &[PayloadPort]),
+    (port, guarded): (Option<ControlPort>, Option<Guarded>),
     open: impl FnOnce(OnLinkEvent) -> Result<Box<dyn BoatLink>, LinkError>,
     notify: &mut dyn FnMut(NodeEvent<'_>),
 ) -> Result<(), NodeError> {
@@ -210,22 +189,12 @@ fn connect(
         });
     }
     let plan = &settings.plan;
-    let path = file.as_ref().map(|file| file.path().to_owned());
     let recorder = file.and_then(|file| recorder(file, settings, notify));
     let calls = input.calls.clone();
     let link = open(Box::new(move |event| calls.put(Call::Link(event))))?;
     // From here on time is the core's: a recording begins at zero, and replays with the same
     // numbers.
     let clock = Clock::start();
-    let record = recorder.as_ref().map(Recorder::bulk).zip(path);
-    let shell = payload::Shell {
-        record,
-        space_min_mib: SPACE_MIN_MIB,
-        clock,
-        calls: input.calls.clone(),
-    };
-    // After the link: a slow payload must not delay standby for the boat.
-    let payloads = Payloads::open(payloads, &shell, notify);
     let mut gateway_loop = GatewayLoop {
         game_clock: GameClock::new(SimTime::from_s(plan.gateway.order_ttl_s)),
         bridge: Bridge::new(plan.clone()),
@@ -263,7 +232,7 @@ fn connect(
     let recorded = recorder.map(|recorder| recorder.end(Facts::new()));
     // Ends in every case, as does the search for a game.
     settings.stop.store(true, Ordering::Relaxed);
-    drop((port, finder, payloads));
+    drop((port, finder));
     notify(NodeEvent::Ended(&status));
     in_game.into_iter().for_each(InGame::leave);
     // Errors of the boat or the game come first.

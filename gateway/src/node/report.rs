@@ -4,6 +4,7 @@
 use super::error::NodeError;
 use super::gateway_loop::GatewayLoop;
 use crate::bridge::{Input, NavOut, Output};
+use crate::protocol::named;
 use bus::Publisher;
 use messages::external::{GatewayStatus, LinkBytes, NavReport, Reported};
 use messages::run_state::RecordingState;
@@ -33,20 +34,17 @@ impl GatewayLoop<'_> {
             self.counters.sentence_to_topic.summary_us(),
             self.counters.order_to_sentence.summary_us(),
         ];
-        let lost = self.recorder.as_ref().map_or([0; 2], |recorder| {
-            [recorder.state().dropped, recorder.bulk_dropped()]
-        });
-        let more = [
+        let lost = self
+            .recorder
+            .as_ref()
+            .map_or(0, |recorder| recorder.state().dropped);
+        status.counts.extend(named([
             ("nav reports", self.counters.reports),
             ("displaced writes", self.link.displaced()),
             ("calls dropped", self.input.calls.dropped()),
-            ("messages not recorded", lost[0]),
-            ("payload messages not recorded", lost[1]),
-        ];
+            ("messages not recorded", lost),
+        ]));
         status.alarms.extend(self.counters.recording_fault.clone());
-        status
-            .counts
-            .extend(more.map(|(name, count)| (name.to_owned(), count)));
         status
     }
 

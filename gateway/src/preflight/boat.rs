@@ -230,7 +230,7 @@ fn error(seen: &SensorCheck) -> Check {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::nmea::checksum;
+    use crate::nmea::with_checksum;
     use crate::preflight::Verdict;
     use primitives::SimTime;
     use primitives::frame::Ned;
@@ -260,8 +260,8 @@ mod tests {
                 i / 2
             );
             for body in [gga.as_str()].iter().chain(more) {
-                let sentence = format!("${body}*{:02X}\r\n", checksum(body.as_bytes()));
-                check.receive(SimTime::from_s(0.5 * f64::from(i)), sentence.as_bytes());
+                let now = SimTime::from_s(0.5 * f64::from(i));
+                check.receive(now, with_checksum(body).as_bytes());
             }
         }
         check

@@ -37,6 +37,11 @@ pub enum UploadStep {
     Failed(String),
 }
 
+/// Counters with their names.
+pub(crate) fn named<const N: usize>(counts: [(&str, u64); N]) -> Vec<(String, u64)> {
+    counts.map(|(name, count)| (name.to_owned(), count)).into()
+}
+
 /// One end of a link that speaks a protocol.
 pub trait Codec {
     /// Starts a new link: the state of the previous one is discarded.

@@ -6,7 +6,7 @@
 //! requested until the boat shows it once, and never again after the boat has left it: an operator
 //! who takes the boat out of GUIDED keeps it.
 
-use super::codec::{Codec, Command, UploadStep};
+use super::codec::{Codec, Command, UploadStep, named};
 use super::mavlink_boat::{Asked, Boat, Target};
 use super::mavlink_upload::Upload;
 use super::mission_check;
@@ -142,12 +142,7 @@ impl Mavlink {
         if before.is_some_and(|asked| asked.is_shown || (now - asked.at).as_s() < AGAIN_S) {
             return;
         }
-        self.asked = Some(Asked {
-            mode,
-            is_armed: true,
-            at: now,
-            is_shown: false,
-        });
+        self.asked = Some(Asked::new(mode, true, now));
         self.write_mode(mode, out);
         self.write_arming(true, out);
     }
@@ -170,22 +165,15 @@ impl Mavlink {
         // The mode of a task that we requested stays ours until the boat has left it.
         if shown.mode == RoverMode::Hold && !shown.is_armed {
             self.asked = Some(Asked {
-                mode: RoverMode::Hold,
-                is_armed: false,
-                at: now,
                 is_shown: true,
+                ..Asked::new(RoverMode::Hold, false, now)
             });
             return;
         }
         self.write_mode(RoverMode::Hold, out);
         self.write_arming(false, out);
         if matches!(shown.mode, RoverMode::Hold | RoverMode::Guided) {
-            self.asked = Some(Asked {
-                mode: RoverMode::Hold,
-                is_armed: false,
-                at: now,
-                is_shown: false,
-            });
+            self.asked = Some(Asked::new(RoverMode::Hold, false, now));
         }
     }
 
@@ -198,16 +186,13 @@ impl Mavlink {
             system: target_system,
             component: target_component,
         } = self.boat.target();
-        let params = COMMAND_LONG_DATA {
+        let message = COMMAND_LONG_DATA {
             param1,
             param2,
-            ..COMMAND_LONG_DATA::default()
-        };
-        let message = COMMAND_LONG_DATA {
             command,
             target_system,
             target_component,
-            ..params
+            ..COMMAND_LONG_DATA::default()
         };
         self.send(MavMessage::COMMAND_LONG(message), out);
     }
@@ -498,24 +483,18 @@ impl Codec for Mavlink {
 
     fn counts(&self) -> [Vec<(String, u64)>; 2] {
         let framed = self.framer.counts();
-        let known = [
+        let known = named([
             ("messages in", framed.messages),
             ("bad checksums", framed.bad_checksum),
             ("bytes of garbage", framed.garbage),
             ("unreadable", framed.unreadable),
             ("messages from other systems", self.boat.others),
-        ];
+        ]);
         let unknown = framed
             .unknown
             .iter()
             .map(|(id, count)| (format!("unknown message {id}"), *count));
-        [
-            known
-                .into_iter()
-                .map(|(name, count)| (name.to_owned(), count))
-                .collect(),
-            unknown.collect(),
-        ]
+        [known, unknown.collect()]
     }
 }
 

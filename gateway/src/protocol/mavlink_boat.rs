@@ -38,6 +38,18 @@ pub(super) struct Asked {
     pub(super) is_shown: bool,
 }
 
+impl Asked {
+    /// A request that the boat has not answered yet.
+    pub(super) fn new(mode: RoverMode, is_armed: bool, at: SimTime) -> Asked {
+        Asked {
+            mode,
+            is_armed,
+            at,
+            is_shown: false,
+        }
+    }
+}
+
 /// The system and component that a message is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Target {

@@ -13,6 +13,7 @@ mod status_text;
 mod surveyor;
 
 use crate::config::{BoatProtocol, Gateway};
+pub(crate) use codec::named;
 pub use codec::{Codec, Command, UploadStep};
 use mavlink::Mavlink;
 pub use report::{ControlReport, Fix, Heading, North, Power, Report, Shown};

@@ -1,6 +1,6 @@
 //! The Surveyor's protocol: reports from its sentences, sentences from commands.
 
-use super::codec::{Codec, Command, UploadStep};
+use super::codec::{Codec, Command, UploadStep, named};
 use super::mission_check;
 use super::report::{ControlReport, Fix, Heading, North, Power, Report, Shown};
 use crate::nmea::{
@@ -173,25 +173,19 @@ impl Codec for Surveyor {
 
     fn counts(&self) -> [Vec<(String, u64)>; 2] {
         let framed = self.framer.counts();
-        let known = [
+        let known = named([
             ("sentences in", framed.sentences),
             ("bad checksums", framed.bad_checksum),
             ("overlong", framed.overlong),
             ("broken", framed.broken),
             ("bytes of garbage", framed.garbage),
             ("unreadable", self.unreadable),
-        ];
+        ]);
         let unknown = self
             .unknown
             .iter()
             .map(|(name, count)| (format!("unknown {name}"), *count));
-        [
-            known
-                .into_iter()
-                .map(|(name, count)| (name.to_owned(), count))
-                .collect(),
-            unknown.collect(),
-        ]
+        [known, unknown.collect()]
     }
 }
 
@@ -245,14 +239,12 @@ fn report(sentence: &Sentence, take: &mut dyn FnMut(Report)) {
                 hdop,
                 satellites,
             }));
-            gga.time
-                .into_iter()
-                .for_each(|time| take(Report::Clock(time)));
+            if let Some(time) = gga.time {
+                take(Report::Clock(time));
+            }
         }
         Sentence::Rmc(rmc) => {
-            velocity(rmc.course_deg, rmc.speed_kn)
-                .into_iter()
-                .for_each(|velocity| take(Report::Velocity(velocity)));
+            report_velocity(rmc.course_deg, rmc.speed_kn, take);
             // It contains no quality, only whether there is a fix.
             let quality = (!rmc.valid).then_some(FixQuality::NONE);
             take(Report::Fix(Fix {
@@ -264,34 +256,28 @@ fn report(sentence: &Sentence, take: &mut dyn FnMut(Report)) {
         }
         Sentence::Vtg(vtg) => {
             let speed_kn = vtg.speed_kn.or(vtg.speed_km_h.map(|km_h| km_h / 1.852));
-            let velocity = velocity(vtg.course_true_deg, speed_kn);
-            velocity
-                .into_iter()
-                .for_each(|velocity| take(Report::Velocity(velocity)));
+            report_velocity(vtg.course_true_deg, speed_kn, take);
         }
         Sentence::Attitude(attitude) => {
-            let yaw_rate_deg_s = attitude.yaw_rate_deg_s;
-            let heading = attitude.heading_deg.map(|deg| Heading {
-                deg,
-                north: North::Compass,
-                yaw_rate_deg_s,
-            });
-            heading
-                .into_iter()
-                .for_each(|heading| take(Report::Heading(heading)));
+            if let Some(deg) = attitude.heading_deg {
+                take(Report::Heading(Heading {
+                    deg,
+                    north: North::Compass,
+                    yaw_rate_deg_s: attitude.yaw_rate_deg_s,
+                }));
+            }
             take(Report::Tilt(
                 [attitude.roll_deg, attitude.pitch_deg].map(Option::unwrap_or_default),
             ));
         }
         Sentence::Hdt(hdt) => {
-            let heading = hdt.heading_deg.map(|deg| Heading {
-                deg,
-                north: North::True,
-                yaw_rate_deg_s: None,
-            });
-            heading
-                .into_iter()
-                .for_each(|heading| take(Report::Heading(heading)));
+            if let Some(deg) = hdt.heading_deg {
+                take(Report::Heading(Heading {
+                    deg,
+                    north: North::True,
+                    yaw_rate_deg_s: None,
+                }));
+            }
         }
         Sentence::ControlState(state) => {
             let ControlState {
@@ -325,14 +311,14 @@ fn report(sentence: &Sentence, take: &mut dyn FnMut(Report)) {
     }
 }
 
-fn velocity(course_deg: Option<f64>, speed_kn: Option<f64>) -> Option<Ned> {
+fn report_velocity(course_deg: Option<f64>, speed_kn: Option<f64>, take: &mut dyn FnMut(Report)) {
     match (course_deg, speed_kn) {
         // Receivers leave the course of a boat at rest blank; it is not north.
-        (None, Some(speed_kn)) if speed_kn < 0.5 => Some(Ned::default()),
-        (Some(course_deg), Some(speed_kn)) => {
-            Some(Ned::toward_deg(course_deg).scaled(speed_kn * M_S_PER_KN))
-        }
-        _ => None,
+        (None, Some(speed_kn)) if speed_kn < 0.5 => take(Report::Velocity(Ned::default())),
+        (Some(course_deg), Some(speed_kn)) => take(Report::Velocity(
+            Ned::toward_deg(course_deg).scaled(speed_kn * M_S_PER_KN),
+        )),
+        _ => {}
     }
 }
 

@@ -15,9 +15,9 @@ use crate::nmea::{
 use crate::protocol::{ControlReport, Fix, Heading, North, Power, Protocol, Report};
 use ::mavlink::Message;
 use need::Usable;
+use primitives::SimTime;
 use primitives::angle::{compass_deg_from_rad, wrap_pi};
 use primitives::frame::LatLon;
-use primitives::{SimTime, math};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Compass and true heading closer than this are the same, rad.
@@ -478,7 +478,7 @@ impl SensorCheck {
             }
             Report::Clock(time) => self.clock = Some((now, time)),
             Report::Velocity(velocity) => {
-                let course_deg = compass_deg_from_rad(math::atan2(velocity.east, velocity.north));
+                let course_deg = compass_deg_from_rad(velocity.direction_rad());
                 self.track = Some((course_deg, velocity.length()));
             }
             Report::Heading(Heading {

@@ -1,6 +1,7 @@
 //! The sensor check: what is missing, and why.
 
 use super::*;
+use crate::nmea::with_checksum;
 
 const TELEMETRY: &str = "$GPGGA,150502.00,4221.50616,N,07105.24688,W,2,11,0.98,5.5,M,-33.2,M,,*62\r\n\
     $PSEAA,-2.2,0.7,222.6,,47.8,-0.04,-0.01,-1.00,-0.01*7A\r\n\
@@ -65,11 +66,6 @@ fn findings_are_in_words() {
     );
 }
 
-/// `$body*HH` and the line's end.
-fn sentence(body: &str) -> String {
-    format!("${body}*{:02X}\r\n", nmea::checksum(body.as_bytes()))
-}
-
 #[test]
 fn what_came_but_cannot_be_used_is_missing_with_the_reason() {
     for (body, want) in [
@@ -108,7 +104,7 @@ fn what_came_but_cannot_be_used_is_missing_with_the_reason() {
             "a voltage: PSEAB comes without it",
         ),
     ] {
-        let missing = checked(&sentence(body), 10.0).missing().join("\n");
+        let missing = checked(&with_checksum(body), 10.0).missing().join("\n");
         assert!(missing.contains(want), "{body}: {missing}");
     }
 }
@@ -154,7 +150,7 @@ fn a_link_without_sentences_says_what_came() {
 
 #[test]
 fn a_date_that_is_not_the_hosts_is_a_fault_and_midnight_is_none() {
-    let zda = |date: &str| sentence(&format!("GPZDA,150502.00,{date},00,00"));
+    let zda = |date: &str| with_checksum(&format!("GPZDA,150502.00,{date},00,00"));
     let fault = |date: &str, host| checked(&zda(date), 10.0).clock_fault(host);
     assert_eq!(fault("20,11,2026", host(20)), None);
     for (date, want) in [

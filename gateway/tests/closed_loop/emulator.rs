@@ -2,24 +2,15 @@
 //! rest.
 
 use crate::boat::emulated;
-use crate::rig::plan;
+use crate::rig::datum;
 use crate::script::played;
-use crate::tamper::with_checksum;
 use gateway::emulator::{self, Emulator, Extra, FrontSeat, Port};
-use gateway::nmea::Sentence;
+use gateway::nmea::{Sentence, with_checksum};
 use messages::Order;
 use primitives::SimTime;
 
 fn boat(change: impl FnOnce(&mut emulator::Plan)) -> Emulator {
-    let mut plan = emulated(
-        plan("surveyor.toml")
-            .site
-            .expect("the rig has one")
-            .field
-            .plan
-            .datum,
-        0.0,
-    );
+    let mut plan = emulated(datum(), 0.0);
     change(&mut plan);
     Emulator::new(plan)
 }

@@ -3,13 +3,14 @@
 
 use crate::boat::{Boat, STEP_S, emulated};
 use crate::oracle::{Oracle, age_s};
-use crate::tamper::{Tamper, with_checksum};
+use crate::tamper::Tamper;
 use gateway::bridge::{Bridge, Event, Input, NavOut, Output, Plan, Site};
 use gateway::emulator::{self, Emulator, FrontSeat, Port};
+use gateway::nmea::with_checksum;
 use messages::Order;
 use messages::external::{FleetCommand, OperatorCommand};
 use primitives::SimTime;
-use primitives::frame::Ned;
+use primitives::frame::{LatLon, Ned};
 use std::path::Path;
 
 const TELEMETRY_STEPS: u64 = 10;
@@ -70,6 +71,12 @@ pub(crate) fn plan(file: &str) -> Plan {
         site,
         ..Plan::new("blue_one", gateway)
     }
+}
+
+/// The origin of that field.
+pub(crate) fn datum() -> LatLon {
+    let site = plan("surveyor.toml").site;
+    site.expect("the rig has one").field.plan.datum
 }
 
 impl Rig {

@@ -2,7 +2,7 @@
 //!
 //! The language is described in `scenarios/README.md`.
 
-use crate::rig::{Rig, plan};
+use crate::rig::{Rig, datum, plan};
 use crate::tamper::tamper;
 use gateway::bridge::{Input, Preflight};
 use gateway::emulator::{FrontSeat, Port};
@@ -258,14 +258,7 @@ fn order_of(words: &[&str]) -> Option<Order> {
 
 /// A mission with places `x,y` on the field or `@latitude,longitude`.
 fn mission_of(words: &[&str]) -> Mission {
-    let frame = LocalFrame::new(
-        plan("surveyor.toml")
-            .site
-            .expect("the rig has one")
-            .field
-            .plan
-            .datum,
-    );
+    let frame = LocalFrame::new(datum());
     let place = |text: &str| {
         let (a, b) = text
             .trim_start_matches('@')
@@ -325,6 +318,7 @@ fn holds(rig: &Rig, condition: &str) -> bool {
 #[expect(clippy::too_many_lines, reason = "one table")]
 fn value(rig: &Rig, name: &str) -> String {
     let boat = &rig.boat;
+    let status = rig.bridge.status(rig.now);
     let texts = || {
         rig.sent.iter().map(|(_, bytes)| {
             String::from_utf8_lossy(bytes)
@@ -341,22 +335,12 @@ fn value(rig: &Rig, name: &str) -> String {
     };
     match name.split(' ').collect::<Vec<_>>().as_slice() {
         ["state"] => rig.bridge.state().to_string(),
-        ["status"] => rig.bridge.status(rig.now).state,
-        ["would-send"] => rig.bridge.status(rig.now).would_send.unwrap_or_default(),
-        ["missing"] => rig.bridge.status(rig.now).missing.join("; "),
-        ["alarms"] => rig.bridge.status(rig.now).alarms.join("; "),
-        ["volts"] => rig
-            .bridge
-            .status(rig.now)
-            .battery_v
-            .unwrap_or(f64::NAN)
-            .to_string(),
-        ["percent"] => rig
-            .bridge
-            .status(rig.now)
-            .battery_pct
-            .unwrap_or(f64::NAN)
-            .to_string(),
+        ["status"] => status.state,
+        ["would-send"] => status.would_send.unwrap_or_default(),
+        ["missing"] => status.missing.join("; "),
+        ["alarms"] => status.alarms.join("; "),
+        ["volts"] => status.battery_v.unwrap_or(f64::NAN).to_string(),
+        ["percent"] => status.battery_pct.unwrap_or(f64::NAN).to_string(),
         ["refused"] => rig.refused.clone().unwrap_or_default(),
         ["remark"] => rig.remark.clone(),
         ["events"] => format!("{:?}", rig.events),
@@ -383,12 +367,8 @@ fn value(rig: &Rig, name: &str) -> String {
             String::from_utf8_lossy(&burst).into_owned()
         }
         ["after"] => rig.after_s.to_string(),
-        ["rest"] => if boat.speed_m_s.abs() < 0.05 {
-            "yes"
-        } else {
-            "no"
-        }
-        .to_owned(),
+        ["rest"] if boat.speed_m_s.abs() < 0.05 => "yes".to_owned(),
+        ["rest"] => "no".to_owned(),
         ["speed"] => boat.speed_m_s.to_string(),
         ["speed-error"] => (boat.speed_m_s - speed_m_s).abs().to_string(),
         ["heading-error"] => wrap_pi(psi_rad - boat.psi_rad).abs().to_string(),

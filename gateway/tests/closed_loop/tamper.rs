@@ -1,12 +1,9 @@
 //! Named manipulations of the bytes from a boat.
 
+use gateway::nmea::with_checksum;
+
 /// Turns a burst of telemetry into packets.
 pub(crate) type Tamper = Box<dyn FnMut(Vec<u8>) -> Vec<Vec<u8>>>;
-
-/// A sentence with this body.
-pub(crate) fn with_checksum(body: &str) -> String {
-    format!("${body}*{:02X}\r\n", body.bytes().fold(0, |a, b| a ^ b))
-}
 
 /// The manipulation with this name and its parameters; `none` changes nothing.
 pub(crate) fn tamper(words: &[&str]) -> Option<Tamper> {

@@ -1,6 +1,6 @@
 //! An ArduPilot boat and its gateway: who drives it when, and what stops it.
 
-use crate::rig::{Rig, plan};
+use crate::rig::{Rig, datum, frame, plan};
 use gateway::bridge::{Event, Input};
 use gateway::config::Drive;
 use gateway::emulator::{ArduPilot, FrontSeat};
@@ -209,7 +209,6 @@ fn an_emulated_boat_takes_the_sign_of_its_speed_from_the_north_as_rover_does() {
     ] {
         let mut rig = Rig::under_way();
         rig.bridge = gateway::bridge::Bridge::new(plan());
-        let mut bytes = vec![];
         let target = SET_POSITION_TARGET_LOCAL_NED_DATA {
             vx,
             type_mask,
@@ -219,7 +218,7 @@ fn an_emulated_boat_takes_the_sign_of_its_speed_from_the_north_as_rover_does() {
             ..SET_POSITION_TARGET_LOCAL_NED_DATA::default()
         };
         let message = MavMessage::SET_POSITION_TARGET_LOCAL_NED(target);
-        gateway::mavlink::Writer::new(250, 190).write(&message, &mut bytes);
+        let bytes = crate::rig::frame(250, 190, &message);
         for _ in 0..10 {
             rig.ardupilot.receive(rig.now, &bytes);
             rig.run(1.0);
@@ -388,7 +387,7 @@ fn the_guards_message_stops_a_boat_that_is_driven_and_leaves_one_to_its_pilot() 
 
 /// A waypoint at 80, 40, and a recovery point at 40, 30.
 fn mission() -> Mission {
-    let frame = LocalFrame::new(plan().site.expect("the rig has one").field.plan.datum);
+    let frame = LocalFrame::new(datum());
     let place = |x: f64, y: f64| {
         let at = frame.lat_lon(Ned::from_xy(x, y));
         [at.lat_deg, at.lon_deg]
@@ -474,9 +473,7 @@ fn disarm() -> Vec<u8> {
         target_component: 1,
         ..COMMAND_LONG_DATA::default()
     };
-    let mut bytes = vec![];
-    gateway::mavlink::Writer::new(250, 190).write(&MavMessage::COMMAND_LONG(command), &mut bytes);
-    bytes
+    frame(250, 190, &MavMessage::COMMAND_LONG(command))
 }
 
 #[test]
@@ -513,18 +510,13 @@ fn an_item_that_the_boat_got_twice_does_not_end_the_upload() {
     rig.operator(OperatorCommand::Mission(mission()));
     rig.run(1.5);
     let ours = plan().gateway.mavlink;
-    let mavtype = MavMissionResult::MAV_MISSION_INVALID_SEQUENCE;
-    let target_system = ours.system;
-    let target_component = ours.component;
     let ack = MISSION_ACK_DATA {
-        target_system,
-        target_component,
-        mavtype,
+        target_system: ours.system,
+        target_component: ours.component,
+        mavtype: MavMissionResult::MAV_MISSION_INVALID_SEQUENCE,
         ..Default::default()
     };
-    let mut bytes = vec![];
-    gateway::mavlink::Writer::new(1, 1).write(&MavMessage::MISSION_ACK(ack), &mut bytes);
-    rig.give(&Input::Bytes(bytes));
+    rig.give(&Input::Bytes(frame(1, 1, &MavMessage::MISSION_ACK(ack))));
     rig.alter = Some;
     rig.run_until(5.0, |rig| rig.state() == "delegated: mission");
 }
@@ -537,7 +529,7 @@ fn messages_of_other_systems_are_counted_and_ignored() {
     let mut framer = Framer::new();
     let mut telemetry = Vec::new();
     // Another boat on the same network, in HOLD and with an empty battery.
-    let mut another = ArduPilot::new(plan().site.expect("the rig has one").field.plan.datum, None);
+    let mut another = ArduPilot::new(datum(), None);
     another.set_volts(5.0);
     another.observe(rig.now, &rig.boat.measured(rig.now, rig.boat.at));
     another.telemetry(rig.now, &mut telemetry);

@@ -1,13 +1,12 @@
 //! Foreign orders at an ArduPilot boat: from a second gateway, or a ground station that steers.
 
-use crate::rig::{Rig, plan};
+use crate::rig::{Rig, e7, frame, plan};
 use gateway::bridge::{Bridge, Input};
-use gateway::geodesy::LocalFrame;
+use gateway::mavlink::RoverMode;
 use gateway::mavlink::dialect::{
     HEARTBEAT_DATA, MavFrame, MavMessage, MavType, PositionTargetTypemask,
     SET_POSITION_TARGET_GLOBAL_INT_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA,
 };
-use gateway::mavlink::{RoverMode, Writer};
 use messages::Order;
 use messages::external::OperatorCommand;
 use primitives::frame::Ned;
@@ -89,8 +88,7 @@ fn two_gateways_at_one_boat_find_each_other_and_both_stop() {
 /// A ground station sends this message at this rate, 1/s, to a boat under way; returns the seconds
 /// until the gateway's failsafe, and its cause.
 fn steered_by_another(mut rig: Rig, message: &MavMessage, rate_hz: f64) -> (f64, String) {
-    let mut bytes = vec![];
-    Writer::new(250, 190).write(message, &mut bytes);
+    let bytes = frame(250, 190, message);
     let start = rig.now;
     while rig.state() == "armed" {
         assert!(
@@ -119,11 +117,10 @@ fn velocity(heading_deg: f64, speed_m_s: f64) -> MavMessage {
 }
 
 fn position() -> MavMessage {
-    let at = LocalFrame::new(plan().site.expect("the rig has one").field.plan.datum)
-        .lat_lon(Ned::from_xy(60.0, 10.0));
+    let (lat_int, lon_int) = e7(Ned::from_xy(60.0, 10.0));
     MavMessage::SET_POSITION_TARGET_GLOBAL_INT(SET_POSITION_TARGET_GLOBAL_INT_DATA {
-        lat_int: (1e7 * at.lat_deg).round() as i32,
-        lon_int: (1e7 * at.lon_deg).round() as i32,
+        lat_int,
+        lon_int,
         type_mask: PositionTargetTypemask::from_bits_retain(0b1111_1111_1000),
         target_system: 1,
         target_component: 1,
@@ -168,8 +165,7 @@ fn foreign_orders_that_the_boat_does_not_show_are_detected_by_its_motion() {
 fn set_points_and_heartbeats_of_others_on_the_link_are_told() {
     let on_the_link = |message: &MavMessage| {
         let mut rig = Rig::under_way();
-        let mut bytes = vec![];
-        Writer::new(250, 190).write(message, &mut bytes);
+        let bytes = frame(250, 190, message);
         (0..3).for_each(|_| rig.give(&Input::Bytes(bytes.clone())));
         rig
     };

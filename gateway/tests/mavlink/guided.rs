@@ -6,8 +6,8 @@
     reason = "ground stations send the older messages and frames, and Rover takes them"
 )]
 
-use crate::station::{Station, datum};
-use gateway::geodesy::LocalFrame;
+use crate::rig::e7;
+use crate::station::Station;
 use gateway::mavlink::RoverMode;
 use gateway::mavlink::dialect::{
     HEARTBEAT_DATA, MISSION_ITEM_DATA, MISSION_ITEM_INT_DATA, MavCmd, MavFrame, MavMessage,
@@ -56,14 +56,6 @@ fn guided() -> Station {
     );
     assert_eq!(station.ardupilot.mode(), (RoverMode::Guided, true));
     station
-}
-
-fn e7(place: Ned) -> (i32, i32) {
-    let at = LocalFrame::new(datum()).lat_lon(place);
-    (
-        (1e7 * at.lat_deg).round() as i32,
-        (1e7 * at.lon_deg).round() as i32,
-    )
 }
 
 fn local(

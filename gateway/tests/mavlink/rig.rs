@@ -4,12 +4,13 @@
 use crate::boat::{Boat, STEP_S};
 use gateway::bridge::{Bridge, Event, Input, Output, Plan, Preflight, Site};
 use gateway::emulator::{ArduPilot, FrontSeat};
+use gateway::geodesy::LocalFrame;
 use gateway::mavlink::dialect::MavMessage;
 use gateway::mavlink::{Framer, RoverMode, Writer};
 use messages::Order;
 use messages::external::OperatorCommand;
 use primitives::SimTime;
-use primitives::frame::Ned;
+use primitives::frame::{LatLon, Ned};
 use std::path::Path;
 
 const TELEMETRY_STEPS: u64 = 10;
@@ -58,15 +59,29 @@ pub(crate) fn plan() -> Plan {
     }
 }
 
+/// The origin of its field.
+pub(crate) fn datum() -> LatLon {
+    plan().site.expect("the rig has one").field.plan.datum
+}
+
+/// The latitude and longitude of a place on the field, 1e-7 degrees.
+pub(crate) fn e7(place: Ned) -> (i32, i32) {
+    let at = LocalFrame::new(datum()).lat_lon(place);
+    (
+        (1e7 * at.lat_deg).round() as i32,
+        (1e7 * at.lon_deg).round() as i32,
+    )
+}
+
+/// A message as this component sends it.
+pub(crate) fn frame(system: u8, component: u8, message: &MavMessage) -> Vec<u8> {
+    let mut bytes = vec![];
+    Writer::new(system, component).write(message, &mut bytes);
+    bytes
+}
+
 impl Rig {
     pub(crate) fn of(plan: Plan) -> Rig {
-        let datum = plan
-            .site
-            .as_ref()
-            .expect("the rig has one")
-            .field
-            .plan
-            .datum;
         let mut rig = Rig {
             now: SimTime::ZERO,
             steps: 0,
@@ -74,7 +89,7 @@ impl Rig {
                 at: Ned::from_xy(60.0, 40.0),
                 ..Boat::default()
             },
-            ardupilot: ArduPilot::new(datum, Some(1.0)),
+            ardupilot: ArduPilot::new(datum(), Some(1.0)),
             bridge: Bridge::new(plan),
             order: None,
             open: (true, true),

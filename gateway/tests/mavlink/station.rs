@@ -1,7 +1,7 @@
 //! A ground station at an emulated ArduPilot boat, in memory. The test controls time.
 
 use crate::boat::{Boat, STEP_S};
-use crate::rig::plan;
+use crate::rig::datum;
 use gateway::emulator::{ArduPilot, FrontSeat};
 use gateway::mavlink::dialect::{
     COMMAND_ACK_DATA, MISSION_COUNT_DATA, MISSION_ITEM_INT_DATA, MISSION_REQUEST_LIST_DATA, MavCmd,
@@ -11,7 +11,7 @@ use gateway::mavlink::{Frame, Framer, Writer};
 use mavlink::MessageData;
 use messages::Order;
 use primitives::SimTime;
-use primitives::frame::{LatLon, Ned};
+use primitives::frame::Ned;
 
 const TELEMETRY_STEPS: u64 = 10;
 
@@ -29,10 +29,6 @@ pub(crate) struct Station {
     pub(crate) systems: Vec<u8>,
     /// Acknowledgements of commands: number and result.
     acks: Vec<(u16, u8)>,
-}
-
-pub(crate) fn datum() -> LatLon {
-    plan().site.expect("the rig has one").field.plan.datum
 }
 
 impl Station {

@@ -1,7 +1,7 @@
 //! The NMEA framer under noise: loses no sentence, invents none, and uses bounded memory.
 
 use crate::bodies;
-use gateway::nmea::{ACCEPTED_MAX, Counts, Framer, checksum};
+use gateway::nmea::{ACCEPTED_MAX, Counts, Framer, checksum, with_checksum};
 use proptest::prelude::*;
 
 const GGA: &str = "$GPGGA,150502.00,4221.50616,N,07105.24688,W,2,11,0.98,5.5,M,-33.2,M,,*62\r\n";
@@ -66,9 +66,7 @@ fn judge(content: &[u8], found: &mut Vec<String>, counts: &mut Counts) {
 
 /// A valid sentence of `length` bytes.
 fn long(length: usize) -> String {
-    let body = "A".repeat(length - 6);
-    let sum = checksum(body.as_bytes());
-    format!("${body}*{sum:02X}\r\n")
+    with_checksum(&"A".repeat(length - 6))
 }
 
 fn framed(pieces: impl IntoIterator<Item = impl AsRef<[u8]>>) -> (Vec<String>, Counts) {
@@ -180,128 +178,38 @@ fn lines_end_with_cr_or_lf_or_both() {
 #[test]
 #[expect(clippy::too_many_lines, reason = "one table")]
 fn each_fault_has_its_count() {
-    let nothing = Counts::default();
     let overlong = format!("${}{COMMAND}", "x".repeat(1000));
     // What gpsd writes to find out who we are.
     let probes =
         b"$PGRMCE*0E\r\n$PSRF100,0,4800,8,1,0*0F\r\n\xb5\x62\x06\x8e\x00\x00\xff\xb5\x62\x0a\x04\x00\x00\x0e\x34";
     let probes = [probes.as_slice(), COMMAND.as_bytes()].concat();
-    let cases: [(&[u8], Counts); 16] = [
-        (
-            b"$PSEAG,N*23\r\n",
-            Counts {
-                bad_checksum: 1,
-                ..nothing
-            },
-        ),
-        (
-            b"$PSEAG,N\r\n",
-            Counts {
-                broken: 1,
-                ..nothing
-            },
-        ),
-        (
-            b"$PSEAG,N*2\r\n",
-            Counts {
-                broken: 1,
-                ..nothing
-            },
-        ),
-        (
-            b"$PSEAG,N*222\r\n",
-            Counts {
-                broken: 1,
-                ..nothing
-            },
-        ),
-        (
-            b"$PSEAG,N*2G\r\n",
-            Counts {
-                broken: 1,
-                ..nothing
-            },
-        ),
-        (
-            b"$PSEAG,N*+2\r\n",
-            Counts {
-                broken: 1,
-                ..nothing
-            },
-        ),
-        (
-            b"$PSEAG*N*22\r\n",
-            Counts {
-                broken: 1,
-                ..nothing
-            },
-        ),
-        (
-            b"$PSEAG,N*22\x00x\r\n",
-            Counts {
-                broken: 1,
-                ..nothing
-            },
-        ),
-        (
-            b"$\r\n",
-            Counts {
-                broken: 1,
-                ..nothing
-            },
-        ),
-        (
-            b"$PSE$PSEAG,N*22\r\n",
-            Counts {
-                sentences: 1,
-                broken: 1,
-                ..nothing
-            },
-        ),
-        (
-            b"$PSE\x00AG,N*22\r\n",
-            Counts {
-                broken: 1,
-                garbage: 8,
-                ..nothing
-            },
-        ),
-        (
-            b"$PSEAG,\xc3\x9c*22\r\n",
-            Counts {
-                broken: 1,
-                garbage: 5,
-                ..nothing
-            },
-        ),
-        (b"\r\n\n\r", nothing),
-        (
-            b"!AIVDM,1\r\n$PSEAG,N*22\r\n\x8e",
-            Counts {
-                sentences: 1,
-                garbage: 9,
-                ..nothing
-            },
-        ),
-        (
-            &probes,
-            Counts {
-                sentences: 3,
-                garbage: 14,
-                ..nothing
-            },
-        ),
-        (
-            overlong.as_bytes(),
-            Counts {
-                sentences: 1,
-                overlong: 1,
-                garbage: 1000 - 253,
-                ..nothing
-            },
-        ),
+    // Sentences, wrong checksums, too long, broken, bytes of garbage.
+    let cases: [(&[u8], [u64; 5]); 16] = [
+        (b"$PSEAG,N*23\r\n", [0, 1, 0, 0, 0]),
+        (b"$PSEAG,N\r\n", [0, 0, 0, 1, 0]),
+        (b"$PSEAG,N*2\r\n", [0, 0, 0, 1, 0]),
+        (b"$PSEAG,N*222\r\n", [0, 0, 0, 1, 0]),
+        (b"$PSEAG,N*2G\r\n", [0, 0, 0, 1, 0]),
+        (b"$PSEAG,N*+2\r\n", [0, 0, 0, 1, 0]),
+        (b"$PSEAG*N*22\r\n", [0, 0, 0, 1, 0]),
+        (b"$PSEAG,N*22\x00x\r\n", [0, 0, 0, 1, 0]),
+        (b"$\r\n", [0, 0, 0, 1, 0]),
+        (b"$PSE$PSEAG,N*22\r\n", [1, 0, 0, 1, 0]),
+        (b"$PSE\x00AG,N*22\r\n", [0, 0, 0, 1, 8]),
+        (b"$PSEAG,\xc3\x9c*22\r\n", [0, 0, 0, 1, 5]),
+        (b"\r\n\n\r", [0, 0, 0, 0, 0]),
+        (b"!AIVDM,1\r\n$PSEAG,N*22\r\n\x8e", [1, 0, 0, 0, 9]),
+        (&probes, [3, 0, 0, 0, 14]),
+        (overlong.as_bytes(), [1, 0, 1, 0, 1000 - 253]),
     ];
-    for (bytes, want) in cases {
+    for (bytes, [sentences, bad_checksum, overlong, broken, garbage]) in cases {
+        let want = Counts {
+            sentences,
+            bad_checksum,
+            overlong,
+            garbage,
+            broken,
+        };
         let (found, counts) = framed([bytes]);
         assert_eq!(counts, want, "{}", bytes.escape_ascii());
         assert_eq!((found, counts), model(bytes), "{}", bytes.escape_ascii());

@@ -78,7 +78,7 @@ fn sentences_mean_what_is_told_and_are_written_to_the_byte() {
         failures.extend(found.map(|found| format!("{} {found}", golden[0])));
     }
     assert!(failures.is_empty(), "{}", failures.join("\n"));
-    assert!(count >= 56, "only {count} sentences in golden.txt");
+    assert!(count >= 48, "only {count} sentences in golden.txt");
 }
 
 #[test]

@@ -1,9 +1,8 @@
 //! Random sentences of every kind, for the tests here and for comparisons with other codecs.
 
 use gateway::nmea::{
-    Attitude, Battery, BoatError, Command, ControlState, Date, Gga, Gll, Hdg, Hdt, MissionSettings,
-    Mode, Mwv, Operator, Rmc, Sentence, SpeedUnit, Talker, TimeOfDay, Vhw, Vtg, Waypoint,
-    WindReference, Zda,
+    Attitude, Battery, BoatError, Command, ControlState, Date, Gga, Hdg, Hdt, MissionSettings,
+    Mode, Operator, Rmc, Sentence, Talker, TimeOfDay, Vtg, Waypoint, Zda,
 };
 use primitives::LatLon;
 use proptest::option;
@@ -217,31 +216,6 @@ pub(crate) fn standard_sentences(domain: &Domain) -> BoxedStrategy<Sentence> {
             })
         },
     );
-    let units = vec![
-        SpeedUnit::MetresPerSecond,
-        SpeedUnit::KilometresPerHour,
-        SpeedUnit::Knots,
-        SpeedUnit::MilesPerHour,
-    ];
-    let references = select(vec![WindReference::Relative, WindReference::Theoretical]);
-    let mwv = (
-        talker(),
-        angle(),
-        references,
-        size(),
-        select(units),
-        any::<bool>(),
-    )
-        .prop_map(|(talker, angle_deg, reference, speed_m_s, unit, valid)| {
-            Sentence::Mwv(Mwv {
-                talker,
-                angle_deg,
-                reference,
-                speed_m_s,
-                unit,
-                valid,
-            })
-        });
     let hdg = (talker(), angle(), signed(), signed()).prop_map(
         |(talker, heading_deg, deviation_deg, variation_deg)| {
             Sentence::Hdg(Hdg {
@@ -252,23 +226,11 @@ pub(crate) fn standard_sentences(domain: &Domain) -> BoxedStrategy<Sentence> {
             })
         },
     );
-    let vhw = (talker(), angle(), angle(), size()).prop_map(
-        |(talker, heading_true_deg, heading_magnetic_deg, speed_kn)| {
-            Sentence::Vhw(Vhw {
-                talker,
-                heading_true_deg,
-                heading_magnetic_deg,
-                speed_kn,
-            })
-        },
-    );
     prop_oneof![
         gga,
         rmc,
         vtg,
-        mwv,
         hdg,
-        vhw,
         (talker(), angle()).prop_map(|(talker, heading_deg)| Sentence::Hdt(Hdt {
             talker,
             heading_deg
@@ -278,14 +240,6 @@ pub(crate) fn standard_sentences(domain: &Domain) -> BoxedStrategy<Sentence> {
             time,
             date
         })),
-        (talker(), at(), time(), any::<bool>()).prop_map(
-            |(talker, at, time, valid)| Sentence::Gll(Gll {
-                talker,
-                at,
-                time,
-                valid
-            })
-        ),
     ]
     .boxed()
 }

@@ -10,7 +10,7 @@
 //! | `picture/<team>` | an own boat or a contact in a picture (`seen` says which) |
 //! | `inputs` | one input of the game |
 //! | `say/<team>` | a shared variable of a boat |
-//! | `link/<boat>`, `payload/<name>` | a line on the link or on a payload's connection, at the time of the piece that ended it |
+//! | `link/<boat>` | a line on the link, at the time of the piece that ended it |
 //! | `events` | an event of the game (extracted from its frames, not a topic of the file) |
 //! | any other | a message; JSON is flattened, with numbered lists |
 
@@ -20,15 +20,13 @@ mod message;
 use crate::link_line::{Line, Lines};
 use cells::Cells;
 use messages::external::LinkBytes;
-use messages::payload::PayloadBytes;
 use messages::{Frame, Message};
 use primitives::SimTime;
 use recording::{Bag, Damaged, FRAME, RecordedMessage, RecordingError};
 use scenario::Scenario;
 use scenario::outcome::EventOutcome;
-use serde::de::DeserializeOwned;
 use serde_json::Value;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use thiserror::Error;
 
 /// Pseudo-topic of the events.
@@ -104,7 +102,6 @@ pub fn write(
         (EVENTS, _, Some(scenario)) => events(bag, scenario, sink),
         (_, None, _) => json(bag, topic, sink),
         (_, Some(LinkBytes::SCHEMA), _) => link(bag, topic, sink),
-        (_, Some(PayloadBytes::SCHEMA), _) => payload(bag, topic, sink),
         (_, Some(schema), Some(scenario))
             if let Some(columns) = message::columns(schema, scenario) =>
         {
@@ -158,105 +155,26 @@ fn json(bag: &Bag, topic: &str, sink: &mut Sink<'_>) -> Result<Damaged, TableErr
     Ok(damaged)
 }
 
-/// Bytes in one direction, with their connection if there are several.
-struct Piece {
-    connection: Option<u32>,
-    outward: bool,
-    data: Vec<u8>,
-}
-
 /// Writes a row for each line on a link.
 fn link(bag: &Bag, topic: &str, sink: &mut Sink<'_>) -> Result<Damaged, TableError> {
-    let piece = |LinkBytes { outward, data, .. }| Piece {
-        connection: None,
-        outward,
-        data,
-    };
-    lines(
-        bag,
-        topic,
-        ("boat", &["t_s", "direction", "text"]),
-        piece,
-        sink,
-    )
-}
-
-/// Writes a row for each line between a payload and a client.
-fn payload(bag: &Bag, topic: &str, sink: &mut Sink<'_>) -> Result<Damaged, TableError> {
-    let piece = |PayloadBytes {
-                     connection,
-                     outward,
-                     data,
-                     ..
-                 }| Piece {
-        connection: Some(connection),
-        outward,
-        data,
-    };
-    lines(
-        bag,
-        topic,
-        ("payload", &["t_s", "connection", "direction", "text"]),
-        piece,
-        sink,
-    )
-}
-
-/// Writes a row for each line in the bytes to and from `whom`.
-fn lines<M: Message + DeserializeOwned>(
-    bag: &Bag,
-    topic: &str,
-    (whom, columns): (&str, &[&str]),
-    piece_of: impl Fn(M) -> Piece,
-    sink: &mut Sink<'_>,
-) -> Result<Damaged, TableError> {
-    sink(&columns.iter().map(ToString::to_string).collect::<Vec<_>>())?;
-    let mut open: BTreeMap<Option<u32>, Lines> = BTreeMap::new();
+    sink(&["t_s", "direction", "text"].map(str::to_owned))?;
+    let mut lines = Lines::default();
     let mut last = SimTime::ZERO;
-    let mut put = |at, connection: Option<u32>, line: Line| {
-        let direction = if line.outward {
-            format!("to_{whom}")
-        } else {
-            format!("from_{whom}")
-        };
-        let connection = connection.map(|number| number.to_string());
-        let cells = std::iter::once(cells::time(at))
-            .chain(connection)
-            .chain([direction, line.text]);
-        sink(&cells.collect::<Vec<_>>())
+    let mut write = |at, line: Line| {
+        let direction = if line.outward { "to_boat" } else { "from_boat" };
+        sink(&[cells::time(at), direction.to_owned(), line.text])
     };
     let mut damaged = Damaged::default();
     for message in bag.on(topic) {
         last = message.at;
-        let Some(Piece {
-            connection,
-            outward,
-            data,
-        }) = damaged.sound(message.read()).map(&piece_of)
-        else {
-            continue;
-        };
-        let lines = open.entry(connection).or_default();
-        // An empty piece means that this side has closed the connection.
-        let ended = if connection.is_some() && data.is_empty() {
-            lines.end(outward)
-        } else {
-            None
-        };
-        lines
-            .take(outward, &data)
-            .into_iter()
-            .chain(ended)
-            .try_for_each(|line| put(last, connection, line))?;
-        if lines.is_empty() {
-            open.remove(&connection);
+        if let Some(LinkBytes { outward, data, .. }) = damaged.sound(message.read()) {
+            for line in lines.take(outward, &data) {
+                write(last, line)?;
+            }
         }
     }
-    for (connection, lines) in open {
-        lines
-            .rest()
-            .into_iter()
-            .try_for_each(|line| put(last, connection, line))?;
+    for line in lines.rest() {
+        write(last, line)?;
     }
     Ok(damaged)
 }

@@ -57,35 +57,23 @@ pub(crate) fn decision(seq: u64) -> Decision {
         ..Nav::default()
     };
     let has_flag = seq >= 2;
-    let first = VehicleTruth {
-        nav: nav(seq),
-        carrying: if has_flag { 1 } else { -1 },
+    let carrying = if has_flag { 1 } else { -1 };
+    let moored = VehicleTruth {
+        carrying: -1,
         ..VehicleTruth::default()
     };
-    let mut vehicles = vec![
-        VehicleTruth {
-            carrying: -1,
-            ..VehicleTruth::default()
-        };
-        4
-    ];
-    vehicles[0] = first;
-    let grabbed = Event::Grabbed {
-        vehicle: VehicleId(0),
-        flag: FlagId(1),
+    let mut vehicles = vec![moored; 4];
+    vehicles[0].nav = nav(seq);
+    vehicles[0].carrying = carrying;
+    let grabbed = Logged {
+        tick: 3,
+        at: SimTime(150_000_000),
+        event: Event::Grabbed {
+            vehicle: VehicleId(0),
+            flag: FlagId(1),
+        },
     };
-    let events = if seq == 2 {
-        vec![
-            Logged {
-                tick: 3,
-                at: SimTime(150_000_000),
-                event: grabbed,
-            }
-            .into(),
-        ]
-    } else {
-        vec![]
-    };
+    let events = (seq == 2).then(|| grabbed.into());
     let flags = vec![
         FlagView { carrier: -1 },
         FlagView {
@@ -99,7 +87,7 @@ pub(crate) fn decision(seq: u64) -> Decision {
         vehicles,
         score: score.clone(),
         flags: flags.clone(),
-        events,
+        events: events.into_iter().collect(),
         ..Frame::default()
     }
     .into();

@@ -151,10 +151,7 @@ mod tests {
     }
 
     fn boat(command: OperatorCommand) -> GatewayCommand {
-        GatewayCommand::Boat {
-            name: "blue_one".to_owned(),
-            command,
-        }
+        GatewayCommand::boat("blue_one", command)
     }
 
     fn states(count: usize) -> States {

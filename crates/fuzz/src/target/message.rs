@@ -6,7 +6,6 @@ use agent::MindRunner;
 use agent::node::team_inbox::TeamInbox;
 use messages::external::{ExternalOrder, LinkBytes, NavReport};
 use messages::input::{InputRecord, Inputs};
-use messages::payload::PayloadBytes;
 use messages::picture::Nav;
 use messages::refusal::Refusals;
 use messages::{Frame, JoinRequest, Message, Orders, Picture, PolicyProposal, Role, Say, Stamp};
@@ -80,13 +79,6 @@ fn seeds() -> Vec<Vec<u8>> {
         outward: false,
         data,
     };
-    let data = b"data\r".to_vec();
-    let payload = PayloadBytes {
-        stamp: stamp(PayloadBytes::VERSION),
-        connection: 3,
-        outward: true,
-        data,
-    };
     let all = played::orders().map(|order| ExternalOrder {
         stamp: stamp(ExternalOrder::VERSION),
         given_ns: SimTime(7),
@@ -102,8 +94,8 @@ fn seeds() -> Vec<Vec<u8>> {
         codec::encode(&report),
         codec::encode(&link),
         codec::encode(&played::proposal()),
+        codec::encode(&orders),
     ]);
-    seeds.extend([codec::encode(&orders), codec::encode(&payload)]);
     seeds
 }
 
@@ -215,7 +207,6 @@ fn check(bytes: &[u8]) {
             readers.hear(bytes, say.stamp.seq);
         }
         read::<LinkBytes>(bytes);
-        read::<PayloadBytes>(bytes);
         if let Some(order) = read::<ExternalOrder>(bytes) {
             assert_eq!(order.order.order().is_some(), order.order.kind <= 3);
         }

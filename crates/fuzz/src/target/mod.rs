@@ -1,7 +1,6 @@
 //! The kinds of input and their guarantees.
 
 mod address;
-mod exo2;
 mod keys;
 mod mavlink;
 mod message;
@@ -38,9 +37,8 @@ pub struct Target {
 }
 
 /// All targets.
-pub const TARGETS: [Target; 13] = [
+pub const TARGETS: [Target; 12] = [
     address::TARGET,
-    exo2::TARGET,
     keys::TARGET,
     mavlink::TARGET,
     message::TARGET,

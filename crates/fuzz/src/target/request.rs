@@ -45,10 +45,7 @@ fn seeds() -> Vec<Vec<u8>> {
         .minds()
         .map(|(_, mind)| bytes_of(&mind.report()))
         .collect();
-    let boat = |command| GatewayCommand::Boat {
-        name: "blue_one".to_owned(),
-        command,
-    };
+    let boat = |command| GatewayCommand::boat("blue_one", command);
     let mission = Mission {
         throttle_pct: 50.0,
         erp: [41.35, -73.97],

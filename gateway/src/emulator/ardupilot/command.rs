@@ -41,26 +41,15 @@ impl ArduPilot {
         );
         let whole =
             |param: f32| (if has_position { 1e7 } else { 1.0 } * f64::from(param)).round() as i32;
-        let COMMAND_LONG_DATA {
-            param1,
-            param2,
-            param3,
-            param4,
-            command,
-            ..
-        } = *long;
-        let x = whole(long.param5);
-        let y = whole(long.param6);
-        let frame = MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT;
         let int = COMMAND_INT_DATA {
-            param1,
-            param2,
-            param3,
-            param4,
-            x,
-            y,
-            command,
-            frame,
+            param1: long.param1,
+            param2: long.param2,
+            param3: long.param3,
+            param4: long.param4,
+            x: whole(long.param5),
+            y: whole(long.param6),
+            command: long.command,
+            frame: MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT,
             ..Default::default()
         };
         self.take_command_int(now, from, &int);
@@ -114,22 +103,16 @@ impl ArduPilot {
 
     /// Handles a command unknown to the dialect.
     pub(super) fn take_unknown_command(&mut self, from: (u8, u8), command: u16) {
-        let is_banner = command == DO_SEND_BANNER;
-        if is_banner {
+        let result = if command == DO_SEND_BANNER {
             self.say(
                 MavSeverity::MAV_SEVERITY_INFO,
                 "ArduRover V4.5.7, emulated by Squall",
             );
-        }
-        self.acknowledge(
-            from,
-            command,
-            if is_banner {
-                DONE
-            } else {
-                MavResult::MAV_RESULT_UNSUPPORTED
-            },
-        );
+            DONE
+        } else {
+            MavResult::MAV_RESULT_UNSUPPORTED
+        };
+        self.acknowledge(from, command, result);
     }
 
     /// Takes a number, because commands unknown to the dialect are also acknowledged.

@@ -45,13 +45,11 @@ struct Upload {
 impl Upload {
     fn request(&mut self, now: SimTime) -> MavMessage {
         self.asked_at = now;
-        let (target_system, target_component) = self.from;
-        let seq = self.items.len() as u16;
         // ArduPilot requests items with this message, and dronekit knows no other.
         MavMessage::MISSION_REQUEST(MISSION_REQUEST_DATA {
-            seq,
-            target_system,
-            target_component,
+            seq: self.items.len() as u16,
+            target_system: self.from.0,
+            target_component: self.from.1,
             ..Default::default()
         })
     }
@@ -92,10 +90,9 @@ impl MissionStore {
             .take(usize::from(waypoint.max(1)))
             .last()
             .unwrap_or(0) as u16;
-        let total = self.items.len().saturating_sub(1) as u16;
         MavMessage::MISSION_CURRENT(MISSION_CURRENT_DATA {
             seq,
-            total,
+            total: self.items.len().saturating_sub(1) as u16,
             ..Default::default()
         })
     }
@@ -254,15 +251,13 @@ impl MissionStore {
         home: Option<(i32, i32)>,
         seq: u16,
     ) -> Option<MISSION_ITEM_INT_DATA> {
-        let (target_system, target_component) = from;
         let stored = self.items.get(usize::from(seq)).cloned();
         let item = if seq == 0 {
             let (x, y) = home.unwrap_or_else(|| stored.map_or((0, 0), |item| (item.x, item.y)));
-            let command = MavCmd::MAV_CMD_NAV_WAYPOINT;
             MISSION_ITEM_INT_DATA {
                 x,
                 y,
-                command,
+                command: MavCmd::MAV_CMD_NAV_WAYPOINT,
                 frame: MavFrame::MAV_FRAME_GLOBAL,
                 ..Default::default()
             }
@@ -270,8 +265,8 @@ impl MissionStore {
             stored?
         };
         Some(MISSION_ITEM_INT_DATA {
-            target_system,
-            target_component,
+            target_system: from.0,
+            target_component: from.1,
             ..item
         })
     }
@@ -319,86 +314,42 @@ fn type_of(message: &MavMessage) -> Option<MavMissionType> {
 
 /// An item in the older message, whose positions are in degrees.
 pub(super) fn int_from_float(item: &MISSION_ITEM_DATA) -> MISSION_ITEM_INT_DATA {
-    let MISSION_ITEM_DATA {
-        param1,
-        param2,
-        param3,
-        param4,
-        z,
-        seq,
-        command,
-        frame,
-        current,
-        autocontinue,
-        ..
-    } = *item;
-    let x = e7(item.x.into());
-    let y = e7(item.y.into());
-    let mission_type = item.mission_type;
-    let item = MISSION_ITEM_INT_DATA {
-        param1,
-        param2,
-        param3,
-        param4,
-        x,
-        y,
-        z,
-        seq,
-        ..Default::default()
-    };
     MISSION_ITEM_INT_DATA {
-        command,
-        frame,
-        current,
-        autocontinue,
-        mission_type,
-        ..item
+        param1: item.param1,
+        param2: item.param2,
+        param3: item.param3,
+        param4: item.param4,
+        x: e7(item.x.into()),
+        y: e7(item.y.into()),
+        z: item.z,
+        seq: item.seq,
+        command: item.command,
+        frame: item.frame,
+        current: item.current,
+        autocontinue: item.autocontinue,
+        mission_type: item.mission_type,
+        ..Default::default()
     }
 }
 
 fn float_from_int(item: &MISSION_ITEM_INT_DATA) -> MISSION_ITEM_DATA {
-    let MISSION_ITEM_INT_DATA {
-        param1,
-        param2,
-        param3,
-        param4,
-        z,
-        seq,
-        command,
-        frame,
-        ..
-    } = *item;
-    let MISSION_ITEM_INT_DATA {
-        target_system,
-        target_component,
-        current,
-        autocontinue,
-        mission_type,
-        ..
-    } = *item;
     let at = lat_lon((item.x, item.y));
-    let x = at.lat_deg as f32;
-    let y = at.lon_deg as f32;
-    let item = MISSION_ITEM_DATA {
-        param1,
-        param2,
-        param3,
-        param4,
-        x,
-        y,
-        z,
-        seq,
-        command,
-        frame,
-        ..Default::default()
-    };
     MISSION_ITEM_DATA {
-        target_system,
-        target_component,
-        current,
-        autocontinue,
-        mission_type,
-        ..item
+        param1: item.param1,
+        param2: item.param2,
+        param3: item.param3,
+        param4: item.param4,
+        x: at.lat_deg as f32,
+        y: at.lon_deg as f32,
+        z: item.z,
+        seq: item.seq,
+        command: item.command,
+        target_system: item.target_system,
+        target_component: item.target_component,
+        frame: item.frame,
+        current: item.current,
+        autocontinue: item.autocontinue,
+        mission_type: item.mission_type,
     }
 }
 
@@ -412,13 +363,11 @@ fn typed_ack(
     mavtype: MavMissionResult,
     mission_type: MavMissionType,
 ) -> MavMessage {
-    let (target_system, target_component) = from;
-    let ack = MISSION_ACK_DATA {
-        target_system,
-        target_component,
+    MavMessage::MISSION_ACK(MISSION_ACK_DATA {
+        target_system: from.0,
+        target_component: from.1,
         mavtype,
         mission_type,
         ..Default::default()
-    };
-    MavMessage::MISSION_ACK(ack)
+    })
 }

@@ -39,30 +39,23 @@ impl ArduPilot {
     pub(super) fn answer_other(&mut self, now: SimTime, from: (u8, u8), message: &MavMessage) {
         let (target_system, target_component) = from;
         let reply = match message {
-            MavMessage::TIMESYNC(sync) if sync.tc1 == 0 => {
-                let tc1 = (1e9 * now.as_s()) as i64;
-                MavMessage::TIMESYNC(TIMESYNC_DATA {
-                    tc1,
-                    target_system,
-                    target_component,
-                    ..sync.clone()
-                })
-            }
+            MavMessage::TIMESYNC(sync) if sync.tc1 == 0 => MavMessage::TIMESYNC(TIMESYNC_DATA {
+                tc1: (1e9 * now.as_s()) as i64,
+                target_system,
+                target_component,
+                ..sync.clone()
+            }),
             MavMessage::PING(ping) if ping.target_system == 0 => MavMessage::PING(PING_DATA {
                 target_system,
                 target_component,
                 ..ping.clone()
             }),
             MavMessage::LOG_REQUEST_LIST(_) => MavMessage::LOG_ENTRY(LOG_ENTRY_DATA::default()),
-            MavMessage::LOG_REQUEST_DATA(wanted) => {
-                let id = wanted.id;
-                let ofs = wanted.ofs;
-                MavMessage::LOG_DATA(LOG_DATA_DATA {
-                    id,
-                    ofs,
-                    ..LOG_DATA_DATA::default()
-                })
-            }
+            MavMessage::LOG_REQUEST_DATA(wanted) => MavMessage::LOG_DATA(LOG_DATA_DATA {
+                id: wanted.id,
+                ofs: wanted.ofs,
+                ..LOG_DATA_DATA::default()
+            }),
             MavMessage::FILE_TRANSFER_PROTOCOL(request) => {
                 MavMessage::FILE_TRANSFER_PROTOCOL(FILE_TRANSFER_PROTOCOL_DATA {
                     target_system,

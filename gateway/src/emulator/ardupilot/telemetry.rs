@@ -16,9 +16,9 @@ use crate::mavlink::dialect::{
     REQUEST_DATA_STREAM_DATA, SYS_STATUS_DATA, SYSTEM_TIME_DATA, VFR_HUD_DATA,
 };
 use ::mavlink::MessageData;
+use primitives::SimTime;
 use primitives::angle::compass_deg_from_rad;
 use primitives::frame::Ned;
-use primitives::{SimTime, math};
 use std::collections::BTreeMap;
 
 /// Minimum interval of a message, s.
@@ -33,89 +33,46 @@ const EKF_EXTRA_CRC: u8 = 71;
 const EKF_WELL: u16 = 831;
 const EKF_WITHOUT_FIX: u16 = 165;
 
-/// Every message that it can send: its number, its stream, and its default interval, s, if any.
-const MESSAGES: [(u32, MavDataStream, Option<f64>); 16] = [
+/// The messages of each stream, which it sends once a second unless told otherwise.
+const STREAMS: [(MavDataStream, &[u32]); 6] = [
+    (MavDataStream::MAV_DATA_STREAM_ALL, &[HEARTBEAT_DATA::ID]),
     (
-        HEARTBEAT_DATA::ID,
-        MavDataStream::MAV_DATA_STREAM_ALL,
-        Some(1.0),
-    ),
-    (
-        SYS_STATUS_DATA::ID,
         MavDataStream::MAV_DATA_STREAM_EXTENDED_STATUS,
-        Some(1.0),
+        &[
+            SYS_STATUS_DATA::ID,
+            GPS_RAW_INT_DATA::ID,
+            NAV_CONTROLLER_OUTPUT_DATA::ID,
+            POSITION_TARGET_GLOBAL_INT_DATA::ID,
+            MISSION_CURRENT_DATA::ID,
+        ],
     ),
     (
-        GPS_RAW_INT_DATA::ID,
-        MavDataStream::MAV_DATA_STREAM_EXTENDED_STATUS,
-        Some(1.0),
-    ),
-    (
-        NAV_CONTROLLER_OUTPUT_DATA::ID,
-        MavDataStream::MAV_DATA_STREAM_EXTENDED_STATUS,
-        Some(1.0),
-    ),
-    (
-        POSITION_TARGET_GLOBAL_INT_DATA::ID,
-        MavDataStream::MAV_DATA_STREAM_EXTENDED_STATUS,
-        Some(1.0),
-    ),
-    (
-        MISSION_CURRENT_DATA::ID,
-        MavDataStream::MAV_DATA_STREAM_EXTENDED_STATUS,
-        Some(1.0),
-    ),
-    (
-        GLOBAL_POSITION_INT_DATA::ID,
         MavDataStream::MAV_DATA_STREAM_POSITION,
-        Some(1.0),
+        &[GLOBAL_POSITION_INT_DATA::ID, LOCAL_POSITION_NED_DATA::ID],
     ),
+    (MavDataStream::MAV_DATA_STREAM_EXTRA1, &[ATTITUDE_DATA::ID]),
+    (MavDataStream::MAV_DATA_STREAM_EXTRA2, &[VFR_HUD_DATA::ID]),
     (
-        LOCAL_POSITION_NED_DATA::ID,
-        MavDataStream::MAV_DATA_STREAM_POSITION,
-        Some(1.0),
-    ),
-    (
-        ATTITUDE_DATA::ID,
-        MavDataStream::MAV_DATA_STREAM_EXTRA1,
-        Some(1.0),
-    ),
-    (
-        VFR_HUD_DATA::ID,
-        MavDataStream::MAV_DATA_STREAM_EXTRA2,
-        Some(1.0),
-    ),
-    (
-        SYSTEM_TIME_DATA::ID,
         MavDataStream::MAV_DATA_STREAM_EXTRA3,
-        Some(1.0),
-    ),
-    (
-        BATTERY_STATUS_DATA::ID,
-        MavDataStream::MAV_DATA_STREAM_EXTRA3,
-        Some(1.0),
-    ),
-    (
-        EKF_STATUS_REPORT,
-        MavDataStream::MAV_DATA_STREAM_EXTRA3,
-        Some(1.0),
-    ),
-    (
-        HOME_POSITION_DATA::ID,
-        MavDataStream::MAV_DATA_STREAM_ALL,
-        None,
-    ),
-    (
-        GPS_GLOBAL_ORIGIN_DATA::ID,
-        MavDataStream::MAV_DATA_STREAM_ALL,
-        None,
-    ),
-    (
-        AUTOPILOT_VERSION_DATA::ID,
-        MavDataStream::MAV_DATA_STREAM_ALL,
-        None,
+        &[
+            SYSTEM_TIME_DATA::ID,
+            BATTERY_STATUS_DATA::ID,
+            EKF_STATUS_REPORT,
+        ],
     ),
 ];
+const INTERVAL_S: f64 = 1.0;
+/// The messages that it sends only on request.
+const ON_REQUEST: [u32; 3] = [
+    HOME_POSITION_DATA::ID,
+    GPS_GLOBAL_ORIGIN_DATA::ID,
+    AUTOPILOT_VERSION_DATA::ID,
+];
+
+/// The messages of all streams.
+fn streamed() -> impl Iterator<Item = u32> {
+    STREAMS.iter().flat_map(|(_, ids)| *ids).copied()
+}
 
 /// The interval of each message, s, and when it is due.
 #[derive(Clone, Debug)]
@@ -125,11 +82,10 @@ pub(super) struct Streams {
 
 impl Streams {
     pub(super) fn new() -> Streams {
-        let regular = MESSAGES
-            .iter()
-            .filter_map(|(id, _, every_s)| Some((*id, ((*every_s)?, SimTime::ZERO))));
         Streams {
-            regular: regular.collect(),
+            regular: streamed()
+                .map(|id| (id, (INTERVAL_S, SimTime::ZERO)))
+                .collect(),
         }
     }
 
@@ -150,13 +106,14 @@ impl Streams {
     // Zero requests the default rate, and a negative interval stops the message
     // (MAV_CMD_SET_MESSAGE_INTERVAL).
     pub(super) fn set_interval(&mut self, id: u32, interval_us: f64) -> MavResult {
-        let Some((_, _, unasked_s)) = MESSAGES.iter().find(|(known, ..)| *known == id) else {
+        let is_streamed = streamed().any(|known| known == id);
+        if !is_streamed && !ON_REQUEST.contains(&id) {
             return MavResult::MAV_RESULT_FAILED;
-        };
+        }
         let every_s = if interval_us > 0.0 {
             Some(1e-6 * interval_us)
         } else {
-            unasked_s.filter(|_| interval_us == 0.0)
+            (is_streamed && interval_us == 0.0).then_some(INTERVAL_S)
         };
         self.set(id, every_s);
         MavResult::MAV_RESULT_ACCEPTED
@@ -164,7 +121,7 @@ impl Streams {
 
     /// The interval of a message, µs: -1 means never, 0 an unsupported message.
     fn interval_us(&self, id: u32) -> i32 {
-        let is_known = MESSAGES.iter().any(|(known, ..)| *known == id);
+        let is_known = streamed().chain(ON_REQUEST).any(|known| known == id);
         let never = if is_known { -1 } else { 0 };
         self.regular
             .get(&id)
@@ -176,14 +133,15 @@ impl Streams {
         let every_s = (request.start_stop == 1 && request.req_message_rate > 0)
             .then(|| 1.0 / f64::from(request.req_message_rate));
         let is_all = request.req_stream_id == MavDataStream::MAV_DATA_STREAM_ALL;
-        for (id, stream, unasked_s) in MESSAGES {
-            // The heartbeat continues.
-            if unasked_s.is_some()
-                && id != HEARTBEAT_DATA::ID
-                && (is_all || stream == request.req_stream_id)
-            {
-                self.set(id, every_s);
-            }
+        let asked = STREAMS
+            .iter()
+            .filter(|(stream, _)| is_all || *stream == request.req_stream_id);
+        // The heartbeat continues.
+        for id in asked
+            .flat_map(|(_, ids)| *ids)
+            .filter(|id| **id != HEARTBEAT_DATA::ID)
+        {
+            self.set(*id, every_s);
         }
     }
 
@@ -241,23 +199,20 @@ impl ArduPilot {
             GLOBAL_POSITION_INT_DATA::ID => MavMessage::GLOBAL_POSITION_INT(self.position(now)?),
             ATTITUDE_DATA::ID => MavMessage::ATTITUDE(self.attitude(now)?),
             NAV_CONTROLLER_OUTPUT_DATA::ID if self.mode == RoverMode::Guided => {
-                let nav_bearing = self.set_points.nav_bearing(now);
                 MavMessage::NAV_CONTROLLER_OUTPUT(NAV_CONTROLLER_OUTPUT_DATA {
-                    nav_bearing,
+                    nav_bearing: self.set_points.nav_bearing(now),
                     ..Default::default()
                 })
             }
             // There are no velocities.
             POSITION_TARGET_GLOBAL_INT_DATA::ID if self.mode == RoverMode::Guided => {
                 let (lat_int, lon_int) = self.e7(self.position_target()?);
-                let time_boot_ms = boot_ms(now);
-                let data = POSITION_TARGET_GLOBAL_INT_DATA {
-                    time_boot_ms,
+                MavMessage::POSITION_TARGET_GLOBAL_INT(POSITION_TARGET_GLOBAL_INT_DATA {
+                    time_boot_ms: boot_ms(now),
                     lat_int,
                     lon_int,
                     ..Default::default()
-                };
-                MavMessage::POSITION_TARGET_GLOBAL_INT(data)
+                })
             }
             MISSION_CURRENT_DATA::ID => self.mission.current(self.autopilot.next),
             LOCAL_POSITION_NED_DATA::ID => {
@@ -360,7 +315,7 @@ impl ArduPilot {
         let nav = self.sensed.own?.nav;
         let has_fix = self.sensed.has_fix(now);
         let velocity = nav.velocity_m_s();
-        let course_deg = compass_deg_from_rad(math::atan2(velocity.east, velocity.north));
+        let course_deg = compass_deg_from_rad(velocity.direction_rad());
         Some(GPS_RAW_INT_DATA {
             time_usec: self.utc_us(now),
             lat,
