@@ -41,6 +41,7 @@ mod source;
 pub mod strategy;
 mod syntax;
 mod tree;
+mod unit;
 mod validate;
 
 pub use boat::Boat;

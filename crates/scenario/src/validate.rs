@@ -11,6 +11,7 @@ use super::field_value::by_fields;
 use super::guess::did_you_mean;
 use super::schema::DRAWN;
 use super::tree::{Node, Table, Value};
+use super::unit::Unit;
 use serde_json::{Map, Value as Json};
 
 /// Reads `tree` by the schema `root`, with numbers drawn for `owner`; also returns the paths of
@@ -325,9 +326,9 @@ impl<'a> Validator<'a> {
         if let Value::Text(text) = &node.value
             && expected.contains("number")
             && has_unit(text)
-            && let Some(unit) = unit_of(self.key())
+            && let Some(unit) = Unit::of(self.key())
         {
-            expected += &format!(" without a unit, in {unit}");
+            expected += &format!(" without a unit, in {}", unit.name);
         }
         self.wrong(node, &found(node), &expected)
     }
@@ -474,26 +475,6 @@ fn found(node: &Node) -> String {
 fn has_unit(text: &str) -> bool {
     text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c))
         && text.parse::<f64>().is_err()
-}
-
-/// The unit in a key's name.
-fn unit_of(key: &str) -> Option<&'static str> {
-    const UNITS: [(&str, &str); 10] = [
-        ("_rad_s", "rad/s"),
-        ("_m_s", "m/s"),
-        ("_kn", "knots"),
-        ("_deg", "degrees"),
-        ("_newton", "newton"),
-        ("_kg", "kg"),
-        ("_pct", "per cent"),
-        ("_nmi", "nautical miles"),
-        ("_m", "m"),
-        ("_s", "s"),
-    ];
-    UNITS
-        .into_iter()
-        .find(|(end, _)| key.ends_with(end))
-        .map(|(_, unit)| unit)
 }
 
 /// The allowed values, in words.
