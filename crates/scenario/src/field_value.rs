@@ -4,6 +4,7 @@
 //! the list `gain`. Its unit is converted, seconds become a time where the field has no unit, and
 //! `[x, y]` becomes a position.
 
+use super::schema::properties;
 use super::unit::Unit;
 use primitives::frame::Ned;
 use primitives::time::SimTime;
@@ -13,8 +14,8 @@ use serde_json::{Map, Value, json};
 const FIELD: &str = "x-field";
 
 /// Converts a table's values by key to values by field.
-pub(super) fn by_fields(mut values: Map<String, Value>, properties: &Value) -> Value {
-    let keys = properties.as_object().into_iter().flatten();
+pub(super) fn by_fields(mut values: Map<String, Value>, schema: &Value) -> Value {
+    let keys = properties(schema);
     let marked = keys.filter_map(|(key, about)| Some((key, about.get(FIELD)?.as_str()?)));
     let moved: Vec<_> = marked
         .filter_map(|(key, field)| Some((key, field, values.remove(key)?)))

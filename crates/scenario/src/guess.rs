@@ -31,6 +31,11 @@ pub fn did_you_mean(name: &str, choices: &[&str]) -> String {
         .unwrap_or_default()
 }
 
+/// The choices with the suggestion: `seed, tick_s (did you mean seed?)`.
+pub(super) fn listed(name: &str, choices: &[&str]) -> String {
+    choices.join(", ") + &did_you_mean(name, choices)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,6 +1,5 @@
 //! A kind of scenario file: its keys, its folder, and its check.
 
-use super::diagnostics::Diagnostics;
 use super::load::draw_file;
 use super::problem::Problems;
 use super::read::Document;
@@ -19,7 +18,7 @@ use std::path::Path;
 
 /// The checked form of a kind of scenario file, implemented by the crate that uses it; for the
 /// files of a game in `check`.
-pub trait ScenarioFile: Sized + 'static {
+pub trait ScenarioFile: Clone + Send + Sync + 'static {
     /// The keys of the file; `schema.rs` describes their declaration.
     type Keys: DeserializeOwned + JsonSchema;
     /// The name of the kind and of its schema file.
@@ -28,7 +27,7 @@ pub trait ScenarioFile: Sized + 'static {
     const FOLDER: &'static str;
 
     /// Converts a file that satisfies its schema; `None` if there are faults, which are reported.
-    fn check(diagnostics: &mut Diagnostics, document: &Document<Self::Keys>) -> Option<Self>;
+    fn check(document: &Document<Self::Keys>) -> Option<Self>;
 
     /// Reads and checks the file at `path`, its bases and the files it refers to. Distributions are
     /// drawn with seed 1.

@@ -3,8 +3,8 @@
 //! [`Scenario`] is the checked form, in SI and radians, and is sent to every process that joins the
 //! game. [`load`] creates it. Its types and those in `raw` declare the keys of files, and `schema`
 //! generates their JSON Schemas. `read` finds the files and merges them with their bases,
-//! `validate` reads them by their schema, `check` converts them to the checked types, and
-//! `diagnostics` collects every [`Problem`].
+//! `validate` reads them by their schema, and `check` converts them to the checked types. A `Loader`
+//! is the context of one reading; its `diagnostics` collect every [`Problem`].
 
 pub mod action;
 pub mod boat;
@@ -18,11 +18,11 @@ pub mod fault;
 mod field_value;
 mod files;
 mod guess;
-mod kept;
 pub mod keys;
 mod kind;
 pub mod link;
 mod load;
+mod loader;
 pub mod observation;
 pub mod outcome;
 mod overrides;
@@ -46,8 +46,7 @@ mod validate;
 
 pub use boat::Boat;
 pub use built_in::{BuiltIn, OnOverride, argument_for, built_in, set_built_in};
-pub use check::{StrategyFiles, check_corners, check_thrust_map};
-pub use diagnostics::Diagnostics;
+pub use check::{check_corners, check_thrust_map};
 pub use digest::digest_of;
 pub use draw::{Drawn, Recipe};
 pub use files::Files;

@@ -2,7 +2,7 @@
 //! from the types that declare them.
 
 use super::kind::Kind;
-use super::schema::{TABLE, declared, may_be_empty};
+use super::schema::{TABLE, declared, entries, is_required, may_be_empty, properties};
 use super::setting::target_of;
 use crate::strategy::{Boat, Fact, Mark, Measure, Named, What, Who};
 use serde_json::Value;
@@ -60,9 +60,9 @@ fn collect(sections: &mut Vec<Section>, heading: &str, path: &str, (about, said)
             text,
         }),
     }
-    for (key, about) in about["properties"].as_object().into_iter().flatten() {
+    for (key, about) in properties(about) {
         let path = if path.is_empty() {
-            key.clone()
+            key.to_owned()
         } else {
             format!("{path}.{key}")
         };
@@ -79,11 +79,8 @@ fn collect(sections: &mut Vec<Section>, heading: &str, path: &str, (about, said)
                 collect(sections, &heading, &path, (about, &said));
             }
         }
-        for choice in about["oneOf"].as_array().into_iter().flatten() {
-            if choice["properties"]
-                .as_object()
-                .is_some_and(|keys| keys.len() > 1)
-            {
+        for choice in entries(about, "oneOf") {
+            if properties(choice).nth(1).is_some() {
                 let heading = format!(
                     "### `{path}` of kind {}",
                     choice["properties"]["kind"]["const"]
@@ -139,11 +136,7 @@ fn choices(page: &mut String, root: &Value) {
         ("beyond_halt", "BeyondHalt"),
         ("by", "Proposer"),
     ] {
-        let choices = root["definitions"][name]["oneOf"]
-            .as_array()
-            .into_iter()
-            .flatten();
-        let choices: Vec<_> = choices
+        let choices: Vec<_> = entries(&root["definitions"][name], "oneOf")
             .map(|choice| format!("`{}`: {}", choice["const"], description(choice)))
             .collect();
         let _ = writeln!(page, "| `{key}` | {} |", choices.join("<br>"));
@@ -194,14 +187,10 @@ fn behaviours(page: &mut String, root: &Value) {
     let common = &root["definitions"]["FullStop"];
     page.push_str("\n## `[behaviour.NAME]`\n\nKeys of every kind. Speeds are limited to the boat's top speed.\n");
     table(page, common, |_, _| true);
-    for about in root["properties"]["behaviour"]["additionalProperties"]["oneOf"]
-        .as_array()
-        .into_iter()
-        .flatten()
-    {
-        let name = about["properties"]["kind"]["const"]
-            .as_str()
-            .unwrap_or_default();
+    let behaviour = &root["properties"]["behaviour"];
+    for about in entries(&behaviour["additionalProperties"], "oneOf") {
+        let kind = &about["properties"]["kind"];
+        let name = kind["const"].as_str().unwrap_or_default();
         let _ = write!(page, "\n### `{name}`\n\n{}\n", description(about));
         table(page, about, |key, _| {
             common["properties"].get(key).is_none()
@@ -216,18 +205,8 @@ fn behaviours(page: &mut String, root: &Value) {
 /// A table of the keys that are `wanted`, required ones first. The default, in brackets, is that of
 /// the schema, or else the last sentence of the description.
 fn table(page: &mut String, about: &Value, wanted: impl Fn(&str, &Value) -> bool) {
-    let required: Vec<&str> = about["required"]
-        .as_array()
-        .into_iter()
-        .flatten()
-        .filter_map(Value::as_str)
-        .collect();
-    let keys = about["properties"]
-        .as_object()
-        .into_iter()
-        .flatten()
-        .filter(|(key, about)| wanted(key, about));
-    let is_required = |key: &str, about| required.contains(&key) && !may_be_empty(about);
+    let keys = properties(about).filter(|(key, about)| wanted(key, about));
+    let is_required = |key: &str, value| is_required(about, key) && !may_be_empty(value);
     let (first, rest): (Vec<_>, Vec<_>) = keys.partition(|(key, about)| is_required(key, about));
     if first.is_empty() && rest.is_empty() {
         return;

@@ -3,9 +3,9 @@
 use super::axis::{Axis, AxisValue, Target};
 use crate::tournament::{Entrant, check_entries};
 use scenario::keys::FilePath;
+use scenario::strategy::Strategy;
 use scenario::{
-    Diagnostics, Document, GameVariants, Overrides, Problem, Problems, Scenario, ScenarioFile,
-    StrategyFiles, tidied_path,
+    Document, GameVariants, Overrides, Problem, Problems, Scenario, ScenarioFile, tidied_path,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -74,8 +74,8 @@ impl ScenarioFile for Sweep {
     const NAME: &'static str = "sweep";
     const FOLDER: &'static str = "sweeps";
 
-    fn check(diagnostics: &mut Diagnostics, document: &Document<Sweep>) -> Option<Sweep> {
-        checked(diagnostics, document)
+    fn check(document: &Document<Sweep>) -> Option<Sweep> {
+        checked(document)
     }
 
     /// Checks the game with the values of every axis that suffice to check all, one axis at a time.
@@ -91,7 +91,7 @@ impl ScenarioFile for Sweep {
         let game = GameVariants::new(&self.game, &self.overrides(&teams, 0, 0, &nominal));
         let mut problems = vec![];
         let mut read = |values: &[AxisValue]| {
-            if let Err(Problems(found)) = game.load(&self.overrides(&teams, 0, 0, values)) {
+            if let Err(Problems(found)) = game.check(&self.overrides(&teams, 0, 0, values)) {
                 problems.extend(found);
             }
         };
@@ -109,13 +109,7 @@ impl ScenarioFile for Sweep {
             .iter_mut()
             .filter(|problem: &&mut Problem| problem.path == self.path);
         of_axes.for_each(|problem| problem.source.clear());
-        problems.sort();
-        problems.dedup();
-        if problems.is_empty() {
-            Ok(())
-        } else {
-            Err(Problems(problems))
-        }
+        Problems::of(problems)
     }
 }
 
@@ -161,147 +155,115 @@ fn beside(file: &Path, named: &str) -> PathBuf {
     tidied_path(&file.parent().unwrap_or(Path::new("")).join(named))
 }
 
-fn checked(diagnostics: &mut Diagnostics, document: &Document<Sweep>) -> Option<Sweep> {
+fn checked(document: &Document<Sweep>) -> Option<Sweep> {
     let mut sweep = document.raw.clone();
-    sweep.path = diagnostics.position(document.at("")).0;
-    diagnostics.referenced::<Scenario, _>(document, "game", &sweep.game);
-    sweep.game = diagnostics.resolve(document.at("game"), &sweep.game);
-    let mut strategies = StrategyFiles::default();
-    sweep.opponent = strategies.read(diagnostics, document, "opponent", &sweep.opponent);
-    check_entries(diagnostics, document, &mut strategies, &mut sweep.entries);
+    sweep.path = document.position("").0;
+    document.resolved::<Scenario>("game", &mut sweep.game);
+    document.resolved::<Strategy>("opponent", &mut sweep.opponent);
+    check_entries(document, &mut sweep.entries);
     let mut keys = BTreeSet::new();
     for (i, axis) in sweep.axes.iter_mut().enumerate() {
         let at = format!("axis.{i}");
-        let key_at = document.at(&format!("{at}.key"));
-        let (_, line, column) = diagnostics.position(key_at);
+        let key_path = format!("{at}.key");
+        let (_, line, column) = document.position(&key_path);
         axis.place = (line, column);
         if document.is_sound(&at) {
-            check_axis(diagnostics, document, &at, axis);
+            check_axis(document, &at, axis);
             if !keys.insert(axis.key.clone()) {
-                diagnostics.note(
-                    key_at,
-                    format!(
-                        "the key {:?} is used twice, expected a unique key for each axis",
-                        axis.key
-                    ),
+                let message = format!(
+                    "the key {:?} is used twice, expected a unique key for each axis",
+                    axis.key
                 );
+                document.note(&key_path, message);
             }
         }
     }
-    document.is_faultless(diagnostics).then_some(sweep)
+    document.is_faultless().then_some(sweep)
 }
 
-fn check_axis(diagnostics: &mut Diagnostics, document: &Document<Sweep>, at: &str, axis: &Axis) {
-    let place = |key: &str| document.at(&format!("{at}.{key}"));
-    let given: Vec<&str> = ["values", "range", "normal", "log_normal"]
+fn check_axis(document: &Document<Sweep>, at: &str, axis: &Axis) {
+    let given: Vec<&'static str> = ["values", "range", "normal", "log_normal"]
         .into_iter()
         .filter(|key| document.has(&format!("{at}.{key}")))
         .collect();
-    let sort = |value: &AxisValue| std::mem::discriminant(value);
-    let wrong = |key: &str, message: String| Some((place(key), message));
-    let files = || "files as values, as in values = [\"../seas/calm.toml\"]";
-    let problem = if !axis.is_of_files()
+    let problem = problem_of_key(axis, &given)
+        .map(|message| ("key", message))
+        .or_else(|| problem_of_values(axis, given[0]))
+        .or_else(|| problem_of_distribution(axis));
+    if let Some((key, message)) = problem {
+        document.note(&format!("{at}.{key}"), message);
+    }
+}
+
+fn problem_of_key(axis: &Axis, given: &[&str]) -> Option<String> {
+    let key = &axis.key;
+    if !axis.is_of_files()
         && let Err(error) = axis.setting("team", &AxisValue::Number(0.0), Path::new(""))
     {
-        wrong(
-            "key",
-            format!(
-                "key is {:?}, expected sea, boat, rules, field, opponent or a longer key: {error}",
-                axis.key
-            ),
-        )
-    } else if given.len() != 1 {
-        let found = if given.is_empty() {
-            "none".to_owned()
-        } else {
-            given.join(" and ")
-        };
-        wrong(
-            "key",
-            format!(
-                "{} has {found}, expected one of values, range, normal, log_normal",
-                axis.key
-            ),
-        )
-    } else if axis.is_of_files()
-        && !axis
-            .values
-            .iter()
-            .all(|value| matches!(value, AxisValue::Text(_)))
-    {
-        wrong(
-            "values",
-            format!("values of {} are not files, expected {}", axis.key, files()),
-        )
-    } else if axis.is_of_files() && axis.values.is_empty() {
-        wrong(
-            given[0],
-            format!("{} has no values, expected {}", axis.key, files()),
-        )
-    } else if axis.values.is_empty() && given[0] == "values" {
-        wrong(
-            "values",
-            format!("{} has no values, expected at least one", axis.key),
-        )
-    } else if axis
-        .values
+        return Some(format!(
+            "key is {key:?}, expected sea, boat, rules, field, opponent or a longer key: {error}"
+        ));
+    }
+    let found = match given {
+        [_] => return None,
+        [] => "none".to_owned(),
+        several => several.join(" and "),
+    };
+    Some(format!(
+        "{key} has {found}, expected one of values, range, normal, log_normal"
+    ))
+}
+
+fn problem_of_values(axis: &Axis, given: &'static str) -> Option<(&'static str, String)> {
+    let Axis { key, values, .. } = axis;
+    let files = "files as values, as in values = [\"../seas/calm.toml\"]";
+    let kind = |value: &AxisValue| std::mem::discriminant(value);
+    let is_text = |value: &AxisValue| matches!(value, AxisValue::Text(_));
+    if axis.is_of_files() && !values.iter().all(is_text) {
+        let message = format!("values of {key} are not files, expected {files}");
+        Some(("values", message))
+    } else if axis.is_of_files() && values.is_empty() {
+        Some((given, format!("{key} has no values, expected {files}")))
+    } else if values.is_empty() && given == "values" {
+        let message = format!("{key} has no values, expected at least one");
+        Some(("values", message))
+    } else if values
         .windows(2)
-        .any(|pair| sort(&pair[0]) != sort(&pair[1]))
+        .any(|pair| kind(&pair[0]) != kind(&pair[1]))
     {
-        wrong(
-            "values",
-            format!(
-                "values of {} have different types, expected all numbers or all texts",
-                axis.key
-            ),
-        )
-    } else if axis
-        .values
-        .iter()
-        .enumerate()
-        .any(|(k, value)| axis.values[..k].contains(value))
-    {
-        wrong(
-            "values",
-            format!(
-                "values of {} contains a duplicate, expected unique values",
-                axis.key
-            ),
-        )
-    } else if let Some([low, high]) = axis.range.filter(|[low, high]| low >= high) {
-        wrong(
-            "range",
-            format!("range is [{low}, {high}], expected the lower number first"),
-        )
-    } else if let Some([low, _]) = axis.range.filter(|[low, _]| axis.log && *low <= 0.0) {
-        wrong(
-            "range",
-            format!("range begins at {low}, expected more than 0 with log"),
-        )
-    } else if axis.log && axis.range.is_none() {
-        wrong(
-            "log",
-            "log is given without range, which it requires".to_owned(),
-        )
-    } else if let Some([_, sigma]) = axis.normal.filter(|[_, sigma]| *sigma <= 0.0) {
-        wrong(
-            "normal",
-            format!("normal has a deviation of {sigma}, expected more than 0"),
-        )
-    } else if let Some(pair) = axis
-        .log_normal
-        .filter(|[median, sigma]| *median <= 0.0 || !(0.0..=10.0).contains(sigma) || *sigma == 0.0)
-    {
-        wrong(
-            "log_normal",
-            format!(
-                "log_normal is {pair:?}, expected a median above 0 and a deviation of at most 10"
-            ),
-        )
+        let message =
+            format!("values of {key} have different types, expected all numbers or all texts");
+        Some(("values", message))
+    } else if (1..values.len()).any(|k| values[..k].contains(&values[k])) {
+        let message = format!("values of {key} contains a duplicate, expected unique values");
+        Some(("values", message))
     } else {
         None
-    };
-    if let Some((at, message)) = problem {
-        diagnostics.note(at, message);
+    }
+}
+
+fn problem_of_distribution(axis: &Axis) -> Option<(&'static str, String)> {
+    if let Some([low, high]) = axis.range.filter(|[low, high]| low >= high) {
+        let message = format!("range is [{low}, {high}], expected the lower number first");
+        Some(("range", message))
+    } else if let Some([low, _]) = axis.range.filter(|[low, _]| axis.log && *low <= 0.0) {
+        let message = format!("range begins at {low}, expected more than 0 with log");
+        Some(("range", message))
+    } else if axis.log && axis.range.is_none() {
+        let message = "log is given without range, which it requires".to_owned();
+        Some(("log", message))
+    } else if let Some([_, sigma]) = axis.normal.filter(|[_, sigma]| *sigma <= 0.0) {
+        let message = format!("normal has a deviation of {sigma}, expected more than 0");
+        Some(("normal", message))
+    } else {
+        let is_bad = |[median, sigma]: &[f64; 2]| {
+            *median <= 0.0 || !(0.0..=10.0).contains(sigma) || *sigma == 0.0
+        };
+        axis.log_normal.filter(is_bad).map(|pair| {
+            let message = format!(
+                "log_normal is {pair:?}, expected a median above 0 and a deviation of at most 10"
+            );
+            ("log_normal", message)
+        })
     }
 }

@@ -1,15 +1,10 @@
 //! Checks thrusters and their flaws.
 
 use crate::boat::{Propeller, ThrustCurve, Thruster};
-use crate::diagnostics::Diagnostics;
 use crate::raw;
 use crate::read::Document;
 
-pub(super) fn thruster(
-    diagnostics: &mut Diagnostics,
-    document: &Document<raw::Boat>,
-    raw: &raw::Thruster,
-) -> Option<Thruster> {
+pub(super) fn thruster(document: &Document<raw::Boat>, raw: &raw::Thruster) -> Option<Thruster> {
     let curve = match (&raw.propeller, &raw.table_pct_newton) {
         (Some(propeller), None) => {
             let Propeller {
@@ -27,19 +22,15 @@ pub(super) fn thruster(
                 n_min_rad_s,
             })
         }
-        (None, Some(rows)) => table(diagnostics, document, rows),
+        (None, Some(rows)) => table(document, rows),
         (Some(_), Some(_)) => {
             let message = "thruster has both, expected either propeller or table_pct_newton";
-            diagnostics.note(document.at("thruster.propeller"), message);
+            document.note("thruster.propeller", message);
             return None;
         }
         (None, None) => {
             if document.is_sound("thruster.table_pct_newton") {
-                document.note_missing(
-                    diagnostics,
-                    "thruster.propeller",
-                    "propeller or table_pct_newton",
-                );
+                document.note_missing("thruster.propeller", "propeller or table_pct_newton");
             }
             return None;
         }
@@ -61,11 +52,7 @@ pub(super) fn thruster(
     })
 }
 
-fn table(
-    diagnostics: &mut Diagnostics,
-    document: &Document<raw::Boat>,
-    rows: &[raw::SettingAndThrust],
-) -> ThrustCurve {
+fn table(document: &Document<raw::Boat>, rows: &[raw::SettingAndThrust]) -> ThrustCurve {
     let path = "thruster.table_pct_newton";
     let points: Vec<(f64, f64)> = rows.iter().map(|row| (row.0 / 100.0, row.1)).collect();
     if document.is_sound(path) {
@@ -75,7 +62,7 @@ fn table(
                     "table_pct_newton has [{}, {}] here; both numbers must exceed those of the previous row",
                     row.0, row.1
                 );
-                diagnostics.note(document.at(&format!("{path}.{i}")), message);
+                document.note(&format!("{path}.{i}"), message);
             }
         }
         let ends = (
@@ -85,11 +72,11 @@ fn table(
         if ends != (Some(-1.0), Some(1.0)) {
             let message =
                 "table_pct_newton does not span the settings, expected -100 first and 100 last";
-            diagnostics.note(document.at(path), message);
+            document.note(path, message);
         }
         if !points.contains(&(0.0, 0.0)) {
             let message = "table_pct_newton has no [0, 0], expected no thrust at setting 0";
-            diagnostics.note(document.at(path), message);
+            document.note(path, message);
         }
     }
     ThrustCurve::Table { points }

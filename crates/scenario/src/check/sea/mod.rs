@@ -3,7 +3,6 @@
 mod current;
 mod waves;
 
-use crate::diagnostics::Diagnostics;
 use crate::kind::ScenarioFile;
 use crate::raw;
 use crate::read::Document;
@@ -14,7 +13,7 @@ impl ScenarioFile for Sea {
     const NAME: &'static str = "sea";
     const FOLDER: &'static str = "seas";
 
-    fn check(diagnostics: &mut Diagnostics, document: &Document<raw::Sea>) -> Option<Sea> {
+    fn check(document: &Document<raw::Sea>) -> Option<Sea> {
         let raw = &document.raw;
         let sea = Sea {
             name: document.name.clone(),
@@ -23,11 +22,11 @@ impl ScenarioFile for Sea {
             waves: raw
                 .waves
                 .as_ref()
-                .and_then(|waves| waves::waves(diagnostics, document, waves)),
+                .and_then(|waves| waves::waves(document, waves)),
             wind: raw.wind.as_ref().map(wind),
-            current: current::current(diagnostics, document, &raw.current),
+            current: current::current(document, &raw.current),
         };
-        document.is_faultless(diagnostics).then_some(sea)
+        document.is_faultless().then_some(sea)
     }
 }
 

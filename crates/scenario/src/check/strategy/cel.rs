@@ -35,21 +35,14 @@ impl Parsed {
 }
 
 /// Parses the expression of `key` at `at`; reports syntax errors.
-pub(super) fn parse(
-    diagnostics: &mut Diagnostics,
-    key: &str,
-    at: usize,
-    text: &str,
-) -> Option<Parsed> {
+pub(super) fn parse(diagnostics: &Diagnostics, key: &str, at: usize, text: &str) -> Option<Parsed> {
     let length = text.chars().count();
     if length > LONGEST {
-        diagnostics.note(
-            at,
-            format!("{key} is {length} characters long, expected at most {LONGEST}"),
-        );
+        let message = format!("{key} is {length} characters long, expected at most {LONGEST}");
+        diagnostics.note(at, message);
         return None;
     }
-    let offsets = offsets(diagnostics.sources.text_from(at), at, text);
+    let offsets = offsets(diagnostics.sources.borrow().text_from(at), at, text);
     let parser = || PrattParser::new().max_recursion_depth(DEEPEST as u16);
     match parser().parse(text) {
         Ok(root) => {

@@ -2,7 +2,7 @@
 
 use super::cel::{DEEPEST, Parsed};
 use super::scope::Scope;
-use crate::guess::did_you_mean;
+use crate::guess::{did_you_mean, listed};
 use crate::strategy::{Expression, Fact, Join, Kind, Measure, Named, Place};
 use ::cel::common::ast::{CallExpr, Expr, IdedExpr, LiteralValue, operators};
 
@@ -18,7 +18,7 @@ type Read = (Expression, Kind);
 
 /// The expression parsed for `key`, which must be of the kind `wanted`; reports faults.
 pub(super) fn read(
-    scope: &mut Scope<'_>,
+    scope: &Scope<'_>,
     key: &str,
     parsed: &Parsed,
     wanted: &Kind,
@@ -34,7 +34,7 @@ pub(super) fn read(
 }
 
 struct Reader<'a, 'b> {
-    scope: &'a mut Scope<'b>,
+    scope: &'a Scope<'b>,
     key: &'a str,
     parsed: &'a Parsed,
     /// Inside `mates(...)`, where only shared variables are available.
@@ -44,11 +44,10 @@ struct Reader<'a, 'b> {
 
 impl Reader<'_, '_> {
     /// Reports a fault of a part.
-    fn refuse<T>(&mut self, part: &IdedExpr, message: &str) -> Option<T> {
+    fn refuse<T>(&self, part: &IdedExpr, message: &str) -> Option<T> {
         let message = format!("{} {message}", self.key);
-        self.scope
-            .diagnostics
-            .note(self.parsed.place(part), message);
+        let diagnostics = &self.scope.document.loader.diagnostics;
+        diagnostics.note(self.parsed.place(part), message);
         None
     }
 
@@ -62,21 +61,14 @@ impl Reader<'_, '_> {
         } else {
             "a number"
         };
-        self.refuse(
-            part,
-            &format!(
-                "has {} here, expected {wanted}",
-                in_words(&expression, &found)
-            ),
-        )
+        let found = in_words(&expression, &found);
+        self.refuse(part, &format!("has {found} here, expected {wanted}"))
     }
 
     fn any(&mut self, part: &IdedExpr) -> Option<Read> {
         if self.depth > DEEPEST {
-            return self.refuse(
-                part,
-                &format!("is nested too deeply here, expected at most {DEEPEST} levels"),
-            );
+            let message = format!("is nested too deeply here, expected at most {DEEPEST} levels");
+            return self.refuse(part, &message);
         }
         match &part.expr {
             Expr::Literal(literal) => self.literal(part, literal),
@@ -97,7 +89,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    fn not_allowed<T>(&mut self, part: &IdedExpr, what: &str) -> Option<T> {
+    fn not_allowed<T>(&self, part: &IdedExpr, what: &str) -> Option<T> {
         let allowed = "numbers, texts, true, false, names, ! - + * / < <= > >= == != && || ?:, min(), max(), mates()";
         let measures = Measure::names().join("(), ");
         self.refuse(
@@ -106,7 +98,7 @@ impl Reader<'_, '_> {
         )
     }
 
-    fn literal(&mut self, part: &IdedExpr, literal: &LiteralValue) -> Option<Read> {
+    fn literal(&self, part: &IdedExpr, literal: &LiteralValue) -> Option<Read> {
         let number = |value: f64| Some((Expression::Constant(value), Kind::Number));
         match literal {
             LiteralValue::Boolean(is) => Some((Expression::truth(*is.inner()), Kind::Truth)),
@@ -122,8 +114,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    fn name(&mut self, part: &IdedExpr, name: &str) -> Option<Read> {
-        let variables = self.scope.variables;
+    fn name(&self, part: &IdedExpr, name: &str) -> Option<Read> {
         if let Some((index, variable)) = self.scope.variable(name) {
             if self.among_mates && !variable.shared {
                 return self.refuse_to_mates(part, name, "not shared");
@@ -142,10 +133,7 @@ impl Reader<'_, '_> {
             );
             return self.refuse(part, &message);
         }
-        let mut known: Vec<&str> = variables
-            .iter()
-            .map(|variable| variable.name.as_str())
-            .collect();
+        let mut known = self.scope.names();
         let listed = if known.is_empty() {
             String::new()
         } else {
@@ -160,7 +148,7 @@ impl Reader<'_, '_> {
         self.refuse(part, &message)
     }
 
-    fn refuse_to_mates<T>(&mut self, part: &IdedExpr, name: &str, what: &str) -> Option<T> {
+    fn refuse_to_mates<T>(&self, part: &IdedExpr, name: &str, what: &str) -> Option<T> {
         self.refuse(
             part,
             &format!("uses {name} in mates(), which is {what}, expected a shared variable"),
@@ -253,7 +241,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    fn place(&mut self, part: &IdedExpr, measure: &str) -> Option<Place> {
+    fn place(&self, part: &IdedExpr, measure: &str) -> Option<Place> {
         let name = match &part.expr {
             Expr::Ident(name) => name.as_str(),
             Expr::Literal(LiteralValue::String(name)) => name.inner(),
@@ -378,11 +366,8 @@ pub(super) fn is_reserved(name: &str) -> bool {
 /// The index of a text among `values`, or a message with the allowed ones and a suggestion.
 pub(super) fn text_value(values: &[String], text: &str) -> Result<Expression, String> {
     let known: Vec<&str> = values.iter().map(String::as_str).collect();
-    let place = known.iter().position(|value| *value == text);
-    place
-        .map(|place| Expression::Constant(place as f64))
-        .ok_or_else(|| {
-            let guess = did_you_mean(text, &known);
-            format!("expected one of {}{guess}", known.join(", "))
-        })
+    match known.iter().position(|value| *value == text) {
+        Some(place) => Ok(Expression::Constant(place as f64)),
+        None => Err(format!("expected one of {}", listed(text, &known))),
+    }
 }

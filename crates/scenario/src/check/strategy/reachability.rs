@@ -17,7 +17,7 @@ const MOST_STEPS: usize = 50_000_000;
 const MOST_TERMS: usize = u16::MAX as usize;
 
 /// Reports every unreachable mode, but not its children.
-pub(super) fn check(scope: &mut Scope<'_>, program: &Program) {
+pub(super) fn check(scope: &Scope<'_>, program: &Program) {
     let mut terms = Terms {
         program,
         index: BTreeMap::new(),

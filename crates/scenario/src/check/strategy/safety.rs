@@ -5,7 +5,7 @@ use super::scope::Scope;
 use crate::strategy::{Behaviour, Contacts, Program, Task};
 
 /// Checks that a file gives a reason if, and only if, it opts out of safety.
-pub(super) fn check_reason(scope: &mut Scope<'_>) {
+pub(super) fn check_reason(scope: &Scope<'_>) {
     let raw = &scope.document.raw;
     match (raw.unsafe_i_know, &raw.unsafe_because) {
         (false, Some(_)) => {
@@ -15,11 +15,10 @@ pub(super) fn check_reason(scope: &mut Scope<'_>) {
             );
         }
         (true, None) => {
-            let at = scope.document.at("unsafe_i_know");
             if scope.document.is_sound("unsafe_because") {
-                scope
-                    .diagnostics
-                    .note_missing(at, "unsafe_because", "the reason");
+                let at = scope.document.at("unsafe_i_know");
+                let diagnostics = &scope.document.loader.diagnostics;
+                diagnostics.note_missing(at, "unsafe_because", "the reason");
             }
         }
         (true, Some(because)) if because.trim().is_empty() => {
@@ -31,7 +30,7 @@ pub(super) fn check_reason(scope: &mut Scope<'_>) {
 
 /// Reports every mode without safety behaviours, and an unnecessary reason. No other behaviour may
 /// outweigh a safety behaviour: constant weights are checked, expressions are limited at run time.
-pub(super) fn check(scope: &mut Scope<'_>, program: &mut Program) {
+pub(super) fn check(scope: &Scope<'_>, program: &mut Program) {
     let is_unsafe = program.unsafe_because.is_some();
     let mut is_lacking = false;
     for leaf in program.leaves() {
@@ -69,7 +68,7 @@ pub(super) fn check(scope: &mut Scope<'_>, program: &mut Program) {
 }
 
 /// Ensures that no behaviour outweighs a safety behaviour in a mode in which both run.
-fn hold_below_guards(scope: &mut Scope<'_>, program: &mut Program) {
+fn hold_below_guards(scope: &Scope<'_>, program: &mut Program) {
     for leaf in program.leaves().collect::<Vec<_>>() {
         // A number can disable a guard: a weight below a goal's, a range of zero, a region wider
         // than the field, or an expression with such a value. Guards therefore have constants
