@@ -62,10 +62,10 @@ impl ActionSpace {
 /// The probabilities of actions with these logits.
 pub fn probabilities(logits: &[f32]) -> Vec<f32> {
     let most = logits.iter().copied().fold(f32::NEG_INFINITY, f32::max);
-    let parts: Vec<f64> = logits
+    let parts = logits
         .iter()
-        .map(|logit| math::exp(f64::from(logit - most)))
-        .collect();
+        .map(|logit| math::exp(f64::from(logit - most)));
+    let parts: Vec<f64> = parts.collect();
     let sum: f64 = parts.iter().sum();
     parts.iter().map(|part| (part / sum) as f32).collect()
 }

@@ -32,11 +32,8 @@ impl Diagnostics {
 
     /// Reports that the value at `path` of a file is missing from the table at `at`.
     pub(super) fn note_missing(&self, at: usize, path: &str, expected: &str) {
-        let parts: Vec<&str> = path
-            .split('.')
-            .filter(|part| part.parse::<usize>().is_err())
-            .collect();
-        let key = parts[parts.len().saturating_sub(2)..].join(".");
+        let keys: Vec<&str> = keys_of(path).take(2).collect();
+        let key = keys.into_iter().rev().collect::<Vec<_>>().join(".");
         self.note_if_intact(at, format!("{key} is missing, expected {expected}"));
     }
 
@@ -72,6 +69,12 @@ impl Diagnostics {
     pub(super) fn result(&self) -> Result<(), Problems> {
         Problems::of(self.problems.take())
     }
+}
+
+/// The keys in a path, the last one first, without the indices of lists.
+pub(super) fn keys_of(path: &str) -> impl Iterator<Item = &str> {
+    path.rsplit('.')
+        .filter(|part| part.parse::<usize>().is_err())
 }
 
 /// The pattern of names, in a schema.

@@ -107,12 +107,12 @@ impl Kind {
     /// The kind with the most of these top-level keys; ties go to the first.
     pub fn by_keys(kinds: &[Kind], keys: &BTreeSet<String>) -> Kind {
         // `max_by_key` returns the last of equal elements.
-        kinds
+        let best = kinds
             .iter()
             .copied()
             .rev()
-            .max_by_key(|kind| kind.known(keys))
-            .unwrap_or(Kind::GAME)
+            .max_by_key(|kind| kind.known(keys));
+        best.unwrap_or(Kind::GAME)
     }
 
     /// The kind to which a file with these top-level keys clearly belongs, if not to this one: with

@@ -213,8 +213,6 @@ pub fn other_kind(kinds: &[Kind], path: &Path, expected: Kind) -> Option<Kind> {
 fn top_keys(path: &Path) -> BTreeSet<String> {
     let loader = Loader::new(Drawing::Least, &Overrides::default(), Basis::default());
     let tree = read::tree(&loader, path, None, &[]);
-    tree.iter()
-        .flat_map(Node::entries)
-        .map(|(key, _)| key.clone())
-        .collect()
+    let entries = tree.iter().flat_map(Node::entries);
+    entries.map(|(key, _)| key.clone()).collect()
 }

@@ -98,10 +98,8 @@ impl PolicyModel {
     pub fn actions(&self) -> Option<usize> {
         let outputs = self.network.outputs()[self.output].size;
         // A single output is the index of the action.
-        self.spec
-            .action
-            .is_discrete()
-            .then(|| self.spec.action.count().unwrap_or(outputs))
+        let action = self.spec.action;
+        (action.is_discrete()).then(|| action.count().unwrap_or(outputs))
     }
 
     /// The names of its options, if its metadata has them.
@@ -183,10 +181,8 @@ fn spec_of(network: &Network, said: PartialSpec) -> Result<PolicySpec, String> {
     });
     let action = agreed(ACTION, "action", action.transpose()?, said.action)?;
     let period_s = entry(PERIOD_S).map(|text| {
-        let number = text
-            .parse::<f64>()
-            .ok()
-            .filter(|number| PERIODS_S.contains(number));
+        let number = text.parse::<f64>().ok();
+        let number = number.filter(|number| PERIODS_S.contains(number));
         let allowed = || format!("{} to {} s", PERIODS_S.start(), PERIODS_S.end());
         number.ok_or_else(|| wrong(PERIOD_S, text, allowed()))
     });
@@ -264,10 +260,8 @@ fn check_input(network: &Network, observation: ObservationSpace) -> Result<(), S
 fn output_of(network: &Network, action: ActionSpace) -> Result<usize, String> {
     let of_size = |size: usize| -> Vec<usize> {
         let outputs = network.outputs().iter().enumerate();
-        outputs
-            .filter(|(_, port)| port.size == size)
-            .map(|(i, _)| i)
-            .collect()
+        let fitting = outputs.filter(|(_, port)| port.size == size);
+        fitting.map(|(i, _)| i).collect()
     };
     let wrong = |expected: &str| {
         Err(format!(
@@ -312,10 +306,8 @@ fn output_of(network: &Network, action: ActionSpace) -> Result<usize, String> {
 
 /// Inputs or outputs, as text for a message.
 fn listed(ports: &[Port]) -> String {
-    let shown = ports
-        .iter()
-        .take(8)
-        .map(|port| format!("{:?} of {} numbers", port.name, port.size));
+    let shown = ports.iter().take(8);
+    let shown = shown.map(|port| format!("{:?} of {} numbers", port.name, port.size));
     shown.collect::<Vec<_>>().join(", ") + if ports.len() > 8 { ", …" } else { "" }
 }
 

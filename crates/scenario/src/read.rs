@@ -218,11 +218,8 @@ pub(super) fn tree(
         if let Some(at) = asked_at
             && (paths.contains(&path) || paths.len() == LONGEST_CHAIN)
         {
-            let through = paths
-                .iter()
-                .map(|p| p.display().to_string())
-                .collect::<Vec<_>>()
-                .join(", ");
+            let through: Vec<_> = paths.iter().map(|p| p.display().to_string()).collect();
+            let through = through.join(", ");
             let why = if paths.contains(&path) {
                 "refers back to itself"
             } else {

@@ -107,11 +107,8 @@ pub fn reference() -> String {
         table(&mut page, &root["definitions"][name], |_, _| true);
     }
     let quoted = |names: &[&str]| {
-        names
-            .iter()
-            .map(|name| format!("`{name}`"))
-            .collect::<Vec<_>>()
-            .join(", ")
+        let names: Vec<_> = names.iter().map(|name| format!("`{name}`")).collect();
+        names.join(", ")
     };
     let who = quoted(&Who::names());
     let what = quoted(&What::names());
@@ -255,16 +252,9 @@ pub fn meaning(key: &str) -> Option<String> {
 /// The schema of a key of a table: one of its own, any name, or one of a kind of table.
 fn key_in<'a>(about: &'a Value, key: &str) -> Option<&'a Value> {
     let named = || Some(&about["additionalProperties"]).filter(|named| named.is_object());
-    let kinds = || {
-        ["oneOf", "anyOf"]
-            .iter()
-            .filter_map(|kinds| about[kinds].as_array())
-            .flatten()
-    };
-    about["properties"]
-        .get(key)
-        .or_else(named)
-        .or_else(|| kinds().find_map(|kind| key_in(kind, key)))
+    let mut kinds = entries(about, "oneOf").chain(entries(about, "anyOf"));
+    let own = about["properties"].get(key).or_else(named);
+    own.or_else(|| kinds.find_map(|kind| key_in(kind, key)))
 }
 
 fn description(about: &Value) -> String {
@@ -284,10 +274,9 @@ fn line(text: &str) -> String {
 fn range(about: &Value) -> String {
     let bound = |keys: [&str; 2]| {
         let bound = keys.into_iter().find_map(|key| about.get(key))?;
-        bound
-            .as_i64()
-            .map(|whole| whole.to_string())
-            .or(bound.as_f64().map(|number| number.to_string()))
+        let number = || bound.as_f64().map(|number| number.to_string());
+        let whole = bound.as_i64().map(|whole| whole.to_string());
+        whole.or_else(number)
     };
     match (
         bound(["minimum", "minItems"]),
@@ -314,10 +303,8 @@ fn value_of(about: &Value) -> String {
     let is_expression = about["title"] == "a number or an expression";
     let (kind, range) = match about["type"].as_str() {
         Some("array") if !is_pair(about) => {
-            return [range(about), items_of(&about["items"])]
-                .join(" ")
-                .trim()
-                .to_owned();
+            let list = [range(about), items_of(&about["items"])].join(" ");
+            return list.trim().to_owned();
         }
         Some("array") => ("pair".to_owned(), range(&about["items"])),
         _ => (kind_of(about), range(about)),
@@ -334,11 +321,8 @@ fn value_of(about: &Value) -> String {
 fn choice(about: &Value) -> String {
     match about["properties"].as_object() {
         Some(keys) => {
-            let others: String = keys
-                .keys()
-                .filter(|key| *key != "kind")
-                .map(|key| format!(", {key}"))
-                .collect();
+            let others = keys.keys().filter(|key| *key != "kind");
+            let others: String = others.map(|key| format!(", {key}")).collect();
             format!("`{{ kind = {}{others} }}`", keys["kind"]["const"])
         }
         None => format!("`{}`", about["const"]),

@@ -85,11 +85,9 @@ impl Scenario {
         let mut observed = 0;
         for vehicle in &self.vehicles {
             let roles = &self.strategies[vehicle.strategy].roles;
-            candidates += roles
-                .iter()
-                .map(|role| role.helm.courses * role.helm.speeds)
-                .max()
-                .unwrap_or(0);
+            let helms = roles.iter().map(|role| role.helm);
+            let sizes = helms.map(|helm| helm.courses * helm.speeds);
+            candidates += sizes.max().unwrap_or(0);
             // All boats are an upper bound of the mates or enemies of one.
             let size = |role: &crate::strategy::Program| -> usize {
                 role.models()
@@ -141,12 +139,8 @@ mod tests {
         assert_eq!(sound.check_received(), Ok(()));
         let cases: [Case; 8] = [
             ("gps.latency_s of", |game| {
-                game.boats[0]
-                    .sensors
-                    .gps
-                    .as_mut()
-                    .expect("it has a receiver")
-                    .latency_s = 65_535.0;
+                let gps = game.boats[0].sensors.gps.as_mut();
+                gps.expect("it has a receiver").latency_s = 65_535.0;
             }),
             ("helm.courses of", |game| {
                 game.strategies[0].roles[0].helm.courses = 65_536

@@ -5,7 +5,7 @@
 //! replaces a faulty or missing value, so that later checks can find more; `Document::is_sound`
 //! returns whether the value is original.
 
-use super::diagnostics::{NAME_EXPECTED, NAME_PATTERN, is_name};
+use super::diagnostics::{NAME_EXPECTED, NAME_PATTERN, is_name, keys_of};
 use super::draw::{Owner, distribution_kind, draw};
 use super::field_value::by_fields;
 use super::guess::did_you_mean;
@@ -324,10 +324,7 @@ impl<'a> Validator<'a> {
 
     /// The key of the current value, or of the list that contains it.
     fn key(&self) -> &str {
-        self.path
-            .rsplit('.')
-            .find(|part| part.parse::<usize>().is_err())
-            .unwrap_or("the file")
+        keys_of(&self.path).next().unwrap_or("the file")
     }
 
     /// Whether a value is of the type in the schema.

@@ -240,10 +240,8 @@ pub(super) fn fastest_decay(boat: &Boat) -> (&'static str, f64) {
             yaw_kg_m2_s / (hull.yaw_inertia_kg_m2 + hull.added_yaw_kg_m2),
         ),
     ];
-    rates
-        .into_iter()
-        .max_by(|a, b| a.1.total_cmp(&b.1))
-        .unwrap_or(("surge", 0.0))
+    let fastest = rates.into_iter().max_by(|a, b| a.1.total_cmp(&b.1));
+    fastest.unwrap_or(("surge", 0.0))
 }
 
 fn full_ahead_newton(curve: &ThrustCurve) -> f64 {

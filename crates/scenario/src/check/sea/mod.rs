@@ -7,6 +7,8 @@ use crate::kind::ScenarioFile;
 use crate::raw;
 use crate::read::Document;
 use crate::sea::{Gusts, Sea, Wind};
+use current::current;
+use waves::waves;
 
 impl ScenarioFile for Sea {
     type Keys = raw::Sea;
@@ -19,12 +21,9 @@ impl ScenarioFile for Sea {
             name: document.name.clone(),
             water_density_kg_m3: raw.water_density_kg_m3,
             depth_m: raw.depth_m,
-            waves: raw
-                .waves
-                .as_ref()
-                .and_then(|waves| waves::waves(document, waves)),
+            waves: raw.waves.as_ref().and_then(|raw| waves(document, raw)),
             wind: raw.wind.as_ref().map(wind),
-            current: current::current(document, &raw.current),
+            current: current(document, &raw.current),
         };
         document.is_faultless().then_some(sea)
     }

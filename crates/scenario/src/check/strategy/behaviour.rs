@@ -245,8 +245,8 @@ fn model(
             scope.refuse(&format!("{path}.{key}"), message)
         });
     };
-    let mut keys = ["model", "observation", "action", "period_s"].iter();
-    if !keys.all(|key| scope.document.is_sound(&format!("{path}.{key}"))) {
+    let mut used = ["model", "observation", "action", "period_s"].iter();
+    if !used.all(|key| scope.document.is_sound(&format!("{path}.{key}"))) {
         return None;
     }
     if given("by") {

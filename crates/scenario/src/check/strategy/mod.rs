@@ -59,16 +59,10 @@ fn refuse_program(document: &Document<raw::Strategy>) {
         "rule",
     ]
     .map(str::to_owned);
-    let behaviours = document
-        .raw
-        .behaviour
-        .keys()
-        .map(|name| format!("behaviour.{name}"));
-    for key in keys
-        .into_iter()
-        .chain(behaviours)
-        .filter(|key| document.has(key))
-    {
+    let behaviours = document.raw.behaviour.keys();
+    let behaviours = behaviours.map(|name| format!("behaviour.{name}"));
+    let keys = keys.into_iter().chain(behaviours);
+    for key in keys.filter(|key| document.has(key)) {
         let message = format!("{key} is given with roles, expected in the files listed in roles");
         document.note(&key, message);
     }

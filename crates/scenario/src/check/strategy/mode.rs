@@ -28,10 +28,8 @@ pub(super) fn modes(scope: &Scope<'_>) -> Option<Vec<Mode>> {
             let message = format!("{name:?} is used twice, expected a unique name for each mode");
             scope.note(&format!("mode.{i}.name"), &message);
         }
-        let parent = mode
-            .r#in
-            .as_ref()
-            .and_then(|parent| self::parent(scope, &modes, i, parent));
+        let parent = mode.r#in.as_ref();
+        let parent = parent.and_then(|parent| self::parent(scope, &modes, i, parent));
         let enter = set(scope, &format!("mode.{i}.set"), &mode.set);
         modes.push(Mode {
             name,

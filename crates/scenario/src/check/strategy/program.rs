@@ -23,12 +23,8 @@ pub(super) fn program(document: &Document<raw::Strategy>) -> Option<Program> {
     };
     let modes = modes(&scope);
     let behaviours = behaviours(&scope, modes.as_deref());
-    let rules = raw
-        .rule
-        .iter()
-        .enumerate()
-        .map(|(i, given)| rule(&scope, i, given))
-        .collect();
+    let rules = raw.rule.iter().enumerate();
+    let rules = rules.map(|(i, given)| rule(&scope, i, given)).collect();
     safety::check_reason(&scope);
     // Faults of a part may cause faults of the whole.
     if faults() > before || !document.is_sound("") {
@@ -58,12 +54,8 @@ fn check_functions(scope: &Scope<'_>, program: &Program) {
             Task::CutRange(_) => 2,
             _ => 1,
         };
-        let functions: usize = program
-            .behaviours
-            .iter()
-            .filter(|b| b.modes[leaf])
-            .map(most)
-            .sum();
+        let behaviours = program.behaviours.iter().filter(|b| b.modes[leaf]);
+        let functions: usize = behaviours.map(most).sum();
         if functions > FUNCTIONS_MAX {
             let message = format!(
                 "could ask for {functions} functions at once, expected at most {FUNCTIONS_MAX}: {NEAREST_MAX} for each \
@@ -82,11 +74,9 @@ fn rule(scope: &Scope<'_>, rule: usize, given: &raw::Rule) -> Rule {
     if given.set.is_empty() && scope.document.is_sound(&path("set")) {
         scope.note(&path("set"), "is empty, expected values for variables");
     }
+    let on = given.on.as_ref();
     Rule {
-        on: given
-            .on
-            .as_ref()
-            .and_then(|on| trigger(scope, &path("on"), on)),
+        on: on.and_then(|on| trigger(scope, &path("on"), on)),
         when: scope.condition(&path("when"), given.when.as_deref()),
         set: set(scope, &path("set"), &given.set),
     }

@@ -14,12 +14,10 @@ pub(super) fn check_reason(scope: &Scope<'_>) {
                 "is given without unsafe_i_know = true, expected both or neither",
             );
         }
-        (true, None) => {
-            if scope.document.is_sound("unsafe_because") {
-                let at = scope.document.at("unsafe_i_know");
-                let diagnostics = &scope.document.loader.diagnostics;
-                diagnostics.note_missing(at, "unsafe_because", "the reason");
-            }
+        (true, None) if scope.document.is_sound("unsafe_because") => {
+            let at = scope.document.at("unsafe_i_know");
+            let diagnostics = &scope.document.loader.diagnostics;
+            diagnostics.note_missing(at, "unsafe_because", "the reason");
         }
         (true, Some(because)) if because.trim().is_empty() => {
             scope.note("unsafe_because", "is empty, expected the reason");
@@ -35,12 +33,8 @@ pub(super) fn check(scope: &Scope<'_>, program: &mut Program) {
     let mut is_lacking = false;
     for leaf in program.leaves() {
         for (kind, all) in [("op_region", ""), ("avoid_collision", " for all contacts")] {
-            let of_kind = || {
-                program
-                    .behaviours
-                    .iter()
-                    .filter(|b| b.task.kind() == kind && b.modes[leaf])
-            };
+            let is_of_kind = |b: &&Behaviour| b.task.kind() == kind && b.modes[leaf];
+            let of_kind = || program.behaviours.iter().filter(is_of_kind);
             if of_kind().any(Behaviour::is_guard) {
                 continue;
             }
@@ -74,21 +68,15 @@ fn hold_below_guards(scope: &Scope<'_>, program: &mut Program) {
         // than the field, or an expression with such a value. Guards therefore have constants
         // within limits, and nothing outweighs them.
         let weight = |kind: &str| {
-            let guards = program
-                .behaviours
-                .iter()
-                .filter(|b| b.task.kind() == kind && b.modes[leaf] && b.is_guard());
-            guards
-                .filter_map(|b| b.weight.constant())
-                .fold(0.0, f64::max)
+            let is_guard = |b: &&Behaviour| b.task.kind() == kind && b.modes[leaf] && b.is_guard();
+            let guards = program.behaviours.iter().filter(is_guard);
+            let weights = guards.filter_map(|b| b.weight.constant());
+            weights.fold(0.0, f64::max)
         };
         let most = weight("op_region").min(weight("avoid_collision"));
         let path = program.path(leaf);
-        for behaviour in program
-            .behaviours
-            .iter_mut()
-            .filter(|b| b.modes[leaf] && !b.task.is_safety())
-        {
+        let goals = program.behaviours.iter_mut();
+        for behaviour in goals.filter(|b| b.modes[leaf] && !b.task.is_safety()) {
             match behaviour.weight.constant() {
                 Some(weight) if weight > most => {
                     let message = format!(

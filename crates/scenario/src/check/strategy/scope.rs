@@ -1,6 +1,7 @@
 //! The context for checking the parts of a program: the file and the variables.
 
 use super::{cel, expression};
+use crate::diagnostics::keys_of;
 use crate::raw;
 use crate::read::Document;
 use crate::strategy::{Expression, Kind, Parameter, Program, Variable};
@@ -83,7 +84,5 @@ impl<'a> Scope<'a> {
 
 /// The key at the end of a path.
 fn key_of(path: &str) -> &str {
-    path.rsplit('.')
-        .find(|part| part.parse::<usize>().is_err())
-        .unwrap_or(path)
+    keys_of(path).next().unwrap_or(path)
 }

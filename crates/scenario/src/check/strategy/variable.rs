@@ -132,10 +132,8 @@ fn in_words(given: &raw::Value) -> String {
 }
 
 pub(super) fn set(scope: &Scope<'_>, path: &str, given: &raw::Values) -> Vec<(u16, Expression)> {
-    given
-        .iter()
-        .filter_map(|(name, value)| assigned(scope, &format!("{path}.{name}"), name, value))
-        .collect()
+    let one = |(name, value): (&String, _)| assigned(scope, &format!("{path}.{name}"), name, value);
+    given.iter().filter_map(one).collect()
 }
 
 fn assigned(
