@@ -53,7 +53,7 @@ pub use files::Files;
 pub use guess::did_you_mean;
 pub use kind::{Kind, ScenarioFile};
 pub use load::{
-    GameVariants, check_file, default_of, draw_file, load, load_file, load_with, load_with_files,
+    check_file, check_variants, default_of, draw_file, load, load_file, load_with, load_with_files,
     other_kind,
 };
 pub use outcome::Outcome;

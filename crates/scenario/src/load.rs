@@ -11,7 +11,7 @@ use super::read;
 use super::tree::Node;
 use crate::strategy::Strategy;
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 /// Reads and checks the game file at `path` and every file it refers to. Distributions are drawn
@@ -143,35 +143,24 @@ pub fn draw_file<F: ScenarioFile>(path: &Path, seed: u64) -> Result<(F, Vec<Draw
     read(Drawing::Seed(seed))
 }
 
-/// A game that is loaded repeatedly with different values. Files without changed values are checked
-/// once.
-pub struct GameVariants {
-    game: PathBuf,
-    basis: Basis,
-}
-
-impl GameVariants {
-    /// Reads the game with these values; later ones must set the same keys. [`GameVariants::check`]
-    /// returns the faults.
-    pub fn new(game: &Path, overrides: &Overrides) -> GameVariants {
-        let loader = Loader::new(Drawing::Least, overrides, Basis::default());
-        loader.read::<Scenario>(game, None, Scenario::NAME);
-        let mut basis = loader.into_basis();
-        let is_unchanged = |kind: &str| !overrides.has_settings(kind);
-        basis.checked.retain(|(kind, ..), _| is_unchanged(kind));
-        GameVariants {
-            game: game.to_owned(),
-            basis,
-        }
-    }
-
-    /// Checks the game with these values.
-    ///
-    /// # Errors
-    /// All faults of any of its files.
-    pub fn check(&self, overrides: &Overrides) -> Result<(), Problems> {
-        load_game(&self.game, overrides, self.basis.clone()).map(drop)
-    }
+/// Checks a game with these overrides and others that set the same keys. Files that no setting
+/// changes are checked once.
+///
+/// # Errors
+/// All faults of any of its files.
+pub fn check_variants(
+    game: &Path,
+    first: &Overrides,
+    others: impl Iterator<Item = Overrides>,
+) -> Result<(), Problems> {
+    let loader = Loader::new(Drawing::Least, first, Basis::default());
+    loader.read::<Scenario>(game, None, Scenario::NAME);
+    let mut basis = loader.into_basis();
+    let is_unchanged = |kind: &str| !first.has_settings(kind);
+    basis.checked.retain(|(kind, ..), _| is_unchanged(kind));
+    let all = std::iter::once(first.clone()).chain(others);
+    let faults = all.filter_map(|overrides| load_game(game, &overrides, basis.clone()).err());
+    Problems::of(faults.flat_map(|Problems(found)| found).collect())
 }
 
 /// The result of an empty file of a kind.

@@ -5,7 +5,7 @@ use crate::tournament::{Entrant, check_entries};
 use scenario::keys::FilePath;
 use scenario::strategy::Strategy;
 use scenario::{
-    Document, GameVariants, Overrides, Problem, Problems, Scenario, ScenarioFile, tidied_path,
+    Document, Overrides, Problems, Scenario, ScenarioFile, check_variants, tidied_path,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -80,35 +80,26 @@ impl ScenarioFile for Sweep {
 
     /// Checks the game with the values of every axis that suffice to check all, one axis at a time.
     fn check_games(&self) -> Result<(), Problems> {
-        let teams: Vec<String> = scenario::load(&self.game)?
-            .teams
-            .into_iter()
-            .map(|team| team.name)
-            .collect();
+        let teams = scenario::load(&self.game)?.teams.into_iter();
+        let teams: Vec<String> = teams.map(|team| team.name).collect();
         let nominal: Vec<AxisValue> = self.axes.iter().map(Axis::nominal).collect();
-        // Fifty axes of a thousand values are many games, so the parts that no axis changes are
-        // read once.
-        let game = GameVariants::new(&self.game, &self.overrides(&teams, 0, 0, &nominal));
-        let mut problems = vec![];
-        let mut read = |values: &[AxisValue]| {
-            if let Err(Problems(found)) = game.check(&self.overrides(&teams, 0, 0, values)) {
-                problems.extend(found);
-            }
+        let overrides = |values: &[AxisValue]| self.overrides(&teams, 0, 0, values);
+        let changed = |(i, value): (usize, AxisValue)| {
+            let mut values = nominal.clone();
+            values[i] = value;
+            overrides(&values)
         };
-        read(&nominal);
-        for (i, axis) in self.axes.iter().enumerate() {
-            for value in axis.telling_values() {
-                let mut values = nominal.clone();
-                values[i] = value;
-                read(&values);
-            }
-        }
+        let values = self.axes.iter().map(Axis::telling_values).enumerate();
+        let values = values.flat_map(|(i, values)| values.into_iter().map(move |one| (i, one)));
+        let checked = check_variants(&self.game, &overrides(&nominal), values.map(changed));
+        let Err(Problems(mut problems)) = checked else {
+            return Ok(());
+        };
         // Each value is read as a setting of its own: the same problem, but a line that no file
         // has.
-        let of_axes = problems
-            .iter_mut()
-            .filter(|problem: &&mut Problem| problem.path == self.path);
-        of_axes.for_each(|problem| problem.source.clear());
+        for problem in problems.iter_mut().filter(|one| one.path == self.path) {
+            problem.source.clear();
+        }
         Problems::of(problems)
     }
 }
