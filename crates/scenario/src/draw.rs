@@ -32,7 +32,7 @@ pub struct Recipe {
     /// Every file, as read.
     pub(super) files: Vec<(PathBuf, String)>,
     #[serde(skip)]
-    pub(super) basis: Option<Basis>,
+    pub(super) basis: Basis,
     /// The seed of the present numbers.
     pub(super) seed: Option<u64>,
 }

@@ -58,7 +58,7 @@ fn load_game(path: &Path, overrides: &Overrides, basis: Basis) -> Result<Scenari
         game: path.to_owned(),
         overrides: overrides.clone(),
         files,
-        basis: Some(loader.into_basis()),
+        basis: loader.into_basis(),
         seed: None,
     };
     // At both ends of every distribution, so that most mistakes are found before any game. The
@@ -85,7 +85,7 @@ impl Scenario {
         };
         let (drawn, basis) = self.drawn_again(recipe, Drawing::Seed(seed))?;
         let recipe = Recipe {
-            basis: Some(basis),
+            basis,
             seed: Some(seed),
             ..recipe.clone()
         };
@@ -102,16 +102,15 @@ impl Scenario {
         recipe: &Recipe,
         drawing: Drawing,
     ) -> Result<(Scenario, Basis), Problems> {
-        let basis = recipe.basis.clone().unwrap_or_else(|| {
+        let mut basis = recipe.basis.clone();
+        // A recorded recipe has only the texts.
+        if basis.checked.is_empty() {
             let texts = recipe.files.iter();
             let texts = texts.map(|(path, text)| (path.clone(), text.clone().into_bytes()));
             let models = self.strategies.iter().flat_map(Strategy::models);
             let models = models.map(|model| (model.name.clone().into(), model.bytes().to_vec()));
-            Basis {
-                files: Arc::new(Files::kept(texts.chain(models).collect())),
-                ..Basis::default()
-            }
-        });
+            basis.files = Arc::new(Files::kept(texts.chain(models).collect()));
+        }
         let loader = Loader::new(drawing, &recipe.overrides, basis);
         let (scenario, drawn) = loader.faultless::<Scenario>(&recipe.game)?;
         Ok((Scenario { drawn, ..scenario }, loader.into_basis()))
