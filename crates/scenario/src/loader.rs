@@ -7,6 +7,7 @@ use super::kind::{Kind, ScenarioFile};
 use super::overrides::Overrides;
 use super::problem::Problems;
 use super::read;
+use super::tree::Node;
 use crate::Scenario;
 use std::any::Any;
 use std::cell::RefCell;
@@ -46,6 +47,8 @@ pub(super) struct Loader {
     pub(super) files: Arc<Files>,
     pub(super) diagnostics: Diagnostics,
     pub(super) drawn: RefCell<Vec<Drawn>>,
+    /// Files without faults, merged with their bases, by path.
+    pub(super) trees: RefCell<BTreeMap<PathBuf, Node>>,
     checked: RefCell<BTreeMap<Key, Arc<dyn Any + Send + Sync>>>,
 }
 
@@ -57,6 +60,7 @@ impl Loader {
             files: basis.files,
             diagnostics: Diagnostics::default(),
             drawn: RefCell::default(),
+            trees: RefCell::default(),
             checked: RefCell::new(basis.checked),
         }
     }

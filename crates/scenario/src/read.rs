@@ -134,7 +134,13 @@ pub(super) fn document<'a, T: DeserializeOwned>(
 ) -> Option<Document<'a, T>> {
     let faults = loader.diagnostics.faults();
     let own = if kind == Kind::STRATEGY { OWN } else { &[] };
-    let tree = tree(loader, path, asked_at, own)?;
+    // Each boat of a fleet draws its own numbers from the same file.
+    let known = loader.trees.borrow().get(path).cloned();
+    let tree = known.or_else(|| tree(loader, path, asked_at, own))?;
+    if loader.diagnostics.faults() == faults {
+        let mut trees = loader.trees.borrow_mut();
+        trees.entry(path.to_owned()).or_insert_with(|| tree.clone());
+    }
     document_of_tree(loader, kind, path, tree, (owner, faults))
 }
 
