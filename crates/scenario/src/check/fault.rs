@@ -58,14 +58,11 @@ fn check_keys(document: &Document<raw::Game>, path: &str, fault: &Fault) {
         };
         document.note(path, format!("{path} has {found}, expected one of them"));
     }
-    for (key, kind, is_given) in [
-        ("offset_m", FaultKind::GpsOffset, fault.offset_m.is_some()),
-        (
-            "offset_deg",
-            FaultKind::CompassOffset,
-            fault.offset_deg.is_some(),
-        ),
+    for (key, kind, given) in [
+        ("offset_m", FaultKind::GpsOffset, fault.offset_m),
+        ("offset_deg", FaultKind::CompassOffset, fault.offset_deg),
     ] {
+        let is_given = given.is_some();
         if is_given != (fault.kind == kind) {
             let message = match is_given {
                 true => format!("{key} is given, but this kind of fault does not use it"),

@@ -113,12 +113,8 @@ fn hull(raw: &raw::Boat, drive: &Drive) -> Hull {
     };
     let hull = &raw.hull;
     let length_m = raw.length_m;
-    let Hull {
-        mass_kg,
-        x_g_m,
-        surge_quadratic_kg_m,
-        ..
-    } = *hull;
+    let (mass_kg, x_g_m) = (hull.mass_kg, hull.x_g_m);
+    let surge_quadratic_kg_m = hull.surge_quadratic_kg_m;
     // A radius of gyration of a quarter of the length, shifted from the centre of gravity to
     // midships.
     let estimate_kg_m2 = || mass_kg * (length_m * length_m / 16.0 + x_g_m * x_g_m);

@@ -7,19 +7,12 @@ use crate::read::Document;
 pub(super) fn thruster(document: &Document<raw::Boat>, raw: &raw::Thruster) -> Option<Thruster> {
     let curve = match (&raw.propeller, &raw.table_pct_newton) {
         (Some(propeller), None) => {
-            let Propeller {
-                k_ahead,
-                k_astern,
-                n_max_rad_s,
-                n_min_rad_s,
-            } = *propeller;
-            let k_astern = k_astern.unwrap_or(k_ahead);
-            let n_min_rad_s = n_min_rad_s.unwrap_or(n_max_rad_s);
+            let (k_ahead, n_max_rad_s) = (propeller.k_ahead, propeller.n_max_rad_s);
             ThrustCurve::Propeller(Propeller {
                 k_ahead,
-                k_astern,
+                k_astern: propeller.k_astern.unwrap_or(k_ahead),
                 n_max_rad_s,
-                n_min_rad_s,
+                n_min_rad_s: propeller.n_min_rad_s.unwrap_or(n_max_rad_s),
             })
         }
         (None, Some(rows)) => table(document, rows),
@@ -35,19 +28,12 @@ pub(super) fn thruster(document: &Document<raw::Boat>, raw: &raw::Thruster) -> O
             return None;
         }
     };
-    let raw::Thruster {
-        arm_m,
-        lag_s,
-        slew_per_s,
-        deadband,
-        ..
-    } = *raw;
     Some(Thruster {
-        arm_m,
+        arm_m: raw.arm_m,
         curve,
-        lag_s,
-        slew_per_s,
-        deadband,
+        lag_s: raw.lag_s,
+        slew_per_s: raw.slew_per_s,
+        deadband: raw.deadband,
         flaws: raw.flaws.clone(),
     })
 }
@@ -65,11 +51,8 @@ fn table(document: &Document<raw::Boat>, rows: &[raw::SettingAndThrust]) -> Thru
                 document.note(&format!("{path}.{i}"), message);
             }
         }
-        let ends = (
-            points.first().map(|first| first.0),
-            points.last().map(|last| last.0),
-        );
-        if ends != (Some(-1.0), Some(1.0)) {
+        let ends = [points.first(), points.last()].map(|end| end.map(|end| end.0));
+        if ends != [Some(-1.0), Some(1.0)] {
             let message =
                 "table_pct_newton does not span the settings, expected -100 first and 100 last";
             document.note(path, message);

@@ -30,18 +30,12 @@ impl ScenarioFile for Sea {
 }
 
 fn wind(raw: &raw::Wind) -> Wind {
-    let raw::Wind {
-        intensity,
-        across_ratio,
-        length_m,
-        ..
-    } = *raw;
     let gusts = match raw.gusts {
         raw::Gusts::None => Gusts::None,
         raw::Gusts::OrnsteinUhlenbeck => Gusts::OrnsteinUhlenbeck {
-            intensity,
-            across_ratio,
-            length_m,
+            intensity: raw.intensity,
+            across_ratio: raw.across_ratio,
+            length_m: raw.length_m,
         },
     };
     Wind {
