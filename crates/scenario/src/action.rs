@@ -62,10 +62,10 @@ impl ActionSpace {
 /// The probabilities of actions with these logits.
 pub fn probabilities(logits: &[f32]) -> Vec<f32> {
     let most = logits.iter().copied().fold(f32::NEG_INFINITY, f32::max);
-    let parts: Vec<f64> = logits
+    let parts = logits
         .iter()
-        .map(|logit| math::exp(f64::from(logit - most)))
-        .collect();
+        .map(|logit| math::exp(f64::from(logit - most)));
+    let parts: Vec<f64> = parts.collect();
     let sum: f64 = parts.iter().sum();
     parts.iter().map(|part| (part / sum) as f32).collect()
 }
@@ -165,10 +165,9 @@ mod tests {
     fn the_discrete_actions_are_those_of_pyquaticus() {
         let space = ActionSpace::Pyquaticus;
         let turns_deg = [180.0, 135.0, 90.0, 45.0, 0.0, -45.0, -90.0, -135.0];
-        let want = [2.0, 1.0]
-            .into_iter()
-            .flat_map(|speed_m_s| turns_deg.map(|deg| (speed_m_s, deg)))
-            .chain([(0.0, 0.0)]);
+        let speeds_m_s = [2.0, 1.0].into_iter();
+        let want = speeds_m_s.flat_map(|speed_m_s| turns_deg.map(|deg| (speed_m_s, deg)));
+        let want = want.chain([(0.0, 0.0)]);
         assert_eq!(space.count(), Some(17));
         for (i, (speed_m_s, turn_deg)) in want.enumerate() {
             let got = space.set_point(Action::Discrete(i), 1.0, 2.0);
@@ -209,35 +208,28 @@ mod tests {
             course_rad: heading_rad + turn_deg.to_radians(),
             speed_m_s,
         };
-        assert_eq!(
-            space.nearest(slow(10.0, 1.4), heading_rad, fastest_m_s),
-            Some(Action::Discrete(12))
-        );
-        assert_eq!(
-            space.nearest(slow(70.0, 0.1), heading_rad, fastest_m_s),
-            Some(Action::Discrete(16))
-        );
-        assert_eq!(
-            ActionSpace::Options.nearest(asked, heading_rad, fastest_m_s),
-            None
-        );
+        for (space, asked, want) in [
+            (space, slow(10.0, 1.4), Some(Action::Discrete(12))),
+            (space, slow(70.0, 0.1), Some(Action::Discrete(16))),
+            (ActionSpace::Options, asked, None),
+        ] {
+            assert_eq!(space.nearest(asked, heading_rad, fastest_m_s), want);
+        }
     }
 
     #[test]
     fn an_action_is_told_in_words() {
         let words = |action| ActionSpace::Pyquaticus.words(action);
-        assert_eq!(
-            [words(0), words(4), words(9)],
-            [
-                "full speed, about",
-                "full speed, straight on",
-                "50 % speed, 135° to starboard"
-            ]
-        );
-        assert_eq!(
-            [words(6), words(16), words(99)],
-            ["full speed, 90° to port", "stop", "stop"]
-        );
+        for (action, want) in [
+            (0, "full speed, about"),
+            (4, "full speed, straight on"),
+            (9, "50 % speed, 135° to starboard"),
+            (6, "full speed, 90° to port"),
+            (16, "stop"),
+            (99, "stop"),
+        ] {
+            assert_eq!(words(action), want);
+        }
     }
 
     #[test]

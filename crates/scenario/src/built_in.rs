@@ -55,19 +55,14 @@ pub fn argument_for(path: &Path) -> String {
     let (_, tail) = parts.split_at(parts.len().saturating_sub(3));
     let tail: PathBuf = tail.iter().collect();
     let here = std::env::current_dir().unwrap_or_default();
-    let found = here
-        .ancestors()
-        .map(|folder| folder.join(&tail))
-        .find(|path| path.is_file());
+    let mut paths = here.ancestors().map(|folder| folder.join(&tail));
+    let found = paths.find(|path| path.is_file());
     let is_named = tail.starts_with("scenarios")
         && found.map_or(built_in(&whole).is_some() && !whole.exists(), |found| {
             found == whole
         });
-    let name = whole
-        .file_stem()
-        .filter(|_| is_named)
-        .unwrap_or(path.as_os_str());
-    let text = name.to_string_lossy();
+    let name = whole.file_stem().filter(|_| is_named);
+    let text = name.unwrap_or(path.as_os_str()).to_string_lossy();
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "/._-".contains(c);
     if text.chars().all(is_plain) {
         text.into_owned()

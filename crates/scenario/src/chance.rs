@@ -1,6 +1,6 @@
 //! Whether a game depends on its seed.
 
-use super::{Scenario, StartPosition};
+use super::{Scenario, StartPosition, Vehicle};
 use crate::link::Link;
 use crate::sea::{Gusts, Sea};
 use crate::sensor::{Compass, Gps, Imu, Sensors};
@@ -11,12 +11,10 @@ use rules::Sharing;
 impl Scenario {
     /// Whether any value depends on the seed. Otherwise every seed gives the same game.
     pub fn is_random(&self) -> bool {
-        let starts = |start: &StartPosition| matches!(start, StartPosition::Somewhere { .. });
+        let starts_somewhere =
+            |vehicle: &Vehicle| matches!(vehicle.start_position, StartPosition::Somewhere { .. });
         self.recipe.is_some()
-            || self
-                .vehicles
-                .iter()
-                .any(|vehicle| starts(&vehicle.start_position))
+            || self.vehicles.iter().any(starts_somewhere)
             || self.deals_roles()
             || self.rules.power_play > SimTime::ZERO
             || is_random_sea(&self.sea)
@@ -30,7 +28,7 @@ impl Scenario {
 
     /// Whether a team's boats get different roles in a random order.
     fn deals_roles(&self) -> bool {
-        let fellows = |(i, one): (usize, &super::Vehicle)| {
+        let fellows = |(i, one): (usize, &Vehicle)| {
             let others = self.vehicles[..i]
                 .iter()
                 .filter(|other| other.team == one.team && other.strategy == one.strategy);
@@ -48,14 +46,9 @@ fn is_random_sea(sea: &Sea) -> bool {
         Gusts::None => false,
         Gusts::OrnsteinUhlenbeck { intensity, .. } => intensity > 0.0 && wind.speed_10m_m_s > 0.0,
     });
-    let wander = sea
-        .current
-        .wander
-        .is_some_and(|wander| wander.sigma_m_s > 0.0);
-    let eddies = sea
-        .current
-        .random_eddies
-        .is_some_and(|eddies| eddies.count > 0);
+    let current = &sea.current;
+    let wander = current.wander.is_some_and(|wander| wander.sigma_m_s > 0.0);
+    let eddies = current.random_eddies.is_some_and(|eddies| eddies.count > 0);
     gusts || wander || eddies || sea.waves.as_ref().is_some_and(|waves| waves.hs_m > 0.0)
 }
 

@@ -6,10 +6,10 @@ use std::sync::Arc;
 
 /// The digest of a plan, from its file's meaning and the content of its games' files: hex.
 pub fn digest_of(meaning: &str, files: &[(PathBuf, Arc<[u8]>)]) -> String {
-    let contents: Vec<u128> = files
+    let contents = files
         .iter()
-        .map(|(_, bytes)| xxhash_rust::xxh3::xxh3_128(bytes))
-        .collect();
+        .map(|(_, bytes)| xxhash_rust::xxh3::xxh3_128(bytes));
+    let contents: Vec<u128> = contents.collect();
     let text = format!("{} {meaning} {contents:x?}", primitives::VERSION);
     format!("{:032x}", xxhash_rust::xxh3::xxh3_128(text.as_bytes()))
 }
@@ -21,14 +21,9 @@ impl Scenario {
     /// # Panics
     /// If it cannot be serialised as JSON: maps with keys that are not strings.
     pub fn digest(&self) -> String {
-        let texts: Vec<(PathBuf, Arc<[u8]>)> = match &self.recipe {
-            None => vec![],
-            Some(recipe) => recipe
-                .files
-                .iter()
-                .map(|(path, text)| (path.clone(), text.as_bytes().into()))
-                .collect(),
-        };
+        let files = self.recipe.iter().flat_map(|recipe| &recipe.files);
+        let texts = files.map(|(path, text)| (path.clone(), text.as_bytes().into()));
+        let texts: Vec<(PathBuf, Arc<[u8]>)> = texts.collect();
         let meant = Scenario {
             seed: 0,
             recipe: None,

@@ -4,8 +4,7 @@
 //! only numbers. Files with distributions are checked at both ends of each, so that no game fails
 //! in the middle of a campaign.
 
-use super::diagnostics::Diagnostics;
-use super::kept::Reading;
+use super::loader::{Basis, Loader};
 use super::overrides::Overrides;
 use super::tree::{Node, Table, Value};
 use primitives::stream::Stream;
@@ -33,7 +32,7 @@ pub struct Recipe {
     /// Every file, as read.
     pub(super) files: Vec<(PathBuf, String)>,
     #[serde(skip)]
-    pub(super) reading: Reading,
+    pub(super) basis: Basis,
     /// The seed of the present numbers.
     pub(super) seed: Option<u64>,
 }
@@ -67,7 +66,7 @@ pub(super) fn distribution_kind(table: &Table) -> Option<&'static str> {
 
 /// The number drawn from the distribution at `path`; reports an invalid one.
 pub(super) fn draw(
-    diagnostics: &mut Diagnostics,
+    loader: &Loader,
     node: &Node,
     table: &Table,
     owner: &Owner<'_>,
@@ -76,7 +75,7 @@ pub(super) fn draw(
     let path = path.get(owner.path_from..).unwrap_or_default();
     let Some(value) = number(
         table,
-        diagnostics.drawing,
+        loader.drawing,
         &format!("draw/{}/{path}", owner.name),
     ) else {
         let key = path.rsplit('.').next().unwrap_or(path);
@@ -85,10 +84,10 @@ pub(super) fn draw(
              {{ log_normal = [median, sigma] }} with a median above 0, {{ choice = [a, b, ...] }}, \
              optionally with times = FACTOR"
         );
-        diagnostics.note(node.at, message);
+        loader.diagnostics.note(node.at, message);
         return None;
     };
-    diagnostics.drawn.push(Drawn {
+    loader.drawn.borrow_mut().push(Drawn {
         parameter: format!("{}/{path}", owner.name),
         value,
     });

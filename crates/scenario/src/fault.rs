@@ -175,32 +175,26 @@ mod tests {
             at_s: Some(30.0),
             ..fault()
         };
-        let spans = fault_spans(
-            std::slice::from_ref(&at),
-            (VehicleId(0), "a"),
-            &1.into(),
-            HOUR,
-        );
+        let of = |fault: &Fault, vehicle, name| {
+            fault_spans(
+                std::slice::from_ref(fault),
+                (VehicleId(vehicle), name),
+                &1.into(),
+                HOUR,
+            )
+        };
+        let spans = of(&at, 0, "a");
         assert_eq!(spans.len(), 1);
         let on = |s: f64| spans[0].is_on(SimTime::from_s(s));
         assert_eq!([29.9, 30.0, 3599.9].map(on), [false, true, true]);
-        let short = fault_spans(
-            &[Fault {
-                for_s: Some(5.0),
-                ..at.clone()
-            }],
-            (VehicleId(1), "b"),
-            &1.into(),
-            HOUR,
-        );
-        assert_eq!(
-            (short[0].from, short[0].to),
-            (
-                SimTime::from_s(30.0),
-                SimTime::from_s(30.0) + SimTime::from_s(5.0)
-            )
-        );
-        assert_eq!(fault_spans(&[at], (VehicleId(2), "c"), &1.into(), HOUR), []);
+        let short = Fault {
+            for_s: Some(5.0),
+            ..at.clone()
+        };
+        let short = &of(&short, 1, "b")[0];
+        let ends = [30.0, 35.0].map(SimTime::from_s);
+        assert_eq!([short.from, short.to], ends);
+        assert_eq!(of(&at, 2, "c"), []);
     }
 
     #[test]
@@ -223,11 +217,8 @@ mod tests {
         assert!((5700..6300).contains(&count), "{count}");
         assert_ne!(of(0, "a", 1)[0].from, of(1, "b", 1)[0].from);
         assert_ne!(of(0, "a", 1)[0].from, of(0, "a", 2)[0].from);
-        assert!(
-            of(0, "a", 1)
-                .windows(2)
-                .all(|pair| pair[0].to < pair[1].from)
-        );
+        let spans = of(0, "a", 1);
+        assert!(spans.windows(2).all(|pair| pair[0].to < pair[1].from));
     }
 
     #[test]
@@ -249,22 +240,15 @@ mod tests {
         let first = of(&1.into());
         let mut counts = [0, 0];
         for seed in 2..202 {
-            let again = of(&Seeds::new(
-                1,
-                &[Reseed {
-                    after_s: 1800.0,
-                    seed,
-                }],
-            ));
+            let after_s = 1800.0;
+            let again = of(&Seeds::new(1, &[Reseed { after_s, seed }]));
             let until =
                 |spans: &[FaultSpan]| spans.iter().take_while(|span| span.from <= half).count();
             assert_eq!(first[..until(&first)], again[..until(&again)]);
             assert_ne!(first[until(&first)..], again[until(&again)..]);
             let within = |from_s: f64, to_s: f64| {
-                again
-                    .iter()
-                    .filter(|span| (from_s..to_s).contains(&span.from.as_s()))
-                    .count()
+                let is_within = |span: &&FaultSpan| (from_s..to_s).contains(&span.from.as_s());
+                again.iter().filter(is_within).count()
             };
             counts[0] += within(1800.0, 1860.0);
             counts[1] += within(2800.0, 2860.0);
@@ -273,10 +257,8 @@ mod tests {
         // independent.
         assert!((160..240).contains(&counts[1]), "{counts:?}");
         // All share the past of `first`, whose last span ends earlier.
-        let last = first
-            .iter()
-            .rfind(|span| span.from <= half)
-            .expect("there is one");
+        let last = first.iter().rfind(|span| span.from <= half);
+        let last = last.expect("there is one");
         assert!(last.to < half, "the seed of this test leaves no span open");
         // Starting without a fault, a minute has 60/50 waits, less the duration of the spans: 1.03
         // on average.

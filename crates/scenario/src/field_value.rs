@@ -1,9 +1,11 @@
 //! Converts keys of files and their units to fields of types, in SI.
 //!
 //! A key with an `x-field` is stored in a field with another name: `"gain.0"` is the first entry of
-//! the list `gain`. Units are converted where the names of key and field have different ones, and
+//! the list `gain`. Its unit is converted, seconds become a time where the field has no unit, and
 //! `[x, y]` becomes a position.
 
+use super::schema::properties;
+use super::unit::Unit;
 use primitives::frame::Ned;
 use primitives::time::SimTime;
 use serde_json::{Map, Value, json};
@@ -12,8 +14,8 @@ use serde_json::{Map, Value, json};
 const FIELD: &str = "x-field";
 
 /// Converts a table's values by key to values by field.
-pub(super) fn by_fields(mut values: Map<String, Value>, properties: &Value) -> Value {
-    let keys = properties.as_object().into_iter().flatten();
+pub(super) fn by_fields(mut values: Map<String, Value>, schema: &Value) -> Value {
+    let keys = properties(schema);
     let marked = keys.filter_map(|(key, about)| Some((key, about.get(FIELD)?.as_str()?)));
     let moved: Vec<_> = marked
         .filter_map(|(key, field)| Some((key, field, values.remove(key)?)))
@@ -42,12 +44,10 @@ fn of_field(key: &str, field: &str, value: &Value) -> Value {
     let Some(number) = value.as_f64() else {
         return value.clone();
     };
-    match key {
-        _ if key.strip_suffix("_s") == Some(field) => json!(SimTime::from_s(number)),
-        _ if key.contains("_per_deg") => number.to_degrees().into(),
-        _ if key.contains("_deg") => number.to_radians().into(),
-        _ if key.ends_with("_wh") => (3600.0 * number).into(),
-        "per_hour" => (number / 3600.0).into(),
-        _ => number.into(),
+    if key.strip_suffix("_s") == Some(field) {
+        return json!(SimTime::from_s(number));
     }
+    Unit::of(key)
+        .map_or(number, |unit| (unit.to_si)(number))
+        .into()
 }

@@ -47,11 +47,8 @@ impl Files {
 
     /// The files read so far, in order of first request.
     pub fn list(&self) -> Vec<(PathBuf, Arc<[u8]>)> {
-        self.read
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .files
-            .clone()
+        let read = self.read.lock().unwrap_or_else(PoisonError::into_inner);
+        read.files.clone()
     }
 
     /// Reads a file of at most `bytes_max` bytes.

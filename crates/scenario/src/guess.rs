@@ -11,10 +11,8 @@ pub(super) fn nearest<'a>(name: &str, choices: &[&'a str]) -> Option<&'a str> {
     let nearest = distances.filter(|(distance, _)| *distance <= far).min();
     let words: Vec<&str> = name.split('_').collect();
     let shared = |choice: &&'a str| {
-        let shared: Vec<&str> = choice
-            .split('_')
-            .filter(|word| words.contains(word))
-            .collect();
+        let shared = choice.split('_').filter(|word| words.contains(word));
+        let shared: Vec<&str> = shared.collect();
         // Units alone are no similarity.
         let is_near = 2 * shared.len() > words.len().max(choice.split('_').count());
         (is_near && shared.iter().any(|word| word.len() > 2)).then_some((shared.len(), *choice))
@@ -29,6 +27,11 @@ pub fn did_you_mean(name: &str, choices: &[&str]) -> String {
     nearest(name, choices)
         .map(|guess| format!(" (did you mean {guess}?)"))
         .unwrap_or_default()
+}
+
+/// The choices with the suggestion: `seed, tick_s (did you mean seed?)`.
+pub(super) fn listed(name: &str, choices: &[&str]) -> String {
+    choices.join(", ") + &did_you_mean(name, choices)
 }
 
 #[cfg(test)]

@@ -1,6 +1,5 @@
 //! A kind of scenario file: its keys, its folder, and its check.
 
-use super::diagnostics::Diagnostics;
 use super::load::draw_file;
 use super::problem::Problems;
 use super::read::Document;
@@ -19,7 +18,7 @@ use std::path::Path;
 
 /// The checked form of a kind of scenario file, implemented by the crate that uses it; for the
 /// files of a game in `check`.
-pub trait ScenarioFile: Sized + 'static {
+pub trait ScenarioFile: Clone + Send + Sync + 'static {
     /// The keys of the file; `schema.rs` describes their declaration.
     type Keys: DeserializeOwned + JsonSchema;
     /// The name of the kind and of its schema file.
@@ -28,7 +27,7 @@ pub trait ScenarioFile: Sized + 'static {
     const FOLDER: &'static str;
 
     /// Converts a file that satisfies its schema; `None` if there are faults, which are reported.
-    fn check(diagnostics: &mut Diagnostics, document: &Document<Self::Keys>) -> Option<Self>;
+    fn check(document: &Document<Self::Keys>) -> Option<Self>;
 
     /// Reads and checks the file at `path`, its bases and the files it refers to. Distributions are
     /// drawn with seed 1.
@@ -108,12 +107,12 @@ impl Kind {
     /// The kind with the most of these top-level keys; ties go to the first.
     pub fn by_keys(kinds: &[Kind], keys: &BTreeSet<String>) -> Kind {
         // `max_by_key` returns the last of equal elements.
-        kinds
+        let best = kinds
             .iter()
             .copied()
             .rev()
-            .max_by_key(|kind| kind.known(keys))
-            .unwrap_or(Kind::GAME)
+            .max_by_key(|kind| kind.known(keys));
+        best.unwrap_or(Kind::GAME)
     }
 
     /// The kind to which a file with these top-level keys clearly belongs, if not to this one: with

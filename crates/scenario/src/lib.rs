@@ -3,8 +3,8 @@
 //! [`Scenario`] is the checked form, in SI and radians, and is sent to every process that joins the
 //! game. [`load`] creates it. Its types and those in `raw` declare the keys of files, and `schema`
 //! generates their JSON Schemas. `read` finds the files and merges them with their bases,
-//! `validate` reads them by their schema, `check` converts them to the checked types, and
-//! `diagnostics` collects every [`Problem`].
+//! `validate` reads them by their schema, and `check` converts them to the checked types. A `Loader`
+//! is the context of one reading; its `diagnostics` collect every [`Problem`].
 
 pub mod action;
 pub mod boat;
@@ -18,11 +18,11 @@ pub mod fault;
 mod field_value;
 mod files;
 mod guess;
-mod kept;
 pub mod keys;
 mod kind;
 pub mod link;
 mod load;
+mod loader;
 pub mod observation;
 pub mod outcome;
 mod overrides;
@@ -41,19 +41,19 @@ mod source;
 pub mod strategy;
 mod syntax;
 mod tree;
+mod unit;
 mod validate;
 
 pub use boat::Boat;
 pub use built_in::{BuiltIn, OnOverride, argument_for, built_in, set_built_in};
-pub use check::{StrategyFiles, check_corners, check_thrust_map};
-pub use diagnostics::Diagnostics;
+pub use check::{check_corners, check_thrust_map};
 pub use digest::digest_of;
 pub use draw::{Drawn, Recipe};
 pub use files::Files;
 pub use guess::did_you_mean;
 pub use kind::{Kind, ScenarioFile};
 pub use load::{
-    GameVariants, check_file, default_of, draw_file, load, load_file, load_with, load_with_files,
+    check_file, check_variants, default_of, draw_file, load, load_file, load_with, load_with_files,
     other_kind,
 };
 pub use outcome::Outcome;
@@ -126,10 +126,9 @@ pub struct Scenario {
 impl Scenario {
     /// The vehicle with this name.
     pub fn vehicle_by_name(&self, name: &str) -> Option<VehicleId> {
-        self.vehicles
-            .iter()
-            .position(|vehicle| vehicle.name == name)
-            .map(VehicleId::at)
+        let mut vehicles = self.vehicles.iter();
+        let index = vehicles.position(|vehicle| vehicle.name == name);
+        index.map(VehicleId::at)
     }
 
     /// The vehicle with this name from a user.
@@ -138,14 +137,10 @@ impl Scenario {
     /// [`UnknownVehicle`] with the existing names.
     pub fn vehicle_named(&self, name: &str) -> Result<VehicleId, UnknownVehicle> {
         self.vehicle_by_name(name).ok_or_else(|| {
-            let known = self
-                .vehicles
-                .iter()
-                .map(|vehicle| vehicle.name.clone())
-                .collect();
+            let known = self.vehicles.iter().map(|vehicle| vehicle.name.clone());
             UnknownVehicle {
                 name: name.to_owned(),
-                known,
+                known: known.collect(),
             }
         })
     }
@@ -163,57 +158,34 @@ impl Scenario {
                 Err(format!("{what} is {index}, expected less than {count}"))
             }
         };
-        let mut names = self
-            .vehicles
-            .iter()
-            .map(|vehicle| &vehicle.name)
-            .chain(self.teams.iter().map(|team| &team.name));
+        let teams = self.teams.iter().map(|team| &team.name);
+        let vehicles = self.vehicles.iter().map(|vehicle| &vehicle.name);
+        let mut names = vehicles.chain(teams);
         if let Some(name) = names.find(|name| !diagnostics::is_name(name)) {
             return Err(format!("{name:?} is not a valid name of a vehicle or team"));
         }
-        for Vehicle {
-            name,
-            team,
-            boat,
-            strategy,
-            ..
-        } in &self.vehicles
-        {
-            within(
-                &format!("the team of {name}"),
-                team.index(),
-                self.teams.len(),
-            )?;
-            within(&format!("the boat of {name}"), *boat, self.boats.len())?;
-            within(
-                &format!("the strategy of {name}"),
-                *strategy,
-                self.strategies.len(),
-            )?;
+        let (teams, strategies) = (self.teams.len(), self.strategies.len());
+        for vehicle in &self.vehicles {
+            let of = |what: &str| format!("the {what} of {}", vehicle.name);
+            within(&of("team"), vehicle.team.index(), teams)?;
+            within(&of("boat"), vehicle.boat, self.boats.len())?;
+            within(&of("strategy"), vehicle.strategy, strategies)?;
         }
-        let mut flags = self.field.flags.iter().enumerate();
-        flags.try_for_each(|(i, flag)| {
-            within(
-                &format!("the team of flag {i}"),
-                flag.team.index(),
-                self.teams.len(),
-            )
-        })?;
+        for (i, flag) in self.field.flags.iter().enumerate() {
+            within(&format!("the team of flag {i}"), flag.team.index(), teams)?;
+        }
         self.check_sizes()
     }
 
     /// Whether everything that an event refers to exists in the game: the sender may be wrong.
     pub fn has(&self, event: Event) -> bool {
         let flag = event.flag();
-        let team = if let Event::Ended { winner } = event {
-            winner
-        } else {
-            None
+        let team = match event {
+            Event::Ended { winner } => winner,
+            _ => None,
         };
-        [event.vehicle(), event.other()]
-            .into_iter()
-            .flatten()
-            .all(|vehicle| vehicle.index() < self.vehicles.len())
+        let mut vehicles = [event.vehicle(), event.other()].into_iter().flatten();
+        vehicles.all(|vehicle| vehicle.index() < self.vehicles.len())
             && flag.is_none_or(|flag| flag.index() < self.field.flags.len())
             && team.is_none_or(|team| team.index() < self.teams.len())
     }
@@ -236,12 +208,8 @@ impl Scenario {
     /// The numbers of mates and enemies of a vehicle.
     pub fn sides_of(&self, vehicle: VehicleId) -> (usize, usize) {
         let team = self.team_of(vehicle);
-        let mates = self
-            .vehicles
-            .iter()
-            .filter(|other| other.team == team)
-            .count()
-            - 1;
+        let fellows = self.vehicles.iter().filter(|other| other.team == team);
+        let mates = fellows.count() - 1;
         (mates, self.vehicles.len() - 1 - mates)
     }
 

@@ -1,18 +1,17 @@
 //! Entry points: load a file by path, or return all its faults.
 
 use super::Scenario;
-use super::diagnostics::Diagnostics;
 use super::draw::{Drawing, Drawn, Recipe};
 use super::files::Files;
-use super::kept::Reading;
 use super::kind::{Kind, ScenarioFile};
+use super::loader::{Basis, Loader};
 use super::overrides::Overrides;
 use super::problem::Problems;
 use super::read;
 use super::tree::Node;
 use crate::strategy::Strategy;
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 /// Reads and checks the game file at `path` and every file it refers to. Distributions are drawn
@@ -41,45 +40,34 @@ pub fn load_with_files(
     overrides: &Overrides,
     files: &Arc<Files>,
 ) -> Result<Scenario, Problems> {
-    load_knowing(&Reading::default(), path, overrides, files)
+    let basis = Basis {
+        files: Arc::clone(files),
+        ..Basis::default()
+    };
+    load_game(path, overrides, basis)
 }
 
-/// As [`load_with_files`], with some files already read with the same settings.
-fn load_knowing(
-    known: &Reading,
-    path: &Path,
-    overrides: &Overrides,
-    files: &Arc<Files>,
-) -> Result<Scenario, Problems> {
-    let mut diagnostics = Diagnostics::new(Drawing::Least);
-    diagnostics.resume(known);
-    diagnostics.overrides = overrides.clone();
-    diagnostics.files = Arc::clone(files);
-    let mut least = game_of(&mut diagnostics, path)?;
-    if least.drawn.is_empty() {
+fn load_game(path: &Path, overrides: &Overrides, basis: Basis) -> Result<Scenario, Problems> {
+    let loader = Loader::new(Drawing::Least, overrides, basis);
+    let (mut least, drawn) = loader.faultless::<Scenario>(path)?;
+    if drawn.is_empty() {
         return Ok(least);
     }
-    let files = diagnostics.sources.texts();
-    let reading = Reading::of(diagnostics);
+    let files = loader.diagnostics.sources.borrow().texts();
     let recipe = Recipe {
         game: path.to_owned(),
         overrides: overrides.clone(),
         files,
-        reading,
+        basis: loader.into_basis(),
         seed: None,
     };
     // At both ends of every distribution, so that most mistakes are found before any game. The
-    // combination of numbers is checked again for each seed, which takes a tenth of a millisecond.
+    // combination of numbers is checked again for each seed, which takes less than a millisecond.
     // Drawing on the checked types would be faster, but would leave estimates from a drawn number
     // at their nominal values.
     least.drawn_again(&recipe, Drawing::Greatest)?;
     least.recipe = Some(recipe);
     least.of_seed(least.seed)
-}
-
-fn game_of(diagnostics: &mut Diagnostics, path: &Path) -> Result<Scenario, Problems> {
-    let (scenario, drawn) = diagnostics.faultless::<Scenario>(path)?;
-    Ok(Scenario { drawn, ..scenario })
 }
 
 impl Scenario {
@@ -88,29 +76,22 @@ impl Scenario {
     /// # Errors
     /// Faults of the combination of numbers, each valid alone.
     pub fn of_seed(&self, seed: u64) -> Result<Scenario, Problems> {
-        let Some(recipe) = self
-            .recipe
-            .as_ref()
-            .filter(|recipe| recipe.seed != Some(seed))
-        else {
+        let is_other = |recipe: &&Recipe| recipe.seed != Some(seed);
+        let Some(recipe) = self.recipe.as_ref().filter(is_other) else {
             return Ok(Scenario {
                 seed,
                 ..self.clone()
             });
         };
-        let (drawn, reading) = self.drawn_again(recipe, Drawing::Seed(seed))?;
-        let reading = if recipe.reading.0.is_some() {
-            recipe.reading.clone()
-        } else {
-            reading
+        let (drawn, basis) = self.drawn_again(recipe, Drawing::Seed(seed))?;
+        let recipe = Recipe {
+            basis,
+            seed: Some(seed),
+            ..recipe.clone()
         };
         Ok(Scenario {
             seed,
-            recipe: Some(Recipe {
-                reading,
-                seed: Some(seed),
-                ..recipe.clone()
-            }),
+            recipe: Some(recipe),
             ..drawn
         })
     }
@@ -120,20 +101,19 @@ impl Scenario {
         &self,
         recipe: &Recipe,
         drawing: Drawing,
-    ) -> Result<(Scenario, Reading), Problems> {
-        let mut diagnostics = Diagnostics::new(drawing);
-        diagnostics.overrides.clone_from(&recipe.overrides);
-        if !diagnostics.resume(&recipe.reading) {
-            let texts = recipe
-                .files
-                .iter()
-                .map(|(path, text)| (path.clone(), text.clone().into_bytes()));
+    ) -> Result<(Scenario, Basis), Problems> {
+        let mut basis = recipe.basis.clone();
+        // A recorded recipe has only the texts.
+        if basis.checked.is_empty() {
+            let texts = recipe.files.iter();
+            let texts = texts.map(|(path, text)| (path.clone(), text.clone().into_bytes()));
             let models = self.strategies.iter().flat_map(Strategy::models);
             let models = models.map(|model| (model.name.clone().into(), model.bytes().to_vec()));
-            diagnostics.files = Arc::new(Files::kept(texts.chain(models).collect()));
+            basis.files = Arc::new(Files::kept(texts.chain(models).collect()));
         }
-        let scenario = game_of(&mut diagnostics, &recipe.game)?;
-        Ok((scenario, Reading::of(diagnostics)))
+        let loader = Loader::new(drawing, &recipe.overrides, basis);
+        let (scenario, drawn) = loader.faultless::<Scenario>(&recipe.game)?;
+        Ok((Scenario { drawn, ..scenario }, loader.into_basis()))
     }
 }
 
@@ -151,7 +131,9 @@ pub fn load_file<F: ScenarioFile>(path: &Path) -> Result<F, Problems> {
 /// # Errors
 /// All faults of it, its bases and the files it refers to, by file, line and column.
 pub fn draw_file<F: ScenarioFile>(path: &Path, seed: u64) -> Result<(F, Vec<Drawn>), Problems> {
-    let read = |drawing: Drawing| Diagnostics::new(drawing).faultless::<F>(path);
+    let read = |drawing: Drawing| {
+        Loader::new(drawing, &Overrides::default(), Basis::default()).faultless::<F>(path)
+    };
     let (value, drawn) = read(Drawing::Least)?;
     if drawn.is_empty() {
         return Ok((value, drawn));
@@ -160,36 +142,24 @@ pub fn draw_file<F: ScenarioFile>(path: &Path, seed: u64) -> Result<(F, Vec<Draw
     read(Drawing::Seed(seed))
 }
 
-/// A game that is loaded repeatedly with different values. Files without changed values are read
-/// once.
-pub struct GameVariants {
-    game: PathBuf,
-    known: Reading,
-    files: Arc<Files>,
-}
-
-impl GameVariants {
-    /// Reads the game with these values; later ones must set the same keys. [`GameVariants::load`]
-    /// returns the faults.
-    pub fn new(game: &Path, overrides: &Overrides) -> GameVariants {
-        let mut diagnostics = Diagnostics::new(Drawing::Least);
-        diagnostics.overrides = overrides.clone();
-        let files = Arc::clone(&diagnostics.files);
-        drop(game_of(&mut diagnostics, game));
-        GameVariants {
-            game: game.to_owned(),
-            known: Reading::of_unchanged(diagnostics),
-            files,
-        }
-    }
-
-    /// The game with these values.
-    ///
-    /// # Errors
-    /// All faults of any of its files.
-    pub fn load(&self, overrides: &Overrides) -> Result<Scenario, Problems> {
-        load_knowing(&self.known, &self.game, overrides, &self.files)
-    }
+/// Checks a game with these overrides and others that set the same keys. Files that no setting
+/// changes are checked once.
+///
+/// # Errors
+/// All faults of any of its files.
+pub fn check_variants(
+    game: &Path,
+    first: &Overrides,
+    others: impl Iterator<Item = Overrides>,
+) -> Result<(), Problems> {
+    let loader = Loader::new(Drawing::Least, first, Basis::default());
+    loader.read::<Scenario>(game, None, Scenario::NAME);
+    let mut basis = loader.into_basis();
+    let is_unchanged = |kind: &str| !first.has_settings(kind);
+    basis.checked.retain(|(kind, ..), _| is_unchanged(kind));
+    let all = std::iter::once(first.clone()).chain(others);
+    let faults = all.filter_map(|overrides| load_game(game, &overrides, basis.clone()).err());
+    Problems::of(faults.flat_map(|Problems(found)| found).collect())
 }
 
 /// The result of an empty file of a kind.
@@ -198,9 +168,12 @@ impl GameVariants {
 /// If a key has no default.
 pub fn default_of<F: ScenarioFile>() -> Result<F, Problems> {
     let path = Path::new("default.toml");
-    let mut diagnostics = Diagnostics::new(Drawing::Least);
-    diagnostics.files = Arc::new(Files::kept(vec![(path.to_owned(), vec![])]));
-    diagnostics.faultless(path).map(|(value, _)| value)
+    let basis = Basis {
+        files: Arc::new(Files::kept(vec![(path.to_owned(), vec![])])),
+        ..Basis::default()
+    };
+    let loader = Loader::new(Drawing::Least, &Overrides::default(), basis);
+    loader.faultless(path).map(|(value, _)| value)
 }
 
 /// Reads and checks a scenario file of any of these kinds, and returns its kind.
@@ -226,9 +199,8 @@ pub fn other_kind(kinds: &[Kind], path: &Path, expected: Kind) -> Option<Kind> {
 
 /// The top-level keys of a file and its bases; the check reports their faults later.
 fn top_keys(path: &Path) -> BTreeSet<String> {
-    let tree = read::tree(&mut Diagnostics::new(Drawing::Least), path, None, &[]);
-    tree.iter()
-        .flat_map(Node::entries)
-        .map(|(key, _)| key.clone())
-        .collect()
+    let loader = Loader::new(Drawing::Least, &Overrides::default(), Basis::default());
+    let tree = read::tree(&loader, path, None, &[]);
+    let entries = tree.iter().flat_map(Node::entries);
+    entries.map(|(key, _)| key.clone()).collect()
 }

@@ -150,23 +150,18 @@ impl Outcome {
         let team_counts =
             |team: usize| tally.team(TeamId(team as u8), |i| scenario.vehicles[i].team);
         let team_names = || scenario.teams.iter().map(|team| team.name.clone());
-        let boats = || {
-            scenario
-                .vehicles
-                .iter()
-                .map(|vehicle| vehicle.name.clone())
-                .zip(&tally.vehicles)
-        };
-        let team_of = |vehicle: &Vehicle| {
-            (
-                vehicle.name.clone(),
-                scenario.teams[vehicle.team.index()].name.clone(),
-            )
-        };
+        let boat_names = || scenario.vehicles.iter().map(|vehicle| vehicle.name.clone());
+        let boats = || boat_names().zip(&tally.vehicles);
+        let team_of = |vehicle: &Vehicle| scenario.teams[vehicle.team.index()].name.clone();
         let winner = events.iter().rev().find_map(|logged| match logged.event {
             Event::Ended { winner } => winner,
             _ => None,
         });
+        let drawn = scenario.drawn.iter();
+        let drawn = drawn.map(|drawn| (drawn.parameter.clone(), drawn.value));
+        let points = boats().map(|(name, counts)| (name, scenario.rules.points.of(counts)));
+        let events = events.iter();
+        let events = events.map(|logged| EventOutcome::new(scenario, logged));
         Outcome {
             scenario: scenario.name.clone(),
             seed: scenario.seed,
@@ -174,32 +169,22 @@ impl Outcome {
             digest: format!("{:032x}", digest),
             duration_s: (scenario.tick * ticks as i64).as_s(),
             ticks,
-            drawn: scenario
-                .drawn
-                .iter()
-                .map(|drawn| (drawn.parameter.clone(), drawn.value))
-                .collect(),
+            drawn: drawn.collect(),
             random: scenario.is_random(),
             ends_differ: !scenario.sea.is_at_rest(),
             winner: winner.map(|team| scenario.teams[team.index()].name.clone()),
-            boats: scenario.vehicles.iter().map(team_of).collect(),
+            boats: boat_names()
+                .zip(scenario.vehicles.iter().map(team_of))
+                .collect(),
             score: Standings {
                 teams: team_names().zip(score.iter().copied()).collect(),
-                boats: boats()
-                    .map(|(name, counts)| (name, scenario.rules.points.of(counts)))
-                    .collect(),
+                boats: points.collect(),
             },
             counts: Standings {
-                teams: team_names()
-                    .enumerate()
-                    .map(|(i, name)| (name, team_counts(i)))
-                    .collect(),
+                teams: team_names().zip((0..).map(team_counts)).collect(),
                 boats: boats().map(|(name, counts)| (name, *counts)).collect(),
             },
-            events: events
-                .iter()
-                .map(|logged| EventOutcome::new(scenario, logged))
-                .collect(),
+            events: events.collect(),
         }
     }
 }

@@ -25,24 +25,15 @@ pub struct Overrides {
 impl Overrides {
     /// Whether a setting overrides a value in files of the kind with this name.
     pub(super) fn has_settings(&self, kind: &str) -> bool {
-        self.settings.iter().any(|setting| {
-            setting
-                .target()
-                .is_some_and(|(target, _)| target.name() == kind)
-        })
+        let mut targets = self.settings.iter().filter_map(Setting::target);
+        targets.any(|(target, _)| target.name() == kind)
     }
 
     /// The name of this team if a setting overrides a value of its strategy, otherwise an empty
     /// name: the owner of the strategy's file. Teams without overrides share a file.
     pub(super) fn owner_of_strategy<'a>(&self, team: &'a str) -> &'a str {
-        if self
-            .settings
-            .iter()
-            .any(|setting| setting.team() == Some(team))
-        {
-            team
-        } else {
-            ""
-        }
+        let mut settings = self.settings.iter();
+        let has_own = settings.any(|setting| setting.team() == Some(team));
+        if has_own { team } else { "" }
     }
 }

@@ -5,8 +5,7 @@ use crate::observation::ObservationSpace;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD as BASE64;
 use onnx::{Network, Port};
-use serde::de::Error as _;
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::ops::RangeInclusive;
 use std::sync::Arc;
@@ -47,7 +46,8 @@ pub struct PartialSpec {
 }
 
 /// A policy ready for evaluation. Clones share the network's weights.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
+#[serde(into = "Sent", try_from = "Sent")]
 pub struct PolicyModel {
     /// Its file, as found.
     pub name: String,
@@ -98,10 +98,8 @@ impl PolicyModel {
     pub fn actions(&self) -> Option<usize> {
         let outputs = self.network.outputs()[self.output].size;
         // A single output is the index of the action.
-        self.spec
-            .action
-            .is_discrete()
-            .then(|| self.spec.action.count().unwrap_or(outputs))
+        let action = self.spec.action;
+        (action.is_discrete()).then(|| action.count().unwrap_or(outputs))
     }
 
     /// The names of its options, if its metadata has them.
@@ -150,32 +148,19 @@ fn spec_of(network: &Network, said: PartialSpec) -> Result<PolicySpec, String> {
     };
     let observation = entry(OBSERVATION).map(|text| {
         serde_json::from_str::<ObservationSpace>(text).map_err(|error| {
-            let example = json(&ObservationSpace::Squall {
-                mates: 1,
-                enemies: 2,
-                frames: 1,
-            });
-            wrong(
-                OBSERVATION,
-                text,
-                format!("an observation space such as {example} ({error})"),
-            )
+            let example = r#"{"kind":"squall","mates":1,"enemies":2,"frames":1}"#;
+            let expected = format!("an observation space such as {example} ({error})");
+            wrong(OBSERVATION, text, expected)
         })
     });
-    let observation = agreed(
-        OBSERVATION,
-        "observation",
-        observation.transpose()?,
-        said.observation,
-    )?;
+    let observation = observation.transpose()?;
+    let observation = agreed(OBSERVATION, "observation", observation, said.observation)?;
+    let own_version = observation.version();
     if let Some(version) = entry(OBSERVATION_VERSION)
-        && *version != observation.version().to_string()
+        && *version != own_version.to_string()
     {
-        return Err(wrong(
-            OBSERVATION_VERSION,
-            version,
-            format!("{}, which is this program's", observation.version()),
-        ));
+        let expected = format!("{own_version}, which is this program's");
+        return Err(wrong(OBSERVATION_VERSION, version, expected));
     }
     let action = entry(ACTION).map(|text| {
         serde_json::from_value::<ActionSpace>(text.as_str().into())
@@ -183,10 +168,8 @@ fn spec_of(network: &Network, said: PartialSpec) -> Result<PolicySpec, String> {
     });
     let action = agreed(ACTION, "action", action.transpose()?, said.action)?;
     let period_s = entry(PERIOD_S).map(|text| {
-        let number = text
-            .parse::<f64>()
-            .ok()
-            .filter(|number| PERIODS_S.contains(number));
+        let number = text.parse::<f64>().ok();
+        let number = number.filter(|number| PERIODS_S.contains(number));
         let allowed = || format!("{} to {} s", PERIODS_S.start(), PERIODS_S.end());
         number.ok_or_else(|| wrong(PERIOD_S, text, allowed()))
     });
@@ -228,12 +211,8 @@ fn unsaid(key: &str, said_by: &str) -> String {
 }
 
 fn check_input(network: &Network, observation: ObservationSpace) -> Result<(), String> {
-    let wrong = |expected: &str| {
-        Err(format!(
-            "its inputs are {}, expected {expected}",
-            listed(network.inputs())
-        ))
-    };
+    let inputs = listed(network.inputs());
+    let wrong = |expected: &str| Err(format!("its inputs are {inputs}, expected {expected}"));
     let [input] = network.inputs() else {
         return wrong("one input");
     };
@@ -243,9 +222,8 @@ fn check_input(network: &Network, observation: ObservationSpace) -> Result<(), S
             let least = observation.size(0, 1);
             let other = observation.size(1, 1) - observation.size(0, 1);
             if input.size < least || !(input.size - least).is_multiple_of(other) {
-                return wrong(&format!(
-                    "{least} numbers, or {other} more for each other boat"
-                ));
+                let expected = format!("{least} numbers, or {other} more for each other boat");
+                return wrong(&expected);
             }
         }
         ObservationSpace::Squall { .. } => {
@@ -262,49 +240,37 @@ fn check_input(network: &Network, observation: ObservationSpace) -> Result<(), S
 /// for an action index, which is an integer if a value is beside it. The number of options is the
 /// output's size.
 fn output_of(network: &Network, action: ActionSpace) -> Result<usize, String> {
-    let of_size = |size: usize| -> Vec<usize> {
+    let of = |is_it: &dyn Fn(&Port) -> bool| -> Vec<usize> {
         let outputs = network.outputs().iter().enumerate();
-        outputs
-            .filter(|(_, port)| port.size == size)
-            .map(|(i, _)| i)
-            .collect()
+        let fitting = outputs.filter(|(_, port)| is_it(port));
+        fitting.map(|(i, _)| i).collect()
     };
-    let wrong = |expected: &str| {
-        Err(format!(
-            "its outputs are {}, expected {expected}",
-            listed(network.outputs())
-        ))
-    };
+    let outputs = listed(network.outputs());
+    let wrong = |expected: &str| Err(format!("its outputs are {outputs}, expected {expected}"));
     if action == ActionSpace::Options {
-        let several: Vec<usize> = (0..network.outputs().len())
-            .filter(|i| network.outputs()[*i].size > 1)
-            .collect();
-        let [output] = several[..] else {
+        let [output] = of(&|port| port.size > 1)[..] else {
             return wrong("one output with a number for each of two options or more");
         };
         return Ok(output);
     }
     let numbers = action.outputs();
-    let whole = of_size(numbers);
-    let mut index = if action.count().is_some() && whole.is_empty() {
-        of_size(1)
-    } else {
-        vec![]
-    };
+    let whole = of(&|port| port.size == numbers);
+    let has_index = action.count().is_some();
+    let mut index = of(&|port| port.size == 1 && has_index && whole.is_empty());
     if index.len() > 1 {
         index.retain(|i| network.outputs()[*i].is_integer);
     }
     match (whole.as_slice(), index.as_slice()) {
         ([output], _) | ([], [output]) => Ok(*output),
         _ => {
-            let or_index = if action.count().is_some() {
+            let action = json(&action);
+            let or_index = if has_index {
                 ", or else one with the number of the action"
             } else {
                 ""
             };
             wrong(&format!(
-                "one output of {numbers} numbers for the action space {}{or_index}",
-                json(&action)
+                "one output of {numbers} numbers for the action space {action}{or_index}"
             ))
         }
     }
@@ -312,10 +278,8 @@ fn output_of(network: &Network, action: ActionSpace) -> Result<usize, String> {
 
 /// Inputs or outputs, as text for a message.
 fn listed(ports: &[Port]) -> String {
-    let shown = ports
-        .iter()
-        .take(8)
-        .map(|port| format!("{:?} of {} numbers", port.name, port.size));
+    let shown = ports.iter().take(8);
+    let shown = shown.map(|port| format!("{:?} of {} numbers", port.name, port.size));
     shown.collect::<Vec<_>>().join(", ") + if ports.len() > 8 { ", …" } else { "" }
 }
 
@@ -351,46 +315,35 @@ struct Sent {
     onnx: String,
 }
 
-impl Serialize for PolicyModel {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+impl From<PolicyModel> for Sent {
+    fn from(model: PolicyModel) -> Sent {
         Sent {
-            name: self.name.clone(),
-            spec: self.spec,
-            onnx: BASE64.encode(&self.bytes),
+            onnx: BASE64.encode(&model.bytes),
+            name: model.name,
+            spec: model.spec,
         }
-        .serialize(serializer)
     }
 }
 
-impl<'de> Deserialize<'de> for PolicyModel {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<PolicyModel, D::Error> {
-        let Sent {
-            name,
-            spec:
-                PolicySpec {
-                    observation,
-                    action,
-                    period_s,
-                },
-            onnx,
-        } = Sent::deserialize(deserializer)?;
-        let bytes = BASE64.decode(onnx).map_err(D::Error::custom)?;
-        if bytes.len() as u64 > BYTES_MAX {
-            return Err(D::Error::custom(format!(
-                "a model of {} bytes, expected at most {BYTES_MAX}",
-                bytes.len()
-            )));
+impl TryFrom<Sent> for PolicyModel {
+    type Error = String;
+
+    fn try_from(Sent { name, spec, onnx }: Sent) -> Result<PolicyModel, String> {
+        let bytes = BASE64.decode(onnx).map_err(|error| error.to_string())?;
+        let (length, period_s) = (bytes.len(), spec.period_s);
+        if length as u64 > BYTES_MAX {
+            return Err(format!(
+                "a model of {length} bytes, expected at most {BYTES_MAX}"
+            ));
         }
         if !PERIODS_S.contains(&period_s) {
-            return Err(D::Error::custom(format!(
-                "a period of {period_s} s, expected {PERIODS_S:?}"
-            )));
+            return Err(format!("a period of {period_s} s, expected {PERIODS_S:?}"));
         }
         let said = PartialSpec {
-            observation: Some(observation),
-            action: Some(action),
+            observation: Some(spec.observation),
+            action: Some(spec.action),
             period_s: Some(period_s),
         };
-        PolicyModel::read(&name, &bytes, said).map_err(D::Error::custom)
+        PolicyModel::read(&name, &bytes, said)
     }
 }

@@ -53,10 +53,23 @@ impl fmt::Display for Problem {
 #[error("{}", one_a_line(.0))]
 pub struct Problems(pub Vec<Problem>);
 
+impl Problems {
+    /// These problems in order, each once, if there are any.
+    ///
+    /// # Errors
+    /// The problems.
+    pub fn of(mut problems: Vec<Problem>) -> Result<(), Problems> {
+        problems.sort();
+        problems.dedup();
+        if problems.is_empty() {
+            Ok(())
+        } else {
+            Err(Problems(problems))
+        }
+    }
+}
+
 fn one_a_line(problems: &[Problem]) -> String {
-    problems
-        .iter()
-        .map(Problem::to_string)
-        .collect::<Vec<_>>()
-        .join("\n")
+    let lines: Vec<String> = problems.iter().map(Problem::to_string).collect();
+    lines.join("\n")
 }

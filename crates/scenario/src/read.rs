@@ -1,38 +1,45 @@
 //! Reads a file by path: text, bases, merging, and validation by its schema.
 
-use super::diagnostics::{Diagnostics, NAME_EXPECTED, is_name};
-use super::kept::{self, KeptDocument};
-use super::kind::Kind;
+use super::diagnostics::{NAME_EXPECTED, is_name};
+use super::kind::{Kind, ScenarioFile};
+use super::loader::Loader;
 use super::schema::declared;
 use super::source::tidied;
 use super::syntax;
 use super::tree::{Node, Value};
 use super::validate::validated;
-use crate::policy::{self, PartialSpec, PolicyModel};
 use primitives::input_file;
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use toml::de::DeTable;
 
-/// A file merged with its bases and read by its schema.
+/// A file merged with its bases and read by its schema. Its values are addressed by path, for
+/// example `team.1.name`.
 #[derive(Debug)]
-pub struct Document<T> {
+pub struct Document<'a, T> {
     /// Its stem.
     pub name: String,
     /// Its content; `validate` defines the stand-ins for faulty values.
     pub raw: T,
+    pub(super) loader: &'a Loader,
     /// The number of faults before this file was read.
     faults: usize,
-    tree: Arc<Node>,
+    tree: Node,
     wrong: Vec<String>,
 }
 
-impl<T> Document<T> {
-    /// The offset of the value at `path`, for example `team.1.name`, or else of the innermost
-    /// existing table.
-    pub fn at(&self, path: &str) -> usize {
+impl<T> Document<'_, T> {
+    /// The offset of the value at `path`, or else of the innermost existing table.
+    pub(super) fn at(&self, path: &str) -> usize {
         self.tree.find(path).0.at
+    }
+
+    /// The file, line and column (from 1) of the value at `path`.
+    pub fn position(&self, path: &str) -> (PathBuf, usize, usize) {
+        let sources = self.loader.diagnostics.sources.borrow();
+        let place = sources.problem(self.at(path), String::new());
+        (place.path, place.line, place.column)
     }
 
     /// Whether the file or one of its bases has a value there.
@@ -47,22 +54,66 @@ impl<T> Document<T> {
             long.strip_prefix(short)
                 .is_some_and(|rest| rest.is_empty() || short.is_empty() || rest.starts_with('.'))
         };
-        !self
-            .wrong
-            .iter()
-            .any(|wrong| is_below(wrong, path) || is_below(path, wrong))
+        let mut wrong = self.wrong.iter();
+        !wrong.any(|wrong| is_below(wrong, path) || is_below(path, wrong))
+    }
+
+    /// Reports a fault of the value at `path`, or of the innermost existing table.
+    pub fn note(&self, path: &str, message: impl Into<String>) {
+        self.loader.diagnostics.note(self.at(path), message);
+    }
+
+    /// Reports a fault of the value at `path` that broken syntax in the file may have caused,
+    /// unless there is some.
+    pub(super) fn note_if_intact(&self, path: &str, message: impl Into<String>) {
+        let at = self.at(path);
+        self.loader.diagnostics.note_if_intact(at, message);
     }
 
     /// Reports a missing value at `path`, unless a value of another type is there.
-    pub(super) fn note_missing(&self, diagnostics: &mut Diagnostics, path: &str, expected: &str) {
+    pub(super) fn note_missing(&self, path: &str, expected: &str) {
         if self.is_sound(path) {
-            diagnostics.note_missing(self.at(path), path, expected);
+            let at = self.at(path);
+            self.loader.diagnostics.note_missing(at, path, expected);
         }
     }
 
+    /// Whether `name`, a `key` at `path`, is valid; reports it if not.
+    pub(super) fn is_name(&self, path: &str, key: &str, name: &str) -> bool {
+        let is_fit = is_name(name);
+        if !is_fit {
+            self.note(path, format!("{key} is {name:?}, expected {NAME_EXPECTED}"));
+        }
+        is_fit
+    }
+
+    /// The path of the file that `reference`, at `path`, refers to.
+    pub fn resolve(&self, path: &str, reference: impl AsRef<Path>) -> PathBuf {
+        let sources = self.loader.diagnostics.sources.borrow();
+        sources.resolve(self.at(path), reference)
+    }
+
+    /// Reads and checks the file of another kind that `reference`, at `path`, refers to.
+    pub fn referenced<F: ScenarioFile>(
+        &self,
+        path: &str,
+        reference: impl AsRef<Path>,
+    ) -> Option<F> {
+        self.is_sound(path).then_some(())?;
+        let file = self.resolve(path, reference);
+        self.loader.read(&file, Some(self.at(path)), F::NAME)
+    }
+
+    /// As [`Document::referenced`], and resolves the reference.
+    pub fn resolved<F: ScenarioFile>(&self, path: &str, reference: &mut PathBuf) -> Option<F> {
+        let file = self.referenced(path, &*reference);
+        *reference = self.resolve(path, &*reference);
+        file
+    }
+
     /// Whether no fault was found in it, or in anything checked since it was read.
-    pub fn is_faultless(&self, diagnostics: &Diagnostics) -> bool {
-        diagnostics.faults() == self.faults
+    pub fn is_faultless(&self) -> bool {
+        self.loader.diagnostics.faults() == self.faults
     }
 }
 
@@ -74,132 +125,94 @@ const OWN: &[&str] = &["unsafe_i_know", "unsafe_because"];
 
 /// Reads the file of a kind at `path` with its bases, and draws its numbers for `owner`. If it
 /// cannot be read, the problem is at `asked_at`, the reference.
-pub(super) fn document<T: DeserializeOwned>(
-    diagnostics: &mut Diagnostics,
+pub(super) fn document<'a, T: DeserializeOwned>(
+    loader: &'a Loader,
     kind: Kind,
     path: &Path,
     asked_at: Option<usize>,
     owner: &str,
-) -> Option<Document<T>> {
-    let faults = diagnostics.faults();
-    if let Some(kept) = diagnostics
-        .kept
-        .documents
-        .get(&kept::key(kind, path, owner))
-        .cloned()
-    {
-        return document_of_tree(diagnostics, kind, path, kept, (owner, faults));
-    }
+) -> Option<Document<'a, T>> {
+    let faults = loader.diagnostics.faults();
     let own = if kind == Kind::STRATEGY { OWN } else { &[] };
-    let mut tree = tree(diagnostics, path, asked_at, own)?;
-    put_settings(diagnostics, (kind, owner), &mut tree);
-    let document = KeptDocument {
-        tree: Arc::new(tree),
-        value: None,
-    };
-    document_of_tree(diagnostics, kind, path, document, (owner, faults))
+    // Each boat of a fleet draws its own numbers from the same file.
+    let known = loader.trees.borrow().get(path).cloned();
+    let tree = known.or_else(|| tree(loader, path, asked_at, own))?;
+    if loader.diagnostics.faults() == faults {
+        let mut trees = loader.trees.borrow_mut();
+        trees.entry(path.to_owned()).or_insert_with(|| tree.clone());
+    }
+    document_of_tree(loader, kind, path, tree, (owner, faults))
 }
 
 /// The document of a file of a kind with this text.
-pub(super) fn document_of_text<T: DeserializeOwned>(
-    diagnostics: &mut Diagnostics,
+pub(super) fn document_of_text<'a, T: DeserializeOwned>(
+    loader: &'a Loader,
     kind: Kind,
     path: &Path,
     text: &str,
-) -> Option<Document<T>> {
-    let faults = diagnostics.faults();
-    let start = diagnostics.sources.add(path.to_owned(), text.into());
-    let mut tree = parsed(diagnostics, start, text);
-    put_settings(diagnostics, (kind, kind.name()), &mut tree);
-    let document = KeptDocument {
-        tree: Arc::new(tree),
-        value: None,
-    };
-    document_of_tree(diagnostics, kind, path, document, (kind.name(), faults))
+) -> Option<Document<'a, T>> {
+    let faults = loader.diagnostics.faults();
+    let tree = parsed(loader, path, text);
+    document_of_tree(loader, kind, path, tree, (kind.name(), faults))
 }
 
-/// A tree read by the schema of its kind, unless cached; `faults` is the number of faults before
-/// it.
-fn document_of_tree<T: DeserializeOwned>(
-    diagnostics: &mut Diagnostics,
+/// A tree with the settings for its kind, read by the schema; `faults` is the number of faults
+/// before it.
+fn document_of_tree<'a, T: DeserializeOwned>(
+    loader: &'a Loader,
     kind: Kind,
     path: &Path,
-    KeptDocument { tree, value }: KeptDocument,
+    mut tree: Node,
     (owner, faults): (&str, usize),
-) -> Option<Document<T>> {
-    let start = tree.at;
-    let name = path
-        .file_stem()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .into_owned();
-    let (value, wrong) = if let Some(value) = value {
-        (value, vec![])
-    } else {
-        if !is_name(&name) {
-            let lower = name.to_lowercase();
-            let next = if is_name(&lower) {
-                format!("; rename it to {lower}.toml")
-            } else {
-                String::new()
-            };
-            let why = format!("the file's name is {name:?}, expected {NAME_EXPECTED}{next}");
-            diagnostics.note_file(path.to_owned(), why);
-        }
-        let drawn = diagnostics.drawn.len();
-        let (mut value, wrong) = validated(diagnostics, &tree, declared(kind), owner);
-        value["name"] = name.clone().into();
-        let key = kept::key(kind, path, owner);
-        if !diagnostics.kept.documents.contains_key(&key) && diagnostics.faults() == faults {
-            let value = (diagnostics.drawn.len() == drawn).then(|| value.clone());
-            let document = KeptDocument {
-                tree: Arc::clone(&tree),
-                value,
-            };
-            Arc::make_mut(&mut diagnostics.kept)
-                .documents
-                .insert(key, document);
-        }
-        (value, wrong)
-    };
+) -> Option<Document<'a, T>> {
+    put_settings(loader, (kind, owner), &mut tree);
+    let stem = path.file_stem().unwrap_or_default();
+    let name = stem.to_string_lossy().into_owned();
+    if !is_name(&name) {
+        let lower = name.to_lowercase();
+        let next = if is_name(&lower) {
+            format!("; rename it to {lower}.toml")
+        } else {
+            String::new()
+        };
+        let why = format!("the file's name is {name:?}, expected {NAME_EXPECTED}{next}");
+        loader.diagnostics.note_file(path.to_owned(), why);
+    }
+    let (mut value, wrong) = validated(loader, &tree, declared(kind), owner);
+    value["name"] = name.clone().into();
     match serde_json::from_value(value) {
         Ok(raw) => Some(Document {
             name,
             raw,
+            loader,
             faults,
             tree,
             wrong,
         }),
         Err(error) => {
-            diagnostics.note(
-                start,
-                format!("the file does not fit its own schema: {error}"),
-            );
+            let message = format!("the file does not fit its own schema: {error}");
+            loader.diagnostics.note(tree.at, message);
             None
         }
     }
 }
 
 /// Inserts the settings for a file of this kind into its tree; for a strategy, those of its team.
-fn put_settings(diagnostics: &mut Diagnostics, (kind, owner): (Kind, &str), tree: &mut Node) {
-    for setting in diagnostics.overrides.settings.clone() {
+fn put_settings(loader: &Loader, (kind, owner): (Kind, &str), tree: &mut Node) {
+    for setting in &loader.overrides.settings {
         let Some((_, key)) = setting.target().filter(|(target, _)| *target == kind) else {
             continue;
         };
-        if setting.team().is_some_and(|team| team != owner) {
-            continue;
+        if setting.team().is_none_or(|team| team == owner) {
+            tree.put(parsed(loader, &setting.path, &setting.as_file(key)));
         }
-        let text: Arc<str> = setting.as_file(key).into();
-        let start = diagnostics.sources.add(setting.path.clone(), text.clone());
-        let layer = parsed(diagnostics, start, &text);
-        tree.put(layer);
     }
 }
 
 /// Reads a file, merges it with its bases, and reports their syntax errors; the keys `own` of bases
 /// do not count.
 pub(super) fn tree(
-    diagnostics: &mut Diagnostics,
+    loader: &Loader,
     path: &Path,
     mut asked_at: Option<usize>,
     own: &[&str],
@@ -211,27 +224,22 @@ pub(super) fn tree(
         if let Some(at) = asked_at
             && (paths.contains(&path) || paths.len() == LONGEST_CHAIN)
         {
-            let through = paths
-                .iter()
-                .map(|p| p.display().to_string())
-                .collect::<Vec<_>>()
-                .join(", ");
+            let through: Vec<_> = paths.iter().map(|p| p.display().to_string()).collect();
+            let through = through.join(", ");
             let why = if paths.contains(&path) {
                 "refers back to itself"
             } else {
                 "has too many levels"
             };
-            diagnostics.note(
-                at,
-                format!(
-                    "base {why} ({through}, {}), expected a file without this base",
-                    path.display()
-                ),
+            let message = format!(
+                "base {why} ({through}, {}), expected a file without this base",
+                path.display()
             );
+            loader.diagnostics.note(at, message);
             return None;
         }
-        let (start, text) = text_of(diagnostics, &path, asked_at)?;
-        let mut layer = parsed(diagnostics, start, &text);
+        let text = text_of(loader, &path, asked_at)?;
+        let mut layer = parsed(loader, &path, &text);
         let base = match layer.find("base") {
             (
                 Node {
@@ -252,7 +260,7 @@ pub(super) fn tree(
             }
         }
         let Some((base, at)) = base else { return tree };
-        path = diagnostics.resolve(at, &base);
+        path = loader.diagnostics.sources.borrow().resolve(at, &base);
         asked_at = Some(at);
     }
 }
@@ -267,13 +275,10 @@ fn named(base: &str) -> String {
     }
 }
 
-/// Reads one file into the virtual text.
-fn text_of(
-    diagnostics: &mut Diagnostics,
-    path: &Path,
-    asked_at: Option<usize>,
-) -> Option<(usize, Arc<str>)> {
-    let bytes = match diagnostics.files.read(path, LARGEST_BYTES) {
+/// Reads one file.
+fn text_of(loader: &Loader, path: &Path, asked_at: Option<usize>) -> Option<Arc<str>> {
+    let diagnostics = &loader.diagnostics;
+    let bytes = match loader.files.read(path, LARGEST_BYTES) {
         Ok(bytes) => input_file::utf_8(bytes.to_vec()).unwrap_or_else(|_| bytes.to_vec()),
         Err(error) => {
             let why = format!("cannot be read ({error}), expected a file");
@@ -284,43 +289,32 @@ fn text_of(
             return None;
         }
     };
-    let good = std::str::from_utf8(&bytes).map_or_else(|error| error.valid_up_to(), str::len);
-    let text: Arc<str> = String::from_utf8_lossy(&bytes[..good]).into();
-    let start = diagnostics.sources.add(path.to_owned(), text.clone());
-    if good < bytes.len() {
-        diagnostics.note_syntax(start + good, "found invalid UTF-8, expected text");
-        return None;
+    match String::from_utf8(bytes) {
+        Ok(text) => Some(text.into()),
+        Err(error) => {
+            let good = error.utf8_error().valid_up_to();
+            let text = String::from_utf8_lossy(&error.as_bytes()[..good]);
+            let start = diagnostics.add(path.to_owned(), text.into());
+            diagnostics.note_syntax(start + good, "found invalid UTF-8, expected text");
+            None
+        }
     }
-    Some((start, text))
 }
 
-/// Reads the file of a model.
-pub(super) fn model(
-    diagnostics: &Diagnostics,
-    path: &Path,
-    said: PartialSpec,
-) -> Result<PolicyModel, String> {
-    let bytes = diagnostics.files.read(path, policy::BYTES_MAX);
-    let bytes =
-        bytes.map_err(|error| format!("it cannot be read ({error}), expected an ONNX file"))?;
-    PolicyModel::read(&path.display().to_string(), &bytes, said)
-}
-
-/// The tree of a text that begins at `start`, as far as its syntax is valid; reports syntax errors.
-fn parsed(diagnostics: &mut Diagnostics, start: usize, text: &str) -> Node {
+/// Adds a file to the virtual text. Returns its tree, as far as its syntax is valid; reports syntax
+/// errors.
+fn parsed(loader: &Loader, path: &Path, text: &str) -> Node {
+    let diagnostics = &loader.diagnostics;
+    let start = diagnostics.add(path.to_owned(), text.into());
     let (table, errors) = DeTable::parse_recoverable(text);
     for error in &errors {
-        diagnostics
-            .sources
-            .mark_broken(start + error.span().map_or(0, |span| span.start));
+        let at = start + error.span().map_or(0, |span| span.start);
+        diagnostics.sources.borrow_mut().mark_broken(at);
     }
-    let mistakes = if errors.is_empty() {
-        vec![]
-    } else {
-        syntax::mistakes(text)
-    };
-    for (at, message) in mistakes {
-        diagnostics.note_syntax(start + at, &message);
+    if !errors.is_empty() {
+        for (at, message) in syntax::mistakes(text) {
+            diagnostics.note_syntax(start + at, &message);
+        }
     }
     Node::root(table.into_inner(), start)
 }

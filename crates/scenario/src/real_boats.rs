@@ -1,6 +1,6 @@
 //! The real boats of a game, which require real time.
 
-use super::{Scenario, Source, Vehicle};
+use super::{Scenario, Source};
 use primitives::id::VehicleId;
 use thiserror::Error;
 
@@ -18,12 +18,10 @@ pub struct RealBoats {
 impl Scenario {
     /// The vehicles that are real boats, in order.
     pub fn externals(&self) -> impl Iterator<Item = VehicleId> {
-        let is_external = |(_, vehicle): &(usize, &Vehicle)| vehicle.source == Source::External;
-        self.vehicles
-            .iter()
-            .enumerate()
+        let is_external = |i: &usize| self.vehicles[*i].source == Source::External;
+        (0..self.vehicles.len())
             .filter(is_external)
-            .map(|(i, _)| VehicleId::at(i))
+            .map(VehicleId::at)
     }
 
     /// Checks that the game can run without a clock: all boats are simulated.
@@ -31,10 +29,10 @@ impl Scenario {
     /// # Errors
     /// [`RealBoats`] with the names of the others.
     pub fn has_no_real_boats(&self) -> Result<(), RealBoats> {
-        let names: Vec<String> = self
+        let names = self
             .externals()
-            .map(|v| self.vehicles[v.index()].name.clone())
-            .collect();
+            .map(|v| self.vehicles[v.index()].name.clone());
+        let names: Vec<String> = names.collect();
         if names.is_empty() {
             Ok(())
         } else {

@@ -2,7 +2,7 @@
 //! from the types that declare them.
 
 use super::kind::Kind;
-use super::schema::{TABLE, declared, may_be_empty};
+use super::schema::{TABLE, declared, entries, is_required, may_be_empty, properties};
 use super::setting::target_of;
 use crate::strategy::{Boat, Fact, Mark, Measure, Named, What, Who};
 use serde_json::Value;
@@ -60,9 +60,9 @@ fn collect(sections: &mut Vec<Section>, heading: &str, path: &str, (about, said)
             text,
         }),
     }
-    for (key, about) in about["properties"].as_object().into_iter().flatten() {
+    for (key, about) in properties(about) {
         let path = if path.is_empty() {
-            key.clone()
+            key.to_owned()
         } else {
             format!("{path}.{key}")
         };
@@ -79,11 +79,8 @@ fn collect(sections: &mut Vec<Section>, heading: &str, path: &str, (about, said)
                 collect(sections, &heading, &path, (about, &said));
             }
         }
-        for choice in about["oneOf"].as_array().into_iter().flatten() {
-            if choice["properties"]
-                .as_object()
-                .is_some_and(|keys| keys.len() > 1)
-            {
+        for choice in entries(about, "oneOf") {
+            if properties(choice).nth(1).is_some() {
                 let heading = format!(
                     "### `{path}` of kind {}",
                     choice["properties"]["kind"]["const"]
@@ -110,11 +107,8 @@ pub fn reference() -> String {
         table(&mut page, &root["definitions"][name], |_, _| true);
     }
     let quoted = |names: &[&str]| {
-        names
-            .iter()
-            .map(|name| format!("`{name}`"))
-            .collect::<Vec<_>>()
-            .join(", ")
+        let names: Vec<_> = names.iter().map(|name| format!("`{name}`")).collect();
+        names.join(", ")
     };
     let who = quoted(&Who::names());
     let what = quoted(&What::names());
@@ -139,11 +133,7 @@ fn choices(page: &mut String, root: &Value) {
         ("beyond_halt", "BeyondHalt"),
         ("by", "Proposer"),
     ] {
-        let choices = root["definitions"][name]["oneOf"]
-            .as_array()
-            .into_iter()
-            .flatten();
-        let choices: Vec<_> = choices
+        let choices: Vec<_> = entries(&root["definitions"][name], "oneOf")
             .map(|choice| format!("`{}`: {}", choice["const"], description(choice)))
             .collect();
         let _ = writeln!(page, "| `{key}` | {} |", choices.join("<br>"));
@@ -194,14 +184,10 @@ fn behaviours(page: &mut String, root: &Value) {
     let common = &root["definitions"]["FullStop"];
     page.push_str("\n## `[behaviour.NAME]`\n\nKeys of every kind. Speeds are limited to the boat's top speed.\n");
     table(page, common, |_, _| true);
-    for about in root["properties"]["behaviour"]["additionalProperties"]["oneOf"]
-        .as_array()
-        .into_iter()
-        .flatten()
-    {
-        let name = about["properties"]["kind"]["const"]
-            .as_str()
-            .unwrap_or_default();
+    let behaviour = &root["properties"]["behaviour"];
+    for about in entries(&behaviour["additionalProperties"], "oneOf") {
+        let kind = &about["properties"]["kind"];
+        let name = kind["const"].as_str().unwrap_or_default();
         let _ = write!(page, "\n### `{name}`\n\n{}\n", description(about));
         table(page, about, |key, _| {
             common["properties"].get(key).is_none()
@@ -216,18 +202,8 @@ fn behaviours(page: &mut String, root: &Value) {
 /// A table of the keys that are `wanted`, required ones first. The default, in brackets, is that of
 /// the schema, or else the last sentence of the description.
 fn table(page: &mut String, about: &Value, wanted: impl Fn(&str, &Value) -> bool) {
-    let required: Vec<&str> = about["required"]
-        .as_array()
-        .into_iter()
-        .flatten()
-        .filter_map(Value::as_str)
-        .collect();
-    let keys = about["properties"]
-        .as_object()
-        .into_iter()
-        .flatten()
-        .filter(|(key, about)| wanted(key, about));
-    let is_required = |key: &str, about| required.contains(&key) && !may_be_empty(about);
+    let keys = properties(about).filter(|(key, about)| wanted(key, about));
+    let is_required = |key: &str, value| is_required(about, key) && !may_be_empty(value);
     let (first, rest): (Vec<_>, Vec<_>) = keys.partition(|(key, about)| is_required(key, about));
     if first.is_empty() && rest.is_empty() {
         return;
@@ -276,16 +252,9 @@ pub fn meaning(key: &str) -> Option<String> {
 /// The schema of a key of a table: one of its own, any name, or one of a kind of table.
 fn key_in<'a>(about: &'a Value, key: &str) -> Option<&'a Value> {
     let named = || Some(&about["additionalProperties"]).filter(|named| named.is_object());
-    let kinds = || {
-        ["oneOf", "anyOf"]
-            .iter()
-            .filter_map(|kinds| about[kinds].as_array())
-            .flatten()
-    };
-    about["properties"]
-        .get(key)
-        .or_else(named)
-        .or_else(|| kinds().find_map(|kind| key_in(kind, key)))
+    let mut kinds = entries(about, "oneOf").chain(entries(about, "anyOf"));
+    let own = about["properties"].get(key).or_else(named);
+    own.or_else(|| kinds.find_map(|kind| key_in(kind, key)))
 }
 
 fn description(about: &Value) -> String {
@@ -305,10 +274,9 @@ fn line(text: &str) -> String {
 fn range(about: &Value) -> String {
     let bound = |keys: [&str; 2]| {
         let bound = keys.into_iter().find_map(|key| about.get(key))?;
-        bound
-            .as_i64()
-            .map(|whole| whole.to_string())
-            .or(bound.as_f64().map(|number| number.to_string()))
+        let number = || bound.as_f64().map(|number| number.to_string());
+        let whole = bound.as_i64().map(|whole| whole.to_string());
+        whole.or_else(number)
     };
     match (
         bound(["minimum", "minItems"]),
@@ -335,10 +303,8 @@ fn value_of(about: &Value) -> String {
     let is_expression = about["title"] == "a number or an expression";
     let (kind, range) = match about["type"].as_str() {
         Some("array") if !is_pair(about) => {
-            return [range(about), items_of(&about["items"])]
-                .join(" ")
-                .trim()
-                .to_owned();
+            let list = [range(about), items_of(&about["items"])].join(" ");
+            return list.trim().to_owned();
         }
         Some("array") => ("pair".to_owned(), range(&about["items"])),
         _ => (kind_of(about), range(about)),
@@ -355,11 +321,8 @@ fn value_of(about: &Value) -> String {
 fn choice(about: &Value) -> String {
     match about["properties"].as_object() {
         Some(keys) => {
-            let others: String = keys
-                .keys()
-                .filter(|key| *key != "kind")
-                .map(|key| format!(", {key}"))
-                .collect();
+            let others = keys.keys().filter(|key| *key != "kind");
+            let others: String = others.map(|key| format!(", {key}")).collect();
             format!("`{{ kind = {}{others} }}`", keys["kind"]["const"])
         }
         None => format!("`{}`", about["const"]),

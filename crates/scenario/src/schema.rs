@@ -69,20 +69,28 @@ pub fn schema(kind: Kind) -> Value {
     schema
 }
 
+/// The keys of a table and their schemas; empty for other values.
+pub(super) fn properties(schema: &Value) -> impl Iterator<Item = (&str, &Value)> {
+    let keys = schema["properties"].as_object().into_iter().flatten();
+    keys.map(|(key, about)| (key.as_str(), about))
+}
+
+/// The entries of a list in a schema, such as `oneOf`.
+pub(super) fn entries<'a>(schema: &'a Value, list: &str) -> impl Iterator<Item = &'a Value> {
+    schema[list].as_array().into_iter().flatten()
+}
+
+/// Whether a table must have a key.
+pub(super) fn is_required(schema: &Value, key: &str) -> bool {
+    entries(schema, "required").any(|known| known == key)
+}
+
 /// Whether a list may be empty, or a table may have no keys.
 pub(super) fn may_be_empty(schema: &Value) -> bool {
-    let is_optional =
-        |key: &Value| may_be_empty(&schema["properties"][key.as_str().unwrap_or_default()]);
+    let is_optional = |(key, about)| !is_required(schema, key) || may_be_empty(about);
     match schema["type"].as_str() {
         Some("array") => schema["minItems"].as_u64().unwrap_or(0) == 0,
-        Some("object") => {
-            schema.get("oneOf").is_none()
-                && schema["required"]
-                    .as_array()
-                    .into_iter()
-                    .flatten()
-                    .all(is_optional)
-        }
+        Some("object") => schema.get("oneOf").is_none() && properties(schema).all(is_optional),
         _ => false,
     }
 }
@@ -192,19 +200,13 @@ fn tidy(value: &mut Value, definitions: &Value) {
             add(object, only);
         }
     }
-    let has_default: Vec<String> =
-        object
-            .get("properties")
-            .and_then(Value::as_object)
-            .map_or(vec![], |properties| {
-                properties
-                    .iter()
-                    .filter(|(_, about)| about.get("default").is_some())
-                    .map(|(key, _)| key.clone())
-                    .collect()
-            });
+    let keys = object.get("properties").cloned().unwrap_or_default();
     if let Some(Value::Array(required)) = object.get_mut("required") {
-        required.retain(|key| has_default.iter().all(|known| key != known));
+        required.retain(|key| {
+            keys[key.as_str().unwrap_or_default()]
+                .get("default")
+                .is_none()
+        });
     }
 }
 

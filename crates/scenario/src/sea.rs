@@ -44,10 +44,8 @@ impl Sea {
         let stream =
             *mean_m_s != Ned::default() || wander.is_some() || tide.is_some() || shear.is_some();
         let calm = self.waves.as_ref().is_none_or(|waves| waves.hs_m <= 0.0);
-        let windless = self
-            .wind
-            .as_ref()
-            .is_none_or(|wind| wind.speed_10m_m_s <= 0.0);
+        let wind = self.wind.as_ref();
+        let windless = wind.is_none_or(|wind| wind.speed_10m_m_s <= 0.0);
         calm && windless && !stream && eddies.is_empty() && random_eddies.is_none()
     }
 

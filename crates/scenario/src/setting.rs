@@ -2,7 +2,7 @@
 
 use super::guess::did_you_mean;
 use super::kind::Kind;
-use super::schema::declared;
+use super::schema::{declared, properties};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::path::PathBuf;
@@ -39,7 +39,7 @@ const PREFIXES: [(&str, Kind); 8] = [
 /// The full keys that end with this one: `sea.wind` for `wind`. The shortest come first.
 fn complete(key: &str) -> Vec<String> {
     fn collect(found: &mut Vec<String>, about: &Value, path: &str, end: &str) {
-        for (name, about) in about["properties"].as_object().into_iter().flatten() {
+        for (name, about) in properties(about) {
             let path = format!("{path}.{name}");
             collect(found, about, &path, end);
             found.extend(path.ends_with(end).then_some(path));

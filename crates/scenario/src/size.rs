@@ -3,7 +3,9 @@
 
 use crate::Scenario;
 use crate::boat::Drive;
+use crate::policy::PolicyModel;
 use crate::sensor::MOST_PERIODS_LATE;
+use crate::strategy::Helm;
 use std::ops::RangeInclusive;
 
 /// Maximum number of vehicles of a game.
@@ -27,87 +29,56 @@ impl Scenario {
     /// # Errors
     /// The first number beyond its limits, as text.
     pub(crate) fn check_sizes(&self) -> Result<(), String> {
-        within(
-            "the number of vehicles",
-            self.vehicles.len(),
-            0..=VEHICLES_MAX,
-        )?;
-        within(
-            "the physics tick in ns",
-            self.tick.0,
-            1_000_000..=500_000_000,
-        )?;
+        let (vehicles, tick_ns) = (self.vehicles.len(), self.tick.0);
+        let ticks = self.ticks_per_decision;
+        within("the number of vehicles", vehicles, 0..=VEHICLES_MAX)?;
+        within("the physics tick in ns", tick_ns, 1_000_000..=500_000_000)?;
         within(
             "the number of physics ticks per decision",
-            self.ticks_per_decision,
+            ticks,
             1..=10_000,
         )?;
         if let Some(waves) = &self.sea.waves {
-            within(
-                "the number of wave components",
-                waves.components,
-                1..=COMPONENTS_MAX,
-            )?;
+            let count = waves.components;
+            within("the number of wave components", count, 1..=COMPONENTS_MAX)?;
         }
         if let Some(eddies) = &self.sea.current.random_eddies {
             within("the number of random eddies", eddies.count, 0..=100)?;
         }
         for boat in &self.boats {
+            let of = |what: &str| format!("{what} of {}", boat.name);
             if let Some(gps) = &boat.sensors.gps {
-                let latency_max_s = MOST_PERIODS_LATE * gps.period_s;
-                within(
-                    &format!("gps.latency_s of {}", boat.name),
-                    gps.latency_s,
-                    0.0..=latency_max_s,
-                )?;
+                let allowed = 0.0..=MOST_PERIODS_LATE * gps.period_s;
+                within(&of("gps.latency_s"), gps.latency_s, allowed)?;
             }
             if let Drive::Thrusters { thruster, .. } = &boat.drive {
-                within(
-                    &format!("thruster.slew_per_s of {}", boat.name),
-                    thruster.slew_per_s,
-                    0.0..=1e9,
-                )?;
+                within(&of("thruster.slew_per_s"), thruster.slew_per_s, 0.0..=1e9)?;
             }
         }
         for program in self.strategies.iter().flat_map(|strategy| &strategy.roles) {
-            within(
-                &format!("helm.courses of {}", program.name),
-                program.helm.courses,
-                COURSES_MIN..=COURSES_MAX,
-            )?;
-            within(
-                &format!("helm.speeds of {}", program.name),
-                program.helm.speeds,
-                SPEEDS_MIN..=SPEEDS_MAX,
-            )?;
+            let of = |what: &str| format!("{what} of {}", program.name);
+            let Helm {
+                courses, speeds, ..
+            } = program.helm;
+            within(&of("helm.courses"), courses, COURSES_MIN..=COURSES_MAX)?;
+            within(&of("helm.speeds"), speeds, SPEEDS_MIN..=SPEEDS_MAX)?;
         }
         let mut candidates = 0;
         let mut observed = 0;
         for vehicle in &self.vehicles {
             let roles = &self.strategies[vehicle.strategy].roles;
-            candidates += roles
-                .iter()
-                .map(|role| role.helm.courses * role.helm.speeds)
-                .max()
-                .unwrap_or(0);
+            let helms = roles.iter().map(|role| role.helm);
+            let sizes = helms.map(|helm| helm.courses * helm.speeds);
+            candidates += sizes.max().unwrap_or(0);
             // All boats are an upper bound of the mates or enemies of one.
-            let size = |role: &crate::strategy::Program| -> usize {
-                role.models()
-                    .map(|model| model.spec.observation.size(0, self.vehicles.len()))
-                    .sum()
-            };
-            observed += roles.iter().map(size).max().unwrap_or(0);
+            let size = |model: &PolicyModel| model.spec.observation.size(0, vehicles);
+            let sizes = roles.iter().map(|role| role.models().map(size).sum());
+            observed += sizes.max().unwrap_or(0_usize);
         }
-        within(
-            "helm.courses times helm.speeds, summed over all boats,",
-            candidates,
-            0..=CANDIDATES_MAX,
-        )?;
-        within(
-            "the number of values that all policies observe",
-            observed,
-            0..=OBSERVED_MAX,
-        )
+        let what = "helm.courses times helm.speeds, summed over all boats,";
+        within(what, candidates, 0..=CANDIDATES_MAX)?;
+        let what = "the number of values that all policies observe";
+        within(what, observed, 0..=OBSERVED_MAX)
     }
 }
 
@@ -116,13 +87,11 @@ fn within<T: PartialOrd + std::fmt::Display>(
     found: T,
     allowed: RangeInclusive<T>,
 ) -> Result<(), String> {
-    let min = allowed.start();
-    let max = allowed.end();
-    if allowed.contains(&found) {
-        Ok(())
-    } else {
-        Err(format!("{what} is {found}, expected {min} to {max}"))
-    }
+    let (min, max) = (allowed.start(), allowed.end());
+    let is_within = allowed.contains(&found);
+    is_within
+        .then_some(())
+        .ok_or_else(|| format!("{what} is {found}, expected {min} to {max}"))
 }
 
 #[cfg(test)]
@@ -141,12 +110,8 @@ mod tests {
         assert_eq!(sound.check_received(), Ok(()));
         let cases: [Case; 8] = [
             ("gps.latency_s of", |game| {
-                game.boats[0]
-                    .sensors
-                    .gps
-                    .as_mut()
-                    .expect("it has a receiver")
-                    .latency_s = 65_535.0;
+                let gps = game.boats[0].sensors.gps.as_mut();
+                gps.expect("it has a receiver").latency_s = 65_535.0;
             }),
             ("helm.courses of", |game| {
                 game.strategies[0].roles[0].helm.courses = 65_536

@@ -25,10 +25,8 @@ impl Sources {
     /// Appends a file; returns its offset.
     pub(super) fn add(&mut self, path: PathBuf, text: Arc<str>) -> usize {
         // With a gap of one byte, so that the end of a file is not the start of the next.
-        let start = self
-            .files
-            .last()
-            .map_or(0, |last| last.start + last.text.len() + 1);
+        let last = self.files.last();
+        let start = last.map_or(0, |last| last.start + last.text.len() + 1);
         self.files.push(Source {
             path,
             text,
@@ -64,17 +62,13 @@ impl Sources {
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
         let line = before.matches('\n').count() + 1;
         let column = before[line_start..].chars().count() + 1;
-        let source = file.text[line_start..]
-            .lines()
-            .next()
-            .unwrap_or_default()
-            .to_owned();
+        let source = file.text[line_start..].lines().next();
         Problem {
             path: file.path.clone(),
             line,
             column,
             message,
-            source,
+            source: source.unwrap_or_default().to_owned(),
         }
     }
 

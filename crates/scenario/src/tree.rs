@@ -138,12 +138,10 @@ fn node_from(value: Spanned<DeValue<'_>>, start: usize, key_at: Option<usize>) -
     let at = start + value.span().start;
     let value = match value.into_inner() {
         DeValue::Table(table) => Value::Table(table_from(table, start)),
-        DeValue::Array(array) => Value::List(
-            array
-                .into_iter()
-                .map(|value| node_from(value, start, None))
-                .collect(),
-        ),
+        DeValue::Array(array) => {
+            let nodes = array.into_iter();
+            Value::List(nodes.map(|value| node_from(value, start, None)).collect())
+        }
         DeValue::String(text) => Value::Text(text.into_owned()),
         // Integers too large for 64 bits are rejected later, as numbers.
         DeValue::Integer(whole) => i64::from_str_radix(whole.as_str(), whole.radix()).map_or_else(

@@ -5,18 +5,20 @@
 //! replaces a faulty or missing value, so that later checks can find more; `Document::is_sound`
 //! returns whether the value is original.
 
-use super::diagnostics::{Diagnostics, NAME_EXPECTED, NAME_PATTERN, is_name};
+use super::diagnostics::{NAME_EXPECTED, NAME_PATTERN, is_name, keys_of};
 use super::draw::{Owner, distribution_kind, draw};
 use super::field_value::by_fields;
 use super::guess::did_you_mean;
-use super::schema::DRAWN;
+use super::loader::Loader;
+use super::schema::{DRAWN, entries, is_required, properties};
 use super::tree::{Node, Table, Value};
+use super::unit::Unit;
 use serde_json::{Map, Value as Json};
 
 /// Reads `tree` by the schema `root`, with numbers drawn for `owner`; also returns the paths of
 /// faults.
 pub(super) fn validated<'a>(
-    diagnostics: &'a mut Diagnostics,
+    loader: &'a Loader,
     tree: &'a Node,
     root: &'a Json,
     owner: &'a str,
@@ -26,7 +28,7 @@ pub(super) fn validated<'a>(
         path_from: 0,
     });
     let mut validator = Validator {
-        diagnostics,
+        loader,
         path: String::new(),
         owner,
         wrong: vec![],
@@ -39,7 +41,7 @@ pub(super) fn validated<'a>(
 }
 
 struct Validator<'a> {
-    diagnostics: &'a mut Diagnostics,
+    loader: &'a Loader,
     /// Path from the root of the file to the current value, as in `team.1.name`.
     path: String,
     /// The owner for which numbers are drawn; none where distributions are not allowed.
@@ -116,7 +118,7 @@ impl<'a> Validator<'a> {
         let Some(owner) = &self.owner else {
             return self.wrong_type(node, schema);
         };
-        match draw(self.diagnostics, node, table, owner, &self.path) {
+        match draw(self.loader, node, table, owner, &self.path) {
             Some(value) => {
                 let drawn = Node { value, ..*node };
                 if self.fits(&drawn, schema) {
@@ -151,16 +153,17 @@ impl<'a> Validator<'a> {
         let about = &schema["items"];
         if !counts(schema).contains(&items.len()) {
             // With too many tables, report the first surplus one.
-            let surplus = items
-                .get(*counts(schema).end())
-                .filter(|item| matches!(item.value, Value::Table(_)));
+            let is_table = |item: &&Node| matches!(item.value, Value::Table(_));
+            let surplus = items.get(*counts(schema).end()).filter(is_table);
             let message = format!(
                 "{} has {} entries, expected {}",
                 self.key(),
                 items.len(),
                 allowed(schema)
             );
-            self.diagnostics.note(surplus.unwrap_or(node).at, message);
+            self.loader
+                .diagnostics
+                .note(surplus.unwrap_or(node).at, message);
             // Its entries may still be valid.
             self.wrong.push(format!("{}.length", self.path));
             if is_number(about) || about.is_array() {
@@ -181,43 +184,26 @@ impl<'a> Validator<'a> {
     fn tagged(&mut self, node: &'a Node, table: &'a Table, schema: &'a Json) -> Option<Json> {
         let kinds = schema["oneOf"].as_array()?;
         let tag_of = |kind: &'a Json| {
-            let properties = kind["properties"].as_object();
-            properties
-                .into_iter()
-                .flatten()
-                .find_map(|(key, about)| Some((key.as_str(), about.get("const")?.as_str()?)))
+            properties(kind).find_map(|(key, about)| Some((key, about.get("const")?.as_str()?)))
         };
         let (key, _) = kinds.iter().find_map(tag_of)?;
-        let names: Vec<&str> = kinds
-            .iter()
-            .filter_map(tag_of)
-            .map(|(_, name)| name)
-            .collect();
+        let tags = kinds.iter().filter_map(tag_of);
+        let names: Vec<&str> = tags.map(|(_, name)| name).collect();
         let expected = one_of(&names);
         let given = table.get(key);
-        let text = given.and_then(|given| {
-            if let Value::Text(text) = &given.value {
-                Some(text.as_str())
-            } else {
-                None
-            }
+        let text = given.and_then(|given| match &given.value {
+            Value::Text(text) => Some(text.as_str()),
+            _ => None,
         });
-        if let Some(kind) = kinds
-            .iter()
-            .find(|kind| text.is_some() && tag_of(kind).map(|(_, name)| name) == text)
-        {
+        let is_it = |kind: &&'a Json| text.is_some() && tag_of(kind).map(|(_, name)| name) == text;
+        if let Some(kind) = kinds.iter().find(is_it) {
             return Some(self.table(node, table, kind));
         }
         // Without its kind, at least check the common keys.
         for (key, value) in table.iter().filter(|(other, _)| *other != key) {
-            let mut abouts = kinds.iter().map(|kind| kind["properties"].get(key));
-            if let Some(about) = abouts
-                .clone()
-                .next()
-                .flatten()
-                .filter(|_| abouts.all(|about| about.is_some()))
-            {
-                self.below(key, |below| below.property(key, value, about));
+            let abouts = kinds.iter().map(|kind| kind["properties"].get(key));
+            if let Some(about) = abouts.collect::<Option<Vec<_>>>() {
+                self.below(key, |below| below.property(key, value, about[0]));
             }
         }
         self.below(key, |below| match (given, text) {
@@ -232,12 +218,9 @@ impl<'a> Validator<'a> {
 
     fn table(&mut self, node: &'a Node, table: &'a Table, schema: &'a Json) -> Json {
         let mut values = Map::new();
-        let others = schema
-            .get("additionalProperties")
-            .filter(|others| others.is_object());
-        let properties = &schema["properties"];
+        let others = Some(&schema["additionalProperties"]).filter(|others| others.is_object());
         for (key, value) in table {
-            match properties.get(key).or(others) {
+            match schema["properties"].get(key).or(others) {
                 Some(about) => {
                     let value = self.below(key, |below| below.property(key, value, about));
                     values.extend(value.map(|value| (key.clone(), value)));
@@ -245,20 +228,20 @@ impl<'a> Validator<'a> {
                 None => self.unknown(key, value, schema),
             }
         }
-        for (key, about) in properties.as_object().into_iter().flatten() {
+        for (key, about) in properties(schema) {
             if values.contains_key(key) {
                 continue;
             }
             let is_required = is_required(schema, key);
             if !table.contains_key(key) {
                 let value = self.below(key, |below| below.absent(node, about, is_required));
-                values.extend(value.map(|value| (key.clone(), value)));
+                values.extend(value.map(|value| (key.to_owned(), value)));
             }
             if !values.contains_key(key) && is_required {
-                values.insert(key.clone(), self.stand_in(about));
+                values.insert(key.to_owned(), self.stand_in(about));
             }
         }
-        by_fields(values, properties)
+        by_fields(values, schema)
     }
 
     /// The value of an existing key.
@@ -298,23 +281,19 @@ impl<'a> Validator<'a> {
     }
 
     fn unknown(&mut self, key: &str, node: &Node, schema: &Json) {
-        let properties = schema["properties"].as_object();
-        let known: Vec<&str> = properties
-            .into_iter()
-            .flatten()
-            .map(|(key, _)| key.as_str())
-            .collect();
+        let known: Vec<&str> = properties(schema).map(|(key, _)| key).collect();
         let message = format!(
             "{key} is unknown, expected {}{}",
             one_of(&known),
             did_you_mean(key, &known)
         );
         // Keys below a broken table header belong to the previous table.
-        self.diagnostics.note_if_intact(node.key_at, message);
+        self.loader.diagnostics.note_if_intact(node.key_at, message);
     }
 
     fn missing(&mut self, owner: &Node, expected: &str) -> Option<Json> {
-        self.diagnostics
+        self.loader
+            .diagnostics
             .note_missing(owner.at, &self.path, expected);
         self.wrong.push(self.path.clone());
         None
@@ -325,9 +304,9 @@ impl<'a> Validator<'a> {
         if let Value::Text(text) = &node.value
             && expected.contains("number")
             && has_unit(text)
-            && let Some(unit) = unit_of(self.key())
+            && let Some(unit) = Unit::of(self.key())
         {
-            expected += &format!(" without a unit, in {unit}");
+            expected += &format!(" without a unit, in {}", unit.name);
         }
         self.wrong(node, &found(node), &expected)
     }
@@ -339,16 +318,13 @@ impl<'a> Validator<'a> {
     }
 
     fn note(&mut self, at: usize, message: String) {
-        self.diagnostics.note(at, message);
+        self.loader.diagnostics.note(at, message);
         self.wrong.push(self.path.clone());
     }
 
     /// The key of the current value, or of the list that contains it.
     fn key(&self) -> &str {
-        self.path
-            .rsplit('.')
-            .find(|part| part.parse::<usize>().is_err())
-            .unwrap_or("the file")
+        keys_of(&self.path).next().unwrap_or("the file")
     }
 
     /// Whether a value is of the type in the schema.
@@ -384,14 +360,11 @@ impl<'a> Validator<'a> {
         match schema["anyOf"].get(0).or_else(|| schema["oneOf"].get(0)) {
             Some(branch) => self.stand_in(branch),
             None if takes(schema, "object") => {
-                let properties = schema["properties"].as_object().into_iter().flatten();
-                let needed = properties.filter(|(key, about)| {
+                let needed = properties(schema).filter(|(key, about)| {
                     is_required(schema, key) || about.get("default").is_some()
                 });
-                let values = needed
-                    .map(|(key, about)| (key.clone(), self.stand_in(about)))
-                    .collect();
-                by_fields(values, &schema["properties"])
+                let values = needed.map(|(key, about)| (key.to_owned(), self.stand_in(about)));
+                by_fields(values.collect(), schema)
             }
             None if takes(schema, "array") => {
                 let items = (0..*counts(schema).start())
@@ -403,12 +376,6 @@ impl<'a> Validator<'a> {
             None => schema.get("minimum").cloned().unwrap_or_else(|| 0.into()),
         }
     }
-}
-
-fn is_required(schema: &Json, key: &str) -> bool {
-    schema["required"]
-        .as_array()
-        .is_some_and(|required| required.iter().any(|known| known == key))
 }
 
 /// Whether the schema allows values of this type.
@@ -425,37 +392,20 @@ fn is_number(schema: &Json) -> bool {
 
 /// The allowed lengths of a list.
 fn counts(schema: &Json) -> std::ops::RangeInclusive<usize> {
-    let bound = |key: &str| {
-        schema
-            .get(key)
-            .and_then(Json::as_u64)
-            .map(|bound| bound as usize)
-    };
+    let bound = |key: &str| schema[key].as_u64().map(|bound| bound as usize);
     bound("minItems").unwrap_or(0)..=bound("maxItems").unwrap_or(usize::MAX)
 }
 
 /// The texts that the schema lists as allowed.
 fn choices(schema: &Json) -> Vec<&str> {
-    let one_of = schema["oneOf"]
-        .as_array()
-        .into_iter()
-        .flatten()
-        .filter_map(|choice| choice.get("const"));
-    let all = schema["enum"]
-        .as_array()
-        .into_iter()
-        .flatten()
-        .chain(schema.get("const"))
-        .chain(one_of);
-    all.filter_map(Json::as_str).collect()
+    let one_of = entries(schema, "oneOf").filter_map(|choice| choice.get("const"));
+    let all = entries(schema, "enum").chain(schema.get("const"));
+    all.chain(one_of).filter_map(Json::as_str).collect()
 }
 
 fn one_of(names: &[&str]) -> String {
-    format!(
-        "{}{}",
-        if names.len() > 1 { "one of " } else { "" },
-        names.join(", ")
-    )
+    let one_of = if names.len() > 1 { "one of " } else { "" };
+    format!("{one_of}{}", names.join(", "))
 }
 
 fn found(node: &Node) -> String {
@@ -474,26 +424,6 @@ fn found(node: &Node) -> String {
 fn has_unit(text: &str) -> bool {
     text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c))
         && text.parse::<f64>().is_err()
-}
-
-/// The unit in a key's name.
-fn unit_of(key: &str) -> Option<&'static str> {
-    const UNITS: [(&str, &str); 10] = [
-        ("_rad_s", "rad/s"),
-        ("_m_s", "m/s"),
-        ("_kn", "knots"),
-        ("_deg", "degrees"),
-        ("_newton", "newton"),
-        ("_kg", "kg"),
-        ("_pct", "per cent"),
-        ("_nmi", "nautical miles"),
-        ("_m", "m"),
-        ("_s", "s"),
-    ];
-    UNITS
-        .into_iter()
-        .find(|(end, _)| key.ends_with(end))
-        .map(|(_, unit)| unit)
 }
 
 /// The allowed values, in words.
@@ -517,10 +447,10 @@ fn allowed(schema: &Json) -> String {
 
 /// A bound as users write it: 1000000 rather than 1000000.0.
 fn bound(value: &Json) -> String {
-    value.as_i64().map_or_else(
-        || value.as_f64().unwrap_or(f64::NAN).to_string(),
-        |whole| whole.to_string(),
-    )
+    let number = || value.as_f64().unwrap_or(f64::NAN).to_string();
+    value
+        .as_i64()
+        .map_or_else(number, |whole| whole.to_string())
 }
 
 /// The type in the schema, in words.
@@ -529,11 +459,8 @@ fn kind_of(schema: &Json) -> String {
         return expected.to_owned();
     }
     if let Some(branches) = schema.get("anyOf").and_then(Json::as_array) {
-        return branches
-            .iter()
-            .map(kind_of)
-            .collect::<Vec<_>>()
-            .join(" or ");
+        let kinds: Vec<String> = branches.iter().map(kind_of).collect();
+        return kinds.join(" or ");
     }
     let choices = choices(schema);
     if !choices.is_empty() {
@@ -551,10 +478,7 @@ fn kind_of(schema: &Json) -> String {
         "object" => "a table",
         _ => "a string",
     };
-    if let Some(title) = schema["title"]
-        .as_str()
-        .filter(|_| schema["type"].is_array())
-    {
+    if let (Some(title), true) = (schema["title"].as_str(), schema["type"].is_array()) {
         return title.to_owned();
     }
     let kinds = match &schema["type"] {

@@ -44,9 +44,7 @@ fn file(metadata: &BTreeMap<String, String>, outputs: &[(&str, usize)]) -> Vec<u
 
 fn read(metadata: &BTreeMap<String, String>, said: PartialSpec) -> Result<PolicySpec, String> {
     let model = PolicyModel::read("x.onnx", &file(metadata, &[("logits", 17)]), said);
-    model
-        .map(|model| model.spec)
-        .map_err(|error| error.to_string())
+    model.map(|model| model.spec)
 }
 
 #[test]
@@ -62,13 +60,8 @@ fn metadata_say_what_a_model_is() {
         period_s: Some(1.5),
         ..PartialSpec::default()
     };
-    assert_eq!(
-        read(&metadata, said),
-        Ok(PolicySpec {
-            period_s: 1.5,
-            ..SPEC
-        })
-    );
+    let period_s = 1.5;
+    assert_eq!(read(&metadata, said), Ok(PolicySpec { period_s, ..SPEC }));
     let said = PartialSpec {
         observation: Some(SPEC.observation),
         action: Some(SPEC.action),
@@ -95,50 +88,28 @@ fn what_metadata_leave_open_or_contradict_is_refused() {
         action: Some(ActionSpace::Continuous),
         ..nothing
     };
+    let absent = |key: &str, said_by: &str| {
+        let want = format!("no squall.{key}, expected it there, or {said_by} here");
+        (without(&format!("squall.{key}")), nothing, want)
+    };
+    let wrong = |key: &str, value: &str, expected: &str| {
+        let key = format!("squall.{key}");
+        let want = format!("{key} = {value:?}, expected {expected}");
+        (with(&key, value), nothing, want)
+    };
+    let stated = "squall.action = \"pyquaticus\", expected \"continuous\", as stated here";
     for (metadata, said, want) in [
-        (
-            without("squall.observation"),
-            nothing,
-            "no squall.observation, expected it there, or observation here",
-        ),
-        (
-            without("squall.action"),
-            nothing,
-            "no squall.action, expected it there, or action here",
-        ),
-        (
-            without("squall.period_s"),
-            nothing,
-            "no squall.period_s, expected it there, or period_s here",
-        ),
-        (
-            with("squall.observation", "moos"),
-            nothing,
-            "squall.observation = \"moos\", expected an observation space such as",
-        ),
-        (
-            with("squall.observation_version", "2"),
-            nothing,
-            "observation_version = \"2\", expected 1, which is this program's",
-        ),
-        (
-            with("squall.action", "moos"),
-            nothing,
-            "squall.action = \"moos\", expected an action space (unknown variant",
-        ),
-        (
-            with("squall.period_s", "NaN"),
-            nothing,
-            "squall.period_s = \"NaN\", expected 0.01 to 10 s",
-        ),
-        (
-            full.clone(),
-            other,
-            "squall.action = \"pyquaticus\", expected \"continuous\", as stated here",
-        ),
+        absent("observation", "observation"),
+        absent("action", "action"),
+        absent("period_s", "period_s"),
+        wrong("observation", "moos", "an observation space such as"),
+        wrong("observation_version", "2", "1, which is this program's"),
+        wrong("action", "moos", "an action space (unknown variant"),
+        wrong("period_s", "NaN", "0.01 to 10 s"),
+        (full.clone(), other, stated.to_owned()),
     ] {
-        let error = read(&metadata, said).expect_err(want);
-        assert!(error.contains(want), "{error}\n{want}");
+        let error = read(&metadata, said).expect_err(&want);
+        assert!(error.contains(&want), "{error}\n{want}");
     }
 }
 
@@ -147,9 +118,7 @@ fn of_several_outputs_the_one_that_fits_makes_the_action() {
     let metadata = BTreeMap::from(SPEC.metadata());
     let output = |outputs: &[(&str, usize)]| {
         let model = PolicyModel::read("x.onnx", &file(&metadata, outputs), PartialSpec::default());
-        model
-            .map(|model| model.output())
-            .map_err(|error| error.to_string())
+        model.map(|model| model.output())
     };
     assert_eq!(output(&[("value", 1), ("logits", 17)]), Ok(1));
     assert_eq!(output(&[("action", 1), ("features", 64)]), Ok(0));
@@ -177,14 +146,10 @@ fn a_model_of_another_trainer_loads() {
     };
     // The whole policy has a value and a probability beside the action.
     for name in ["sb3_dynamo.onnx", "sb3_full.onnx"] {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-            .join("../onnx/tests/network")
-            .join(name);
-        let bytes = std::fs::read(path).expect("the model");
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../onnx/tests/network");
+        let bytes = std::fs::read(folder.join(name)).expect("the model");
         let model = PolicyModel::read(name, &bytes, said).unwrap_or_else(|error| panic!("{error}"));
-        assert_eq!(
-            (model.input_size(), model.output()),
-            (ObservationSpace::Pyquaticus.size(1, 2), 0)
-        );
+        let size = ObservationSpace::Pyquaticus.size(1, 2);
+        assert_eq!((model.input_size(), model.output()), (size, 0));
     }
 }

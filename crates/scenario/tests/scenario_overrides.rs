@@ -14,12 +14,10 @@ fn shipped(file: &str) -> PathBuf {
 }
 
 fn instead(strategies: &[(&str, PathBuf)]) -> Overrides {
-    let strategies = strategies
-        .iter()
-        .map(|(team, path)| ((*team).to_owned(), path.clone()))
-        .collect();
+    let strategies = strategies.iter();
+    let strategies = strategies.map(|(team, path)| ((*team).to_owned(), path.clone()));
     Overrides {
-        strategies,
+        strategies: strategies.collect(),
         ..Overrides::default()
     }
 }
@@ -35,9 +33,8 @@ fn followed(scenario: &Scenario) -> Vec<&str> {
 fn all_boats_of_a_team_follow_the_strategy_it_is_given_and_nobody_else_does() {
     let dir = tempfile::tempdir().unwrap();
     let game = dir.path().join("game.toml");
-    let own = shipped("strategies/pav01_seeded.toml")
-        .canonicalize()
-        .unwrap();
+    let own = shipped("strategies/pav01_seeded.toml");
+    let own = own.canonicalize().unwrap();
     let base = shipped("games/pav01_vs_pav01.toml").canonicalize().unwrap();
     let boats = ["blue_one", "blue_two", "red_one", "red_two"].map(|name| {
         let (team, _) = name.split_once('_').unwrap();
@@ -187,54 +184,33 @@ fn an_unknown_team_and_a_file_that_is_not_there_are_explained() {
 #[test]
 fn teams_that_exchange_their_strategies_follow_each_others() {
     let game = shipped("games/strategy_4_vs_3.toml");
-    let exchanged = |overrides: Overrides| {
-        load_with(
-            &game,
-            &Overrides {
-                exchange_strategies: true,
-                ..overrides
-            },
-        )
+    let exchanged = |game: &Path, overrides: Overrides| {
+        let overrides = Overrides {
+            exchange_strategies: true,
+            ..overrides
+        };
+        load_with(game, &overrides)
     };
-    assert_eq!(
-        followed(&load(&game).unwrap()),
-        ["strategy_4", "strategy_4", "strategy_3", "strategy_3"]
-    );
-    let there = exchanged(Overrides::default()).unwrap();
-    assert_eq!(
-        followed(&there),
-        ["strategy_3", "strategy_3", "strategy_4", "strategy_4"]
-    );
+    let [three, four] = [["strategy_3"; 2], ["strategy_4"; 2]];
+    assert_eq!(followed(&load(&game).unwrap()), [four, three].concat());
+    let there = exchanged(&game, Overrides::default()).unwrap();
+    assert_eq!(followed(&there), [three, four].concat());
     // They are exchanged in games of other seeds too, including those that override a team's own.
     assert_eq!(followed(&there.of_seed(9).unwrap()), followed(&there));
     let idle = instead(&[("blue", shipped("strategies/idle.toml"))]);
-    assert_eq!(
-        followed(&exchanged(idle).unwrap()),
-        ["strategy_3", "strategy_3", "idle", "idle"]
-    );
-    let person = Overrides {
-        exchange_strategies: true,
-        ..Overrides::default()
-    };
-    let refused = load_with(&shipped("games/person_2v2.toml"), &person)
-        .unwrap_err()
-        .to_string();
-    assert!(
-        refused.contains(
-            "strategy is teleop, expected none here because the teams exchange strategies"
-        ),
-        "{refused}"
-    );
+    let idle = exchanged(&game, idle).unwrap();
+    assert_eq!(followed(&idle), [three, ["idle"; 2]].concat());
+    let refused = exchanged(&shipped("games/person_2v2.toml"), Overrides::default());
+    let refused = refused.unwrap_err().to_string();
+    let want = "strategy is teleop, expected none here because the teams exchange strategies";
+    assert!(refused.contains(want), "{refused}");
 }
 
 /// Overrides of single values.
 fn settings(texts: &[&str]) -> Overrides {
-    let settings = texts
-        .iter()
-        .map(|text| Setting::parse(text).expect("a setting"))
-        .collect();
+    let settings = texts.iter().map(|text| Setting::parse(text));
     Overrides {
-        settings,
+        settings: settings.collect::<Result<_, _>>().expect("settings"),
         ..Overrides::default()
     }
 }
@@ -250,60 +226,32 @@ fn a_single_value_takes_the_place_of_what_a_file_of_its_kind_says() {
         "boat.gps.noise_m=0.25",
     ]);
     let other = load_with(&game, &set).unwrap();
-    assert_eq!(
-        (other.sea.depth_m, own.sea.depth_m),
-        (Some(4.5), Some(10.0))
-    );
-    assert_eq!(
-        (other.rules.tag_radius_m, own.rules.tag_radius_m),
-        (12.5, 10.0)
-    );
+    let numbers = [&other, &own].map(|game| (game.sea.depth_m, game.rules.tag_radius_m));
+    assert_eq!(numbers, [(Some(4.5), 12.5), (Some(10.0), 10.0)]);
     assert_eq!(other.link.as_ref().unwrap().delay_s, 0.5);
-    assert!(other.boats.iter().all(|boat| {
-        boat.sensors
-            .gps
-            .as_ref()
-            .is_some_and(|gps| gps.noise_m == 0.25)
-    }));
+    let mut receivers = other.boats.iter().map(|boat| boat.sensors.gps.as_ref());
+    assert!(receivers.all(|gps| gps.unwrap().noise_m == 0.25));
     // Other values stay, and a game drawn again keeps the setting.
     assert_eq!(other.sea.wind, own.sea.wind);
     assert_eq!(other.of_seed(9).unwrap().rules.tag_radius_m, 12.5);
     // The last of several settings counts, and a game without a sea file has a default one at rest.
     let calm = shipped("games/pav01_vs_pav01.toml");
-    let windy = load_with(
-        &calm,
-        &settings(&[
-            "sea.wind.from_deg=90",
-            "sea.wind.speed_m_s=3",
-            "sea.wind.speed_m_s=4",
-        ]),
-    )
-    .unwrap();
+    let wind = ["from_deg=90", "speed_m_s=3", "speed_m_s=4"];
+    let wind = wind.map(|value| format!("sea.wind.{value}"));
+    let windy = load_with(&calm, &settings(&wind.each_ref().map(String::as_str))).unwrap();
     assert_eq!(windy.sea.wind.as_ref().unwrap().speed_10m_m_s, 4.0);
     assert_eq!(
         (windy.sea.water_density_kg_m3, windy.sea.waves.is_none()),
         (1000.0, true)
     );
     // A distribution is drawn as if it were in the file.
-    let drawn = load_with(
-        &game,
-        &settings(&["boat.gps.noise_m={ uniform = [0.5, 0.75] }"]),
-    )
-    .unwrap();
-    let noises = drawn
-        .drawn
+    let set = settings(&["boat.gps.noise_m={ uniform = [0.5, 0.75] }"]);
+    let drawn = load_with(&game, &set).unwrap().drawn;
+    let of_receivers = drawn
         .iter()
-        .filter(|drawn| drawn.parameter.ends_with("gps.noise_m"))
-        .map(|drawn| drawn.value);
-    assert_eq!(
-        noises
-            .clone()
-            .filter(|noise| (0.5..=0.75).contains(noise))
-            .count(),
-        4,
-        "{:?}",
-        drawn.drawn
-    );
+        .filter(|one| one.parameter.ends_with("gps.noise_m"));
+    let fitting = of_receivers.filter(|one| (0.5..=0.75).contains(&one.value));
+    assert_eq!(fitting.count(), 4, "{drawn:?}");
 }
 
 #[test]
@@ -337,21 +285,16 @@ fn a_value_of_a_strategy_changes_that_of_its_team_alone() {
     let game = shipped("games/surveyor_2v2.toml");
     let both = ["blue", "red"].map(|team| (team.to_owned(), shipped("strategies/strategy_4.toml")));
     let with = |texts: &[&str]| {
-        load_with(
-            &game,
-            &Overrides {
-                strategies: both.clone().into(),
-                ..settings(texts)
-            },
-        )
-        .map_err(|e| e.to_string())
+        let overrides = Overrides {
+            strategies: both.clone().into(),
+            ..settings(texts)
+        };
+        load_with(&game, &overrides).map_err(|e| e.to_string())
     };
     let weight = |scenario: &Scenario, vehicle: usize| {
         let strategy = &scenario.strategies[scenario.vehicles[vehicle].strategy];
-        let pursue = strategy.roles[0]
-            .behaviours
-            .iter()
-            .find(|behaviour| behaviour.name == "pursue");
+        let mut behaviours = strategy.roles[0].behaviours.iter();
+        let pursue = behaviours.find(|behaviour| behaviour.name == "pursue");
         format!("{:?}", pursue.expect("strategy 4 pursues").weight)
     };
     let own = with(&[]).unwrap();

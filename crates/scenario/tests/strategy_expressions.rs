@@ -60,10 +60,8 @@ fn program(text: &str) -> Result<Program, Problems> {
 }
 
 fn quoted(expression: &str) -> String {
-    format!(
-        "\"{}\"",
-        expression.replace('\\', "\\\\").replace('"', "\\\"")
-    )
+    let escaped = expression.replace('\\', "\\\\").replace('"', "\\\"");
+    format!("\"{escaped}\"")
 }
 
 /// A program with a rule under this condition.
@@ -87,31 +85,23 @@ fn with_number(number: &str) -> Result<Program, Problems> {
 }
 
 fn number(program: &Program) -> &Expression {
-    let wait = program
-        .behaviours
-        .iter()
-        .find(|behaviour| behaviour.name == "wait")
-        .unwrap();
-    &wait.duration_s.as_ref().unwrap().expression
+    let mut behaviours = program.behaviours.iter();
+    let wait = behaviours.find(|behaviour| behaviour.name == "wait");
+    &wait.unwrap().duration_s.as_ref().unwrap().expression
 }
 
 /// The expressions of the accompanying file: whether it is a condition, its text, and its value (1
 /// for true).
 fn cases() -> Vec<(bool, &'static str, f64)> {
-    let lines = include_str!("strategy_expressions.txt")
-        .lines()
-        .filter(|line| !line.starts_with('#'));
+    let lines = include_str!("strategy_expressions.txt").lines();
+    let lines = lines.filter(|line| !line.starts_with('#'));
     let case = |line: &'static str| {
-        let (text, want) = line
-            .rsplit_once(" => ")
-            .unwrap_or_else(|| panic!("not EXPRESSION => VALUE: {line}"));
+        let parts = line.rsplit_once(" => ");
+        let (text, want) = parts.unwrap_or_else(|| panic!("not EXPRESSION => VALUE: {line}"));
+        let number = || want.parse().unwrap_or_else(|e| panic!("{line}: {e}"));
         match want {
             "true" | "false" => (true, text, f64::from(u8::from(want == "true"))),
-            number => (
-                false,
-                text,
-                number.parse().unwrap_or_else(|e| panic!("{line}: {e}")),
-            ),
+            _ => (false, text, number()),
         }
     };
     let cases: Vec<_> = lines.map(case).collect();
@@ -121,18 +111,15 @@ fn cases() -> Vec<(bool, &'static str, f64)> {
 
 /// The program with this expression, which must be valid, and the expression in it.
 fn read(is_condition: bool, text: &str) -> (Program, Expression) {
-    let program = if is_condition {
-        with_condition(text)
-    } else {
-        with_number(text)
+    let program = match is_condition {
+        true => with_condition(text),
+        false => with_number(text),
     };
     let program = program.unwrap_or_else(|problems| panic!("{text}: {problems}"));
-    let expression = if is_condition {
-        condition(&program)
-    } else {
-        number(&program)
-    }
-    .clone();
+    let expression = match is_condition {
+        true => condition(&program).clone(),
+        false => number(&program).clone(),
+    };
     (program, expression)
 }
 
@@ -150,11 +137,8 @@ fn expressions_are_evaluated_as_cel_does_and_survive_json_exactly() {
         let (program, expression) = read(is_condition, text);
         assert_eq!(value(is_condition, &expression), want, "{text}");
         let json = serde_json::to_string(&program).unwrap();
-        assert_eq!(
-            serde_json::from_str::<Program>(&json).unwrap(),
-            program,
-            "{json}"
-        );
+        let again: Program = serde_json::from_str(&json).unwrap();
+        assert_eq!(again, program, "{json}");
     }
 }
 
@@ -214,12 +198,9 @@ fn answers(given: &str) {
     let lines = text.split('\n').count();
     if let Err(problems) = program(&text) {
         assert!(!problems.0.is_empty());
-        assert!(
-            problems
-                .0
-                .iter()
-                .all(|problem| (1..=lines).contains(&problem.line) && problem.column > 0)
-        );
+        for problem in &problems.0 {
+            assert!((1..=lines).contains(&problem.line) && problem.column > 0);
+        }
     }
 }
 

@@ -32,11 +32,8 @@ fn program(text: &str) -> Program {
 }
 
 fn behaviour<'a>(program: &'a Program, name: &str) -> &'a strategy::Behaviour {
-    program
-        .behaviours
-        .iter()
-        .find(|behaviour| behaviour.name == name)
-        .unwrap()
+    let mut behaviours = program.behaviours.iter();
+    behaviours.find(|one| one.name == name).unwrap()
 }
 
 const FULL: &str = r#"
@@ -98,78 +95,46 @@ fn a_program_says_what_its_file_says() {
         (program.name.as_str(), program.about.as_str()),
         ("x", "all there is")
     );
+    let helm = &program.helm;
+    let numbers = (helm.courses, helm.speeds, helm.speed_max_m_s);
+    assert_eq!(numbers, (72, 36, None));
+    let variables = program.variables.iter();
+    let initial = variables.map(|v| (v.name.as_str(), v.initial, v.shared));
+    let want = [("laps", 2.0, false), ("phase", 1.0, true)];
+    assert_eq!(initial.collect::<Vec<_>>(), want);
+    let paths: Vec<String> = (0..5).map(|mode| program.path(mode)).collect();
     assert_eq!(
-        (
-            program.helm.courses,
-            program.helm.speeds,
-            program.helm.speed_max_m_s
-        ),
-        (72, 36, None)
+        paths.join(" "),
+        "tagged defending defending:intercepting defending:loitering attacking"
     );
-    let initial: Vec<(&str, f64, bool)> = program
-        .variables
-        .iter()
-        .map(|v| (v.name.as_str(), v.initial, v.shared))
-        .collect();
-    assert_eq!(initial, [("laps", 2.0, false), ("phase", 1.0, true)]);
-    let paths: Vec<String> = (0..program.modes.len())
-        .map(|mode| program.path(mode))
-        .collect();
-    assert_eq!(
-        paths,
-        [
-            "tagged",
-            "defending",
-            "defending:intercepting",
-            "defending:loitering",
-            "attacking"
-        ]
-    );
+    assert_eq!(program.modes.len(), 5);
     assert_eq!(program.leaves().collect::<Vec<_>>(), [0, 2, 3, 4]);
-    let set: Vec<(u16, String)> = program.modes[1]
-        .enter
-        .iter()
-        .map(|(v, value)| (*v, program.value_text(*v, value)))
-        .collect();
+    let set = program.modes[1].enter.iter();
+    let set = set.map(|(v, value)| (*v, program.value_text(*v, value)));
+    let set: Vec<(u16, String)> = set.collect();
     assert_eq!(set, [(0, "laps + 1".to_owned()), (1, "'go'".to_owned())]);
-    assert_eq!(
-        program.rules[0].on,
-        Some(Trigger {
-            who: Who::Enemy,
-            what: What::Grabs
-        })
-    );
+    let (who, what) = (Who::Enemy, What::Grabs);
+    assert_eq!(program.rules[0].on, Some(Trigger { who, what }));
     assert_eq!(program.rules[0].when, None);
 
     let go = behaviour(&program, "go");
     assert_eq!(go.modes, [false, true, true, true, false]);
-    assert_eq!(
-        program.condition_text(go.when.as_ref().unwrap()),
-        "laps > 1"
-    );
+    let when = program.condition_text(go.when.as_ref().unwrap());
+    assert_eq!(when, "laps > 1");
     assert_eq!(program.number_text(&go.weight.expression), "50 + laps");
     assert_eq!(
         (go.weight.range, go.weight.constant(), go.perpetual),
         ((0.0, 300.0), None, true)
     );
-    assert_eq!(
-        go.posts.iter().map(|post| post.at).collect::<Vec<_>>(),
-        [Moment::Reach, Moment::Complete]
-    );
+    let moments: Vec<Moment> = go.posts.iter().map(|post| post.at).collect();
+    assert_eq!(moments, [Moment::Reach, Moment::Complete]);
     let Task::Waypoint(waypoint) = &go.task else {
         panic!("{go:?}")
     };
     let corner = Place::At(Ned::from_xy(3.0, 4.0));
     let own_flag = Place::by_name("own_flag").unwrap();
-    assert_eq!(
-        waypoint.points,
-        [
-            Place::Point("CF".into()),
-            own_flag,
-            corner,
-            Place::Boat(Boat::Opponent)
-        ]
-    );
+    let [first, last] = [Place::Point("CF".into()), Place::Boat(Boat::Opponent)];
+    assert_eq!(waypoint.points, [first, own_flag, corner, last]);
 
     let round = behaviour(&program, "round");
     assert_eq!(round.modes, [false, false, false, true, false]);
@@ -192,21 +157,11 @@ fn a_program_says_what_its_file_says() {
     let Task::AvoidCollision(avoid) = &keep_clear.task else {
         panic!("{keep_clear:?}")
     };
-    assert_eq!(
-        (
-            avoid.contacts,
-            avoid.outer_m.constant(),
-            avoid.inner_m.constant()
-        ),
-        (Contacts::All, Some(20.0), Some(9.0))
-    );
-    assert_eq!(
-        (
-            keep_clear.weight.constant(),
-            behaviour(&program, "round").weight.constant()
-        ),
-        (Some(300.0), Some(100.0))
-    );
+    assert_eq!(avoid.contacts, Contacts::All);
+    let weights = [&keep_clear.weight, &round.weight];
+    let [outer_m, inner_m] = [&avoid.outer_m, &avoid.inner_m];
+    let numbers = [outer_m, inner_m, weights[0], weights[1]].map(|one| one.constant());
+    assert_eq!(numbers, [20.0, 9.0, 300.0, 100.0].map(Some));
     assert!(keep_clear.is_guard() && behaviour(&program, "stay_in").is_guard() && !go.is_guard());
 }
 
@@ -218,12 +173,8 @@ fn a_strategy_deals_the_programs_of_its_roles() {
         &[("y.toml", "base = \"safe.toml\"\nabout = \"the other\"\n")],
     )
     .unwrap();
-    let names: Vec<&str> = strategy
-        .roles
-        .iter()
-        .map(|role| role.name.as_str())
-        .collect();
-    assert_eq!(names, ["safe", "y", "safe"]);
+    let names = strategy.roles.iter().map(|role| role.name.as_str());
+    assert_eq!(names.collect::<Vec<_>>(), ["safe", "y", "safe"]);
     assert_eq!(
         (strategy.name.as_str(), strategy.about.as_str()),
         ("x", "two")
@@ -260,75 +211,48 @@ fn with_modes(conditions: &[&str], set: &str) -> String {
 
 #[test]
 fn what_can_be_is_allowed() {
+    let once = "{ laps = 1 }";
+    let more = "{ laps = \"laps + 1\" }";
     for (conditions, set) in [
-        (&["tagged == own_side", "tagged"][..], "{ laps = 1 }"),
+        ("tagged == own_side; tagged", once),
+        ("enemies < 2; enemies < 3; enemies < 4", once),
         (
-            &["enemies < 2", "enemies < 3", "enemies < 4"],
-            "{ laps = 1 }",
-        ),
-        (
-            &["distance(CF) > 1 && distance(CF) < 2", "distance(CF) < 1.5"],
-            "{ laps = 1 }",
+            "distance(CF) > 1 && distance(CF) < 2; distance(CF) < 1.5",
+            once,
         ),
         // The distance to one place does not determine that to another.
-        (&["distance(CF) < 1", "distance(CH) < 1"], "{ laps = 1 }"),
-        (
-            &["closing(opponent) < 0", "closing(opponent) < 1"],
-            "{ laps = 1 }",
-        ),
+        ("distance(CF) < 1; distance(CH) < 1", once),
+        ("closing(opponent) < 0; closing(opponent) < 1", once),
         // The same two numbers in another comparison may have any result.
         (
-            &[
-                "score < enemy_score",
-                "score > enemy_score",
-                "score == enemy_score",
-            ],
-            "{ laps = 1 }",
+            "score < enemy_score; score > enemy_score; score == enemy_score",
+            once,
         ),
-        (&["laps == 1"], "{ laps = 1 }"),
-        (&["laps > 1000"], "{ laps = \"laps + 1\" }"),
-        (&["alarmed"], "{ alarmed = true }"),
+        ("laps == 1", once),
+        ("laps > 1000", more),
+        ("alarmed", "{ alarmed = true }"),
+        ("alarmed; !alarmed && tagged", "{ alarmed = \"tagged\" }"),
+        ("phase == 'return'", "{ phase = \"return\" }"),
         (
-            &["alarmed", "!alarmed && tagged"],
-            "{ alarmed = \"tagged\" }",
+            "enemy_in_zone && enemies_in_zone > 1; enemies_in_zone == 1; tagged",
+            once,
         ),
-        (&["phase == 'return'"], "{ phase = \"return\" }"),
+        ("has_flag; enemy_flag_taken; tagged", once),
         (
-            &[
-                "enemy_in_zone && enemies_in_zone > 1",
-                "enemies_in_zone == 1",
-                "tagged",
-            ],
-            "{ laps = 1 }",
+            "mates(phase == 'go') > 0; mates(phase == 'go') < 1 && mates > 1",
+            once,
         ),
-        (&["has_flag", "enemy_flag_taken", "tagged"], "{ laps = 1 }"),
+        ("time_s < 10; time_s <= 10; time_s == 20; mode_s > 3", once),
+        ("rank == 0; rank == 1; rank < 3", once),
         (
-            &[
-                "mates(phase == 'go') > 0",
-                "mates(phase == 'go') < 1 && mates > 1",
-            ],
-            "{ laps = 1 }",
-        ),
-        (
-            &["time_s < 10", "time_s <= 10", "time_s == 20", "mode_s > 3"],
-            "{ laps = 1 }",
-        ),
-        (&["rank == 0", "rank == 1", "rank < 3"], "{ laps = 1 }"),
-        (
-            &[
-                "score * 2 > 3",
-                "score * 2 <= 3 && tagged",
-                "min(score, laps) > 1",
-            ],
-            "{ laps = \"laps + 1\" }",
+            "score * 2 > 3; score * 2 <= 3 && tagged; min(score, laps) > 1",
+            more,
         ),
     ] {
-        let found = strategy_of(&with_modes(conditions, set), &[]);
-        assert!(
-            found.is_ok(),
-            "{conditions:?} {set}: {}",
-            found.unwrap_err()
-        );
+        let modes: Vec<&str> = conditions.split("; ").collect();
+        let found = strategy_of(&with_modes(&modes, set), &[]);
+        let problems = found.map_err(|problems| problems.to_string()).err();
+        assert_eq!(problems, None, "{conditions} {set}");
     }
 }
 
@@ -419,17 +343,11 @@ fn numbers_of_behaviours_have_the_ranges_and_defaults_that_are_declared() {
             for value in [low - 1.0, high + 1.0] {
                 // An expression is limited to the same range.
                 for value in [format!("{value:?}"), format!("\"{value:?} * 1\"")] {
-                    let problems = strategy_of(&file(&format!("{key} = {value}\n")), &[])
-                        .unwrap_err()
-                        .to_string();
-                    assert!(
-                        problems.contains(&format!("{key} is")),
-                        "{kind} {key}: {problems}"
-                    );
-                    assert!(
-                        problems.contains(&format!("expected {low} to {high}")),
-                        "{kind} {key}: {problems}"
-                    );
+                    let file = file(&format!("{key} = {value}\n"));
+                    let problems = strategy_of(&file, &[]).unwrap_err().to_string();
+                    for part in [format!("{key} is"), format!("expected {low} to {high}")] {
+                        assert!(problems.contains(&part), "{kind} {key}: {problems}");
+                    }
                     ranges += 1;
                 }
             }

@@ -4,7 +4,7 @@ use super::{BoatProtocol, Gateway};
 use primitives::angle::wrap_pi;
 use primitives::{Ned, math};
 use rules::field::{distance_to_line, sides};
-use scenario::{Diagnostics, Document, check_corners, check_thrust_map};
+use scenario::{Document, check_corners, check_thrust_map};
 
 /// Maximum distance of a geofence corner from the first, m: farther ones have latitude and
 /// longitude exchanged, or an extra digit.
@@ -13,27 +13,18 @@ const EXTENT_MAX_M: f64 = 50_000.0;
 const EARTH_RADIUS_M: f64 = 6_371_000.0;
 
 /// Checks a gateway.
-pub(super) fn gateway(
-    diagnostics: &mut Diagnostics,
-    document: &Document<Gateway>,
-) -> Option<Gateway> {
-    check_thrust_map(
-        diagnostics,
-        document,
-        "loops.thrust_map",
-        &document.raw.loops.thrust_map,
-    );
-    check_geofence(diagnostics, document);
-    if document.raw.protocol == BoatProtocol::Mavlink && !document.raw.startup_words.is_empty() {
+pub(super) fn gateway(document: &Document<Gateway>) -> Option<Gateway> {
+    let raw = &document.raw;
+    check_thrust_map(document, "loops.thrust_map", &raw.loops.thrust_map);
+    check_geofence(document);
+    if raw.protocol == BoatProtocol::Mavlink && !raw.startup_words.is_empty() {
         let message = "startup_words are a Surveyor's, expected none with protocol = \"mavlink\"";
-        diagnostics.note(document.at("startup_words"), message);
+        document.note("startup_words", message);
     }
-    document
-        .is_faultless(diagnostics)
-        .then(|| document.raw.clone())
+    document.is_faultless().then(|| raw.clone())
 }
 
-fn check_geofence(diagnostics: &mut Diagnostics, document: &Document<Gateway>) {
+fn check_geofence(document: &Document<Gateway>) {
     let fence = &document.raw.geofence;
     let origin = fence
         .polygon
@@ -41,10 +32,10 @@ fn check_geofence(diagnostics: &mut Diagnostics, document: &Document<Gateway>) {
         .or(fence.keep_out.first())
         .and_then(|corners| corners.first());
     let Some(&origin) = origin else { return };
-    let mut check = |path: &str, corners: &[[f64; 2]]| {
+    let check = |path: &str, corners: &[[f64; 2]]| {
         document
             .is_sound(path)
-            .then(|| polygon(diagnostics, document, path, corners, origin))
+            .then(|| polygon(document, path, corners, origin))
             .flatten()
     };
     let outline = fence
@@ -63,8 +54,8 @@ fn check_geofence(diagnostics: &mut Diagnostics, document: &Document<Gateway>) {
             continue;
         };
         if sides(keep_out).all(|side| distance_to_line(outline, side) > 0.0) {
-            diagnostics.note(
-                document.at(&path(i)),
+            document.note(
+                &path(i),
                 "keep_out lies outside the polygon, expected it inside",
             );
         }
@@ -73,39 +64,35 @@ fn check_geofence(diagnostics: &mut Diagnostics, document: &Document<Gateway>) {
 
 /// The corners of a polygon in metres from `origin`, if it is valid.
 fn polygon(
-    diagnostics: &mut Diagnostics,
     document: &Document<Gateway>,
     path: &str,
     places: &[[f64; 2]],
     origin: [f64; 2],
 ) -> Option<Vec<Ned>> {
-    let at = |corner: usize| document.at(&format!("{path}.{corner}"));
-    if let Some(corner) = places.iter().position(|[lat_deg, _]| lat_deg.abs() > 90.0) {
+    let note = |corner: usize, message: String| {
+        document.note(&format!("{path}.{corner}"), message);
+    };
+    let mut latitudes_deg = places.iter().map(|[lat_deg, _]| *lat_deg);
+    if let Some(corner) = latitudes_deg.position(|lat_deg| lat_deg.abs() > 90.0) {
         let message = format!(
             "latitude is {}, expected -90 to 90: it comes before the longitude",
             places[corner][0]
         );
-        diagnostics.note(at(corner), message);
+        note(corner, message);
         return None;
     }
-    let corners: Vec<Ned> = places
-        .iter()
-        .map(|place| metres_from(origin, *place))
-        .collect();
-    if let Some(corner) = corners
-        .iter()
-        .position(|corner| corner.length() > EXTENT_MAX_M)
-    {
+    let corners = places.iter().map(|place| metres_from(origin, *place));
+    let corners: Vec<Ned> = corners.collect();
+    let mut lengths_m = corners.iter().map(|corner| corner.length());
+    if let Some(corner) = lengths_m.position(|length_m| length_m > EXTENT_MAX_M) {
         let [km, max_km] = [corners[corner].length(), EXTENT_MAX_M].map(|m| m / 1000.0);
-        diagnostics.note(
-            at(corner),
-            format!("corner is {km:.0} km from the first, expected at most {max_km} km"),
-        );
+        let message = format!("corner is {km:.0} km from the first, expected at most {max_km} km");
+        note(corner, message);
         return None;
     }
     let checked = check_corners(&corners);
     checked
-        .map_err(|(corner, message)| diagnostics.note(at(corner), message))
+        .map_err(|(corner, message)| note(corner, message))
         .ok()
         .map(|()| corners)
 }

@@ -7,7 +7,7 @@ mod check;
 
 use crate::nmea::FixQuality;
 use scenario::boat::ThrustAndSpeed;
-use scenario::{Diagnostics, Document, ScenarioFile};
+use scenario::{Document, ScenarioFile};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -74,8 +74,8 @@ impl ScenarioFile for Gateway {
     const NAME: &'static str = "gateway";
     const FOLDER: &'static str = "gateways";
 
-    fn check(diagnostics: &mut Diagnostics, document: &Document<Gateway>) -> Option<Gateway> {
-        check::gateway(diagnostics, document)
+    fn check(document: &Document<Gateway>) -> Option<Gateway> {
+        check::gateway(document)
     }
 }
 

@@ -3,9 +3,9 @@
 use super::axis::{Axis, AxisValue, Target};
 use crate::tournament::{Entrant, check_entries};
 use scenario::keys::FilePath;
+use scenario::strategy::Strategy;
 use scenario::{
-    Diagnostics, Document, GameVariants, Overrides, Problem, Problems, Scenario, ScenarioFile,
-    StrategyFiles, tidied_path,
+    Document, Overrides, Problems, Scenario, ScenarioFile, check_variants, tidied_path,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -74,48 +74,33 @@ impl ScenarioFile for Sweep {
     const NAME: &'static str = "sweep";
     const FOLDER: &'static str = "sweeps";
 
-    fn check(diagnostics: &mut Diagnostics, document: &Document<Sweep>) -> Option<Sweep> {
-        checked(diagnostics, document)
+    fn check(document: &Document<Sweep>) -> Option<Sweep> {
+        checked(document)
     }
 
     /// Checks the game with the values of every axis that suffice to check all, one axis at a time.
     fn check_games(&self) -> Result<(), Problems> {
-        let teams: Vec<String> = scenario::load(&self.game)?
-            .teams
-            .into_iter()
-            .map(|team| team.name)
-            .collect();
+        let teams = scenario::load(&self.game)?.teams.into_iter();
+        let teams: Vec<String> = teams.map(|team| team.name).collect();
         let nominal: Vec<AxisValue> = self.axes.iter().map(Axis::nominal).collect();
-        // Fifty axes of a thousand values are many games, so the parts that no axis changes are
-        // read once.
-        let game = GameVariants::new(&self.game, &self.overrides(&teams, 0, 0, &nominal));
-        let mut problems = vec![];
-        let mut read = |values: &[AxisValue]| {
-            if let Err(Problems(found)) = game.load(&self.overrides(&teams, 0, 0, values)) {
-                problems.extend(found);
-            }
+        let overrides = |values: &[AxisValue]| self.overrides(&teams, 0, 0, values);
+        let changed = |(i, value): (usize, AxisValue)| {
+            let mut values = nominal.clone();
+            values[i] = value;
+            overrides(&values)
         };
-        read(&nominal);
-        for (i, axis) in self.axes.iter().enumerate() {
-            for value in axis.telling_values() {
-                let mut values = nominal.clone();
-                values[i] = value;
-                read(&values);
-            }
-        }
+        let values = self.axes.iter().map(Axis::telling_values).enumerate();
+        let values = values.flat_map(|(i, values)| values.into_iter().map(move |one| (i, one)));
+        let checked = check_variants(&self.game, &overrides(&nominal), values.map(changed));
+        let Err(Problems(mut problems)) = checked else {
+            return Ok(());
+        };
         // Each value is read as a setting of its own: the same problem, but a line that no file
         // has.
-        let of_axes = problems
-            .iter_mut()
-            .filter(|problem: &&mut Problem| problem.path == self.path);
-        of_axes.for_each(|problem| problem.source.clear());
-        problems.sort();
-        problems.dedup();
-        if problems.is_empty() {
-            Ok(())
-        } else {
-            Err(Problems(problems))
+        for problem in problems.iter_mut().filter(|one| one.path == self.path) {
+            problem.source.clear();
         }
+        Problems::of(problems)
     }
 }
 
@@ -161,116 +146,115 @@ fn beside(file: &Path, named: &str) -> PathBuf {
     tidied_path(&file.parent().unwrap_or(Path::new("")).join(named))
 }
 
-fn checked(diagnostics: &mut Diagnostics, document: &Document<Sweep>) -> Option<Sweep> {
+fn checked(document: &Document<Sweep>) -> Option<Sweep> {
     let mut sweep = document.raw.clone();
-    sweep.path = diagnostics.position(document.at("")).0;
-    diagnostics.referenced::<Scenario, _>(document, "game", &sweep.game);
-    sweep.game = diagnostics.resolve(document.at("game"), &sweep.game);
-    let mut strategies = StrategyFiles::default();
-    sweep.opponent = strategies.read(diagnostics, document, "opponent", &sweep.opponent);
-    check_entries(diagnostics, document, &mut strategies, &mut sweep.entries);
+    sweep.path = document.position("").0;
+    document.resolved::<Scenario>("game", &mut sweep.game);
+    document.resolved::<Strategy>("opponent", &mut sweep.opponent);
+    check_entries(document, &mut sweep.entries);
     let mut keys = BTreeSet::new();
     for (i, axis) in sweep.axes.iter_mut().enumerate() {
         let at = format!("axis.{i}");
-        let key_at = document.at(&format!("{at}.key"));
-        let (_, line, column) = diagnostics.position(key_at);
+        let key_path = format!("{at}.key");
+        let (_, line, column) = document.position(&key_path);
         axis.place = (line, column);
         if document.is_sound(&at) {
-            check_axis(diagnostics, document, &at, axis);
+            check_axis(document, &at, axis);
             if !keys.insert(axis.key.clone()) {
-                diagnostics.note(
-                    key_at,
-                    format!(
-                        "the key {:?} is used twice, expected a unique key for each axis",
-                        axis.key
-                    ),
+                let message = format!(
+                    "the key {:?} is used twice, expected a unique key for each axis",
+                    axis.key
                 );
+                document.note(&key_path, message);
             }
         }
     }
-    document.is_faultless(diagnostics).then_some(sweep)
+    document.is_faultless().then_some(sweep)
 }
 
-fn check_axis(diagnostics: &mut Diagnostics, document: &Document<Sweep>, at: &str, axis: &Axis) {
-    let given: Vec<&str> = ["values", "range", "normal", "log_normal"]
+fn check_axis(document: &Document<Sweep>, at: &str, axis: &Axis) {
+    let given: Vec<&'static str> = ["values", "range", "normal", "log_normal"]
         .into_iter()
         .filter(|key| document.has(&format!("{at}.{key}")))
         .collect();
-    let found = match &given[..] {
-        [] => "none".to_owned(),
-        all => all.join(" and "),
-    };
-    let key = &axis.key;
-    let problem = if !axis.is_of_files()
-        && let Err(error) = axis.setting("team", &AxisValue::Number(0.0), Path::new(""))
-    {
-        let expected = "expected sea, boat, rules, field, opponent or a longer key";
-        Some(("key", format!("key is {key:?}, {expected}: {error}")))
-    } else if given.len() != 1 {
-        let expected = "expected one of values, range, normal, log_normal";
-        Some(("key", format!("{key} has {found}, {expected}")))
-    } else if given[0] == "values" || axis.is_of_files() {
-        let message = values_problem(axis).map(|message| (given[0], message));
-        message.or_else(|| log_problem(axis))
-    } else {
-        distribution_problem(axis)
-    };
+    let problem = problem_of_key(axis, &given)
+        .map(|message| ("key", message))
+        .or_else(|| problem_of_values(axis, given[0]))
+        .or_else(|| problem_of_distribution(axis));
     if let Some((key, message)) = problem {
-        diagnostics.note(document.at(&format!("{at}.{key}")), message);
+        document.note(&format!("{at}.{key}"), message);
     }
 }
 
-/// What is wrong with the listed values of an axis.
-fn values_problem(axis: &Axis) -> Option<String> {
+fn problem_of_key(axis: &Axis, given: &[&str]) -> Option<String> {
+    let key = &axis.key;
+    if !axis.is_of_files()
+        && let Err(error) = axis.setting("team", &AxisValue::Number(0.0), Path::new(""))
+    {
+        return Some(format!(
+            "key is {key:?}, expected sea, boat, rules, field, opponent or a longer key: {error}"
+        ));
+    }
+    let found = match given {
+        [_] => return None,
+        [] => "none".to_owned(),
+        several => several.join(" and "),
+    };
+    Some(format!(
+        "{key} has {found}, expected one of values, range, normal, log_normal"
+    ))
+}
+
+fn problem_of_values(axis: &Axis, given: &'static str) -> Option<(&'static str, String)> {
     let Axis { key, values, .. } = axis;
+    let files = "files as values, as in values = [\"../seas/calm.toml\"]";
     let kind = |value: &AxisValue| std::mem::discriminant(value);
     let is_text = |value: &AxisValue| matches!(value, AxisValue::Text(_));
-    let files = "files as values, as in values = [\"../seas/calm.toml\"]";
     if axis.is_of_files() && !values.iter().all(is_text) {
-        Some(format!("values of {key} are not files, expected {files}"))
+        let message = format!("values of {key} are not files, expected {files}");
+        Some(("values", message))
     } else if axis.is_of_files() && values.is_empty() {
-        Some(format!("{key} has no values, expected {files}"))
-    } else if values.is_empty() {
-        Some(format!("{key} has no values, expected at least one"))
+        Some((given, format!("{key} has no values, expected {files}")))
+    } else if values.is_empty() && given == "values" {
+        let message = format!("{key} has no values, expected at least one");
+        Some(("values", message))
     } else if values
         .windows(2)
         .any(|pair| kind(&pair[0]) != kind(&pair[1]))
     {
-        Some(format!(
-            "values of {key} have different types, expected all numbers or all texts"
-        ))
+        let message =
+            format!("values of {key} have different types, expected all numbers or all texts");
+        Some(("values", message))
     } else if (1..values.len()).any(|k| values[..k].contains(&values[k])) {
-        Some(format!(
-            "values of {key} contains a duplicate, expected unique values"
-        ))
+        let message = format!("values of {key} contains a duplicate, expected unique values");
+        Some(("values", message))
     } else {
         None
     }
 }
 
-fn log_problem(axis: &Axis) -> Option<(&'static str, String)> {
-    let message = "log is given without range, which it requires";
-    (axis.log && axis.range.is_none()).then(|| ("log", message.to_owned()))
-}
-
-/// What is wrong with the range or the distribution of an axis, with its key.
-fn distribution_problem(axis: &Axis) -> Option<(&'static str, String)> {
+fn problem_of_distribution(axis: &Axis) -> Option<(&'static str, String)> {
     if let Some([low, high]) = axis.range.filter(|[low, high]| low >= high) {
         let message = format!("range is [{low}, {high}], expected the lower number first");
         Some(("range", message))
     } else if let Some([low, _]) = axis.range.filter(|[low, _]| axis.log && *low <= 0.0) {
         let message = format!("range begins at {low}, expected more than 0 with log");
         Some(("range", message))
-    } else if let Some(problem) = log_problem(axis) {
-        Some(problem)
+    } else if axis.log && axis.range.is_none() {
+        let message = "log is given without range, which it requires".to_owned();
+        Some(("log", message))
     } else if let Some([_, sigma]) = axis.normal.filter(|[_, sigma]| *sigma <= 0.0) {
         let message = format!("normal has a deviation of {sigma}, expected more than 0");
         Some(("normal", message))
     } else {
-        let pair = axis.log_normal.filter(|[median, sigma]| {
+        let is_bad = |[median, sigma]: &[f64; 2]| {
             *median <= 0.0 || !(0.0..=10.0).contains(sigma) || *sigma == 0.0
-        })?;
-        let expected = "expected a median above 0 and a deviation of at most 10";
-        Some(("log_normal", format!("log_normal is {pair:?}, {expected}")))
+        };
+        axis.log_normal.filter(is_bad).map(|pair| {
+            let message = format!(
+                "log_normal is {pair:?}, expected a median above 0 and a deviation of at most 10"
+            );
+            ("log_normal", message)
+        })
     }
 }

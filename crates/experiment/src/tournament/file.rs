@@ -2,7 +2,8 @@
 
 use scenario::keys::{FilePath, Name};
 use scenario::sea::Sea;
-use scenario::{Diagnostics, Document, Scenario, ScenarioFile, StrategyFiles};
+use scenario::strategy::Strategy;
+use scenario::{Document, Scenario, ScenarioFile};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -54,20 +55,13 @@ impl ScenarioFile for Tournament {
     const NAME: &'static str = "tournament";
     const FOLDER: &'static str = "tournaments";
 
-    fn check(diagnostics: &mut Diagnostics, document: &Document<Tournament>) -> Option<Tournament> {
+    fn check(document: &Document<Tournament>) -> Option<Tournament> {
         let mut tournament = document.raw.clone();
-        diagnostics.referenced::<Scenario, _>(document, "game", &tournament.game);
-        tournament.game = diagnostics.resolve(document.at("game"), &tournament.game);
+        document.resolved::<Scenario>("game", &mut tournament.game);
         if let Some(sea) = &mut tournament.sea {
-            diagnostics.referenced::<Sea, _>(document, "sea", &*sea);
-            *sea = diagnostics.resolve(document.at("sea"), &*sea);
+            document.resolved::<Sea>("sea", sea);
         }
-        let names = check_entries(
-            diagnostics,
-            document,
-            &mut StrategyFiles::default(),
-            &mut tournament.entries,
-        );
+        let names = check_entries(document, &mut tournament.entries);
         if let Some(challenger) = tournament
             .challenger
             .as_ref()
@@ -78,29 +72,27 @@ impl ScenarioFile for Tournament {
                 "challenger is {challenger:?}, expected an entry: {}",
                 listed.join(", ")
             );
-            diagnostics.note(document.at("challenger"), message);
+            document.note("challenger", message);
         }
-        document.is_faultless(diagnostics).then_some(tournament)
+        document.is_faultless().then_some(tournament)
     }
 }
 
 /// Checks and resolves the strategies of entries. Returns their names, which must differ.
 pub(crate) fn check_entries<'a, K>(
-    diagnostics: &mut Diagnostics,
     document: &Document<K>,
-    strategies: &mut StrategyFiles,
     entries: &'a mut [Entrant],
 ) -> BTreeSet<&'a String> {
     let mut names = BTreeSet::new();
     for (i, entry) in entries.iter_mut().enumerate() {
         let [name_path, path] = ["name", "strategy"].map(|key| format!("entry.{i}.{key}"));
-        entry.strategy = strategies.read(diagnostics, document, &path, &entry.strategy);
+        document.resolved::<Strategy>(&path, &mut entry.strategy);
         if document.is_sound(&name_path) && !names.insert(&entry.name) {
             let message = format!(
                 "the name {:?} is used twice, expected a unique name for each entry",
                 entry.name
             );
-            diagnostics.note(document.at(&name_path), message);
+            document.note(&name_path, message);
         }
     }
     names

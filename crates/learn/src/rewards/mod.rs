@@ -9,7 +9,7 @@ pub use progress::{Among, BoatProgress, progress};
 use primitives::id::{TeamId, VehicleId};
 use rules::event::{Event, Logged, TagCause};
 use scenario::Scenario;
-use scenario::{Diagnostics, Document, ScenarioFile};
+use scenario::{Document, ScenarioFile};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -38,13 +38,13 @@ impl ScenarioFile for Rewards {
     const NAME: &'static str = "rewards";
     const FOLDER: &'static str = "rewards";
 
-    fn check(diagnostics: &mut Diagnostics, document: &Document<Rewards>) -> Option<Rewards> {
+    fn check(document: &Document<Rewards>) -> Option<Rewards> {
         let rewards = document.raw;
         if rewards == Rewards::default() && document.is_sound("") {
             let message = "all rewards are 0, expected at least one other value".to_owned();
-            diagnostics.note(document.at(""), message);
+            document.note("", message);
         }
-        document.is_faultless(diagnostics).then_some(rewards)
+        document.is_faultless().then_some(rewards)
     }
 }
 

@@ -3,51 +3,47 @@
 use super::{Stage, Training};
 use crate::rewards::Rewards;
 use scenario::sea::Sea;
-use scenario::{Diagnostics, Document, Scenario, StrategyFiles};
+use scenario::strategy::Strategy;
+use scenario::{Document, Scenario};
 use std::path::PathBuf;
 
-pub(super) fn training(
-    diagnostics: &mut Diagnostics,
-    document: &Document<Training>,
-) -> Option<Training> {
+pub(super) fn training(document: &Document<Training>) -> Option<Training> {
     let mut training = document.raw.clone();
-    let mut strategies = StrategyFiles::default();
-    let mut strategy = |diagnostics: &mut Diagnostics, key: &str, path: &mut PathBuf| {
-        *path = strategies.read(diagnostics, document, key, path);
+    let strategy = |key: &str, path: &mut PathBuf| {
+        document.resolved::<Strategy>(key, path);
     };
     for (i, path) in training.evaluation.opponents.iter_mut().enumerate() {
-        strategy(diagnostics, &format!("evaluation.opponents.{i}"), path);
+        strategy(&format!("evaluation.opponents.{i}"), path);
     }
-    super::check_algorithm::check(diagnostics, document);
+    super::check_algorithm::check(document);
     let mut scenarios = vec![];
     for (i, stage) in training.stage.iter_mut().enumerate() {
         let at = format!("stage.{i}");
         if let Some(helm) = &mut stage.helm {
-            strategy(diagnostics, &format!("{at}.helm"), helm);
+            strategy(&format!("{at}.helm"), helm);
         }
         if let Some(teacher) = &mut stage.teacher {
-            strategy(
-                diagnostics,
-                &format!("{at}.teacher.strategy"),
-                &mut teacher.strategy,
-            );
+            strategy(&format!("{at}.teacher.strategy"), &mut teacher.strategy);
         }
         if let Some(mates) = &mut stage.mates {
-            strategy(diagnostics, &format!("{at}.mates"), mates);
+            strategy(&format!("{at}.mates"), mates);
         }
         for (k, opponent) in stage.opponent.iter_mut().enumerate() {
             strategy(
-                diagnostics,
                 &format!("{at}.opponent.{k}.strategy"),
                 &mut opponent.strategy,
             );
         }
-        scenarios.push(files(diagnostics, document, &at, stage));
-        check_opponents(diagnostics, document, &at, stage, i);
+        if let Some(sea) = &mut stage.sea {
+            document.resolved::<Sea>(&format!("{at}.sea"), sea);
+        }
+        document.resolved::<Rewards>(&format!("{at}.rewards"), &mut stage.rewards);
+        scenarios.push(document.resolved::<Scenario>(&format!("{at}.game"), &mut stage.game));
+        check_opponents(document, &at, stage, i);
     }
     for (i, scenario) in scenarios.iter().enumerate() {
         let Some(scenario) = scenario else { continue };
-        check_teams(diagnostics, document, &format!("stage.{i}.game"), scenario);
+        check_teams(document, &format!("stage.{i}.game"), scenario);
         let decision_s = scenario.decision().as_s();
         let times = (training.period_s / decision_s).round();
         if document.is_sound("period_s")
@@ -57,40 +53,13 @@ pub(super) fn training(
                 "period_s is {}, expected a multiple of {decision_s}, which is decision_s of {}",
                 training.period_s, scenario.name
             );
-            diagnostics.note(document.at("period_s"), message);
+            document.note("period_s", message);
         }
     }
-    document.is_faultless(diagnostics).then_some(training)
+    document.is_faultless().then_some(training)
 }
 
-/// Checks the files that a stage names. Returns its game.
-fn files(
-    diagnostics: &mut Diagnostics,
-    document: &Document<Training>,
-    at: &str,
-    stage: &mut Stage,
-) -> Option<Scenario> {
-    let path = format!("{at}.game");
-    let game = diagnostics.referenced::<Scenario, _>(document, &path, &stage.game);
-    stage.game = diagnostics.resolve(document.at(&path), &stage.game);
-    if let Some(sea) = &mut stage.sea {
-        let path = format!("{at}.sea");
-        diagnostics.referenced::<Sea, _>(document, &path, &*sea);
-        *sea = diagnostics.resolve(document.at(&path), &*sea);
-    }
-    let path = format!("{at}.rewards");
-    diagnostics.referenced::<Rewards, _>(document, &path, &stage.rewards);
-    stage.rewards = diagnostics.resolve(document.at(&path), &stage.rewards);
-    game
-}
-
-fn check_opponents(
-    diagnostics: &mut Diagnostics,
-    document: &Document<Training>,
-    at: &str,
-    stage: &Stage,
-    i: usize,
-) {
+fn check_opponents(document: &Document<Training>, at: &str, stage: &Stage, i: usize) {
     if !document.is_sound(at) {
         return;
     }
@@ -101,7 +70,7 @@ fn check_opponents(
             "stage {:?} has no opponents, expected opponent, self_play or past_selves",
             stage.name
         );
-        diagnostics.note(document.at(at), message);
+        document.note(at, message);
     }
     let names = &document.raw.stage[..i];
     if names.iter().any(|other| other.name == stage.name) {
@@ -109,16 +78,11 @@ fn check_opponents(
             "name {:?} is used twice, expected a unique name for each stage",
             stage.name
         );
-        diagnostics.note(document.at(&format!("{at}.name")), message);
+        document.note(&format!("{at}.name"), message);
     }
 }
 
-fn check_teams(
-    diagnostics: &mut Diagnostics,
-    document: &Document<Training>,
-    at: &str,
-    scenario: &Scenario,
-) {
+fn check_teams(document: &Document<Training>, at: &str, scenario: &Scenario) {
     let count = |team: usize| {
         scenario
             .vehicles
@@ -135,6 +99,6 @@ fn check_teams(
             scenario.name,
             sizes.join(" and ")
         );
-        diagnostics.note(document.at(at), message);
+        document.note(at, message);
     }
 }

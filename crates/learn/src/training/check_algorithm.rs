@@ -1,12 +1,12 @@
 //! Checks the algorithm of a training run: exactly one, with a suitable action space.
 
 use super::{Algorithm, CriticInput, Training};
-use scenario::{Diagnostics, Document};
+use scenario::Document;
 
 /// The tables of algorithms.
 const TABLES: [&str; 3] = ["ppo", "td3", "dqn"];
 
-pub(super) fn check(diagnostics: &mut Diagnostics, document: &Document<Training>) {
+pub(super) fn check(document: &Document<Training>) {
     let training = &document.raw;
     let mut said = TABLES.into_iter().filter(|table| document.has(table));
     if let (Some(one), Some(other)) = (said.next(), said.next()) {
@@ -14,7 +14,7 @@ pub(super) fn check(diagnostics: &mut Diagnostics, document: &Document<Training>
             "{other} is a second algorithm besides {one}, expected only one of {}",
             TABLES.join(", ")
         );
-        diagnostics.note(document.at(other), message);
+        document.note(other, message);
         return;
     }
     let algorithm = training.algorithm();
@@ -32,13 +32,13 @@ pub(super) fn check(diagnostics: &mut Diagnostics, document: &Document<Training>
             name
         };
         let found = serde_json::to_string(&action).unwrap_or_default();
-        diagnostics.note(
-            document.at(place),
+        document.note(
+            place,
             format!("action is {found}, expected {expected} with {name}"),
         );
     }
     if !matches!(algorithm, Algorithm::Ppo(_)) {
-        check_ppo_alone(diagnostics, document, name);
+        check_ppo_alone(document, name);
     }
     let sizes = training.td3.map(|td3| (td3.warm_up, td3.buffer));
     if let Some((warm_up, buffer)) = sizes.or(training.dqn.map(|dqn| (dqn.warm_up, dqn.buffer)))
@@ -46,22 +46,22 @@ pub(super) fn check(diagnostics: &mut Diagnostics, document: &Document<Training>
         && document.is_sound(name)
     {
         let message = format!("warm_up is {warm_up}, expected at most {buffer}, which is buffer");
-        diagnostics.note(document.at(&format!("{name}.warm_up")), message);
+        document.note(&format!("{name}.warm_up"), message);
     }
 }
 
-fn check_ppo_alone(diagnostics: &mut Diagnostics, document: &Document<Training>, name: &str) {
+fn check_ppo_alone(document: &Document<Training>, name: &str) {
     let critic = "network.critic";
     if document.is_sound(critic) && document.raw.network.critic != CriticInput::Observation {
         let message = format!("critic is \"truth\", expected \"observation\" with {name}");
-        diagnostics.note(document.at(critic), message);
+        document.note(critic, message);
     }
     for i in 0..document.raw.stage.len() {
         let teacher = format!("stage.{i}.teacher");
         if document.has(&teacher) {
             let message =
                 format!("teacher is set, expected none with {name}: only ppo imitates a teacher");
-            diagnostics.note(document.at(&teacher), message);
+            document.note(&teacher, message);
         }
     }
 }

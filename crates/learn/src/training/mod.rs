@@ -11,7 +11,7 @@ pub use algorithm::{Algorithm, Dqn, Ppo, Td3};
 use scenario::action::ActionSpace;
 use scenario::keys::{FilePath, Name};
 use scenario::observation::ObservationSpace;
-use scenario::{Diagnostics, Document, ScenarioFile};
+use scenario::{Document, ScenarioFile};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -62,8 +62,8 @@ impl ScenarioFile for Training {
     const NAME: &'static str = "training";
     const FOLDER: &'static str = "training";
 
-    fn check(diagnostics: &mut Diagnostics, document: &Document<Training>) -> Option<Training> {
-        check::training(diagnostics, document)
+    fn check(document: &Document<Training>) -> Option<Training> {
+        check::training(document)
     }
 }
 

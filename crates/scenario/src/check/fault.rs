@@ -1,14 +1,12 @@
 //! Checks the faults of a game against the affected boats.
 
 use crate::boat::{Boat, Drive};
-use crate::diagnostics::Diagnostics;
 use crate::fault::{Fault, FaultKind};
 use crate::read::Document;
 use crate::{Vehicle, raw};
 use primitives::id::VehicleId;
 
 pub(super) fn faults(
-    diagnostics: &mut Diagnostics,
     document: &Document<raw::Game>,
     vehicles: &[Vehicle],
     boats: &[Boat],
@@ -16,7 +14,7 @@ pub(super) fn faults(
     let mut faults = vec![];
     for (name, fault) in &document.raw.fault {
         let path = format!("fault.{name}");
-        diagnostics.is_name(document.at(&path), "fault", name);
+        document.is_name(&path, "fault", name);
         if !document.is_sound(&path) {
             continue;
         }
@@ -24,75 +22,53 @@ pub(super) fn faults(
             name: name.clone(),
             ..fault.clone()
         };
-        check_keys(diagnostics, document, &path, &fault);
+        check_keys(document, &path, &fault);
+        let known: Vec<&str> = vehicles.iter().map(|v| v.name.as_str()).collect();
         for (i, boat) in fault.boats.iter().enumerate() {
-            if !vehicles.iter().any(|vehicle| vehicle.name == *boat) {
-                let known: Vec<&str> = vehicles
-                    .iter()
-                    .map(|vehicle| vehicle.name.as_str())
-                    .collect();
+            if !known.contains(&boat.as_str()) {
                 let message = format!("boats has {boat:?}, expected any of {}", known.join(", "));
-                diagnostics.note(document.at(&format!("{path}.boats.{i}")), message);
+                document.note(&format!("{path}.boats.{i}"), message);
             }
         }
         let is_hit =
-            |vehicle: &Vehicle| fault.boats.is_empty() || fault.boats.contains(&vehicle.name);
-        let hit = vehicles
-            .iter()
-            .enumerate()
-            .filter(|(_, vehicle)| is_hit(vehicle));
-        fault.vehicles = hit.map(|(i, _)| VehicleId::at(i)).collect();
-        for vehicle in &fault.vehicles {
-            let Vehicle {
-                name: vehicle,
-                boat,
-                ..
-            } = &vehicles[vehicle.index()];
-            if let Some(lacks) = lacks(fault.kind, &boats[*boat]) {
-                let message = format!(
-                    "{name} affects {vehicle}, whose boat {} has no {lacks}, which this fault requires",
-                    boats[*boat].name
-                );
-                diagnostics.note(document.at(&path), message);
-                break;
-            }
+            |(_, v): &(usize, &Vehicle)| fault.boats.is_empty() || fault.boats.contains(&v.name);
+        let hit: Vec<_> = vehicles.iter().enumerate().filter(is_hit).collect();
+        fault.vehicles = hit.iter().map(|(i, _)| VehicleId::at(*i)).collect();
+        let lacking = hit.iter().find_map(|(_, vehicle)| {
+            let boat = &boats[vehicle.boat];
+            Some((&vehicle.name, &boat.name, lacks(fault.kind, boat)?))
+        });
+        if let Some((vehicle, boat, lacks)) = lacking {
+            let message = format!(
+                "{name} affects {vehicle}, whose boat {boat} has no {lacks}, which this fault requires"
+            );
+            document.note(&path, message);
         }
         faults.push(fault);
     }
     faults
 }
 
-fn check_keys(
-    diagnostics: &mut Diagnostics,
-    document: &Document<raw::Game>,
-    path: &str,
-    fault: &Fault,
-) {
+fn check_keys(document: &Document<raw::Game>, path: &str, fault: &Fault) {
     if fault.at_s.is_some() == fault.every_s.is_some() {
         let found = if fault.at_s.is_some() {
             "both at_s and every_s"
         } else {
             "neither at_s nor every_s"
         };
-        diagnostics.note(
-            document.at(path),
-            format!("{path} has {found}, expected one of them"),
-        );
+        document.note(path, format!("{path} has {found}, expected one of them"));
     }
-    for (key, kind, is_given) in [
-        ("offset_m", FaultKind::GpsOffset, fault.offset_m.is_some()),
-        (
-            "offset_deg",
-            FaultKind::CompassOffset,
-            fault.offset_deg.is_some(),
-        ),
+    for (key, kind, given) in [
+        ("offset_m", FaultKind::GpsOffset, fault.offset_m),
+        ("offset_deg", FaultKind::CompassOffset, fault.offset_deg),
     ] {
+        let is_given = given.is_some();
         if is_given != (fault.kind == kind) {
             let message = match is_given {
                 true => format!("{key} is given, but this kind of fault does not use it"),
                 false => format!("{key} is missing, but this kind of fault requires it"),
             };
-            diagnostics.note(document.at(&format!("{path}.{key}")), message);
+            document.note(&format!("{path}.{key}"), message);
         }
     }
 }

@@ -1,105 +1,74 @@
-//! Files of one kind that a file refers to, each read once.
+//! Files of one kind that a game refers to.
 
-use crate::diagnostics::Diagnostics;
+use crate::kind::ScenarioFile;
+use crate::loader::{self, Key};
+use crate::raw;
+use crate::read::Document;
 use crate::source::tidied;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// Reads and checks the file at a path, with the place of the reference, for an owner that draws
-/// its numbers.
-type LoadFile<T> = fn(&mut Diagnostics, &Path, Option<usize>, &str) -> Option<T>;
-
 /// Files of one kind that a game refers to. Each is read once; once per owner if it has numbers to
-/// draw, or always.
-pub(super) struct FileCache<T> {
-    pub(super) items: Vec<T>,
+/// draw, or is a strategy.
+pub(super) struct FileCache<F> {
+    pub(super) items: Vec<F>,
     path_of: BTreeMap<String, PathBuf>,
-    /// Files without numbers to draw, by path and owner ("" if owners share them).
-    index_of: BTreeMap<(PathBuf, String), Option<usize>>,
-    is_by_owner: bool,
-    load: LoadFile<T>,
+    /// The files without numbers to draw.
+    index_of: BTreeMap<Key, Option<usize>>,
 }
 
-impl<T> FileCache<T> {
-    pub(super) fn new(load: LoadFile<T>) -> FileCache<T> {
+impl<F: ScenarioFile> FileCache<F> {
+    pub(super) fn new() -> FileCache<F> {
         FileCache {
             items: vec![],
             path_of: BTreeMap::new(),
             index_of: BTreeMap::new(),
-            is_by_owner: false,
-            load,
         }
     }
 
-    /// Files with a separate version for each owner.
-    pub(super) fn by_owner(load: LoadFile<T>) -> FileCache<T> {
-        FileCache {
-            is_by_owner: true,
-            ..FileCache::new(load)
-        }
-    }
-
-    fn key(&self, path: PathBuf, owner: &str) -> (PathBuf, String) {
-        (
-            path,
-            if self.is_by_owner {
-                owner.to_owned()
-            } else {
-                String::new()
-            },
-        )
-    }
-
-    /// The index of `owner`'s version of the file that `given`, at `place`, refers to.
+    /// The index of `owner`'s version of the file that `given`, at `path` of the game, refers to.
     pub(super) fn index(
         &mut self,
-        diagnostics: &mut Diagnostics,
+        game: &Document<raw::Game>,
+        path: &str,
         given: &str,
-        place: usize,
         owner: &str,
     ) -> Option<usize> {
-        let path = diagnostics.resolve(place, given);
-        let is_new = !self.index_of.contains_key(&self.key(path.clone(), owner));
-        let index = self.index_at(diagnostics, &path, Some(place), owner)?;
-        let name = path
-            .file_stem()
-            .unwrap_or_default()
-            .to_string_lossy()
-            .into_owned();
-        if is_new
-            && *self
-                .path_of
-                .entry(name.clone())
-                .or_insert_with(|| path.clone())
-                != path
-        {
+        let file = game.resolve(path, given);
+        let is_new = !self.index_of.contains_key(&loader::key::<F>(&file, owner));
+        let index = self.index_at(game, &file, Some(path), owner)?;
+        let name = file.file_stem().unwrap_or_default();
+        let name = name.to_string_lossy().into_owned();
+        let named = self.path_of.entry(name.clone());
+        if is_new && *named.or_insert_with(|| file.clone()) != file {
             let message =
                 format!("{given} is the second file named {name:?}, expected different names");
-            diagnostics.note(place, message);
+            game.note(path, message);
         }
         Some(index)
     }
 
-    /// The index of the file at `path`, regardless of its name: two versions of one strategy may
-    /// meet.
+    /// The index of a file, regardless of its name: two versions of one strategy may meet.
     pub(super) fn index_at(
         &mut self,
-        diagnostics: &mut Diagnostics,
-        path: &Path,
-        place: Option<usize>,
+        game: &Document<raw::Game>,
+        file: &Path,
+        path: Option<&str>,
         owner: &str,
     ) -> Option<usize> {
-        let key = self.key(tidied(path), owner);
+        let file = tidied(file);
+        let key = loader::key::<F>(&file, owner);
         if let Some(index) = self.index_of.get(&key) {
             return *index;
         }
-        let drawn = diagnostics.drawn.len();
-        let item = (self.load)(diagnostics, &key.0, place, owner);
+        let drawn = game.loader.drawn.borrow().len();
+        let asked_at = path.map(|path| game.at(path));
+        let item = game.loader.read(&file, asked_at, owner);
         let index = item.map(|item| {
             self.items.push(item);
             self.items.len() - 1
         });
-        if diagnostics.drawn.len() == drawn {
+        if game.loader.drawn.borrow().len() == drawn {
             self.index_of.insert(key, index);
         }
         index

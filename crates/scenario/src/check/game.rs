@@ -3,9 +3,7 @@
 use super::boat::{FASTEST_PER_TICK, fastest_decay};
 use super::file_cache::FileCache;
 use super::start_position;
-use super::strategy::strategy_file;
 use crate::boat::Boat;
-use crate::diagnostics::{Diagnostics, is_name};
 use crate::kind::ScenarioFile;
 use crate::link::Link;
 use crate::problem::Problems;
@@ -25,8 +23,8 @@ use std::path::{Path, PathBuf};
 /// A vehicle whose start position is not yet known.
 pub(super) struct Entry {
     pub(super) name: String,
-    /// Its offset in the virtual text.
-    pub(super) place: usize,
+    /// Its path in the file.
+    pub(super) path: String,
     pub(super) team: TeamId,
     pub(super) boat: usize,
     strategy: usize,
@@ -38,7 +36,7 @@ pub(super) struct Entry {
 
 /// The vehicles so far, and the files that they refer to.
 struct Fleet<'a> {
-    document: &'a Document<raw::Game>,
+    document: &'a Document<'a, raw::Game>,
     field: Option<&'a Field>,
     boats: FileCache<Boat>,
     strategies: FileCache<Strategy>,
@@ -51,25 +49,25 @@ impl ScenarioFile for Scenario {
     const NAME: &'static str = "game";
     const FOLDER: &'static str = "games";
 
-    fn check(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) -> Option<Scenario> {
+    fn check(document: &Document<raw::Game>) -> Option<Scenario> {
         let raw = &document.raw;
-        let field = diagnostics.referenced::<Field, _>(document, "field", &raw.field.0);
-        let rules = diagnostics.referenced::<Rules, _>(document, "rules", &raw.rules.0);
-        let sea = sea(diagnostics, document);
-        let (tick, ticks_per_decision) = clock(diagnostics, document);
-        check_teams(diagnostics, document);
+        let field = document.referenced::<Field>("field", &raw.field.0);
+        let rules = document.referenced::<Rules>("rules", &raw.rules.0);
+        let sea = sea(document);
+        let (tick, ticks_per_decision) = clock(document);
+        check_teams(document);
         let mut fleet = Fleet {
             document,
             field: field.as_ref(),
-            boats: FileCache::new(Diagnostics::read),
-            strategies: FileCache::by_owner(strategy_file),
+            boats: FileCache::new(),
+            strategies: FileCache::new(),
             names: BTreeSet::new(),
             entries: vec![],
         };
-        fleet.fill(diagnostics);
-        check_tick(diagnostics, document, tick, &fleet.boats.items);
-        check_looks(diagnostics, document, tick, rules.as_ref());
-        check_reseed(diagnostics, document);
+        fleet.fill();
+        check_tick(document, tick, &fleet.boats.items);
+        check_looks(document, tick, rules.as_ref());
+        check_reseed(document);
         let Fleet {
             boats,
             strategies,
@@ -79,19 +77,13 @@ impl ScenarioFile for Scenario {
         let field = field?;
         let mut rules = rules?;
         let sea = sea?;
-        if !document.is_faultless(diagnostics) {
+        if !document.is_faultless() {
             return None;
         }
         let start_positions = start_position::all(&entries, &field);
-        start_position::check_clear(
-            diagnostics,
-            &entries,
-            &start_positions,
-            &boats.items,
-            &field,
-        );
-        check_models(diagnostics, &entries, &strategies.items);
-        check_duration(diagnostics, document);
+        start_position::check_clear(document, &entries, &start_positions, &boats.items, &field);
+        check_models(document, &entries, &strategies.items);
+        check_duration(document);
         rules.time_limit = raw.duration_s.map_or(rules.time_limit, SimTime::from_s);
         let vehicles = entries
             .into_iter()
@@ -105,8 +97,10 @@ impl ScenarioFile for Scenario {
                 source: entry.source,
             });
         let vehicles: Vec<Vehicle> = vehicles.collect();
-        let faults = super::fault::faults(diagnostics, document, &vehicles, &boats.items);
+        let faults = super::fault::faults(document, &vehicles, &boats.items);
         let link = link(document, &field);
+        let teams = raw.team.iter().map(|team| team.name.0.clone());
+        let teams = teams.map(|name| Team { name }).collect();
         let scenario = Scenario {
             name: document.name.clone(),
             seed: raw.seed,
@@ -119,13 +113,7 @@ impl ScenarioFile for Scenario {
             field,
             rules,
             sea,
-            teams: raw
-                .team
-                .iter()
-                .map(|team| Team {
-                    name: team.name.0.clone(),
-                })
-                .collect(),
+            teams,
             boats: boats.items,
             strategies: strategies.items,
             vehicles,
@@ -134,9 +122,9 @@ impl ScenarioFile for Scenario {
             recipe: None,
         };
         if let Err(problem) = scenario.check_sizes() {
-            diagnostics.note(document.at("team"), problem);
+            document.note("team", problem);
         }
-        document.is_faultless(diagnostics).then_some(scenario)
+        document.is_faultless().then_some(scenario)
     }
 
     fn load(path: &Path) -> Result<Scenario, Problems> {
@@ -159,67 +147,56 @@ fn link(document: &Document<raw::Game>, field: &Field) -> Option<Link> {
 }
 
 /// Reports a setting that the game overrides.
-fn check_duration(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) {
-    let is_set = |key: &str| {
-        diagnostics
-            .overrides
-            .settings
-            .iter()
-            .any(|setting| setting.key == key)
-    };
-    if document.raw.duration_s.is_some() && is_set("rules.time_limit_s") {
+fn check_duration(document: &Document<raw::Game>) {
+    let mut settings = document.loader.overrides.settings.iter();
+    if document.raw.duration_s.is_some()
+        && settings.any(|setting| setting.key == "rules.time_limit_s")
+    {
         let message =
             "duration_s of the game overrides rules.time_limit_s; set game.duration_s instead";
-        diagnostics.note(document.at("duration_s"), message);
+        document.note("duration_s", message);
     }
 }
 
 /// Reseeds must be in ascending order.
-fn check_reseed(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) {
-    for (i, pair) in document.raw.reseed.windows(2).enumerate() {
-        if pair[1].after_s <= pair[0].after_s {
-            let place = document.at(&format!("reseed.{}", i + 1));
+fn check_reseed(document: &Document<raw::Game>) {
+    for (i, [last, next]) in document.raw.reseed.array_windows().enumerate() {
+        if next.after_s <= last.after_s {
             let message = format!(
                 "after_s is {}, expected more than {} of the previous entry",
-                pair[1].after_s, pair[0].after_s
+                next.after_s, last.after_s
             );
-            diagnostics.note(place, message);
+            document.note(&format!("reseed.{}", i + 1), message);
         }
     }
 }
 
 /// The game's sea, or its override.
-fn sea(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) -> Option<Sea> {
-    if let Some(path) = diagnostics.overrides.sea.clone() {
-        return diagnostics.read(&path, None, Sea::NAME);
-    }
-    match &document.raw.sea {
-        Some(given) => diagnostics.referenced::<Sea, _>(document, "sea", &given.0),
-        None if diagnostics.overrides.has_settings(Sea::NAME) => {
+fn sea(document: &Document<raw::Game>) -> Option<Sea> {
+    let loader = document.loader;
+    match (&loader.overrides.sea, &document.raw.sea) {
+        (Some(path), _) => loader.read(path, None, Sea::NAME),
+        (None, Some(given)) => document.referenced("sea", &given.0),
+        (None, None) if loader.overrides.has_settings(Sea::NAME) => {
             let path = Path::new("at_rest.toml");
-            let document =
-                read::document_of_text(diagnostics, Kind::SEA, path, "water_density_kg_m3 = 1000")?;
-            Sea::check(diagnostics, &document)
+            let text = "water_density_kg_m3 = 1000";
+            Sea::check(&read::document_of_text(loader, Kind::SEA, path, text)?)
         }
-        None => Some(Sea::at_rest()),
+        (None, None) => Some(Sea::at_rest()),
     }
 }
 
 /// The physics tick, and the number of ticks per decision.
-fn clock(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) -> (SimTime, u32) {
+fn clock(document: &Document<raw::Game>) -> (SimTime, u32) {
     let raw::Game {
         tick_s, decision_s, ..
     } = document.raw;
     let tick = SimTime::from_s(tick_s);
     let decision = SimTime::from_s(decision_s);
     if decision.0 % tick.0 != 0 {
-        let place = document.at(if document.has("decision_s") {
-            "decision_s"
-        } else {
-            "tick_s"
-        });
-        diagnostics.note(
-            place,
+        let given = document.has("decision_s");
+        document.note(
+            if given { "decision_s" } else { "tick_s" },
             format!("decision_s is {decision_s}, expected a multiple of tick_s, {tick_s}"),
         );
     }
@@ -227,12 +204,7 @@ fn clock(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) -> (SimT
 }
 
 /// A boat that is stable at the default tick may be unstable at a longer one.
-fn check_tick(
-    diagnostics: &mut Diagnostics,
-    document: &Document<raw::Game>,
-    tick: SimTime,
-    boats: &[Boat],
-) {
+fn check_tick(document: &Document<raw::Game>, tick: SimTime, boats: &[Boat]) {
     for boat in boats.iter().filter(|_| document.has("tick_s")) {
         let (motion, rate_per_s) = fastest_decay(boat);
         if rate_per_s * tick.as_s() > FASTEST_PER_TICK {
@@ -242,18 +214,13 @@ fn check_tick(
                 FASTEST_PER_TICK / rate_per_s,
                 boat.name
             );
-            diagnostics.note(document.at("tick_s"), message);
+            document.note("tick_s", message);
         }
     }
 }
 
 /// The referee checks only at whole ticks.
-fn check_looks(
-    diagnostics: &mut Diagnostics,
-    document: &Document<raw::Game>,
-    tick: SimTime,
-    rules: Option<&Rules>,
-) {
+fn check_looks(document: &Document<raw::Game>, tick: SimTime, rules: Option<&Rules>) {
     let Some(rules) = rules else { return };
     for (key, period) in [
         ("tag_look_period_s", rules.tag_look_period),
@@ -266,16 +233,16 @@ fn check_looks(
             let message = format!(
                 "{key} of rules {name} is {period_s}, expected a multiple of tick_s, {tick_s}"
             );
-            diagnostics.note(document.at("rules"), message);
+            document.note("rules", message);
         }
     }
 }
 
 /// Models have a fixed team size, unless they have spare slots.
-fn check_models(diagnostics: &mut Diagnostics, entries: &[Entry], strategies: &[Strategy]) {
+fn check_models(document: &Document<raw::Game>, entries: &[Entry], strategies: &[Strategy]) {
     for Entry {
         name,
-        place,
+        path,
         team,
         strategy,
         ..
@@ -291,115 +258,97 @@ fn check_models(diagnostics: &mut Diagnostics, entries: &[Entry], strategies: &[
                     "the model {} has {takes} inputs, expected {size}: {name} has {mates} mates and {enemies} enemies",
                     model.name
                 );
-                diagnostics.note(*place, message);
+                document.note(path, message);
             }
         }
     }
 }
 
-fn check_teams(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) {
-    let teams: Vec<&str> = document
-        .raw
-        .team
-        .iter()
-        .map(|team| team.name.0.as_str())
-        .collect();
+fn check_teams(document: &Document<raw::Game>) {
+    let teams = document.raw.team.iter();
+    let teams: Vec<&str> = teams.map(|team| team.name.0.as_str()).collect();
     for (i, name) in teams.iter().enumerate() {
         if !name.is_empty() && teams[..i].contains(name) {
-            let place = document.at(&format!("team.{i}.name"));
-            diagnostics.note(
-                place,
+            document.note(
+                &format!("team.{i}.name"),
                 format!("name {name:?} is used twice, expected a unique name for each team"),
             );
         }
     }
     let is_unknown = |team: &&str| !teams.contains(team);
-    let overrides = &diagnostics.overrides;
+    let overrides = &document.loader.overrides;
     let names = teams.join(", ");
-    let replaced = overrides
-        .strategies
-        .keys()
-        .map(String::as_str)
-        .find(is_unknown);
-    let replaced = replaced.map(|team| {
+    let mut replaced = overrides.strategies.keys().map(String::as_str);
+    let replaced = replaced.find(is_unknown).map(|team| {
         let option = PathBuf::from(format!("--strategy {team}"));
-        (
-            option,
-            format!("unknown team {team:?}, expected one of {names}"),
-        )
+        let message = format!("unknown team {team:?}, expected one of {names}");
+        (option, message)
     });
     let unknown = replaced.or_else(|| {
-        let changed = overrides
-            .settings
-            .iter()
-            .find(|setting| setting.team().as_ref().is_some_and(is_unknown))?;
+        let mut settings = overrides.settings.iter();
+        let changed = settings.find(|setting| setting.team().as_ref().is_some_and(is_unknown))?;
         let message = format!(
             "{}: unknown team, expected one of {names} after strategy",
             changed.key
         );
         Some((changed.path.clone(), message))
     });
-    if let Some((path, message)) =
-        unknown.filter(|_| !diagnostics.sources.is_broken_file(document.at("")))
-    {
+    let diagnostics = &document.loader.diagnostics;
+    let is_broken = || diagnostics.sources.borrow().is_broken_file(document.at(""));
+    if let Some((path, message)) = unknown.filter(|_| !is_broken()) {
         diagnostics.note_file(path, message);
     }
 }
 
 impl Fleet<'_> {
-    fn fill(&mut self, diagnostics: &mut Diagnostics) {
+    fn fill(&mut self) {
         let document = self.document;
         for (i, vehicle) in document.raw.vehicle.iter().enumerate() {
-            self.add_vehicle(diagnostics, &format!("vehicle.{i}"), vehicle);
+            self.add_vehicle(&format!("vehicle.{i}"), vehicle);
         }
         for (i, fleet) in document.raw.fleet.iter().enumerate() {
-            self.add_fleet(diagnostics, &format!("fleet.{i}"), fleet);
+            self.add_fleet(&format!("fleet.{i}"), fleet);
         }
         if document.raw.vehicle.is_empty()
             && document.raw.fleet.is_empty()
             && document.is_sound("vehicle")
         {
             let message = "vehicle is missing, expected at least one [[vehicle]] or [[fleet]]";
-            diagnostics.note_if_intact(document.at(""), message);
+            document.note_if_intact("", message);
         }
         // The teams' strategies are checked even if no boat follows them.
         let followed = self.strategies.items.len();
         for i in 0..document.raw.team.len() {
-            self.strategy_of_team(diagnostics, i);
+            self.strategy_of_team(i);
         }
         self.strategies.items.truncate(followed);
     }
 
-    fn add_vehicle(&mut self, diagnostics: &mut Diagnostics, path: &str, raw: &raw::Vehicle) {
-        let team = self.team(diagnostics, path, &raw.team);
-        let boat = self.boat(diagnostics, path, raw.boat.as_ref(), &raw.name.0);
-        let strategy = self.strategy(diagnostics, path, raw.strategy.as_ref(), team);
-        let stated = team.zip(self.field).map(|(team, field)| {
-            start_position::stated(diagnostics, self.document, path, raw, team, field)
-        });
-        let place = self.document.at(path);
-        if self.document.is_sound(&format!("{path}.name"))
-            && self.is_new_name(
-                diagnostics,
-                self.document.at(&format!("{path}.name")),
-                &raw.name.0,
-            )
-            && is_room(diagnostics, place, self.entries.len() + 1)
+    fn add_vehicle(&mut self, path: &str, raw: &raw::Vehicle) {
+        let document = self.document;
+        let team = self.team(path, &raw.team);
+        let boat = self.boat(path, raw.boat.as_ref(), &raw.name.0);
+        let strategy = self.strategy(path, raw.strategy.as_ref(), team);
+        let stated = team
+            .zip(self.field)
+            .map(|(team, field)| start_position::stated(document, path, raw, team, field));
+        let name_path = format!("{path}.name");
+        if document.is_sound(&name_path)
+            && self.is_new_name(&name_path, &raw.name.0)
+            && self.is_room(path, 1)
             && let (Some(team), Some(boat), Some(strategy)) = (team, boat, strategy)
         {
+            let is_simulated = document.loader.overrides.simulate_all;
+            let at = raw.at.as_ref().map(|_| format!("{path}.at"));
             self.entries.push(Entry {
                 name: raw.name.0.clone(),
-                place: if raw.at.is_some() {
-                    self.document.at(&format!("{path}.at"))
-                } else {
-                    place
-                },
+                path: at.unwrap_or_else(|| path.to_owned()),
                 team,
                 boat,
                 strategy,
                 start_position: stated.flatten(),
                 heading_deg: raw.heading_deg,
-                source: if diagnostics.overrides.simulate_all {
+                source: if is_simulated {
                     Source::Simulated
                 } else {
                     raw.source
@@ -408,226 +357,166 @@ impl Fleet<'_> {
         }
     }
 
-    fn add_fleet(&mut self, diagnostics: &mut Diagnostics, path: &str, raw: &raw::Fleet) {
-        let team = self.team(diagnostics, path, &raw.team);
-        let strategy = self.strategy(diagnostics, path, raw.strategy.as_ref(), team);
-        let spawn_path = format!("{path}.spawn");
-        let start_position = raw
-            .spawn
-            .as_ref()
-            .zip(self.field)
-            .and_then(|(spawn, field)| {
-                start_position::somewhere(
-                    diagnostics,
-                    self.document,
-                    &spawn_path,
-                    spawn,
-                    raw.count,
-                    field,
-                )
-            });
-        let pattern = raw
-            .name
-            .clone()
-            .unwrap_or_else(|| format!("{}_{{}}", raw.team));
-        let boat = self.boat(
-            diagnostics,
-            path,
-            raw.boat.as_ref(),
-            &pattern.replace("{}", "1"),
-        );
-        let (Some(team), Some(boat), Some(strategy)) = (team, boat, strategy) else {
+    fn add_fleet(&mut self, path: &str, raw: &raw::Fleet) {
+        let document = self.document;
+        let team = self.team(path, &raw.team);
+        let strategy = self.strategy(path, raw.strategy.as_ref(), team);
+        let spawn = raw.spawn.as_ref().zip(self.field);
+        let start_position = spawn.and_then(|(spawn, field)| {
+            let path = format!("{path}.spawn");
+            start_position::somewhere(document, &path, spawn, raw.count, field)
+        });
+        let usual = || format!("{}_{{}}", raw.team);
+        let pattern = raw.name.clone().unwrap_or_else(usual);
+        let boat = self.boat(path, raw.boat.as_ref(), &pattern.replace("{}", "1"));
+        let (Some(team), Some(first), Some(strategy)) = (team, boat, strategy) else {
             return;
         };
-        let place = self.document.at(path);
         let name_path = format!("{path}.name");
-        let name_place = self.document.at(&name_path);
         if !pattern.contains("{}") {
-            diagnostics.note(
-                name_place,
-                format!("name is {pattern:?}, expected {{}} in place of the number"),
-            );
+            let message = format!("name is {pattern:?}, expected {{}} in place of the number");
+            document.note(&name_path, message);
             return;
         }
-        if !self.document.is_sound(&format!("{path}.count"))
-            || !is_room(diagnostics, place, self.entries.len() + raw.count)
-        {
+        if !document.is_sound(&format!("{path}.count")) || !self.is_room(path, raw.count) {
             return;
         }
         for number in 1..=raw.count {
             let name = pattern.replace("{}", &number.to_string());
-            if !self.is_new_name(diagnostics, name_place, &name) {
+            if !self.is_new_name(&name_path, &name) {
                 return;
             }
             let boat = match number {
-                1 => Some(boat),
-                _ => self.boat(diagnostics, path, raw.boat.as_ref(), &name),
+                1 => Some(first),
+                _ => self.boat(path, raw.boat.as_ref(), &name),
             };
-            let (Some(boat), start_position) = (boat, start_position.clone()) else {
-                return;
-            };
-            let heading_deg = None;
-            let source = Source::Simulated;
+            let Some(boat) = boat else { return };
             self.entries.push(Entry {
                 name,
-                place,
+                path: path.to_owned(),
                 team,
                 boat,
                 strategy,
-                start_position,
-                heading_deg,
-                source,
+                start_position: start_position.clone(),
+                heading_deg: None,
+                source: Source::Simulated,
             });
         }
     }
 
-    fn is_new_name(&mut self, diagnostics: &mut Diagnostics, place: usize, name: &str) -> bool {
-        if !is_name(name) {
-            return diagnostics.is_name(place, "name", name);
+    fn is_new_name(&mut self, path: &str, name: &str) -> bool {
+        if !self.document.is_name(path, "name", name) {
+            return false;
         }
         let is_new = self.names.insert(name.to_owned());
         if !is_new {
-            diagnostics.note(
-                place,
-                format!("name {name:?} is used twice, expected a unique name for each vehicle"),
-            );
+            let message =
+                format!("name {name:?} is used twice, expected a unique name for each vehicle");
+            self.document.note(path, message);
         }
         is_new
     }
 
+    /// Whether there is room for this many vehicles at `path`.
+    fn is_room(&self, path: &str, count: usize) -> bool {
+        let total = self.entries.len() + count;
+        if total > VEHICLES_MAX {
+            let message = format!(
+                "there are {total} vehicles up to this one, expected at most {VEHICLES_MAX}"
+            );
+            self.document.note(path, message);
+        }
+        total <= VEHICLES_MAX
+    }
+
     /// The team of the vehicle or fleet at `path`.
-    fn team(&self, diagnostics: &mut Diagnostics, path: &str, name: &str) -> Option<TeamId> {
+    fn team(&self, path: &str, name: &str) -> Option<TeamId> {
         let path = format!("{path}.team");
         let teams = &self.document.raw.team;
         let index = teams.iter().position(|team| team.name.0 == name);
         if index.is_none() && self.document.is_sound(&path) {
-            let names = teams
-                .iter()
-                .map(|team| team.name.0.as_str())
-                .collect::<Vec<_>>()
-                .join(", ");
-            diagnostics.note_if_intact(
-                self.document.at(&path),
-                format!("team is {name:?}, expected one of {names}"),
-            );
+            let names: Vec<&str> = teams.iter().map(|team| team.name.0.as_str()).collect();
+            let message = format!("team is {name:?}, expected one of {}", names.join(", "));
+            self.document.note_if_intact(&path, message);
         }
         index.map(|index| TeamId(index as u8))
     }
 
     /// The boat of the vehicle `name` at `path`.
-    fn boat(
-        &mut self,
-        diagnostics: &mut Diagnostics,
-        path: &str,
-        given: Option<&raw::FilePath>,
-        name: &str,
-    ) -> Option<usize> {
+    fn boat(&mut self, path: &str, given: Option<&raw::FilePath>, name: &str) -> Option<usize> {
+        let document = self.document;
         let own_path = format!("{path}.boat");
-        let (given, path) = match (given, &self.document.raw.boat) {
+        let (given, path) = match (given, &document.raw.boat) {
             (Some(given), _) => (given, own_path.as_str()),
             (None, Some(given)) => (given, "boat"),
             (None, None) => {
-                self.document.note_missing(
-                    diagnostics,
-                    &own_path,
-                    "the path of a boat file here or for the game",
-                );
+                let expected = "the path of a boat file here or for the game";
+                document.note_missing(&own_path, expected);
                 return None;
             }
         };
-        self.boats
-            .index(diagnostics, &given.0, self.document.at(path), name)
+        self.boats.index(document, path, &given.0, name)
     }
 
     /// The strategy of the vehicle or fleet at `path`.
     fn strategy(
         &mut self,
-        diagnostics: &mut Diagnostics,
         path: &str,
         given: Option<&raw::FilePath>,
         team: Option<TeamId>,
     ) -> Option<usize> {
+        let document = self.document;
+        let overrides = &document.loader.overrides;
         let path = format!("{path}.strategy");
-        let is_replaced = |diagnostics: &Diagnostics, team: Option<TeamId>| {
-            let name = team.map(|team| &self.document.raw.team[team.index()].name.0);
-            name.is_some_and(|name| diagnostics.overrides.strategies.contains_key(name))
+        let name_of = |team: TeamId| &document.raw.team[team.index()].name.0;
+        let is_replaced = |team: Option<TeamId>| {
+            team.is_some_and(|team| overrides.strategies.contains_key(name_of(team)))
         };
-        let given = given.filter(|_| !is_replaced(diagnostics, team));
-        if let (Some(given), true) = (given, diagnostics.overrides.exchange_strategies) {
+        let given = given.filter(|_| !is_replaced(team));
+        if let (Some(given), true) = (given, overrides.exchange_strategies) {
             let message = format!(
                 "strategy is {}, expected none here because the teams exchange strategies",
                 given.0
             );
-            diagnostics.note(self.document.at(&path), message);
+            document.note(&path, message);
             return None;
         }
-        let team = team.map(|team| self.whose_strategy(diagnostics, team));
-        let owner = team.map_or("", |team| {
-            diagnostics
-                .overrides
-                .owner_of_strategy(&self.document.raw.team[team.index()].name.0)
-        });
-        let is_replaced = is_replaced(diagnostics, team);
-        let states_one = |team: TeamId| self.document.raw.team[team.index()].strategy.is_some();
+        // The team whose strategy the boats of a team follow.
+        let is_exchanged = overrides.exchange_strategies && document.raw.team.len() == 2;
+        let other = |team: TeamId| TeamId(1 - team.0);
+        let team = team.map(|team| if is_exchanged { other(team) } else { team });
+        let owner = team.map_or("", |team| overrides.owner_of_strategy(name_of(team)));
+        let states_one = |team: TeamId| document.raw.team[team.index()].strategy.is_some();
         match (given, team) {
-            (Some(given), _) => self.strategies.index(
-                diagnostics,
-                &strategy_path(&given.0),
-                self.document.at(&path),
-                owner,
-            ),
-            (None, Some(team)) if is_replaced || states_one(team) => {
-                self.strategy_of_team(diagnostics, team.index())
+            (Some(given), _) => {
+                let given = strategy_path(&given.0);
+                self.strategies.index(document, &path, &given, owner)
+            }
+            (None, Some(owner)) if is_replaced(team) || states_one(owner) => {
+                self.strategy_of_team(owner.index())
             }
             (None, Some(_)) => {
-                self.document.note_missing(
-                    diagnostics,
-                    &path,
-                    "the path of a strategy file here or for the team",
-                );
+                let expected = "the path of a strategy file here or for the team";
+                document.note_missing(&path, expected);
                 None
             }
             (None, None) => None,
         }
     }
 
-    /// The team whose strategy the boats of a team follow.
-    fn whose_strategy(&self, diagnostics: &Diagnostics, team: TeamId) -> TeamId {
-        let is_exchanged =
-            diagnostics.overrides.exchange_strategies && self.document.raw.team.len() == 2;
-        if is_exchanged {
-            TeamId(1 - team.0)
-        } else {
-            team
-        }
-    }
-
     /// The strategy of a team's file, or its override.
-    fn strategy_of_team(&mut self, diagnostics: &mut Diagnostics, team: usize) -> Option<usize> {
-        let raw::Team { name, strategy } = &self.document.raw.team[team];
-        let owner = diagnostics.overrides.owner_of_strategy(&name.0);
-        if let Some(path) = diagnostics.overrides.strategies.get(&name.0).cloned() {
-            return self.strategies.index_at(diagnostics, &path, None, owner);
+    fn strategy_of_team(&mut self, team: usize) -> Option<usize> {
+        let document = self.document;
+        let raw::Team { name, strategy } = &document.raw.team[team];
+        let overrides = &document.loader.overrides;
+        let owner = overrides.owner_of_strategy(&name.0);
+        if let Some(file) = overrides.strategies.get(&name.0) {
+            return self.strategies.index_at(document, file, None, owner);
         }
-        let place = self.document.at(&format!("team.{team}.strategy"));
-        self.strategies.index(
-            diagnostics,
-            &strategy_path(&strategy.as_ref()?.0),
-            place,
-            owner,
-        )
+        let given = strategy_path(&strategy.as_ref()?.0);
+        let path = format!("team.{team}.strategy");
+        self.strategies.index(document, &path, &given, owner)
     }
-}
-
-/// Whether a game may have this many vehicles.
-fn is_room(diagnostics: &mut Diagnostics, place: usize, total: usize) -> bool {
-    if total > VEHICLES_MAX {
-        diagnostics.note(
-            place,
-            format!("there are {total} vehicles up to this one, expected at most {VEHICLES_MAX}"),
-        );
-    }
-    total <= VEHICLES_MAX
 }
 
 /// The path of a strategy given by path, or by name in the folder of strategies.

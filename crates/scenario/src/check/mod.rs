@@ -2,7 +2,7 @@
 //! combine several values.
 //!
 //! The schema has already checked the range of each value. Every check reports all faults in the
-//! [`Diagnostics`] and returns `None` if there were any.
+//! `Diagnostics` of the loader and returns `None` if there were any.
 
 mod boat;
 mod fault;
@@ -17,7 +17,3 @@ mod strategy;
 
 pub use boat::check_thrust_map;
 pub use polygon::check_corners;
-pub use strategy::StrategyFiles;
-
-#[cfg(doc)]
-use super::diagnostics::Diagnostics;

@@ -1,6 +1,5 @@
 //! Checks a rules file.
 
-use crate::diagnostics::Diagnostics;
 use crate::kind::ScenarioFile;
 use crate::read::Document;
 use rules::{CaptureAt, Rules, UntagAt};
@@ -10,13 +9,11 @@ impl ScenarioFile for Rules {
     const NAME: &'static str = "rules";
     const FOLDER: &'static str = "rules";
 
-    fn check(diagnostics: &mut Diagnostics, document: &Document<Rules>) -> Option<Rules> {
+    fn check(document: &Document<Rules>) -> Option<Rules> {
         let mut rules = document.raw.clone();
         rules.win_score = rules.win_score.filter(|win_score| *win_score > 0);
-        rules.sharing.view_rad = rules
-            .sharing
-            .view_rad
-            .filter(|view_rad| *view_rad < f64::to_radians(360.0));
+        let sharing = &mut rules.sharing;
+        sharing.view_rad = sharing.view_rad.filter(|rad| *rad < f64::to_radians(360.0));
         // Inside a keep-out circle, boats must still be able to grab, capture and untag at their
         // own flag.
         let needed = [
@@ -37,9 +34,9 @@ impl ScenarioFile for Rules {
                 let message = format!(
                     "flag_keepout_m is {found_m}, expected less than {key}, which is {radius_m}"
                 );
-                diagnostics.note(document.at("flag_keepout_m"), message);
+                document.note("flag_keepout_m", message);
             }
         }
-        document.is_faultless(diagnostics).then_some(rules)
+        document.is_faultless().then_some(rules)
     }
 }

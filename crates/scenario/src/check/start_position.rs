@@ -5,7 +5,6 @@ use super::field::is_inside;
 use super::game::Entry;
 use crate::StartPosition;
 use crate::boat::Boat;
-use crate::diagnostics::Diagnostics;
 use crate::guess::did_you_mean;
 use crate::raw;
 use crate::read::Document;
@@ -23,54 +22,44 @@ const FULLEST: f64 = 0.5;
 
 /// The start position given for the vehicle at `path`; `None`: on the team's line.
 pub(super) fn stated(
-    diagnostics: &mut Diagnostics,
     document: &Document<raw::Game>,
     path: &str,
     raw: &raw::Vehicle,
     team: TeamId,
     field: &Field,
 ) -> Option<StartPosition> {
-    let place = |key: &str| document.at(&format!("{path}.{key}"));
+    let at_path = format!("{path}.at");
     if let Some(spawn) = &raw.spawn {
         if raw.at.is_some() {
-            diagnostics.note(
-                place("at"),
-                "vehicle has at and spawn, expected one of them",
-            );
+            let message = "vehicle has at and spawn, expected one of them";
+            document.note(&at_path, message);
         }
         if raw.heading_deg.is_some() {
-            diagnostics.note(
-                place("heading_deg"),
-                "heading_deg is given with spawn, expected only with at",
-            );
+            let message = "heading_deg is given with spawn, expected only with at";
+            document.note(&format!("{path}.heading_deg"), message);
         }
-        return somewhere(
-            diagnostics,
-            document,
-            &format!("{path}.spawn"),
-            spawn,
-            1,
-            field,
-        );
+        return somewhere(document, &format!("{path}.spawn"), spawn, 1, field);
     }
     let at = match raw.at.as_ref()? {
         raw::Position::At([x, y]) => Ned::from_xy(*x, *y),
         raw::Position::Point(name) => {
-            is_point(diagnostics, place("at"), "at", name).then_some(())?;
+            is_point(document, &at_path, name).then_some(())?;
             field.point(team, name)?
         }
     };
-    is_inside(diagnostics, field, place("at"), at);
-    let heading_deg = raw.heading_deg.unwrap_or(field.facing_deg(team));
-    Some(StartPosition::At(Pose {
-        at,
-        psi_rad: rad_from_compass_deg(heading_deg),
-    }))
+    is_inside(document, field, &at_path, at);
+    Some(start_at(at, raw.heading_deg, field, team))
+}
+
+/// A position with a heading: by default towards the opponent's end.
+fn start_at(at: Ned, heading_deg: Option<f64>, field: &Field, team: TeamId) -> StartPosition {
+    let heading_deg = heading_deg.unwrap_or(field.facing_deg(team));
+    let psi_rad = rad_from_compass_deg(heading_deg);
+    StartPosition::At(Pose { at, psi_rad })
 }
 
 /// The rectangle of the `spawn` at `path`, if `count` boats fit into it.
 pub(super) fn somewhere(
-    diagnostics: &mut Diagnostics,
     document: &Document<raw::Game>,
     path: &str,
     raw: &raw::Spawn,
@@ -80,29 +69,20 @@ pub(super) fn somewhere(
     let width_m = field.plan.width_m;
     let depth_m = field.plan.depth_m;
     let gap_m = raw.gap_m;
-    let mut bounds = |key: &str, given: Option<[f64; 2]>, whole_m: f64, usual_m: f64| {
+    let bounds = |key: &str, given: Option<[f64; 2]>, whole_m: f64, usual_m: f64| {
         let Some([from_m, to_m]) = given else {
             return Some((MARGIN_M, usual_m - MARGIN_M));
         };
-        let place = document.at(&format!("{path}.{key}"));
-        if let Some(beyond_m) = [from_m, to_m]
-            .into_iter()
-            .find(|bound_m| *bound_m > whole_m)
-        {
-            diagnostics.note(
-                place,
-                format!("{key} is {beyond_m}, expected 0 to {whole_m}"),
-            );
-            return None;
-        }
-        if from_m >= to_m {
-            diagnostics.note(
-                place,
-                format!("{key} is [{from_m}, {to_m}], expected the smaller value first"),
-            );
-            return None;
-        }
-        Some((from_m, to_m))
+        let mut both_m = [from_m, to_m].into_iter();
+        let message = if let Some(beyond_m) = both_m.find(|bound_m| *bound_m > whole_m) {
+            format!("{key} is {beyond_m}, expected 0 to {whole_m}")
+        } else if from_m >= to_m {
+            format!("{key} is [{from_m}, {to_m}], expected the smaller value first")
+        } else {
+            return Some((from_m, to_m));
+        };
+        document.note(&format!("{path}.{key}"), message);
+        None
     };
     let along_m = bounds("along_m", raw.along_m, width_m, width_m / 2.0);
     let across_m = bounds("across_m", raw.across_m, depth_m, depth_m);
@@ -115,7 +95,7 @@ pub(super) fn somewhere(
             "spawn has {area_m2:.0} m² for {count} boats with gap_m {gap_m}, expected at least {:.0} m²",
             wanted_m2 / FULLEST
         );
-        diagnostics.note(document.at(path), message);
+        document.note(path, message);
         return None;
     }
     Some(StartPosition::Somewhere {
@@ -131,13 +111,10 @@ pub(super) fn somewhere(
 pub(super) fn all(entries: &[Entry], field: &Field) -> Vec<StartPosition> {
     let plan = &field.plan;
     let along_m = (plan.flag_inset_m + plan.width_m / 2.0) / 2.0;
-    let in_line = |team: TeamId| {
-        entries
-            .iter()
-            .filter(|e| e.team == team && e.start_position.is_none())
-            .count()
-    };
-    let in_line: Vec<usize> = (0..2).map(|team| in_line(TeamId(team))).collect();
+    let in_line = [0, 1].map(|team| {
+        let on_line = |e: &&Entry| e.team == TeamId(team) && e.start_position.is_none();
+        entries.iter().filter(on_line).count()
+    });
     let mut placed = [0_usize; 2];
     let mut start_position_of = |entry: &Entry| {
         if let Some(start_position) = &entry.start_position {
@@ -150,18 +127,14 @@ pub(super) fn all(entries: &[Entry], field: &Field) -> Vec<StartPosition> {
             0 => field.at(along_m, plan.depth_m - from_port_m),
             _ => field.at(plan.width_m - along_m, from_port_m),
         };
-        let heading_deg = entry.heading_deg.unwrap_or(field.facing_deg(entry.team));
-        StartPosition::At(Pose {
-            at,
-            psi_rad: rad_from_compass_deg(heading_deg),
-        })
+        start_at(at, entry.heading_deg, field, entry.team)
     };
     entries.iter().map(&mut start_position_of).collect()
 }
 
 /// Reports boats that would start too close to each other or to an obstacle.
 pub(super) fn check_clear(
-    diagnostics: &mut Diagnostics,
+    document: &Document<raw::Game>,
     entries: &[Entry],
     start_positions: &[StartPosition],
     boats: &[Boat],
@@ -173,57 +146,47 @@ pub(super) fn check_clear(
             continue;
         };
         let length_m = boats[entry.boat].length_m;
-        if field
-            .plan
-            .obstacles
-            .iter()
-            .any(|obstacle| obstacle.distance(pose.at) <= length_m / 2.0)
-        {
-            let x = pose.at.east;
-            let y = pose.at.north;
+        let mut obstacles = field.plan.obstacles.iter();
+        if obstacles.any(|obstacle| obstacle.distance(pose.at) <= length_m / 2.0) {
             let message = format!(
-                "{} starts at [{x}, {y}], on an obstacle, expected open water",
-                entry.name
+                "{} starts at [{}, {}], on an obstacle, expected open water",
+                entry.name, pose.at.east, pose.at.north
             );
-            diagnostics.note(entry.place, message);
+            document.note(&entry.path, message);
         }
         placed.push((entry, pose.at, length_m));
     }
-    let longest_m = placed
-        .iter()
-        .map(|(_, _, length_m)| *length_m)
-        .fold(0.1, f64::max);
+    let lengths_m = placed.iter().map(|(_, _, length_m)| *length_m);
+    let longest_m = lengths_m.fold(0.1, f64::max);
     let mut near = Near::default();
-    let mut last = usize::MAX;
+    let mut last = "";
     for pair in near.pairs(|i| placed[i].1, placed.len(), longest_m) {
         let (a, _, a_length_m) = placed[usize::from(pair.a)];
         let (b, _, b_length_m) = placed[usize::from(pair.b)];
         let apart_m = pair.distance_squared.sqrt();
         let least_m = a_length_m.max(b_length_m);
         // Reports each crowded boat once, and each crowded fleet once.
-        if apart_m < least_m && b.place != last {
-            last = b.place;
+        if apart_m < least_m && b.path != last {
+            last = &b.path;
             let message = format!(
                 "{} starts {apart_m:.2} m from {}, expected at least a boat's length, {least_m} m",
                 b.name, a.name
             );
-            diagnostics.note(b.place, message);
+            document.note(&b.path, message);
         }
     }
 }
 
-/// Whether `name` is one of the field's named points; reports it if not.
-fn is_point(diagnostics: &mut Diagnostics, at: usize, key: &str, name: &str) -> bool {
+/// Whether `name`, at `path`, is one of the field's named points; reports it if not.
+fn is_point(document: &Document<raw::Game>, path: &str, name: &str) -> bool {
     let names = Field::point_names();
-    let is_known = names.iter().any(|known| known == name);
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let is_known = names.contains(&name);
     if !is_known {
-        let names: Vec<&str> = names.iter().map(String::as_str).collect();
         let points = names.join(" ");
         let guess = did_you_mean(name, &names);
-        diagnostics.note(
-            at,
-            format!("{key} is {name:?}, expected a named point, one of {points}{guess}"),
-        );
+        let message = format!("at is {name:?}, expected a named point, one of {points}{guess}");
+        document.note(path, message);
     }
     is_known
 }

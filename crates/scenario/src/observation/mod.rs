@@ -87,10 +87,8 @@ fn names_of(own: &[&str], other: &[&str], mates: usize, enemies: usize) -> Vec<S
     let mates = (1..=mates).map(|i| format!("mate_{i}"));
     let others = mates.chain((1..=enemies).map(|i| format!("enemy_{i}")));
     let of_others = others.flat_map(|boat| other.iter().map(move |name| format!("{boat}_{name}")));
-    own.iter()
-        .map(|name| (*name).to_owned())
-        .chain(of_others)
-        .collect()
+    let own = own.iter().map(|name| (*name).to_owned());
+    own.chain(of_others).collect()
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! A strategy file as typed.
 
 use super::{FilePath, Name};
+use crate::schema::{self, entries, properties};
 use crate::strategy::{self, Assignment, Helm, Moment, Named, Task};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
@@ -128,17 +129,10 @@ impl JsonSchema for Behaviour {
             common["properties"][moment.name()] = values;
         }
         let tasks = Task::json_schema(generator).to_value();
-        let tasks = tasks["oneOf"]
-            .as_array()
-            .into_iter()
-            .flatten()
-            .filter_map(|task| task["properties"].as_object());
         let mut kinds = vec![];
-        for (kind, reference) in tasks.flatten() {
-            let name = reference["$ref"]
-                .as_str()
-                .and_then(|name| name.rsplit('/').next())
-                .unwrap_or_default();
+        for (kind, reference) in entries(&tasks, "oneOf").flat_map(properties) {
+            let name = reference["$ref"].as_str().unwrap_or_default();
+            let name = name.rsplit('/').next().unwrap_or_default();
             complete(&mut generator.definitions_mut()[name], kind, &common);
             kinds.push(reference.clone());
         }
@@ -156,16 +150,11 @@ fn complete(definition: &mut Json, kind: &str, common: &Json) {
     let mut required = vec![json!("kind")];
     required.extend((kind == "timer").then(|| json!("duration_s")));
     for about in [common, &*definition] {
-        required.extend(about["required"].as_array().cloned().unwrap_or_default());
+        required.extend(entries(about, "required").cloned());
     }
-    let own = definition["properties"]
-        .as_object()
-        .cloned()
-        .unwrap_or_default();
-    properties
-        .as_object_mut()
-        .into_iter()
-        .for_each(|properties| properties.extend(own.clone()));
+    for (key, about) in schema::properties(definition) {
+        properties[key] = about.clone();
+    }
     definition["properties"] = properties;
     definition["required"] = required.into();
 }

@@ -149,19 +149,9 @@ pub struct Trigger {
 }
 
 /// The boat that an event affects.
-#[derive(
-    Clone,
-    Copy,
-    Debug,
-    PartialEq,
-    Eq,
-    Serialize,
-    Deserialize,
-    VariantArray,
-    IntoStaticStr,
-    EnumMessage,
-)]
+#[derive(VariantArray, IntoStaticStr, EnumMessage)]
 #[strum(serialize_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Who {
     /// The own boat.
     I,
@@ -172,19 +162,9 @@ pub enum Who {
 }
 
 /// The kind of event.
-#[derive(
-    Clone,
-    Copy,
-    Debug,
-    PartialEq,
-    Eq,
-    Serialize,
-    Deserialize,
-    VariantArray,
-    IntoStaticStr,
-    EnumMessage,
-)]
+#[derive(VariantArray, IntoStaticStr, EnumMessage)]
 #[strum(serialize_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "each says it itself")]
 pub enum What {
     Grabs,
@@ -280,11 +260,8 @@ impl Program {
         let mut within = None;
         loop {
             let holds = |mode: &Mode| mode.when.as_ref().is_none_or(|when| when.is_true(values));
-            let part = self
-                .modes
-                .iter()
-                .position(|mode| mode.parent == within && holds(mode));
-            match part {
+            let mut modes = self.modes.iter();
+            match modes.position(|mode| mode.parent == within && holds(mode)) {
                 Some(part) if self.is_leaf(part) => return part,
                 Some(part) => within = Some(part),
                 None => unreachable!("the last part of a mode has no condition"),
@@ -313,10 +290,8 @@ pub trait Named: Copy + Into<&'static str> + VariantArray + EnumMessage {
 
     /// The variant with this name.
     fn by_name(name: &str) -> Option<Self> {
-        Self::all()
-            .iter()
-            .copied()
-            .find(|variant| variant.name() == name)
+        let mut all = Self::all().iter().copied();
+        all.find(|variant| variant.name() == name)
     }
 
     /// All names, in the same order.

@@ -23,19 +23,9 @@ pub enum Place {
 }
 
 /// A place that depends on the game, other than a boat.
-#[derive(
-    Clone,
-    Copy,
-    Debug,
-    PartialEq,
-    Eq,
-    Serialize,
-    Deserialize,
-    VariantArray,
-    IntoStaticStr,
-    EnumMessage,
-)]
+#[derive(VariantArray, IntoStaticStr, EnumMessage)]
 #[strum(serialize_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Mark {
     /// Home of the own flag.
     OwnFlag,
@@ -48,19 +38,9 @@ pub enum Mark {
 }
 
 /// A boat by its present role.
-#[derive(
-    Clone,
-    Copy,
-    Debug,
-    PartialEq,
-    Eq,
-    Serialize,
-    Deserialize,
-    VariantArray,
-    IntoStaticStr,
-    EnumMessage,
-)]
+#[derive(VariantArray, IntoStaticStr, EnumMessage)]
 #[strum(serialize_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Boat {
     /// Nearest untagged enemy.
     NearestEnemy,
@@ -86,24 +66,17 @@ pub enum Boat {
 impl Place {
     /// The mark, boat or named point with this name.
     pub fn by_name(name: &str) -> Option<Place> {
-        let point = || {
-            Field::point_names()
-                .into_iter()
-                .find(|point| point == name)
-                .map(Place::Point)
-        };
-        Mark::by_name(name)
-            .map(Place::Mark)
-            .or_else(|| Boat::by_name(name).map(Place::Boat))
-            .or_else(point)
+        let mark = Mark::by_name(name).map(Place::Mark);
+        let boat = || Boat::by_name(name).map(Place::Boat);
+        let is_point = || Field::point_names().iter().any(|point| point == name);
+        let point = || is_point().then(|| Place::Point(name.to_owned()));
+        mark.or_else(boat).or_else(point)
     }
 
     /// All names of places.
     pub fn names() -> Vec<String> {
-        let fixed = [Mark::names(), Boat::names()]
-            .concat()
-            .into_iter()
-            .map(str::to_owned);
+        let fixed = [Mark::names(), Boat::names()].concat();
+        let fixed = fixed.into_iter().map(str::to_owned);
         fixed.chain(Field::point_names()).collect()
     }
 

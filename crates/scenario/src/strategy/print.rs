@@ -46,47 +46,35 @@ impl Program {
 
     /// A value for a variable of this program, as typed.
     pub fn value_text(&self, variable: u16, expression: &Expression) -> String {
-        self.text(
-            expression,
-            &self.variables[usize::from(variable)].kind,
-            Precedence::Choice,
-        )
+        let kind = &self.variables[usize::from(variable)].kind;
+        self.text(expression, kind, Precedence::Choice)
     }
 
     /// An expression in the place of a value of `kind`; parts looser than `around` need brackets.
     fn text(&self, expression: &Expression, kind: &Kind, around: Precedence) -> String {
+        let atom = |text: String| (text, Precedence::Atom);
         let (text, binds) = match expression {
             Expression::Constant(value) => match kind {
-                Kind::Text(_) => (format!("'{}'", kind.text_of(*value)), Precedence::Atom),
+                Kind::Text(_) => atom(format!("'{}'", kind.text_of(*value))),
                 Kind::Number if *value < 0.0 => (kind.text_of(*value), Precedence::Sign),
-                _ => (kind.text_of(*value), Precedence::Atom),
+                _ => atom(kind.text_of(*value)),
             },
-            Expression::Variable(index) => (
-                self.variables[usize::from(*index)].name.clone(),
-                Precedence::Atom,
-            ),
-            Expression::Fact(fact) => (fact.name().to_owned(), Precedence::Atom),
-            Expression::Measure(measure, place) => (
-                format!("{}({})", measure.name(), place.text()),
-                Precedence::Atom,
-            ),
-            Expression::Between(measure, places) => (
-                format!(
-                    "{}({}, {})",
-                    measure.name(),
-                    places.0.text(),
-                    places.1.text()
-                ),
-                Precedence::Atom,
-            ),
-            Expression::Mates(condition) => (
-                format!("mates({})", self.condition_text(condition)),
-                Precedence::Atom,
-            ),
-            Expression::Not(inner) => (
-                format!("!{}", self.text(inner, &Kind::Truth, Precedence::Sign)),
-                Precedence::Sign,
-            ),
+            Expression::Variable(index) => atom(self.variables[usize::from(*index)].name.clone()),
+            Expression::Fact(fact) => atom(fact.name().to_owned()),
+            Expression::Measure(measure, place) => {
+                atom(format!("{}({})", measure.name(), place.text()))
+            }
+            Expression::Between(measure, places) => {
+                let [from, to] = [&places.0, &places.1].map(Place::text);
+                atom(format!("{}({from}, {to})", measure.name()))
+            }
+            Expression::Mates(condition) => {
+                atom(format!("mates({})", self.condition_text(condition)))
+            }
+            Expression::Not(inner) => {
+                let inner = self.text(inner, &Kind::Truth, Precedence::Sign);
+                (format!("!{inner}"), Precedence::Sign)
+            }
             // Two signs in a row cancel out, and a sign before a digit belongs to it.
             Expression::Minus(inner) => {
                 (format!("-({})", self.number_text(inner)), Precedence::Sign)
@@ -96,10 +84,8 @@ impl Program {
                 let condition = self.text(&parts.0, &Kind::Truth, Precedence::Or);
                 let then = self.text(&parts.1, kind, Precedence::Or);
                 let otherwise = self.text(&parts.2, kind, Precedence::Choice);
-                (
-                    format!("{condition} ? {then} : {otherwise}"),
-                    Precedence::Choice,
-                )
+                let text = format!("{condition} ? {then} : {otherwise}");
+                (text, Precedence::Choice)
             }
         };
         if binds < around {
@@ -113,12 +99,8 @@ impl Program {
         let sign = join.name();
         let binds = match join {
             Join::Least | Join::Greatest => {
-                let text = format!(
-                    "{sign}({}, {})",
-                    self.number_text(left),
-                    self.number_text(right)
-                );
-                return (text, Precedence::Atom);
+                let [left, right] = [left, right].map(|side| self.number_text(side));
+                return (format!("{sign}({left}, {right})"), Precedence::Atom);
             }
             Join::Or => Precedence::Or,
             Join::And => Precedence::And,
@@ -141,14 +123,9 @@ impl Program {
             Join::Plus | Join::Minus => (binds, Precedence::Product),
             _ => (binds, Precedence::Sign),
         };
-        (
-            format!(
-                "{} {sign} {}",
-                self.text(left, &kind, at_left),
-                self.text(right, &kind, at_right)
-            ),
-            binds,
-        )
+        let left = self.text(left, &kind, at_left);
+        let right = self.text(right, &kind, at_right);
+        (format!("{left} {sign} {right}"), binds)
     }
 }
 

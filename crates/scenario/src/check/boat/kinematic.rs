@@ -1,37 +1,18 @@
 //! Checks kinematic boats and thrust maps.
 
 use crate::boat::Kinematic;
-use crate::diagnostics::Diagnostics;
 use crate::raw;
 use crate::read::Document;
 
-pub(super) fn check_kinematic(
-    diagnostics: &mut Diagnostics,
-    document: &Document<raw::Boat>,
-    kinematic: &Kinematic,
-) {
+pub(super) fn check_kinematic(document: &Document<raw::Boat>, kinematic: &Kinematic) {
     if kinematic.speed_factor == 0.0 && !document.has("kinematic.speed_pid") {
-        document.note_missing(
-            diagnostics,
-            "kinematic.speed_pid",
-            "speed_pid or speed_factor",
-        );
+        document.note_missing("kinematic.speed_pid", "speed_pid or speed_factor");
     }
-    check_thrust_map(
-        diagnostics,
-        document,
-        "kinematic.thrust_map",
-        &kinematic.thrust_map,
-    );
+    check_thrust_map(document, "kinematic.thrust_map", &kinematic.thrust_map);
 }
 
 /// Checks the map of thrust in per cent and speed in m/s at `path`.
-pub fn check_thrust_map<T>(
-    diagnostics: &mut Diagnostics,
-    document: &Document<T>,
-    path: &str,
-    points: &[(f64, f64)],
-) {
+pub fn check_thrust_map<T>(document: &Document<T>, path: &str, points: &[(f64, f64)]) {
     if !document.is_sound(path) {
         return;
     }
@@ -40,11 +21,11 @@ pub fn check_thrust_map<T>(
             let message = format!(
                 "thrust_map has [{thrust_pct}, {speed_m_s}] here; both numbers must exceed those of the previous row"
             );
-            diagnostics.note(document.at(&format!("{path}.{}", i + 1)), message);
+            document.note(&format!("{path}.{}", i + 1), message);
         }
     }
     if points.len() < 2 || !points.contains(&(0.0, 0.0)) {
         let message = "thrust_map lacks [0, 0] or a second pair, expected both";
-        diagnostics.note(document.at(path), message);
+        document.note(path, message);
     }
 }

@@ -6,7 +6,6 @@ mod thruster;
 pub use kinematic::check_thrust_map;
 
 use crate::boat::{Boat, Drive, Hull, Propeller, ThrustCurve, Windage};
-use crate::diagnostics::Diagnostics;
 use crate::kind::ScenarioFile;
 use crate::raw;
 use crate::read::Document;
@@ -26,18 +25,18 @@ impl ScenarioFile for Boat {
     const NAME: &'static str = "boat";
     const FOLDER: &'static str = "boats";
 
-    fn check(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>) -> Option<Boat> {
+    fn check(document: &Document<raw::Boat>) -> Option<Boat> {
         let raw = &document.raw;
         let hull = &raw.hull;
         if hull.crossflow_coefficient > 0.0 && !document.has("hull.crossflow_draught_m") {
             let expected = "0 to 20 with a crossflow_coefficient";
-            document.note_missing(diagnostics, "hull.crossflow_draught_m", expected);
+            document.note_missing("hull.crossflow_draught_m", expected);
         }
         if let Some(gps) = &raw.sensors.gps {
-            check_gps(diagnostics, document, gps);
+            check_gps(document, gps);
         }
-        let drive = drive(diagnostics, document);
-        if !document.is_faultless(diagnostics) {
+        let drive = drive(document);
+        if !document.is_faultless() {
             return None;
         }
         let drive = drive?;
@@ -55,35 +54,35 @@ impl ScenarioFile for Boat {
             hold: raw.hold,
             sensors: raw.sensors.clone(),
         };
-        check_inertia(diagnostics, document, &boat);
-        check_decay(diagnostics, document, &boat);
-        document.is_faultless(diagnostics).then_some(boat)
+        check_inertia(document, &boat);
+        check_decay(document, &boat);
+        document.is_faultless().then_some(boat)
     }
 }
 
-fn drive(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>) -> Option<Drive> {
+fn drive(document: &Document<raw::Boat>) -> Option<Drive> {
     let raw = &document.raw;
     if let Some(kinematic) = &raw.kinematic {
         if document.has("thruster") || document.has("autopilot") {
             let message = "kinematic is given with thruster or autopilot, expected either";
-            diagnostics.note(document.at("kinematic"), message);
+            document.note("kinematic", message);
         }
-        check_kinematic(diagnostics, document, kinematic);
+        check_kinematic(document, kinematic);
         return Some(Drive::Kinematic(kinematic.clone()));
     }
     for key in ["thruster", "autopilot"] {
         if !document.has(key) && !document.has("kinematic") {
-            document.note_missing(diagnostics, key, "thruster and autopilot, or kinematic");
+            document.note_missing(key, "thruster and autopilot, or kinematic");
         }
     }
-    let thruster = thruster::thruster(diagnostics, document, raw.thruster.as_ref()?)?;
+    let thruster = thruster::thruster(document, raw.thruster.as_ref()?)?;
     Some(Drive::Thrusters {
         thruster,
         autopilot: raw.autopilot.clone()?,
     })
 }
 
-fn check_gps(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, gps: &Gps) {
+fn check_gps(document: &Document<raw::Boat>, gps: &Gps) {
     let latency_s = gps.latency_s;
     let most_s = MOST_PERIODS_LATE * gps.period_s;
     if latency_s > most_s {
@@ -95,7 +94,7 @@ fn check_gps(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, gps:
         let message = format!(
             "latency_s is {latency_s}, expected at most {most_s}: {MOST_PERIODS_LATE} periods"
         );
-        diagnostics.note(document.at(path), message);
+        document.note(path, message);
     }
 }
 
@@ -114,12 +113,8 @@ fn hull(raw: &raw::Boat, drive: &Drive) -> Hull {
     };
     let hull = &raw.hull;
     let length_m = raw.length_m;
-    let Hull {
-        mass_kg,
-        x_g_m,
-        surge_quadratic_kg_m,
-        ..
-    } = *hull;
+    let (mass_kg, x_g_m) = (hull.mass_kg, hull.x_g_m);
+    let surge_quadratic_kg_m = hull.surge_quadratic_kg_m;
     // A radius of gyration of a quarter of the length, shifted from the centre of gravity to
     // midships.
     let estimate_kg_m2 = || mass_kg * (length_m * length_m / 16.0 + x_g_m * x_g_m);
@@ -176,7 +171,7 @@ fn windage(raw: &raw::Boat) -> Windage {
 }
 
 /// A singular mass matrix would give unbounded acceleration.
-fn check_inertia(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, boat: &Boat) {
+fn check_inertia(document: &Document<raw::Boat>, boat: &Boat) {
     let hull = &boat.hull;
     let m = hull.mass_kg;
     let x_g = hull.x_g_m;
@@ -184,13 +179,13 @@ fn check_inertia(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, 
     if x_g.abs() > boat.length_m / 2.0 {
         let half_m = boat.length_m / 2.0;
         let message = format!("x_g_m is {x_g}, expected -{half_m} to {half_m}, within the hull");
-        diagnostics.note(document.at("hull.x_g_m"), message);
+        document.note("hull.x_g_m", message);
     } else if i_z <= m * x_g * x_g {
         let message = format!(
             "yaw_inertia_kg_m2 is {i_z}, expected more than m x_g² = {}",
             m * x_g * x_g
         );
-        diagnostics.note(document.at("hull.yaw_inertia_kg_m2"), message);
+        document.note("hull.yaw_inertia_kg_m2", message);
     }
     let coupling = m * x_g + hull.added_sway_yaw_kg_m;
     if (m + hull.added_sway_kg) * (i_z + hull.added_yaw_kg_m2) <= coupling * coupling {
@@ -199,12 +194,12 @@ fn check_inertia(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, 
              (m + A22)(I + A66) more than (m x_g + A26)²",
             hull.added_sway_yaw_kg_m
         );
-        diagnostics.note(document.at("hull.added_sway_yaw_kg_m"), message);
+        document.note("hull.added_sway_yaw_kg_m", message);
     }
 }
 
 /// The default tick must be short enough for the boat.
-fn check_decay(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, boat: &Boat) {
+fn check_decay(document: &Document<raw::Boat>, boat: &Boat) {
     let (motion, rate_per_s) = fastest_decay(boat);
     let allowed_per_s = FASTEST_PER_TICK / USUAL_TICK_S;
     if rate_per_s > allowed_per_s {
@@ -217,14 +212,8 @@ fn check_decay(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, bo
             "sway" => "hull.sway_linear_kg_s",
             _ => "hull.yaw_linear_kg_m2_s",
         };
-        diagnostics.note(
-            document.at(if document.has(culprit) {
-                culprit
-            } else {
-                "hull.mass_kg"
-            }),
-            message,
-        );
+        let is_given = document.has(culprit);
+        document.note(if is_given { culprit } else { "hull.mass_kg" }, message);
     }
 }
 
@@ -247,10 +236,8 @@ pub(super) fn fastest_decay(boat: &Boat) -> (&'static str, f64) {
             yaw_kg_m2_s / (hull.yaw_inertia_kg_m2 + hull.added_yaw_kg_m2),
         ),
     ];
-    rates
-        .into_iter()
-        .max_by(|a, b| a.1.total_cmp(&b.1))
-        .unwrap_or(("surge", 0.0))
+    let fastest = rates.into_iter().max_by(|a, b| a.1.total_cmp(&b.1));
+    fastest.unwrap_or(("surge", 0.0))
 }
 
 fn full_ahead_newton(curve: &ThrustCurve) -> f64 {

@@ -1,71 +1,44 @@
 //! Checks thrusters and their flaws.
 
 use crate::boat::{Propeller, ThrustCurve, Thruster};
-use crate::diagnostics::Diagnostics;
 use crate::raw;
 use crate::read::Document;
 
-pub(super) fn thruster(
-    diagnostics: &mut Diagnostics,
-    document: &Document<raw::Boat>,
-    raw: &raw::Thruster,
-) -> Option<Thruster> {
+pub(super) fn thruster(document: &Document<raw::Boat>, raw: &raw::Thruster) -> Option<Thruster> {
     let curve = match (&raw.propeller, &raw.table_pct_newton) {
         (Some(propeller), None) => {
-            let Propeller {
-                k_ahead,
-                k_astern,
-                n_max_rad_s,
-                n_min_rad_s,
-            } = *propeller;
-            let k_astern = k_astern.unwrap_or(k_ahead);
-            let n_min_rad_s = n_min_rad_s.unwrap_or(n_max_rad_s);
+            let (k_ahead, n_max_rad_s) = (propeller.k_ahead, propeller.n_max_rad_s);
             ThrustCurve::Propeller(Propeller {
                 k_ahead,
-                k_astern,
+                k_astern: propeller.k_astern.unwrap_or(k_ahead),
                 n_max_rad_s,
-                n_min_rad_s,
+                n_min_rad_s: propeller.n_min_rad_s.unwrap_or(n_max_rad_s),
             })
         }
-        (None, Some(rows)) => table(diagnostics, document, rows),
+        (None, Some(rows)) => table(document, rows),
         (Some(_), Some(_)) => {
             let message = "thruster has both, expected either propeller or table_pct_newton";
-            diagnostics.note(document.at("thruster.propeller"), message);
+            document.note("thruster.propeller", message);
             return None;
         }
         (None, None) => {
             if document.is_sound("thruster.table_pct_newton") {
-                document.note_missing(
-                    diagnostics,
-                    "thruster.propeller",
-                    "propeller or table_pct_newton",
-                );
+                document.note_missing("thruster.propeller", "propeller or table_pct_newton");
             }
             return None;
         }
     };
-    let raw::Thruster {
-        arm_m,
-        lag_s,
-        slew_per_s,
-        deadband,
-        ..
-    } = *raw;
     Some(Thruster {
-        arm_m,
+        arm_m: raw.arm_m,
         curve,
-        lag_s,
-        slew_per_s,
-        deadband,
+        lag_s: raw.lag_s,
+        slew_per_s: raw.slew_per_s,
+        deadband: raw.deadband,
         flaws: raw.flaws.clone(),
     })
 }
 
-fn table(
-    diagnostics: &mut Diagnostics,
-    document: &Document<raw::Boat>,
-    rows: &[raw::SettingAndThrust],
-) -> ThrustCurve {
+fn table(document: &Document<raw::Boat>, rows: &[raw::SettingAndThrust]) -> ThrustCurve {
     let path = "thruster.table_pct_newton";
     let points: Vec<(f64, f64)> = rows.iter().map(|row| (row.0 / 100.0, row.1)).collect();
     if document.is_sound(path) {
@@ -75,21 +48,18 @@ fn table(
                     "table_pct_newton has [{}, {}] here; both numbers must exceed those of the previous row",
                     row.0, row.1
                 );
-                diagnostics.note(document.at(&format!("{path}.{i}")), message);
+                document.note(&format!("{path}.{i}"), message);
             }
         }
-        let ends = (
-            points.first().map(|first| first.0),
-            points.last().map(|last| last.0),
-        );
-        if ends != (Some(-1.0), Some(1.0)) {
+        let ends = [points.first(), points.last()].map(|end| end.map(|end| end.0));
+        if ends != [Some(-1.0), Some(1.0)] {
             let message =
                 "table_pct_newton does not span the settings, expected -100 first and 100 last";
-            diagnostics.note(document.at(path), message);
+            document.note(path, message);
         }
         if !points.contains(&(0.0, 0.0)) {
             let message = "table_pct_newton has no [0, 0], expected no thrust at setting 0";
-            diagnostics.note(document.at(path), message);
+            document.note(path, message);
         }
     }
     ThrustCurve::Table { points }

@@ -1,22 +1,17 @@
 //! Checks the current.
 
-use crate::diagnostics::Diagnostics;
 use crate::raw;
 use crate::read::Document;
 use crate::sea::{Current, Shear, Tide, Wander};
 use primitives::frame::Ned;
 
-pub(super) fn current(
-    diagnostics: &mut Diagnostics,
-    document: &Document<raw::Sea>,
-    raw: &raw::Current,
-) -> Current {
+pub(super) fn current(document: &Document<raw::Sea>, raw: &raw::Current) -> Current {
     let toward = Ned::toward_deg(raw.toward_deg);
-    let mut rising = |key: &str, (from, to): (f64, f64)| {
+    let rising = |key: &str, (from, to): (f64, f64)| {
         if from > to {
             let name = key.rsplit('.').next().unwrap_or(key);
             let message = format!("{name} is [{from}, {to}], expected the smaller value first");
-            diagnostics.note(document.at(key), message);
+            document.note(key, message);
         }
     };
     if let Some(wander) = &raw.wander {

@@ -1,6 +1,5 @@
 //! Checks waves, given by height and period or by the wind that raised them.
 
-use crate::diagnostics::Diagnostics;
 use crate::raw;
 use crate::read::Document;
 use crate::sea::{GRAVITY_M_S2, PROFILE_EXPONENT, Spreading, Waves};
@@ -11,11 +10,7 @@ const STEEPEST: f64 = 0.08;
 /// Maximum height as a share of the depth; higher waves break.
 const HIGHEST: f64 = 0.6;
 
-pub(super) fn waves(
-    diagnostics: &mut Diagnostics,
-    document: &Document<raw::Sea>,
-    raw: &raw::Waves,
-) -> Option<Waves> {
+pub(super) fn waves(document: &Document<raw::Sea>, raw: &raw::Waves) -> Option<Waves> {
     let depth_m = document.raw.depth_m;
     let wind = document.raw.wind.as_ref();
     let is_jonswap = raw.spectrum == raw::Spectrum::Jonswap;
@@ -24,33 +19,33 @@ pub(super) fn waves(
             "gamma is {}, expected none: it applies only to \"jonswap\"",
             raw.gamma
         );
-        diagnostics.note(document.at("waves.gamma"), message);
+        document.note("waves.gamma", message);
     }
     if raw.spreading != raw::Spreading::Cosine2s && document.has("waves.spread_s") {
         let message = "spread_s is given, expected spreading = \"cosine_2s\" with it";
-        diagnostics.note(document.at("waves.spread_s"), message);
+        document.note("waves.spread_s", message);
     }
     let from_deg = raw.from_deg.or(wind.map(|wind| wind.from_deg));
     if from_deg.is_none() {
-        document.note_missing(diagnostics, "waves.from_deg", "-360 to 360, or a wind");
+        document.note_missing("waves.from_deg", "-360 to 360, or a wind");
     }
-    let (hs_m, tp_s) = height_and_period(diagnostics, document, raw)?;
+    let (hs_m, tp_s) = height_and_period(document, raw)?;
     let steepness = hs_m / peak_length_m(tp_s, depth_m);
     let size = ["waves.hs_m", "waves.fetch_km", "waves"]
         .into_iter()
         .find(|path| document.has(path));
-    let place = document.at(size.unwrap_or("waves"));
+    let place = size.unwrap_or("waves");
     if let Some(depth_m) = depth_m.filter(|depth_m| hs_m > HIGHEST * depth_m) {
         let highest_m = HIGHEST * depth_m;
         let message = format!(
             "waves of hs_m {hs_m:.3} break in {depth_m} m, expected at most {highest_m:.3}"
         );
-        diagnostics.note(place, message);
+        document.note(place, message);
     } else if steepness > STEEPEST {
         let message = format!(
             "waves of hs_m {hs_m:.3} and tp_s {tp_s:.3} have a steepness of {steepness:.3}, expected at most {STEEPEST}"
         );
-        diagnostics.note(place, message);
+        document.note(place, message);
     }
     Some(Waves {
         hs_m,
@@ -68,22 +63,18 @@ pub(super) fn waves(
 }
 
 /// Significant height, m, and peak period, s.
-fn height_and_period(
-    diagnostics: &mut Diagnostics,
-    document: &Document<raw::Sea>,
-    raw: &raw::Waves,
-) -> Option<(f64, f64)> {
+fn height_and_period(document: &Document<raw::Sea>, raw: &raw::Waves) -> Option<(f64, f64)> {
     let wind = document.raw.wind.as_ref();
     let is_fully_grown = raw.spectrum == raw::Spectrum::PiersonMoskowitz;
     if document.has("waves.hs_m") && document.has("waves.fetch_km") {
         let message =
             "fetch_km is given with hs_m, expected either height and period, or the fetch";
-        diagnostics.note(document.at("waves.fetch_km"), message);
+        document.note("waves.fetch_km", message);
         return None;
     }
     if is_fully_grown && document.has("waves.tp_s") {
         let message = "tp_s is given, expected none: the period of \"pierson_moskowitz\" follows from the height";
-        diagnostics.note(document.at("waves.tp_s"), message);
+        document.note("waves.tp_s", message);
         return None;
     }
     // Without wind there are no waves; 0.5 m/s is the minimum here.
@@ -117,7 +108,7 @@ fn height_and_period(
             };
             if document.is_sound("waves") {
                 let message = format!("the size of the waves is missing, expected {expected}");
-                diagnostics.note_if_intact(document.at("waves"), message);
+                document.note_if_intact("waves", message);
             }
             None
         }

@@ -5,10 +5,9 @@ use super::scope::Scope;
 use super::variable::set;
 use crate::Kind;
 use crate::action::ActionSpace;
-use crate::guess::did_you_mean;
-use crate::policy::{PartialSpec, PolicyModel};
+use crate::guess::listed;
+use crate::policy::{self, PartialSpec, PolicyModel};
 use crate::raw;
-use crate::read;
 use crate::schema::declared;
 use crate::strategy::{
     Behaviour, Boat, Kind as VariableKind, Mode, Moment, Named, Parameter, Place, Post, Task,
@@ -29,44 +28,26 @@ const IN_ORDER: [(&str, &str); 3] = [
 ];
 
 /// Checks the behaviours. If the modes do not form a tree, references to modes are not checked.
-pub(super) fn behaviours(scope: &mut Scope<'_>, modes: Option<&[Mode]>) -> Vec<Behaviour> {
+pub(super) fn behaviours(scope: &Scope<'_>, modes: Option<&[Mode]>) -> Vec<Behaviour> {
     let given = &scope.document.raw.behaviour;
     if given.is_empty() && scope.document.is_sound("behaviour") {
         scope.note_missing("roles", "roles or at least one [behaviour.NAME]");
     }
     if given.len() > MOST {
-        scope.note(
-            "behaviour",
-            &format!("has {} entries, expected at most {MOST}", given.len()),
-        );
+        let message = format!("has {} entries, expected at most {MOST}", given.len());
+        scope.note("behaviour", &message);
     }
-    given
-        .iter()
-        .take(MOST)
-        .filter_map(|(name, given)| one(scope, modes, name, &given.0))
-        .collect()
+    let given = given.iter().take(MOST);
+    let checked = given.filter_map(|(name, given)| one(scope, modes, name, &given.0));
+    checked.collect()
 }
 
-fn one(
-    scope: &mut Scope<'_>,
-    modes: Option<&[Mode]>,
-    name: &str,
-    given: &Json,
-) -> Option<Behaviour> {
+fn one(scope: &Scope<'_>, modes: Option<&[Mode]>, name: &str, given: &Json) -> Option<Behaviour> {
     let path = format!("behaviour.{name}");
-    scope
-        .diagnostics
-        .is_name(scope.document.at(&path), "behaviour", name);
-    let modes = modes
-        .map(|modes| {
-            in_modes(
-                scope,
-                &path,
-                modes,
-                given["in"].as_array().map(Vec::as_slice),
-            )
-        })
-        .unwrap_or_default();
+    scope.document.is_name(&path, "behaviour", name);
+    let named = given["in"].as_array().map(Vec::as_slice);
+    let modes = modes.map(|modes| in_modes(scope, &path, modes, named));
+    let modes = modes.unwrap_or_default();
     let when = scope.condition(&format!("{path}.when"), given["when"].as_str());
     let posts = posts(scope, &path, given);
     let mut kinds = declared(Kind::STRATEGY)["definitions"].as_object()?.iter();
@@ -109,26 +90,22 @@ fn one(
 
 /// The keys of a table with their checked values; faults are reported and left out.
 fn checked_table(
-    scope: &mut Scope<'_>,
+    scope: &Scope<'_>,
     path: &str,
     given: &Map<String, Json>,
     about: &Json,
 ) -> Map<String, Json> {
     let mut table = Map::new();
     for (key, value) in given {
-        let value = checked(
-            scope,
-            &format!("{path}.{key}"),
-            value,
-            &about["properties"][key],
-        );
+        let path = format!("{path}.{key}");
+        let value = checked(scope, &path, value, &about["properties"][key]);
         table.extend(value.map(|value| (key.clone(), value)));
     }
     table
 }
 
 /// The checked value at `path`; `about` is the schema of the typed value.
-fn checked(scope: &mut Scope<'_>, path: &str, given: &Json, about: &Json) -> Option<Json> {
+fn checked(scope: &Scope<'_>, path: &str, given: &Json, about: &Json) -> Option<Json> {
     let value = match (about["title"].as_str(), given) {
         (Some("a number or an expression"), _) => {
             serde_json::to_value(scope.parameter(path, given, about)?)
@@ -157,7 +134,7 @@ fn parameter(keys: &Map<String, Json>, key: &str) -> Option<Parameter> {
 }
 
 /// Reports pairs of numbers in the wrong order, if both are constants.
-fn check_order(scope: &mut Scope<'_>, path: &str, keys: &Map<String, Json>) {
+fn check_order(scope: &Scope<'_>, path: &str, keys: &Map<String, Json>) {
     let constant = |key: &str| parameter(keys, key)?.constant();
     for (low, high) in IN_ORDER {
         let (Some(least), Some(most)) = (constant(low), constant(high)) else {
@@ -167,17 +144,14 @@ fn check_order(scope: &mut Scope<'_>, path: &str, keys: &Map<String, Json>) {
             .into_iter()
             .find(|key| scope.document.has(&format!("{path}.{key}")));
         if let Some(given) = given.filter(|_| least > most) {
-            let at = scope.document.at(&format!("{path}.{given}"));
-            scope.diagnostics.note(
-                at,
-                format!("{low} is {least}, expected at most {high}, which is {most}"),
-            );
+            let message = format!("{low} is {least}, expected at most {high}, which is {most}");
+            scope.document.note(&format!("{path}.{given}"), message);
         }
     }
 }
 
 /// The shape of a loiter, from whichever of its keys is given.
-fn shape(scope: &mut Scope<'_>, path: &str, keys: &mut Map<String, Json>) -> Option<Json> {
+fn shape(scope: &Scope<'_>, path: &str, keys: &mut Map<String, Json>) -> Option<Json> {
     let given = ["polygon", "ellipse"].map(|key| scope.document.has(&format!("{path}.{key}")));
     let ellipse = format!("{path}.ellipse");
     match given {
@@ -196,7 +170,7 @@ fn shape(scope: &mut Scope<'_>, path: &str, keys: &mut Map<String, Json>) -> Opt
 }
 
 /// The variable that receives a policy's options, if it has any.
-fn sets(scope: &mut Scope<'_>, path: &str, keys: &mut Map<String, Json>) -> Option<Option<u16>> {
+fn sets(scope: &Scope<'_>, path: &str, keys: &mut Map<String, Json>) -> Option<Option<u16>> {
     let Some(Json::String(name)) = keys.remove("sets") else {
         return Some(None);
     };
@@ -205,19 +179,11 @@ fn sets(scope: &mut Scope<'_>, path: &str, keys: &mut Map<String, Json>) -> Opti
     match scope.variable(&name) {
         Some((index, variable)) if of_texts(&variable) => Some(Some(index)),
         _ => {
-            let known: Vec<&str> = scope
-                .variables
-                .iter()
-                .filter(of_texts)
-                .map(|variable| variable.name.as_str())
-                .collect();
+            let known = scope.variables.iter().filter(of_texts);
+            let known: Vec<&str> = known.map(|variable| variable.name.as_str()).collect();
             let expected = match known.as_slice() {
                 [] => "a variable with `values`, but [variables] has none".to_owned(),
-                _ => format!(
-                    "one of the variables with texts, {}{}",
-                    known.join(", "),
-                    did_you_mean(&name, &known)
-                ),
+                known => format!("one of the variables with texts, {}", listed(&name, known)),
             };
             scope.refuse(&at, &format!("is {name:?}, expected {expected}"))
         }
@@ -228,10 +194,8 @@ fn sets(scope: &mut Scope<'_>, path: &str, keys: &mut Map<String, Json>) -> Opti
 fn misfit(scope: &Scope<'_>, model: &PolicyModel, sets: Option<u16>) -> Option<String> {
     let has_options = model.spec.action == ActionSpace::Options;
     let Some(variable) = sets.map(|index| &scope.variables[usize::from(index)]) else {
-        return has_options.then(|| {
-            "it chooses among options, expected `sets` with the variable that receives them"
-                .to_owned()
-        });
+        let why = "it chooses among options, expected `sets` with the variable that receives them";
+        return has_options.then(|| why.to_owned());
     };
     let VariableKind::Text(texts) = &variable.kind else {
         return None;
@@ -263,7 +227,7 @@ fn misfit(scope: &Scope<'_>, model: &PolicyModel, sets: Option<u16>) -> Option<S
 
 /// The model that a policy refers to, if any.
 fn model(
-    scope: &mut Scope<'_>,
+    scope: &Scope<'_>,
     path: &str,
     keys: &mut Map<String, Json>,
     sets: Option<u16>,
@@ -276,47 +240,38 @@ fn model(
         let of_models = ["observation", "action", "period_s"]
             .into_iter()
             .find(|key| given(key));
-        return match of_models {
-            Some(key) => scope.refuse(
-                &format!("{path}.{key}"),
-                "is given without model, expected only with it",
-            ),
-            None => Some(None),
-        };
+        return of_models.map_or(Some(None), |key| {
+            let message = "is given without model, expected only with it";
+            scope.refuse(&format!("{path}.{key}"), message)
+        });
     };
-    if !["model", "observation", "action", "period_s"]
-        .iter()
-        .all(|key| scope.document.is_sound(&format!("{path}.{key}")))
-    {
+    let mut used = ["model", "observation", "action", "period_s"].iter();
+    if !used.all(|key| scope.document.is_sound(&format!("{path}.{key}"))) {
         return None;
     }
     if given("by") {
-        return scope.refuse(
-            &format!("{path}.by"),
-            "is given with model, expected one of them",
-        );
+        let message = "is given with model, expected one of them";
+        return scope.refuse(&format!("{path}.by"), message);
     }
     let said = PartialSpec {
         observation: observation.and_then(|space| serde_json::from_value(space).ok()),
         action: action.and_then(|space| serde_json::from_value(space).ok()),
         period_s: period_s.as_ref().and_then(Json::as_f64),
     };
-    let path = scope.diagnostics.resolve(scope.document.at(&at), file);
-    match read::model(scope.diagnostics, &path, said)
-        .and_then(|model| misfit(scope, &model, sets).map_or(Ok(model), Err))
-    {
+    let path = scope.document.resolve(&at, file);
+    let files = &scope.document.loader.files;
+    let bytes = files.read(&path, policy::BYTES_MAX);
+    let model = bytes
+        .map_err(|error| format!("it cannot be read ({error}), expected an ONNX file"))
+        .and_then(|bytes| PolicyModel::read(&path.display().to_string(), &bytes, said));
+    match model.and_then(|model| misfit(scope, &model, sets).map_or(Ok(model), Err)) {
         Ok(model) => Some(Some(model)),
         Err(why) => scope.refuse(&at, &format!("is {file:?}: {why}")),
     }
 }
 
 /// Whether a behaviour may run in each mode.
-fn in_modes(
-    scope: &mut Scope<'_>,
-    path: &str,
-    modes: &[Mode],
-    given: Option<&[Json]>,
-) -> Vec<bool> {
+fn in_modes(scope: &Scope<'_>, path: &str, modes: &[Mode], given: Option<&[Json]>) -> Vec<bool> {
     let Some(given) = given else {
         return vec![true; modes.len()];
     };
@@ -327,11 +282,8 @@ fn in_modes(
             Some(mode) => allowed[mode] = true,
             None => {
                 let names: Vec<&str> = modes.iter().map(|mode| mode.name.as_str()).collect();
-                let guess = did_you_mean(name, &names);
-                let message = format!(
-                    "has {name:?}, expected one of the modes {}{guess}",
-                    names.join(", ")
-                );
+                let expected = listed(name, &names);
+                let message = format!("has {name:?}, expected one of the modes {expected}");
                 scope.note(&format!("{path}.in.{i}"), &message);
             }
         }
@@ -343,7 +295,7 @@ fn in_modes(
     allowed
 }
 
-fn posts(scope: &mut Scope<'_>, path: &str, given: &Json) -> Vec<Post> {
+fn posts(scope: &Scope<'_>, path: &str, given: &Json) -> Vec<Post> {
     let mut posts = vec![];
     for at in Moment::all() {
         let values = raw::Values::deserialize(&given[at.name()]).unwrap_or_default();

@@ -21,47 +21,32 @@ pub(super) struct Parsed {
 impl Parsed {
     /// The offset of a part in the virtual text.
     pub(super) fn place(&self, part: &IdedExpr) -> usize {
-        let start = self
-            .places
-            .as_ref()
-            .and_then(|places| places.offset_for(part.id))
-            .map_or(0, |(start, _)| start);
-        self.offsets
-            .get(start as usize)
-            .or(self.offsets.last())
-            .copied()
-            .unwrap_or(0)
+        let places = self.places.as_ref();
+        let range = places.and_then(|places| places.offset_for(part.id));
+        let place = self
+            .offsets
+            .get(range.map_or(0, |(start, _)| start as usize));
+        place.or(self.offsets.last()).copied().unwrap_or(0)
     }
 }
 
 /// Parses the expression of `key` at `at`; reports syntax errors.
-pub(super) fn parse(
-    diagnostics: &mut Diagnostics,
-    key: &str,
-    at: usize,
-    text: &str,
-) -> Option<Parsed> {
+pub(super) fn parse(diagnostics: &Diagnostics, key: &str, at: usize, text: &str) -> Option<Parsed> {
     let length = text.chars().count();
     if length > LONGEST {
-        diagnostics.note(
-            at,
-            format!("{key} is {length} characters long, expected at most {LONGEST}"),
-        );
+        let message = format!("{key} is {length} characters long, expected at most {LONGEST}");
+        diagnostics.note(at, message);
         return None;
     }
-    let offsets = offsets(diagnostics.sources.text_from(at), at, text);
+    let offsets = offsets(diagnostics.sources.borrow().text_from(at), at, text);
     let parser = || PrattParser::new().max_recursion_depth(DEEPEST as u16);
     match parser().parse(text) {
         Ok(root) => {
             // The parser reports the places of parts only for invalid syntax: a surplus bracket
             // makes it invalid.
             let places = parser().parse(&format!("{text}\n)")).err();
-            let places = places.and_then(|errors| {
-                errors
-                    .errors
-                    .into_iter()
-                    .find_map(|error| error.source_info)
-            });
+            let errors = places.into_iter().flat_map(|errors| errors.errors);
+            let places = errors.filter_map(|error| error.source_info).next();
             Some(Parsed {
                 root,
                 places,
@@ -85,11 +70,8 @@ fn byte_at(text: &str, (line, column): (isize, isize)) -> usize {
     let start: usize = text.split_inclusive('\n').take(lines).map(str::len).sum();
     let rest = text.get(start..).unwrap_or_default();
     let columns = (column - 1).max(0) as usize;
-    start
-        + rest
-            .char_indices()
-            .nth(columns)
-            .map_or(rest.len(), |(byte, _)| byte)
+    let byte = rest.char_indices().nth(columns).map(|(byte, _)| byte);
+    start + byte.unwrap_or(rest.len())
 }
 
 /// The parser's error in the terms of these files; `rest` is the expression from the error on.
@@ -145,10 +127,9 @@ fn token(rest: &str) -> &str {
 /// The offset of each byte of a string value, and of its end, if the value as written begins
 /// `source`, at `start`.
 fn offsets(source: &str, start: usize, value: &str) -> Vec<usize> {
-    let opening = ["\"\"\"", "'''", "\"", "'"]
-        .into_iter()
-        .find(|quotes| source.starts_with(quotes))
-        .unwrap_or("");
+    let mut quotes = ["\"\"\"", "'''", "\"", "'"].into_iter();
+    let opening = quotes.find(|quotes| source.starts_with(quotes));
+    let opening = opening.unwrap_or("");
     let has_escapes = opening.starts_with('"');
     let mut at = opening.len();
     if opening.len() == 3 {

@@ -2,7 +2,7 @@
 
 use super::cel::{DEEPEST, Parsed};
 use super::scope::Scope;
-use crate::guess::did_you_mean;
+use crate::guess::{did_you_mean, listed};
 use crate::strategy::{Expression, Fact, Join, Kind, Measure, Named, Place};
 use ::cel::common::ast::{CallExpr, Expr, IdedExpr, LiteralValue, operators};
 
@@ -18,7 +18,7 @@ type Read = (Expression, Kind);
 
 /// The expression parsed for `key`, which must be of the kind `wanted`; reports faults.
 pub(super) fn read(
-    scope: &mut Scope<'_>,
+    scope: &Scope<'_>,
     key: &str,
     parsed: &Parsed,
     wanted: &Kind,
@@ -34,7 +34,7 @@ pub(super) fn read(
 }
 
 struct Reader<'a, 'b> {
-    scope: &'a mut Scope<'b>,
+    scope: &'a Scope<'b>,
     key: &'a str,
     parsed: &'a Parsed,
     /// Inside `mates(...)`, where only shared variables are available.
@@ -44,11 +44,10 @@ struct Reader<'a, 'b> {
 
 impl Reader<'_, '_> {
     /// Reports a fault of a part.
-    fn refuse<T>(&mut self, part: &IdedExpr, message: &str) -> Option<T> {
+    fn refuse<T>(&self, part: &IdedExpr, message: &str) -> Option<T> {
         let message = format!("{} {message}", self.key);
-        self.scope
-            .diagnostics
-            .note(self.parsed.place(part), message);
+        let diagnostics = &self.scope.document.loader.diagnostics;
+        diagnostics.note(self.parsed.place(part), message);
         None
     }
 
@@ -62,21 +61,14 @@ impl Reader<'_, '_> {
         } else {
             "a number"
         };
-        self.refuse(
-            part,
-            &format!(
-                "has {} here, expected {wanted}",
-                in_words(&expression, &found)
-            ),
-        )
+        let found = in_words(&expression, &found);
+        self.refuse(part, &format!("has {found} here, expected {wanted}"))
     }
 
     fn any(&mut self, part: &IdedExpr) -> Option<Read> {
         if self.depth > DEEPEST {
-            return self.refuse(
-                part,
-                &format!("is nested too deeply here, expected at most {DEEPEST} levels"),
-            );
+            let message = format!("is nested too deeply here, expected at most {DEEPEST} levels");
+            return self.refuse(part, &message);
         }
         match &part.expr {
             Expr::Literal(literal) => self.literal(part, literal),
@@ -97,7 +89,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    fn not_allowed<T>(&mut self, part: &IdedExpr, what: &str) -> Option<T> {
+    fn not_allowed<T>(&self, part: &IdedExpr, what: &str) -> Option<T> {
         let allowed = "numbers, texts, true, false, names, ! - + * / < <= > >= == != && || ?:, min(), max(), mates()";
         let measures = Measure::names().join("(), ");
         self.refuse(
@@ -106,24 +98,23 @@ impl Reader<'_, '_> {
         )
     }
 
-    fn literal(&mut self, part: &IdedExpr, literal: &LiteralValue) -> Option<Read> {
+    fn literal(&self, part: &IdedExpr, literal: &LiteralValue) -> Option<Read> {
         let number = |value: f64| Some((Expression::Constant(value), Kind::Number));
         match literal {
             LiteralValue::Boolean(is) => Some((Expression::truth(*is.inner()), Kind::Truth)),
             LiteralValue::Double(value) => number(*value.inner()),
             LiteralValue::Int(value) => number(*value.inner() as f64),
             LiteralValue::UInt(value) => number(*value.inner() as f64),
-            LiteralValue::String(text) => Some((
-                Expression::Constant(0.0),
-                Kind::Text(vec![text.inner().to_owned()]),
-            )),
+            LiteralValue::String(text) => {
+                let kind = Kind::Text(vec![text.inner().to_owned()]);
+                Some((Expression::Constant(0.0), kind))
+            }
             LiteralValue::Bytes(_) => self.not_allowed(part, "a string of bytes"),
             LiteralValue::Null => self.not_allowed(part, "null"),
         }
     }
 
-    fn name(&mut self, part: &IdedExpr, name: &str) -> Option<Read> {
-        let variables = self.scope.variables;
+    fn name(&self, part: &IdedExpr, name: &str) -> Option<Read> {
         if let Some((index, variable)) = self.scope.variable(name) {
             if self.among_mates && !variable.shared {
                 return self.refuse_to_mates(part, name, "not shared");
@@ -137,15 +128,11 @@ impl Reader<'_, '_> {
             return Some((Expression::Fact(fact), Kind::of(fact.is_truth())));
         }
         if Place::by_name(name).is_some() {
-            let message = format!(
-                "has the place {name} here, expected it in a measure, as in distance({name})"
-            );
+            let expected = format!("it in a measure, as in distance({name})");
+            let message = format!("has the place {name} here, expected {expected}");
             return self.refuse(part, &message);
         }
-        let mut known: Vec<&str> = variables
-            .iter()
-            .map(|variable| variable.name.as_str())
-            .collect();
+        let mut known = self.scope.names();
         let listed = if known.is_empty() {
             String::new()
         } else {
@@ -160,11 +147,10 @@ impl Reader<'_, '_> {
         self.refuse(part, &message)
     }
 
-    fn refuse_to_mates<T>(&mut self, part: &IdedExpr, name: &str, what: &str) -> Option<T> {
-        self.refuse(
-            part,
-            &format!("uses {name} in mates(), which is {what}, expected a shared variable"),
-        )
+    fn refuse_to_mates<T>(&self, part: &IdedExpr, name: &str, what: &str) -> Option<T> {
+        let message =
+            format!("uses {name} in mates(), which is {what}, expected a shared variable");
+        self.refuse(part, &message)
     }
 
     fn call(&mut self, part: &IdedExpr, call: &CallExpr) -> Option<Read> {
@@ -180,29 +166,27 @@ impl Reader<'_, '_> {
                 let wanted = Kind::of(matches!(join, Join::And | Join::Or));
                 let a = self.of_kind(a, &wanted);
                 let b = self.of_kind(b, &wanted);
-                Some((
-                    Expression::Join(join, Box::new((a?, b?))),
-                    Kind::of(join.is_truth()),
-                ))
+                let sides = Box::new((a?, b?));
+                Some((Expression::Join(join, sides), Kind::of(join.is_truth())))
             }
-            (_, operators::LOGICAL_NOT, [a]) => Some((
-                Expression::Not(Box::new(self.of_kind(a, &Kind::Truth)?)),
-                Kind::Truth,
-            )),
-            (_, operators::NEGATE, [a]) => Some((
-                Expression::Minus(Box::new(self.of_kind(a, &Kind::Number)?)),
-                Kind::Number,
-            )),
+            (_, operators::LOGICAL_NOT, [a]) => {
+                let inner = Box::new(self.of_kind(a, &Kind::Truth)?);
+                Some((Expression::Not(inner), Kind::Truth))
+            }
+            (_, operators::NEGATE, [a]) => {
+                let inner = Box::new(self.of_kind(a, &Kind::Number)?);
+                Some((Expression::Minus(inner), Kind::Number))
+            }
             (_, operators::CONDITIONAL, [condition, then, otherwise]) => {
                 self.choice(condition, then, otherwise)
             }
             (_, operators::MODULO, _) => self.not_allowed(part, "%"),
             (_, operators::IN, _) => self.not_allowed(part, "in"),
             (_, operators::INDEX, _) => self.not_allowed(part, "an index [...]"),
-            (_, "mates", [_]) if self.among_mates => self.refuse(
-                part,
-                "has mates() within mates(), expected shared variables",
-            ),
+            (_, "mates", [_]) if self.among_mates => {
+                let message = "has mates() within mates(), expected shared variables";
+                self.refuse(part, message)
+            }
             (_, "mates", [condition]) => {
                 self.among_mates = true;
                 let condition = self.of_kind(condition, &Kind::Truth);
@@ -216,62 +200,54 @@ impl Reader<'_, '_> {
     /// A measure; reports other calls.
     fn measure(&mut self, part: &IdedExpr, name: &str, arguments: &[IdedExpr]) -> Option<Read> {
         let given = format!("passes {} arguments to {name}(), expected", arguments.len());
+        let kind = |measure: Measure| Kind::of(measure.is_truth());
         match (Measure::by_name(name), arguments) {
             (Some(_), _) if self.among_mates => {
                 self.refuse_to_mates(part, &format!("{name}()"), "a measure")
             }
-            (Some(measure), [place]) => Some((
-                Expression::Measure(measure, self.place(place, name)?),
-                Kind::of(measure.is_truth()),
-            )),
+            (Some(measure), [place]) => {
+                let place = self.place(place, name)?;
+                Some((Expression::Measure(measure, place), kind(measure)))
+            }
             (Some(measure), [from, to]) if measure.is_of_two() => {
                 let from = self.place(from, name);
                 let to = self.place(to, name);
-                Some((
-                    Expression::Between(measure, Box::new((from?, to?))),
-                    Kind::of(measure.is_truth()),
-                ))
+                let places = Box::new((from?, to?));
+                Some((Expression::Between(measure, places), kind(measure)))
             }
             (Some(measure), _) if measure.is_of_two() => {
                 self.refuse(part, &format!("{given} one place or boat, or two"))
             }
             (Some(_), _) => self.refuse(part, &format!("{given} one place or boat")),
-            _ if name == "mates" => self.refuse(
-                part,
-                &format!("{given} one condition, or none as in mates > 0"),
-            ),
+            _ if name == "mates" => {
+                let message = format!("{given} one condition, or none as in mates > 0");
+                self.refuse(part, &message)
+            }
             _ if CALLS.contains(&name) => self.refuse(part, &format!("{given} two numbers")),
             _ => {
                 let known = [&CALLS[..], &Measure::names()].concat();
-                let all = known.join("(), ");
-                let guess = did_you_mean(name, &known);
-                self.refuse(
-                    part,
-                    &format!("calls {name}(), expected one of {all}(){guess}"),
-                )
+                let expected = known.join("(), ") + "()" + &did_you_mean(name, &known);
+                self.refuse(part, &format!("calls {name}(), expected one of {expected}"))
             }
         }
     }
 
-    fn place(&mut self, part: &IdedExpr, measure: &str) -> Option<Place> {
+    fn place(&self, part: &IdedExpr, measure: &str) -> Option<Place> {
         let name = match &part.expr {
             Expr::Ident(name) => name.as_str(),
             Expr::Literal(LiteralValue::String(name)) => name.inner(),
             _ => {
-                return self.refuse(
-                    part,
-                    &format!("passes a value to {measure}(), expected the name of a place or boat"),
-                );
+                let message =
+                    format!("passes a value to {measure}(), expected the name of a place or boat");
+                return self.refuse(part, &message);
             }
         };
         Place::by_name(name).or_else(|| {
             let known = Place::names();
-            let guess = did_you_mean(name, &known.iter().map(String::as_str).collect::<Vec<_>>());
-            let expected = Place::names_in_short();
-            self.refuse(
-                part,
-                &format!("uses the {measure} of {name:?}, expected {expected}{guess}"),
-            )
+            let known: Vec<&str> = known.iter().map(String::as_str).collect();
+            let expected = Place::names_in_short() + &did_you_mean(name, &known);
+            let message = format!("uses the {measure} of {name:?}, expected {expected}");
+            self.refuse(part, &message)
         })
     }
 
@@ -288,30 +264,23 @@ impl Reader<'_, '_> {
         let (right, right_kind) = right?;
         let is_variable = |side: &Expression| side.as_variable().is_some();
         let sides = match (&left_kind, &right_kind) {
-            (Kind::Text(values), Kind::Text(text))
-                if is_variable(&left) && !is_variable(&right) =>
+            (Kind::Text(one), Kind::Text(other)) => match (is_variable(&left), is_variable(&right))
             {
-                (left, self.text(a, b, values, &text[0])?)
-            }
-            (Kind::Text(text), Kind::Text(values))
-                if is_variable(&right) && !is_variable(&left) =>
-            {
-                (self.text(b, a, values, &text[0])?, right)
-            }
-            (Kind::Text(_), Kind::Text(_)) => {
-                return self.refuse(
-                    part,
-                    "compares two texts, expected a text variable and one of its values",
-                );
-            }
+                (true, false) => (left, self.text(a, b, one, &other[0])?),
+                (false, true) => (self.text(b, a, other, &one[0])?, right),
+                _ => {
+                    let expected = "a text variable and one of its values";
+                    let message = format!("compares two texts, expected {expected}");
+                    return self.refuse(part, &message);
+                }
+            },
             _ if left_kind == right_kind => (left, right),
             _ => {
-                let left = in_words(&left, &left_kind);
-                let right = in_words(&right, &right_kind);
-                return self.refuse(
-                    part,
-                    &format!("compares {left} with {right}, expected two values of the same kind"),
-                );
+                let [left, right] = [(left, left_kind), (right, right_kind)]
+                    .map(|(side, kind)| in_words(&side, &kind));
+                let message =
+                    format!("compares {left} with {right}, expected two values of the same kind");
+                return self.refuse(part, &message);
             }
         };
         Some((Expression::Join(join, Box::new(sides)), Kind::Truth))
@@ -319,20 +288,19 @@ impl Reader<'_, '_> {
 
     /// The index of `text` among the values of a variable.
     fn text(
-        &mut self,
+        &self,
         variable: &IdedExpr,
         part: &IdedExpr,
         values: &[String],
         text: &str,
     ) -> Option<Expression> {
-        let name = if let Expr::Ident(name) = &variable.expr {
-            name
-        } else {
-            "a text"
+        let name = match &variable.expr {
+            Expr::Ident(name) => name,
+            _ => "a text",
         };
-        let wrong =
-            |allowed| self.refuse(part, &format!("compares {name} with {text:?}, {allowed}"));
-        text_value(values, text).map_or_else(wrong, Some)
+        let wrong = |allowed| format!("compares {name} with {text:?}, {allowed}");
+        let refuse = |allowed| self.refuse(part, &wrong(allowed));
+        text_value(values, text).map_or_else(refuse, Some)
     }
 
     fn choice(
@@ -348,16 +316,12 @@ impl Reader<'_, '_> {
         };
         if let Kind::Text(_) = kind {
             let found = in_words(&first, &kind);
-            return self.refuse(
-                then,
-                &format!("has {found} here, expected a number, or true or false"),
-            );
+            let message = format!("has {found} here, expected a number, or true or false");
+            return self.refuse(then, &message);
         }
         let second = self.of_kind(otherwise, &kind);
-        Some((
-            Expression::Choose(Box::new((condition?, first, second?))),
-            kind,
-        ))
+        let parts = Box::new((condition?, first, second?));
+        Some((Expression::Choose(parts), kind))
     }
 }
 
@@ -378,11 +342,8 @@ pub(super) fn is_reserved(name: &str) -> bool {
 /// The index of a text among `values`, or a message with the allowed ones and a suggestion.
 pub(super) fn text_value(values: &[String], text: &str) -> Result<Expression, String> {
     let known: Vec<&str> = values.iter().map(String::as_str).collect();
-    let place = known.iter().position(|value| *value == text);
-    place
-        .map(|place| Expression::Constant(place as f64))
-        .ok_or_else(|| {
-            let guess = did_you_mean(text, &known);
-            format!("expected one of {}{guess}", known.join(", "))
-        })
+    match known.iter().position(|value| *value == text) {
+        Some(place) => Ok(Expression::Constant(place as f64)),
+        None => Err(format!("expected one of {}", listed(text, &known))),
+    }
 }

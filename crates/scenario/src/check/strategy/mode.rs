@@ -2,14 +2,14 @@
 
 use super::scope::Scope;
 use super::variable::set;
-use crate::guess::did_you_mean;
+use crate::guess::listed;
 use crate::strategy::Mode;
 
 /// Maximum nesting depth of modes.
 const DEEPEST: usize = 20;
 
 /// Checks the modes; none if they do not form a tree.
-pub(super) fn modes(scope: &mut Scope<'_>) -> Option<Vec<Mode>> {
+pub(super) fn modes(scope: &Scope<'_>) -> Option<Vec<Mode>> {
     let given = &scope.document.raw.mode;
     if given.is_empty() {
         return Some(vec![Mode {
@@ -19,7 +19,8 @@ pub(super) fn modes(scope: &mut Scope<'_>) -> Option<Vec<Mode>> {
             enter: vec![],
         }]);
     }
-    let faults = scope.diagnostics.faults();
+    let faults = || scope.document.loader.diagnostics.faults();
+    let before = faults();
     let mut modes: Vec<Mode> = vec![];
     for (i, mode) in given.iter().enumerate() {
         let name = mode.name.0.clone();
@@ -27,10 +28,8 @@ pub(super) fn modes(scope: &mut Scope<'_>) -> Option<Vec<Mode>> {
             let message = format!("{name:?} is used twice, expected a unique name for each mode");
             scope.note(&format!("mode.{i}.name"), &message);
         }
-        let parent = mode
-            .r#in
-            .as_ref()
-            .and_then(|parent| self::parent(scope, &modes, i, parent));
+        let parent = mode.r#in.as_ref();
+        let parent = parent.and_then(|parent| self::parent(scope, &modes, i, parent));
         let enter = set(scope, &format!("mode.{i}.set"), &mode.set);
         modes.push(Mode {
             name,
@@ -40,54 +39,40 @@ pub(super) fn modes(scope: &mut Scope<'_>) -> Option<Vec<Mode>> {
         });
     }
     check_conditions(scope, &modes);
-    let is_tree = scope.document.is_sound("mode") && scope.diagnostics.faults() == faults;
+    let is_tree = scope.document.is_sound("mode") && faults() == before;
     for (i, mode) in given.iter().enumerate() {
         modes[i].when = scope.condition(&format!("mode.{i}.when"), mode.when.as_deref());
     }
     is_tree.then_some(modes)
 }
 
-fn parent(scope: &mut Scope<'_>, before: &[Mode], mode: usize, parent: &str) -> Option<usize> {
+fn parent(scope: &Scope<'_>, before: &[Mode], mode: usize, parent: &str) -> Option<usize> {
     let path = format!("mode.{mode}.in");
     let Some(found) = before.iter().position(|mode| mode.name == parent) else {
-        let names: Vec<&str> = before.iter().map(|mode| mode.name.as_str()).collect();
-        let message = if scope
-            .document
-            .raw
-            .mode
-            .iter()
-            .any(|mode| mode.name.0 == parent)
-        {
+        let mut given = scope.document.raw.mode.iter();
+        let message = if given.any(|mode| mode.name.0 == parent) {
             format!("is {parent:?}, which comes later, expected an earlier mode")
         } else {
-            let known = if names.is_empty() {
-                "but there is none".to_owned()
-            } else {
-                names.join(", ")
+            let names: Vec<&str> = before.iter().map(|mode| mode.name.as_str()).collect();
+            let known = match names.as_slice() {
+                [] => "but there is none".to_owned(),
+                names => listed(parent, names),
             };
-            format!(
-                "is {parent:?}, expected an earlier mode, {known}{}",
-                did_you_mean(parent, &names)
-            )
+            format!("is {parent:?}, expected an earlier mode, {known}")
         };
-        scope.note(&path, &message);
-        return None;
+        return scope.refuse(&path, &message);
     };
     let depth = std::iter::successors(Some(found), |mode| before[*mode].parent).count();
     if depth >= DEEPEST {
-        scope.note(
-            &path,
-            &format!(
-                "is nested {} levels deep, expected at most {DEEPEST}",
-                depth + 1
-            ),
-        );
+        let levels = depth + 1;
+        let message = format!("is nested {levels} levels deep, expected at most {DEEPEST}");
+        scope.note(&path, &message);
     }
     Some(found)
 }
 
 /// Every sibling but the last needs a condition; the last must not have one.
-fn check_conditions(scope: &mut Scope<'_>, modes: &[Mode]) {
+fn check_conditions(scope: &Scope<'_>, modes: &[Mode]) {
     let given = &scope.document.raw.mode;
     // Undecidable with an unknown parent.
     let is_known = |mode: usize| given[mode].r#in.is_some() == modes[mode].parent.is_some();
@@ -99,20 +84,16 @@ fn check_conditions(scope: &mut Scope<'_>, modes: &[Mode]) {
         match (&given[i].when, next) {
             (None, Some(next)) => {
                 let next = &modes[next].name;
-                scope.note_missing(
-                    &path,
-                    &format!("a condition: without one for {name}, {next} is never active"),
-                );
+                let expected =
+                    format!("a condition: without one for {name}, {next} is never active");
+                scope.note_missing(&path, &expected);
             }
             (Some(_), None) => {
                 let part_of = |parent: usize| format!("part of {}", modes[parent].name);
                 let of = mode.parent.map_or_else(|| "mode".to_owned(), part_of);
-                scope.note(
-                    &path,
-                    &format!(
-                        "is given for {name}, the last {of}, expected none: it is the fallback"
-                    ),
-                );
+                let expected = "none: it is the fallback";
+                let message = format!("is given for {name}, the last {of}, expected {expected}");
+                scope.note(&path, &message);
             }
             _ => {}
         }

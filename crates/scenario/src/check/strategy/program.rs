@@ -5,7 +5,6 @@ use super::mode::modes;
 use super::scope::Scope;
 use super::variable::{set, variables};
 use super::{reachability, safety};
-use crate::diagnostics::Diagnostics;
 use crate::guess::nearest;
 use crate::raw;
 use crate::read::Document;
@@ -13,29 +12,22 @@ use crate::strategy::{
     Behaviour, FUNCTIONS_MAX, NEAREST_MAX, Named, Program, Rule, Task, Trigger, What, Who,
 };
 
-pub(super) fn program(
-    diagnostics: &mut Diagnostics,
-    document: &Document<raw::Strategy>,
-) -> Option<Program> {
+pub(super) fn program(document: &Document<raw::Strategy>) -> Option<Program> {
     let raw = &document.raw;
-    let faults = diagnostics.faults();
-    let variables = variables(diagnostics, document);
-    let mut scope = Scope {
-        diagnostics,
+    let faults = || document.loader.diagnostics.faults();
+    let before = faults();
+    let variables = variables(document);
+    let scope = Scope {
         document,
         variables: &variables,
     };
-    let modes = modes(&mut scope);
-    let behaviours = behaviours(&mut scope, modes.as_deref());
-    let rules = raw
-        .rule
-        .iter()
-        .enumerate()
-        .map(|(i, given)| rule(&mut scope, i, given))
-        .collect();
-    safety::check_reason(&mut scope);
+    let modes = modes(&scope);
+    let behaviours = behaviours(&scope, modes.as_deref());
+    let rules = raw.rule.iter().enumerate();
+    let rules = rules.map(|(i, given)| rule(&scope, i, given)).collect();
+    safety::check_reason(&scope);
     // Faults of a part may cause faults of the whole.
-    if scope.diagnostics.faults() > faults || !document.is_sound("") {
+    if faults() > before || !document.is_sound("") {
         return None;
     }
     let mut program = Program {
@@ -48,26 +40,22 @@ pub(super) fn program(
         rules,
         unsafe_because: raw.unsafe_because.clone(),
     };
-    check_functions(&mut scope, &program);
-    reachability::check(&mut scope, &program);
-    safety::check(&mut scope, &mut program);
-    document.is_faultless(scope.diagnostics).then_some(program)
+    check_functions(&scope, &program);
+    reachability::check(&scope, &program);
+    safety::check(&scope, &mut program);
+    document.is_faultless().then_some(program)
 }
 
 /// Reports modes whose behaviours could exceed the helm's number of functions.
-fn check_functions(scope: &mut Scope<'_>, program: &Program) {
+fn check_functions(scope: &Scope<'_>, program: &Program) {
     for leaf in program.leaves() {
         let most = |behaviour: &Behaviour| match behaviour.task {
             Task::AvoidCollision(_) | Task::AvoidObstacle(_) => NEAREST_MAX,
             Task::CutRange(_) => 2,
             _ => 1,
         };
-        let functions: usize = program
-            .behaviours
-            .iter()
-            .filter(|b| b.modes[leaf])
-            .map(most)
-            .sum();
+        let behaviours = program.behaviours.iter().filter(|b| b.modes[leaf]);
+        let functions: usize = behaviours.map(most).sum();
         if functions > FUNCTIONS_MAX {
             let message = format!(
                 "could ask for {functions} functions at once, expected at most {FUNCTIONS_MAX}: {NEAREST_MAX} for each \
@@ -78,7 +66,7 @@ fn check_functions(scope: &mut Scope<'_>, program: &Program) {
     }
 }
 
-fn rule(scope: &mut Scope<'_>, rule: usize, given: &raw::Rule) -> Rule {
+fn rule(scope: &Scope<'_>, rule: usize, given: &raw::Rule) -> Rule {
     let path = |key: &str| format!("rule.{rule}.{key}");
     if given.on.is_none() && given.when.is_none() {
         scope.note_missing(&path("on"), "on, when or both");
@@ -86,17 +74,15 @@ fn rule(scope: &mut Scope<'_>, rule: usize, given: &raw::Rule) -> Rule {
     if given.set.is_empty() && scope.document.is_sound(&path("set")) {
         scope.note(&path("set"), "is empty, expected values for variables");
     }
+    let on = given.on.as_ref();
     Rule {
-        on: given
-            .on
-            .as_ref()
-            .and_then(|on| trigger(scope, &path("on"), on)),
+        on: on.and_then(|on| trigger(scope, &path("on"), on)),
         when: scope.condition(&path("when"), given.when.as_deref()),
         set: set(scope, &path("set"), &given.set),
     }
 }
 
-fn trigger(scope: &mut Scope<'_>, path: &str, on: &str) -> Option<Trigger> {
+fn trigger(scope: &Scope<'_>, path: &str, on: &str) -> Option<Trigger> {
     let mut words = on.split_whitespace();
     let who = words.next().unwrap_or_default();
     let what = words.next().unwrap_or_default();

@@ -17,17 +17,15 @@ const MOST_STEPS: usize = 50_000_000;
 const MOST_TERMS: usize = u16::MAX as usize;
 
 /// Reports every unreachable mode, but not its children.
-pub(super) fn check(scope: &mut Scope<'_>, program: &Program) {
+pub(super) fn check(scope: &Scope<'_>, program: &Program) {
     let mut terms = Terms {
         program,
         index: BTreeMap::new(),
         values: vec![],
     };
-    let conditions: Vec<Option<Expression>> = program
-        .modes
-        .iter()
-        .map(|mode| mode.when.as_ref().map(|when| terms.formula(when)))
-        .collect();
+    let conditions = program.modes.iter().map(|mode| mode.when.as_ref());
+    let conditions = conditions.map(|when| when.map(|when| terms.formula(when)));
+    let conditions: Vec<Option<Expression>> = conditions.collect();
     let laws = laws().map(|law| terms.formula(&law));
     if terms.values.len() > MOST_TERMS {
         return;
@@ -178,10 +176,8 @@ impl Terms<'_> {
     }
 
     fn term(&mut self, term: &Expression) -> Expression {
-        let index = *self
-            .index
-            .entry(format!("{term:?}"))
-            .or_insert(self.values.len());
+        let entry = self.index.entry(format!("{term:?}"));
+        let index = *entry.or_insert(self.values.len());
         if index == self.values.len() {
             self.values.push(self.values_of(term).0);
         }
@@ -244,11 +240,7 @@ impl Terms<'_> {
 /// All values of a variable, if only constants are assigned to it.
 fn given_to(program: &Program, variable: u16) -> Option<Vec<f64>> {
     let sets = |task: &Task| matches!(task, Task::Policy(policy) if policy.sets == Some(variable));
-    if program
-        .behaviours
-        .iter()
-        .any(|behaviour| sets(&behaviour.task))
-    {
+    if program.behaviours.iter().any(|one| sets(&one.task)) {
         return None;
     }
     let entered = program.modes.iter().flat_map(|mode| &mode.enter);
@@ -256,10 +248,7 @@ fn given_to(program: &Program, variable: u16) -> Option<Vec<f64>> {
     let set = entered
         .chain(ruled)
         .map(|(variable, value)| (*variable, value));
-    let posts = program
-        .behaviours
-        .iter()
-        .flat_map(|behaviour| &behaviour.posts);
+    let posts = program.behaviours.iter().flat_map(|one| &one.posts);
     let set = set.chain(posts.map(|post| (post.variable, &post.value)));
     let mut values = vec![program.variables[usize::from(variable)].initial];
     for (_, value) in set.filter(|(index, _)| *index == variable) {

@@ -5,7 +5,7 @@ use super::scope::Scope;
 use crate::strategy::{Behaviour, Contacts, Program, Task};
 
 /// Checks that a file gives a reason if, and only if, it opts out of safety.
-pub(super) fn check_reason(scope: &mut Scope<'_>) {
+pub(super) fn check_reason(scope: &Scope<'_>) {
     let raw = &scope.document.raw;
     match (raw.unsafe_i_know, &raw.unsafe_because) {
         (false, Some(_)) => {
@@ -14,13 +14,10 @@ pub(super) fn check_reason(scope: &mut Scope<'_>) {
                 "is given without unsafe_i_know = true, expected both or neither",
             );
         }
-        (true, None) => {
+        (true, None) if scope.document.is_sound("unsafe_because") => {
             let at = scope.document.at("unsafe_i_know");
-            if scope.document.is_sound("unsafe_because") {
-                scope
-                    .diagnostics
-                    .note_missing(at, "unsafe_because", "the reason");
-            }
+            let diagnostics = &scope.document.loader.diagnostics;
+            diagnostics.note_missing(at, "unsafe_because", "the reason");
         }
         (true, Some(because)) if because.trim().is_empty() => {
             scope.note("unsafe_because", "is empty, expected the reason");
@@ -31,17 +28,13 @@ pub(super) fn check_reason(scope: &mut Scope<'_>) {
 
 /// Reports every mode without safety behaviours, and an unnecessary reason. No other behaviour may
 /// outweigh a safety behaviour: constant weights are checked, expressions are limited at run time.
-pub(super) fn check(scope: &mut Scope<'_>, program: &mut Program) {
+pub(super) fn check(scope: &Scope<'_>, program: &mut Program) {
     let is_unsafe = program.unsafe_because.is_some();
     let mut is_lacking = false;
     for leaf in program.leaves() {
         for (kind, all) in [("op_region", ""), ("avoid_collision", " for all contacts")] {
-            let of_kind = || {
-                program
-                    .behaviours
-                    .iter()
-                    .filter(|b| b.task.kind() == kind && b.modes[leaf])
-            };
+            let is_of_kind = |b: &&Behaviour| b.task.kind() == kind && b.modes[leaf];
+            let of_kind = || program.behaviours.iter().filter(is_of_kind);
             if of_kind().any(Behaviour::is_guard) {
                 continue;
             }
@@ -69,27 +62,21 @@ pub(super) fn check(scope: &mut Scope<'_>, program: &mut Program) {
 }
 
 /// Ensures that no behaviour outweighs a safety behaviour in a mode in which both run.
-fn hold_below_guards(scope: &mut Scope<'_>, program: &mut Program) {
+fn hold_below_guards(scope: &Scope<'_>, program: &mut Program) {
     for leaf in program.leaves().collect::<Vec<_>>() {
         // A number can disable a guard: a weight below a goal's, a range of zero, a region wider
         // than the field, or an expression with such a value. Guards therefore have constants
         // within limits, and nothing outweighs them.
         let weight = |kind: &str| {
-            let guards = program
-                .behaviours
-                .iter()
-                .filter(|b| b.task.kind() == kind && b.modes[leaf] && b.is_guard());
-            guards
-                .filter_map(|b| b.weight.constant())
-                .fold(0.0, f64::max)
+            let is_guard = |b: &&Behaviour| b.task.kind() == kind && b.modes[leaf] && b.is_guard();
+            let guards = program.behaviours.iter().filter(is_guard);
+            let weights = guards.filter_map(|b| b.weight.constant());
+            weights.fold(0.0, f64::max)
         };
         let most = weight("op_region").min(weight("avoid_collision"));
         let path = program.path(leaf);
-        for behaviour in program
-            .behaviours
-            .iter_mut()
-            .filter(|b| b.modes[leaf] && !b.task.is_safety())
-        {
+        let goals = program.behaviours.iter_mut();
+        for behaviour in goals.filter(|b| b.modes[leaf] && !b.task.is_safety()) {
             match behaviour.weight.constant() {
                 Some(weight) if weight > most => {
                     let message = format!(

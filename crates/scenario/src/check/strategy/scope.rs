@@ -1,7 +1,7 @@
-//! The context for checking the parts of a program: the file, the variables, and the diagnostics.
+//! The context for checking the parts of a program: the file and the variables.
 
 use super::{cel, expression};
-use crate::diagnostics::Diagnostics;
+use crate::diagnostics::keys_of;
 use crate::raw;
 use crate::read::Document;
 use crate::strategy::{Expression, Kind, Parameter, Program, Variable};
@@ -9,96 +9,80 @@ use serde_json::Value as Json;
 
 /// A program file under check. Its values are addressed by path, as in `mode.1.when`.
 pub(super) struct Scope<'a> {
-    pub(super) diagnostics: &'a mut Diagnostics,
-    pub(super) document: &'a Document<raw::Strategy>,
+    pub(super) document: &'a Document<'a, raw::Strategy>,
     pub(super) variables: &'a [Variable],
 }
 
 impl<'a> Scope<'a> {
     /// The variable with this name, and its index.
     pub(super) fn variable(&self, name: &str) -> Option<(u16, &'a Variable)> {
-        let index = self
-            .variables
-            .iter()
-            .position(|variable| variable.name == name)?;
+        let mut variables = self.variables.iter();
+        let index = variables.position(|variable| variable.name == name)?;
         Some((index as u16, &self.variables[index]))
     }
 
+    /// The names of all variables.
+    pub(super) fn names(&self) -> Vec<&'a str> {
+        let variables = self.variables.iter();
+        variables.map(|variable| variable.name.as_str()).collect()
+    }
+
     /// Reports a fault of the value at `path`; the message is about its key.
-    pub(super) fn note(&mut self, path: &str, message: &str) {
+    pub(super) fn note(&self, path: &str, message: &str) {
         let message = format!("{} {message}", key_of(path));
-        self.diagnostics.note(self.document.at(path), message);
+        self.document.note(path, message);
     }
 
     /// The same, for callers that cannot continue without the value.
-    pub(super) fn refuse<T>(&mut self, path: &str, message: &str) -> Option<T> {
+    pub(super) fn refuse<T>(&self, path: &str, message: &str) -> Option<T> {
         self.note(path, message);
         None
     }
 
     /// Reports a missing value at `path`, unless a value of another type is there.
-    pub(super) fn note_missing(&mut self, path: &str, expected: &str) {
-        self.document.note_missing(self.diagnostics, path, expected);
+    pub(super) fn note_missing(&self, path: &str, expected: &str) {
+        self.document.note_missing(path, expected);
     }
 
     /// Reports a fault of a mode.
-    pub(super) fn note_mode(&mut self, program: &Program, mode: usize, message: &str) {
-        let at = self.document.at(&format!("mode.{mode}"));
-        self.diagnostics
-            .note(at, format!("mode {} {message}", program.path(mode)));
+    pub(super) fn note_mode(&self, program: &Program, mode: usize, message: &str) {
+        let message = format!("mode {} {message}", program.path(mode));
+        self.document.note(&format!("mode.{mode}"), message);
     }
 
     /// The condition at `path`, if valid.
-    pub(super) fn condition(&mut self, path: &str, text: Option<&str>) -> Option<Expression> {
+    pub(super) fn condition(&self, path: &str, text: Option<&str>) -> Option<Expression> {
         self.expression(path, text?, &Kind::Truth)
     }
 
     /// The expression at `path`, if it is valid and of the kind `wanted`.
-    pub(super) fn expression(
-        &mut self,
-        path: &str,
-        text: &str,
-        wanted: &Kind,
-    ) -> Option<Expression> {
+    pub(super) fn expression(&self, path: &str, text: &str, wanted: &Kind) -> Option<Expression> {
         // A stand-in for a faulty value is not the user's text.
         let given = self.document.is_sound(path).then_some(text)?;
-        let parsed = cel::parse(
-            self.diagnostics,
-            key_of(path),
-            self.document.at(path),
-            given,
-        )?;
+        let diagnostics = &self.document.loader.diagnostics;
+        let at = self.document.at(path);
+        let parsed = cel::parse(diagnostics, key_of(path), at, given)?;
         expression::read(self, key_of(path), &parsed, wanted)
     }
 
     /// The number or expression at `path`, limited to the range in the schema `about`.
-    pub(super) fn parameter(
-        &mut self,
-        path: &str,
-        given: &Json,
-        about: &Json,
-    ) -> Option<Parameter> {
+    pub(super) fn parameter(&self, path: &str, given: &Json, about: &Json) -> Option<Parameter> {
         let range = (about["minimum"].as_f64()?, about["maximum"].as_f64()?);
         let expression = match given.as_str() {
             Some(text) => self.expression(path, text, &Kind::Number)?,
             None => Expression::Constant(given.as_f64()?),
         };
-        if let Some(value) = expression
-            .constant()
-            .filter(|value| !(range.0..=range.1).contains(value))
-        {
-            return self.refuse(
-                path,
-                &format!("is {value}, expected {} to {}", range.0, range.1),
-            );
+        match expression.constant() {
+            Some(value) if !(range.0..=range.1).contains(&value) => {
+                let message = format!("is {value}, expected {} to {}", range.0, range.1);
+                self.refuse(path, &message)
+            }
+            _ => Some(Parameter { expression, range }),
         }
-        Some(Parameter { expression, range })
     }
 }
 
 /// The key at the end of a path.
 fn key_of(path: &str) -> &str {
-    path.rsplit('.')
-        .find(|part| part.parse::<usize>().is_err())
-        .unwrap_or(path)
+    keys_of(path).next().unwrap_or(path)
 }

@@ -2,8 +2,7 @@
 
 use super::expression::{CALLS, is_reserved, text_value};
 use super::scope::Scope;
-use crate::diagnostics::Diagnostics;
-use crate::guess::did_you_mean;
+use crate::guess::listed;
 use crate::raw;
 use crate::read::Document;
 use crate::strategy::{Expression, Fact, Kind, Measure, Named, Place, SHARED_MAX, Variable};
@@ -12,38 +11,29 @@ use crate::strategy::{Expression, Fact, Kind, Measure, Named, Place, SHARED_MAX,
 const MOST: usize = 1000;
 
 /// Checks the variables, by name.
-pub(super) fn variables(
-    diagnostics: &mut Diagnostics,
-    document: &Document<raw::Strategy>,
-) -> Vec<Variable> {
+pub(super) fn variables(document: &Document<raw::Strategy>) -> Vec<Variable> {
     let given = &document.raw.variables;
-    let mut scope = Scope {
-        diagnostics,
+    let scope = Scope {
         document,
         variables: &[],
     };
     if given.len() > MOST {
-        scope.note(
-            "variables",
-            &format!("has {} entries, expected at most {MOST}", given.len()),
-        );
+        let message = format!("has {} entries, expected at most {MOST}", given.len());
+        scope.note("variables", &message);
         return vec![];
     }
-    let variables: Vec<Variable> = given
-        .iter()
-        .filter_map(|(name, given)| one(&mut scope, name, given))
-        .collect();
+    let variables = given.iter();
+    let variables = variables.filter_map(|(name, given)| one(&scope, name, given));
+    let variables: Vec<Variable> = variables.collect();
     let shared = variables.iter().filter(|variable| variable.shared).count();
     if shared > SHARED_MAX {
-        scope.note(
-            "variables",
-            &format!("has {shared} shared entries, expected at most {SHARED_MAX}"),
-        );
+        let message = format!("has {shared} shared entries, expected at most {SHARED_MAX}");
+        scope.note("variables", &message);
     }
     variables
 }
 
-fn one(scope: &mut Scope<'_>, name: &str, given: &raw::Variable) -> Option<Variable> {
+fn one(scope: &Scope<'_>, name: &str, given: &raw::Variable) -> Option<Variable> {
     let path = format!("variables.{name}");
     if !is_free(scope, &path, name) {
         return None;
@@ -65,52 +55,38 @@ fn one(scope: &mut Scope<'_>, name: &str, given: &raw::Variable) -> Option<Varia
 }
 
 /// Whether a variable may have this name: a CEL identifier that is not in use.
-fn is_free(scope: &mut Scope<'_>, path: &str, name: &str) -> bool {
-    let at = scope.document.at(path);
-    if !scope.diagnostics.is_name(at, "variable", name) {
+fn is_free(scope: &Scope<'_>, path: &str, name: &str) -> bool {
+    if !scope.document.is_name(path, "variable", name) {
         return false;
     }
-    let taken = [
-        (
-            name.starts_with(|c: char| c.is_ascii_digit()),
-            "begins with a digit",
-        ),
-        (is_reserved(name), "is a reserved word in CEL"),
-        (Fact::by_name(name).is_some(), "is a fact"),
-        (Place::by_name(name).is_some(), "is a place or a boat"),
-        (
-            CALLS.contains(&name) || Measure::by_name(name).is_some(),
-            "is a function",
-        ),
-    ];
-    let taken = taken.into_iter().find(|(is_so, _)| *is_so);
-    if let Some((_, taken)) = taken {
-        scope.diagnostics.note(
-            at,
-            format!("variable is {name:?}, which {taken}, expected another name"),
-        );
-    }
-    taken.is_none()
+    let taken = if name.starts_with(|c: char| c.is_ascii_digit()) {
+        "begins with a digit"
+    } else if is_reserved(name) {
+        "is a reserved word in CEL"
+    } else if Fact::by_name(name).is_some() {
+        "is a fact"
+    } else if Place::by_name(name).is_some() {
+        "is a place or a boat"
+    } else if CALLS.contains(&name) || Measure::by_name(name).is_some() {
+        "is a function"
+    } else {
+        return true;
+    };
+    let message = format!("variable is {name:?}, which {taken}, expected another name");
+    scope.document.note(path, message);
+    false
 }
 
 /// A variable's kind and initial value.
-fn kind_of(scope: &mut Scope<'_>, path: &str, table: &raw::VariableTable) -> Option<(Kind, f64)> {
+fn kind_of(scope: &Scope<'_>, path: &str, table: &raw::VariableTable) -> Option<(Kind, f64)> {
     let initial_path = format!("{path}.initial");
-    let texts: Vec<String> = table
-        .values
-        .iter()
-        .flatten()
-        .map(|value| value.0.clone())
-        .collect();
-    for (i, text) in texts
-        .iter()
-        .enumerate()
-        .filter(|(i, text)| !text.is_empty() && texts[..*i].contains(text))
-    {
-        scope.note(
-            &format!("{path}.values.{i}"),
-            &format!("has {text:?} twice, expected unique values"),
-        );
+    let texts = table.values.iter().flatten();
+    let texts: Vec<String> = texts.map(|value| value.0.clone()).collect();
+    for (i, text) in texts.iter().enumerate() {
+        if !text.is_empty() && texts[..i].contains(text) {
+            let message = format!("has {text:?} twice, expected unique values");
+            scope.note(&format!("{path}.values.{i}"), &message);
+        }
     }
     let has_values = table.values.is_some();
     match &table.initial {
@@ -128,23 +104,21 @@ fn kind_of(scope: &mut Scope<'_>, path: &str, table: &raw::VariableTable) -> Opt
             let initial = text_at(scope, &initial_path, &texts, text)?.constant()?;
             Some((Kind::Text(texts), initial))
         }
-        Some(raw::Value::Text(text)) => scope.refuse(
-            &initial_path,
-            &format!("is the string {text:?}, expected the allowed texts as well: values = [...]"),
-        ),
-        Some(other) => scope.refuse(
-            &initial_path,
-            &format!(
-                "is {}, expected one of {}",
-                in_words(other),
-                texts.join(", ")
-            ),
-        ),
+        Some(raw::Value::Text(text)) => {
+            let expected = "the allowed texts as well: values = [...]";
+            let message = format!("is the string {text:?}, expected {expected}");
+            scope.refuse(&initial_path, &message)
+        }
+        Some(other) => {
+            let expected = texts.join(", ");
+            let message = format!("is {}, expected one of {expected}", in_words(other));
+            scope.refuse(&initial_path, &message)
+        }
     }
 }
 
 /// The text at `path` as a value of a variable with these `values`.
-fn text_at(scope: &mut Scope<'_>, path: &str, values: &[String], text: &str) -> Option<Expression> {
+fn text_at(scope: &Scope<'_>, path: &str, values: &[String], text: &str) -> Option<Expression> {
     let wrong = |allowed| scope.refuse(path, &format!("is {text:?}, {allowed}"));
     text_value(values, text).map_or_else(wrong, Some)
 }
@@ -157,36 +131,21 @@ fn in_words(given: &raw::Value) -> String {
     }
 }
 
-pub(super) fn set(
-    scope: &mut Scope<'_>,
-    path: &str,
-    given: &raw::Values,
-) -> Vec<(u16, Expression)> {
-    given
-        .iter()
-        .filter_map(|(name, value)| assigned(scope, &format!("{path}.{name}"), name, value))
-        .collect()
+pub(super) fn set(scope: &Scope<'_>, path: &str, given: &raw::Values) -> Vec<(u16, Expression)> {
+    let one = |(name, value): (&String, _)| assigned(scope, &format!("{path}.{name}"), name, value);
+    given.iter().filter_map(one).collect()
 }
 
 fn assigned(
-    scope: &mut Scope<'_>,
+    scope: &Scope<'_>,
     path: &str,
     name: &str,
     given: &raw::Value,
 ) -> Option<(u16, Expression)> {
     let Some((index, variable)) = scope.variable(name) else {
-        let known: Vec<&str> = scope
-            .variables
-            .iter()
-            .map(|variable| variable.name.as_str())
-            .collect();
-        let expected = match known.as_slice() {
+        let expected = match scope.names().as_slice() {
             [] => "a variable, but [variables] has none".to_owned(),
-            _ => format!(
-                "one of the variables {}{}",
-                known.join(", "),
-                did_you_mean(name, &known)
-            ),
+            known => format!("one of the variables {}", listed(name, known)),
         };
         return scope.refuse(path, &format!("is unknown, expected {expected}"));
     };
@@ -201,10 +160,8 @@ fn assigned(
                 Kind::Truth => "true, false or an expression".to_owned(),
                 Kind::Number => "a finite number or an expression".to_owned(),
             };
-            return scope.refuse(
-                path,
-                &format!("is {}, expected {expected}", in_words(other)),
-            );
+            let message = format!("is {}, expected {expected}", in_words(other));
+            return scope.refuse(path, &message);
         }
     };
     Some((index, value))
