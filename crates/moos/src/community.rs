@@ -1,5 +1,6 @@
 //! A MOOS community as the bridge sees it: where it publishes, and what it reads.
 
+use crate::back_seat::HELM;
 use crate::clock::MoosClock;
 use crate::database::{BRIDGE, Database, Dropped};
 use crate::remote::Remote;
@@ -67,6 +68,8 @@ pub struct Community {
     published: BTreeMap<String, Value>,
     /// Notes for the person who runs the bridge.
     notes: Vec<String>,
+    /// Drawings of the applications for the shoreside.
+    pub(crate) drawings: Vec<Msg>,
     /// Malformed datagrams.
     pub(crate) malformed: u64,
     /// Values of applications that the bridge could not use.
@@ -115,6 +118,7 @@ impl Community {
             moos,
             published,
             notes: Vec::new(),
+            drawings: Vec::new(),
             malformed: 0,
             refusals: Refusals::default(),
         })
@@ -184,6 +188,19 @@ impl Community {
     /// Makes [`Community::publish_change`] publish everything again.
     pub fn forget_all(&mut self) {
         self.published.clear();
+    }
+
+    /// Whether there is a helm or a controller, and whether there is an application.
+    pub(crate) fn presence(&self) -> (bool, bool) {
+        match &self.link {
+            Link::Served(server) => server.visit(|database, _| database.presence(&HELM)),
+            Link::Remote(remote) => remote.presence(&HELM),
+        }
+    }
+
+    /// Whether what is published now arrives.
+    pub(crate) fn is_reachable(&self) -> bool {
+        matches!(self.link, Link::Served(_)) || self.presence().1
     }
 
     /// The newest values that applications have published since the last call.

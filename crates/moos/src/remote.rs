@@ -90,6 +90,14 @@ impl Remote {
         })
     }
 
+    /// Whether one of these variables was heard, and whether the database is connected.
+    pub(crate) fn presence(&self, names: &[&str]) -> (bool, bool) {
+        self.state.visit(|state| {
+            let has = |name: &&str| state.heard.contains_key(*name);
+            (names.iter().any(has), state.is_connected)
+        })
+    }
+
     /// What was dropped so far.
     pub(crate) fn dropped(&self) -> Dropped {
         self.state.visit(|state| state.dropped)
@@ -241,7 +249,7 @@ impl State {
             .filter(|msg| msg.kind == Kind::NOTIFY && msg.source != NAME)
         {
             if reads.contains(&msg.key) {
-                self.heard.insert(msg.key.clone(), msg);
+                wire::keep(&mut self.heard, msg);
             }
         }
     }

@@ -85,7 +85,10 @@ impl Shoreside<'_> {
                     return Ok(());
                 }
             }
-            community.visit(|community| self.pass_commands(community));
+            community.visit(|community| {
+                self.pass_drawings(community);
+                self.pass_commands(community);
+            });
         }
         Ok(())
     }
@@ -184,6 +187,17 @@ impl Shoreside<'_> {
             .collect()
     }
 
+    /// Shows what the helms of this bridge draw, for example their next waypoints.
+    fn pass_drawings(&self, community: &mut Community) {
+        for boat in &self.boats {
+            for msg in boat.visit(|boat| std::mem::take(&mut boat.drawings)) {
+                let text = msg.as_text().unwrap_or_default().to_owned();
+                let sent = community.publish(&msg.key, Value::Text(text));
+                self.share.iter().for_each(|share| share.send(&sent));
+            }
+        }
+    }
+
     /// Passes people's commands to the boats of this bridge.
     fn pass_commands(&mut self, community: &mut Community) {
         let mut heard = community.take_heard();
@@ -202,20 +216,24 @@ impl Shoreside<'_> {
                 self.redraw_s = f64::NEG_INFINITY;
             }
             for boat in &self.boats {
-                boat.visit(|boat| {
-                    let command = msg
-                        .key
-                        .strip_suffix(&format!("_{}", boat.name.to_uppercase()));
-                    let command = command.or_else(|| msg.key.strip_suffix("_ALL"));
-                    command.into_iter().for_each(|command| {
-                        boat.command(Msg {
-                            key: command.to_owned(),
-                            ..msg.clone()
-                        })
-                    });
-                });
+                boat.visit(|boat| pass_command(boat, &msg));
             }
         }
+    }
+}
+
+/// Passes a command for this boat or for all.
+fn pass_command(boat: &mut Community, msg: &Msg) {
+    let own = format!("_{}", boat.name.to_uppercase());
+    let command = msg
+        .key
+        .strip_suffix(&own)
+        .or_else(|| msg.key.strip_suffix("_ALL"));
+    if let Some(command) = command {
+        boat.command(Msg {
+            key: command.to_owned(),
+            ..msg.clone()
+        });
     }
 }
 
