@@ -98,6 +98,8 @@ impl BoatMind {
         let now = picture.stamp.valid_ns;
         if !self.has_begun && community.is_reachable() {
             self.has_begun = true;
+            // The mission's own initial values, such as `DEPLOY = false`, no longer hold.
+            drop(community.take_heard());
             for (key, value) in START {
                 community.publish(key, flag_of(value));
             }
@@ -469,9 +471,25 @@ mod tests {
                 bus::clock::rest(Duration::from_millis(10));
             }
         };
-        let presence = |mind: &BoatMind| mind.community.visit(|community| community.presence());
+        let wait_for = |mind: &BoatMind, application: &mut Community, presence| {
+            let start = bus::clock::now();
+            while mind.community.visit(|community| community.presence()) != presence {
+                assert!(bus::clock::since(start) < Duration::from_secs(20));
+                application.take_heard();
+                bus::clock::rest(Duration::from_millis(10));
+            }
+        };
+        wait_for(&mind, &mut application, (false, true));
+        while !application.is_reachable() {
+            bus::clock::rest(Duration::from_millis(10));
+        }
+        for (key, text) in [("DEPLOY", "false"), ("IVPHELM_STATE", "PARK")] {
+            application.publish(key, Value::Text(text.to_owned()));
+        }
+        wait_for(&mind, &mut application, (true, true));
+        mind.decide(&picture(&scenario, 1.0));
+        assert_eq!(mind.back_seat.mode(), "DRIVE", "the game has begun");
         assert_eq!(heard(&mut mind, &mut application).as_deref(), Some("true"));
-        assert_eq!(presence(&mind), (false, true));
         for (key, text) in [
             ("ENEMY_IN_ZONE", "false"),
             ("VIEW_POINT", "x=1,y=2,label=one"),
@@ -481,7 +499,6 @@ mod tests {
             application.publish(key, Value::Text(text.to_owned()));
         }
         assert_eq!(heard(&mut mind, &mut application).as_deref(), Some("true"));
-        assert_eq!(presence(&mind), (true, true));
         let drawings = mind.community.visit(|community| community.drawings.clone());
         assert_eq!(drawings.len(), 2, "{drawings:?}");
     }

@@ -176,7 +176,10 @@ impl Community {
             Link::Served(server) => {
                 server.visit(|database, now_s| database.receive("shoreside", vec![msg], now_s));
             }
-            Link::Remote(remote) => remote.publish(&msg),
+            Link::Remote(remote) => {
+                remote.publish(&msg);
+                remote.hear(msg);
+            }
         }
     }
 
@@ -257,6 +260,30 @@ impl std::fmt::Display for Address {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use bus::clock;
+    use std::time::Duration;
+
+    #[test]
+    fn a_persons_command_reaches_the_bridge_in_any_database() {
+        let moos = MoosClock { warp: 1.0 };
+        let open = |address: Address| {
+            let reads = BTreeSet::from(["DEPLOY".to_owned()]);
+            Community::open("blue_one", &address, reads, moos).unwrap()
+        };
+        let served = open(":0".parse().unwrap());
+        let place = served.place.strip_prefix("MOOSDB at ").unwrap().to_owned();
+        let mut communities = [open(Address::Connect(place)), served];
+        let start = clock::now();
+        while !communities[0].is_reachable() {
+            assert!(clock::since(start) < Duration::from_secs(20));
+            clock::rest(Duration::from_millis(10));
+        }
+        for community in &mut communities {
+            community.command(Msg::text(Kind::NOTIFY, "DEPLOY", "true", 0.0));
+            let heard = community.take_heard();
+            assert_eq!(heard.len(), 1, "{}", community.place);
+        }
+    }
 
     #[test]
     fn an_address_says_whether_to_serve_or_to_connect() {

@@ -82,6 +82,11 @@ impl Remote {
         }
     }
 
+    /// Hears a value of the bridge's own, which the database does not send back.
+    pub(crate) fn hear(&self, msg: Msg) {
+        self.state.visit(|state| wire::keep(&mut state.heard, msg));
+    }
+
     /// The values and notes since the last call, and whether the database is connected.
     pub(crate) fn take_heard(&self) -> (Vec<Msg>, Vec<String>, bool) {
         self.state.visit(|state| {

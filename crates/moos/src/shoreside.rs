@@ -11,6 +11,7 @@ use gateway::geodesy::LocalFrame;
 use messages::Frame;
 use messages::topic::{self, GameName};
 use primitives::{Ned, TeamId, VehicleId, codec};
+use rules::event::{Event, TagCause};
 use scenario::Scenario;
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -119,6 +120,19 @@ impl Shoreside<'_> {
                 ("ONFIELD", !boat.outside),
             ] {
                 sent.extend(community.publish_change(&format!("{key}_{name}"), flag_of(value)));
+            }
+        }
+        for logged in frame.logged(scenario) {
+            if let Event::Tagged {
+                vehicle,
+                cause: TagCause::Opponent(by),
+            } = logged.event
+            {
+                let [name, by] =
+                    [vehicle, by].map(|vehicle| &scenario.vehicles[vehicle.index()].name);
+                let key = format!("TAG_RESULT_{}", by.to_uppercase());
+                let text = format!("event={},source={by},tagged={name}", logged.tick);
+                sent.push(community.publish(&key, Value::Text(text)));
             }
         }
         let tagged = frame

@@ -172,8 +172,8 @@ impl Game {
         let plays = self.values.get("").and_then(|values| values.get("PLAY"));
         let when = |state| Some(plays?.iter().find(|(_, value)| *value == state)?.0);
         let start_s = when(1.0).unwrap_or(first_s);
-        let end_s = when(0.0).filter(|end| *end > start_s).unwrap_or(last_s);
-        let length_s = end_s - start_s;
+        let stop_s = when(0.0).filter(|end| *end > start_s);
+        let length_s = stop_s.unwrap_or(last_s) - start_s;
         if !(0.0..LENGTH_MAX_S).contains(&length_s) {
             return Err(format!("they cover {length_s:.0} s: are they of one game?"));
         }
@@ -193,29 +193,20 @@ impl Game {
             },
             water: Water::default(),
         };
-        self.write(&header, start_s, length_s)
+        self.write(&header, (start_s, length_s, stop_s.is_some()))
             .map_err(|e| e.to_string())
     }
 
     fn write(
         &self,
         header: &Header,
-        start_s: f64,
-        length_s: f64,
+        (start_s, length_s, has_ended): (f64, f64, bool),
     ) -> Result<Bag, Box<dyn std::error::Error>> {
         let scenario = &header.info.scenario;
         let count = (length_s / scenario.decision().as_s()) as u64;
         let mut writer = Writer::begin(Cursor::new(Vec::new()), &header.opening())?;
         let mut events: Vec<Logged> = Vec::new();
-        let nothing = VehicleTruth {
-            carrying: -1,
-            ..VehicleTruth::default()
-        };
-        let mut frame = Frame {
-            vehicles: vec![nothing; scenario.vehicles.len()],
-            score: vec![0; scenario.teams.len()],
-            ..Frame::default()
-        };
+        let mut frame = self.frame(scenario, start_s);
         for seq in 0..=count {
             let at = scenario.decision() * seq as i64;
             let at_s = start_s + at.as_s();
@@ -232,13 +223,21 @@ impl Game {
                 let vehicle = VehicleId::at(i);
                 self.tell_changes((&before, &frame), (vehicle, at_s), scenario, &mut tell);
             }
+            let over = has_ended && seq == count;
+            if over {
+                let most = frame.score.iter().max();
+                let mut best = (0..frame.score.len()).filter(|i| frame.score.get(*i) == most);
+                let winner = best.next().filter(|_| best.next().is_none());
+                let winner = winner.map(|team| TeamId(team as u8));
+                tell(Event::Ended { winner });
+            }
             let events = events[told..]
                 .iter()
                 .map(|logged| EventRecord::from(*logged));
             let shown = Frame {
                 stamp,
                 events: events.collect(),
-                over: seq == count,
+                over,
                 ..frame.clone()
             };
             let decision = Decision {
@@ -458,7 +457,7 @@ mod tests {
         2.0 TAGGED p false\n3.0 HAS_FLAG p true\n3.1 APPCAST p two\nlines\n3.2 NAV_X";
     const SHORE: &str = "%% LOGSTART 1001.0\n0.5 NODE_REPORT p NAME=red_1,X=50,Y=5,SPD=1,HDG=0\n\
         1.0 TAG_RESULT_RED_1 p event=1,source=red_1,tagged=blue_1\n1.0 TAGGED_BLUE_1 p true\n\
-        1.5 RED_SCORES p 2\n";
+        1.5 RED_SCORES p 2\n2.0 AQUATICUS_GAME_ALL p stop\n";
 
     fn read_text(texts: &[&str]) -> Result<Recording, RecordingError> {
         let folder = tempfile::tempdir().expect("a folder");
@@ -500,7 +499,11 @@ mod tests {
         let told = ending.outcome.events.iter().map(|event| event.sentence());
         assert_eq!(
             told.collect::<Vec<_>>(),
-            ["blue_1 is tagged by red_1", "blue_1 grabs the red flag"]
+            [
+                "blue_1 is tagged by red_1",
+                "blue_1 grabs the red flag",
+                "red wins"
+            ]
         );
     }
 
