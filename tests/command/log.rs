@@ -137,6 +137,9 @@ fn moos_logs_are_written_for_shore_and_boats() {
             && shoreside.contains(" NODE_REPORT ")
             && shoreside.contains(" BLUE_SCORES ")
     );
+    let logs = logs.to_str().unwrap();
+    let events = log(&[&game.recording, "--events"]);
+    assert_eq!(log(&[logs, "--events"]), events, "they are read again");
     let alone = dir.path().join("shore.alog");
     log(&[&game.recording, "--alog", alone.to_str().unwrap()]);
     assert_eq!(std::fs::read_to_string(alone).unwrap(), shoreside);

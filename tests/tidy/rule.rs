@@ -23,7 +23,10 @@ const MAY_IMPORT: [(&str, &[&str]); 25] = [
         "simulated_network",
         &["primitives", "scenario", "messages", "bus"],
     ),
-    ("recording", &["primitives", "scenario", "messages"]),
+    (
+        "recording",
+        &["primitives", "rules", "scenario", "messages"],
+    ),
     (
         "sim",
         &[

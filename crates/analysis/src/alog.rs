@@ -9,7 +9,7 @@
 //!
 //! | file | variables |
 //! |---|---|
-//! | shoreside | `NODE_REPORT` of every boat (the truth), `AQUATICUS_GAME_ALL`, `<TEAM>_SCORES`, `<TEAM>_FLAG_GRABBED`, `HAS_FLAG_<BOAT>`, `TAGGED_<BOAT>`, `ONFIELD_<BOAT>`, `FLAG_RESET`, `SQUALL_EVENT` |
+//! | shoreside | `NODE_REPORT` of every boat (the truth), `AQUATICUS_GAME_ALL`, `<TEAM>_SCORES`, `<TEAM>_FLAG_GRABBED`, `HAS_FLAG_<BOAT>`, `TAGGED_<BOAT>`, `ONFIELD_<BOAT>`, `TAG_RESULT_<BOAT>`, `FLAG_RESET`, `SQUALL_EVENT` |
 //! | a vehicle | `NAV_X`, `NAV_Y`, `NAV_HEADING`, `NAV_SPEED` (estimated), the same as `NAV_GT_…` (true), `DESIRED_HEADING`, `DESIRED_TURN`, `DESIRED_SPEED`, `DESIRED_THRUST_L` and `_R`, `HAS_FLAG`, `TAGGED`, `NODE_REPORT_LOCAL` |
 
 use crate::step::{Sample, Step, for_each_step};
@@ -328,7 +328,13 @@ fn happened(log: &mut Log, scenario: &Scenario, event: &EventOutcome) -> io::Res
             log.row(at_s, &grabbed, "false")?;
             log.row(at_s, "FLAG_RESET", &format!("label={team}"))?;
         }
-        "tagged" | "tagged_by_boundary" => log.row(at_s, &of_boat("TAGGED"), "true")?,
+        "tagged" | "tagged_by_boundary" => {
+            log.row(at_s, &of_boat("TAGGED"), "true")?;
+            if let Some(by) = &event.other {
+                let key = format!("TAG_RESULT_{}", by.to_uppercase());
+                log.row(at_s, &key, &format!("source={by},tagged={boat}"))?;
+            }
+        }
         "untagged" => log.row(at_s, &of_boat("TAGGED"), "false")?,
         "left_field" => log.row(at_s, &of_boat("ONFIELD"), "false")?,
         "returned_to_field" => log.row(at_s, &of_boat("ONFIELD"), "true")?,

@@ -2,8 +2,8 @@
 
 use crate::scenario_files::existing;
 use crate::terminal;
-use anyhow::{Context, Error, Result, anyhow};
-use recording::{Bag, Recording, RecordingError};
+use anyhow::{Context, Error, Result, anyhow, bail};
+use recording::{Bag, Recording, RecordingError, alog};
 use std::cmp::Reverse;
 use std::path::{Path, PathBuf};
 
@@ -72,9 +72,15 @@ pub fn open(file: &Path, to: &str) -> Result<Recording> {
     Recording::of_bag(bag).with_context(|| format!("cannot {to} {}", file.display()))
 }
 
-/// Opens a recording of any kind.
+/// Opens a recording of any kind, or the MOOS logs of a game: one, or all in a folder. A game file
+/// in the folder of the logs says which game it was.
 pub fn open_any(file: &Path, to: &str) -> Result<Bag> {
-    let bag = Bag::open(file).map_err(|error| match error {
+    let opened = if file.is_dir() || alog::is_log(file) {
+        logs(file)?
+    } else {
+        Bag::open(file)
+    };
+    let bag = opened.map_err(|error| match error {
         // It names the file.
         RecordingError::File { .. } => Error::new(error),
         error => Error::new(error).context(format!("cannot {to} {}", file.display())),
@@ -93,4 +99,41 @@ pub fn open_any(file: &Path, to: &str) -> Result<Bag> {
         ));
     }
     Ok(bag)
+}
+
+/// Opens MOOS logs: a file, or those in a folder and its folders, such as a mission's.
+fn logs(path: &Path) -> Result<Result<Bag, RecordingError>> {
+    let folder = if path.is_dir() {
+        path
+    } else {
+        path.parent().unwrap_or(path)
+    };
+    let listed = |folder: &Path| {
+        let files = std::fs::read_dir(folder).into_iter().flatten();
+        files.filter_map(Result::ok).map(|file| file.path())
+    };
+    let is_game = |file: &PathBuf| file.extension().is_some_and(|end| end == "toml");
+    let game = listed(folder).find(is_game);
+    let mut files: Vec<PathBuf> = if path.is_dir() {
+        listed(path)
+            .chain(listed(path).flat_map(|inner| listed(&inner)))
+            .collect()
+    } else {
+        vec![path.to_owned()]
+    };
+    files.retain(|file| alog::is_log(file));
+    files.sort();
+    if files.is_empty() {
+        bail!(
+            "{} has no MOOS logs, which begin with a line of %",
+            path.display()
+        );
+    }
+    if game.is_none() {
+        terminal::remark("no game file beside the logs: field, flags and rules are unknown");
+    }
+    let base = game
+        .as_deref()
+        .unwrap_or(Path::new("scenarios/games/pav01_vs_pav01.toml"));
+    Ok(alog::read(&files, scenario::load(base)?, game.is_some()))
 }

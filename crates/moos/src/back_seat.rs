@@ -21,6 +21,17 @@ pub(crate) const READS: [&str; 10] = [
     "IVPHELM_ALLSTOP",
 ];
 
+/// Variables of which one tells that a boat has its helm or its controller.
+pub(crate) const HELM: [&str; 7] = [
+    "IVPHELM_STATE",
+    READS[0],
+    READS[1],
+    READS[2],
+    READS[3],
+    READS[4],
+    READS[5],
+];
+
 /// A number and the time of its arrival.
 #[derive(Clone, Copy, Debug)]
 struct Desired {

@@ -23,9 +23,25 @@ pub fn reads() -> BTreeSet<String> {
     back_seat::READS
         .iter()
         .chain(&requests::READS)
+        .chain(&DRAWINGS)
+        .chain(&["IVPHELM_STATE"])
         .map(|name| (*name).to_owned())
         .collect()
 }
+
+/// What helms draw for viewers.
+const DRAWINGS: [&str; 6] = [
+    "VIEW_POINT",
+    "VIEW_SEGLIST",
+    "VIEW_POLYGON",
+    "VIEW_CIRCLE",
+    "VIEW_MARKER",
+    "VIEW_RANGE_PULSE",
+];
+/// Drawings that wait for the shoreside.
+const DRAWINGS_MAX: usize = 256;
+/// A helm that was silent for this long has been restarted, s.
+const HELM_SILENCE_S: f64 = 3.0;
 
 /// The values that a community starts with: a game begins without an operator who presses a button.
 const START: [(&str, bool); 5] = [
@@ -49,6 +65,8 @@ pub struct BoatMind {
     /// The time of the last sighting of each contact that was published.
     seen: BTreeMap<VehicleId, SimTime>,
     has_begun: bool,
+    /// When the helm last told its state.
+    helm_at: Option<SimTime>,
     /// Whether the boat was at its own flag at the last picture.
     was_home: bool,
 }
@@ -71,13 +89,17 @@ impl BoatMind {
             requests: Requests::default(),
             seen: BTreeMap::new(),
             has_begun: false,
+            helm_at: None,
             was_home: false,
         }
     }
 
     fn step(&mut self, community: &mut Community, picture: &Picture, own: &OwnBoat) -> Order {
         let now = picture.stamp.valid_ns;
-        if !std::mem::replace(&mut self.has_begun, true) {
+        if !self.has_begun && community.is_reachable() {
+            self.has_begun = true;
+            // The mission's own initial values, such as `DEPLOY = false`, no longer hold.
+            drop(community.take_heard());
             for (key, value) in START {
                 community.publish(key, flag_of(value));
             }
@@ -88,7 +110,17 @@ impl BoatMind {
         self.publish_game(community, picture, own);
         let mut answers = self.requests.judge(&self.scenario, picture, self.vehicle);
         for msg in community.take_heard() {
-            if !self.back_seat.receive(&msg, now) {
+            if msg.key == "IVPHELM_STATE" {
+                let before = self.helm_at.replace(now);
+                if before.is_none_or(|before| (now - before).as_s() > HELM_SILENCE_S) {
+                    // A mission's initial values of game variables are not the game's.
+                    community.forget_all();
+                }
+            } else if DRAWINGS.contains(&msg.key.as_str()) {
+                community.drawings.push(msg);
+                let excess = community.drawings.len().saturating_sub(DRAWINGS_MAX);
+                community.drawings.drain(..excess);
+            } else if !self.back_seat.receive(&msg, now) {
                 let text = (msg.key.as_str(), msg.as_text().unwrap_or_default());
                 answers.extend(self.requests.receive(&self.scenario, picture, own, text));
             }
@@ -347,9 +379,7 @@ mod tests {
 
     #[test]
     fn applications_read_pictures_as_variables_and_their_requests_become_orders() {
-        let file =
-            Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
-        let scenario = scenario::load(&file).unwrap_or_else(|e| panic!("{e}"));
+        let scenario = scenario();
         let flag = scenario.field.flags[0].home;
         let expected = [
             ("NAV_X", flag.east.to_string()),
@@ -401,6 +431,7 @@ mod tests {
             "MODE=CARRYING,",
             "LAT=",
             "LON=",
+            "COLOR=red",
         ] {
             assert!(report.contains(part), "{report} lacks {part}");
         }
@@ -417,5 +448,80 @@ mod tests {
             Order::Hold,
             "its own boat is unknown"
         );
+    }
+
+    fn scenario() -> Scenario {
+        let file =
+            Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
+        scenario::load(&file).unwrap_or_else(|e| panic!("{e}"))
+    }
+
+    #[test]
+    fn a_helm_that_starts_late_gets_the_games_values_again_and_its_drawings_are_kept() {
+        let scenario = scenario();
+        let (mut mind, mut application) = boat(&scenario, &["ENEMY_IN_ZONE"]);
+        let heard = |mind: &mut BoatMind, application: &mut Community| {
+            let start = bus::clock::now();
+            loop {
+                mind.decide(&picture(&scenario, 1.0));
+                if let Some(msg) = application.take_heard().pop() {
+                    return msg.as_text().map(str::to_owned);
+                }
+                assert!(bus::clock::since(start) < Duration::from_secs(20));
+                bus::clock::rest(Duration::from_millis(10));
+            }
+        };
+        let wait_for = |mind: &BoatMind, application: &mut Community, presence| {
+            let start = bus::clock::now();
+            while mind.community.visit(|community| community.presence()) != presence {
+                assert!(bus::clock::since(start) < Duration::from_secs(20));
+                application.take_heard();
+                bus::clock::rest(Duration::from_millis(10));
+            }
+        };
+        wait_for(&mind, &mut application, (false, true));
+        while !application.is_reachable() {
+            bus::clock::rest(Duration::from_millis(10));
+        }
+        for (key, text) in [("DEPLOY", "false"), ("IVPHELM_STATE", "PARK")] {
+            application.publish(key, Value::Text(text.to_owned()));
+        }
+        wait_for(&mind, &mut application, (true, true));
+        mind.decide(&picture(&scenario, 1.0));
+        assert_eq!(mind.back_seat.mode(), "DRIVE", "the game has begun");
+        assert_eq!(heard(&mut mind, &mut application).as_deref(), Some("true"));
+        for (key, text) in [
+            ("ENEMY_IN_ZONE", "false"),
+            ("VIEW_POINT", "x=1,y=2,label=one"),
+            ("VIEW_POINT", "x=3,y=4,label=two"),
+            ("IVPHELM_STATE", "DRIVE"),
+        ] {
+            application.publish(key, Value::Text(text.to_owned()));
+        }
+        assert_eq!(heard(&mut mind, &mut application).as_deref(), Some("true"));
+        let drawings = mind.community.visit(|community| community.drawings.clone());
+        assert_eq!(drawings.len(), 2, "{drawings:?}");
+    }
+
+    #[test]
+    fn a_database_that_connects_late_gets_the_starting_values() {
+        let scenario = scenario();
+        let port = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+        let place = port.local_addr().unwrap().to_string();
+        let remote = Address::Connect(place.clone());
+        let community = Community::open("blue_one", &remote, reads(), MOOS).unwrap();
+        let community = Arc::new(Watched::new(community));
+        let mut mind = BoatMind::new(Arc::new(scenario.clone()), VehicleId(0), community, MOOS);
+        mind.decide(&picture(&scenario, 1.0));
+        drop(port);
+        let wanted = BTreeSet::from(["MOOS_MANUAL_OVERRIDE".to_owned()]);
+        let address = place.parse().unwrap();
+        let mut database = Community::open("blue_one", &address, wanted, MOOS).unwrap();
+        let start = bus::clock::now();
+        while database.take_heard().is_empty() {
+            assert!(bus::clock::since(start) < Duration::from_secs(20));
+            mind.decide(&picture(&scenario, 2.0));
+            bus::clock::rest(Duration::from_millis(10));
+        }
     }
 }

@@ -8,7 +8,7 @@ use crate::share::Share;
 use crate::shoreside::{self, Shoreside};
 use agent::node::NodeError;
 use bus::game_search::{GameSearch, NotFound};
-use bus::{Bus, Place, Watched, clock};
+use bus::{Bus, Patience, Place, SimState, SimWatch, Watched, clock};
 use gateway::geodesy::LocalFrame;
 use messages::run_state::RunState;
 use messages::topic::{self, GameName};
@@ -22,6 +22,8 @@ use thiserror::Error;
 
 /// Interval of notes about dropped messages.
 const REPORT: Duration = Duration::from_secs(1);
+/// Applications without a helm get this long before the boats join.
+const HELM_MAX: Duration = Duration::from_secs(5);
 /// How long applications can read the end of the game before their database closes.
 const LINGER: Duration = Duration::from_millis(500);
 
@@ -180,7 +182,7 @@ impl Bridge<'_> {
             let played = if self.boats.is_empty() {
                 Ok(())
             } else {
-                self.play()
+                self.await_helms().and_then(|()| self.play())
             };
             if !self.boats.is_empty() {
                 clock::rest(LINGER);
@@ -192,6 +194,38 @@ impl Bridge<'_> {
         });
         self.bus.close();
         played
+    }
+
+    /// Waits until every boat has a helm, or at least some application: with its last agent, a game
+    /// begins.
+    fn await_helms(&self) -> Result<(), BridgeError> {
+        let patience = Patience::of_player(self.settings.silence);
+        let sim = SimWatch::open(&self.bus, &self.game, patience)?;
+        let mut told = String::new();
+        let mut since = vec![None; self.boats.len()];
+        loop {
+            let waiting = self
+                .boats
+                .iter()
+                .zip(&mut since)
+                .filter_map(|(community, since)| {
+                    let (name, (has_helm, has_some)) =
+                        community.visit(|community| (community.name.clone(), community.presence()));
+                    let start = has_some.then(|| *since.get_or_insert_with(clock::now));
+                    let is_late = start.is_some_and(|start| clock::since(start) > HELM_MAX);
+                    (!has_helm && !is_late).then_some(name)
+                });
+            let waiting = waiting.collect::<Vec<_>>().join(", ");
+            let is_stopped = self.settings.stop.load(Ordering::Relaxed);
+            if waiting.is_empty() || is_stopped || !matches!(sim.state(), SimState::Alive) {
+                return Ok(());
+            }
+            if told != waiting {
+                (self.tell)(News::Note(format!("waiting for the helms of {waiting}")));
+                told = waiting;
+            }
+            clock::rest(LINGER / 5);
+        }
     }
 
     /// Plays with the boats until the game is over.

@@ -1,5 +1,6 @@
 //! A MOOS community as the bridge sees it: where it publishes, and what it reads.
 
+use crate::back_seat::HELM;
 use crate::clock::MoosClock;
 use crate::database::{BRIDGE, Database, Dropped};
 use crate::remote::Remote;
@@ -67,6 +68,8 @@ pub struct Community {
     published: BTreeMap<String, Value>,
     /// Notes for the person who runs the bridge.
     notes: Vec<String>,
+    /// Drawings of the applications for the shoreside.
+    pub(crate) drawings: Vec<Msg>,
     /// Malformed datagrams.
     pub(crate) malformed: u64,
     /// Values of applications that the bridge could not use.
@@ -115,6 +118,7 @@ impl Community {
             moos,
             published,
             notes: Vec::new(),
+            drawings: Vec::new(),
             malformed: 0,
             refusals: Refusals::default(),
         })
@@ -172,7 +176,10 @@ impl Community {
             Link::Served(server) => {
                 server.visit(|database, now_s| database.receive("shoreside", vec![msg], now_s));
             }
-            Link::Remote(remote) => remote.publish(&msg),
+            Link::Remote(remote) => {
+                remote.publish(&msg);
+                remote.hear(msg);
+            }
         }
     }
 
@@ -184,6 +191,19 @@ impl Community {
     /// Makes [`Community::publish_change`] publish everything again.
     pub fn forget_all(&mut self) {
         self.published.clear();
+    }
+
+    /// Whether there is a helm or a controller, and whether there is an application.
+    pub(crate) fn presence(&self) -> (bool, bool) {
+        match &self.link {
+            Link::Served(server) => server.visit(|database, _| database.presence(&HELM)),
+            Link::Remote(remote) => remote.presence(&HELM),
+        }
+    }
+
+    /// Whether what is published now arrives.
+    pub(crate) fn is_reachable(&self) -> bool {
+        matches!(self.link, Link::Served(_)) || self.presence().1
     }
 
     /// The newest values that applications have published since the last call.
@@ -240,6 +260,30 @@ impl std::fmt::Display for Address {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use bus::clock;
+    use std::time::Duration;
+
+    #[test]
+    fn a_persons_command_reaches_the_bridge_in_any_database() {
+        let moos = MoosClock { warp: 1.0 };
+        let open = |address: Address| {
+            let reads = BTreeSet::from(["DEPLOY".to_owned()]);
+            Community::open("blue_one", &address, reads, moos).unwrap()
+        };
+        let served = open(":0".parse().unwrap());
+        let place = served.place.strip_prefix("MOOSDB at ").unwrap().to_owned();
+        let mut communities = [open(Address::Connect(place)), served];
+        let start = clock::now();
+        while !communities[0].is_reachable() {
+            assert!(clock::since(start) < Duration::from_secs(20));
+            clock::rest(Duration::from_millis(10));
+        }
+        for community in &mut communities {
+            community.command(Msg::text(Kind::NOTIFY, "DEPLOY", "true", 0.0));
+            let heard = community.take_heard();
+            assert_eq!(heard.len(), 1, "{}", community.place);
+        }
+    }
 
     #[test]
     fn an_address_says_whether_to_serve_or_to_connect() {

@@ -223,7 +223,7 @@ impl Database {
                         ..msg
                     };
                     if self.reads.contains(&msg.key) {
-                        self.heard.insert(msg.key.clone(), msg.clone());
+                        wire::keep(&mut self.heard, msg.clone());
                     }
                     self.notify(msg, now_s);
                 }
@@ -308,6 +308,12 @@ impl Database {
                 );
             }
         }
+    }
+
+    /// Whether one of these variables has a value, and whether there is a client.
+    pub fn presence(&self, names: &[&str]) -> (bool, bool) {
+        let has = |name: &&str| self.variables.contains_key(*name);
+        (names.iter().any(has), !self.clients.is_empty())
     }
 
     /// The newest values for the bridge since the last call, and notes for the person who runs it.

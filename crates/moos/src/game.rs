@@ -21,9 +21,10 @@ pub(crate) fn node_report(
     let at = frame.lat_lon(nav.at());
     let report = alog::node_report(scenario, (vehicle.index(), nav), time_s, mode);
     Value::Text(format!(
-        "{report},LAT={},LON={}",
+        "{report},LAT={},LON={},COLOR={}",
         decimal(at.lat_deg, 7),
-        decimal(at.lon_deg, 7)
+        decimal(at.lon_deg, 7),
+        colour(scenario, scenario.team_of(vehicle)),
     ))
 }
 

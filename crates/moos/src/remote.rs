@@ -82,11 +82,24 @@ impl Remote {
         }
     }
 
+    /// Hears a value of the bridge's own, which the database does not send back.
+    pub(crate) fn hear(&self, msg: Msg) {
+        self.state.visit(|state| wire::keep(&mut state.heard, msg));
+    }
+
     /// The values and notes since the last call, and whether the database is connected.
     pub(crate) fn take_heard(&self) -> (Vec<Msg>, Vec<String>, bool) {
         self.state.visit(|state| {
             let heard = std::mem::take(&mut state.heard).into_values().collect();
             (heard, std::mem::take(&mut state.notes), state.is_connected)
+        })
+    }
+
+    /// Whether one of these variables was heard, and whether the database is connected.
+    pub(crate) fn presence(&self, names: &[&str]) -> (bool, bool) {
+        self.state.visit(|state| {
+            let has = |name: &&str| state.heard.contains_key(*name);
+            (names.iter().any(has), state.is_connected)
         })
     }
 
@@ -241,7 +254,7 @@ impl State {
             .filter(|msg| msg.kind == Kind::NOTIFY && msg.source != NAME)
         {
             if reads.contains(&msg.key) {
-                self.heard.insert(msg.key.clone(), msg);
+                wire::keep(&mut self.heard, msg);
             }
         }
     }

@@ -11,6 +11,7 @@ use gateway::geodesy::LocalFrame;
 use messages::Frame;
 use messages::topic::{self, GameName};
 use primitives::{Ned, TeamId, VehicleId, codec};
+use rules::event::{Event, TagCause};
 use scenario::Scenario;
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -85,7 +86,10 @@ impl Shoreside<'_> {
                     return Ok(());
                 }
             }
-            community.visit(|community| self.pass_commands(community));
+            community.visit(|community| {
+                self.pass_drawings(community);
+                self.pass_commands(community);
+            });
         }
         Ok(())
     }
@@ -116,6 +120,19 @@ impl Shoreside<'_> {
                 ("ONFIELD", !boat.outside),
             ] {
                 sent.extend(community.publish_change(&format!("{key}_{name}"), flag_of(value)));
+            }
+        }
+        for logged in frame.logged(scenario) {
+            if let Event::Tagged {
+                vehicle,
+                cause: TagCause::Opponent(by),
+            } = logged.event
+            {
+                let [name, by] =
+                    [vehicle, by].map(|vehicle| &scenario.vehicles[vehicle.index()].name);
+                let key = format!("TAG_RESULT_{}", by.to_uppercase());
+                let text = format!("event={},source={by},tagged={name}", logged.tick);
+                sent.push(community.publish(&key, Value::Text(text)));
             }
         }
         let tagged = frame
@@ -184,6 +201,17 @@ impl Shoreside<'_> {
             .collect()
     }
 
+    /// Shows what the helms of this bridge draw, for example their next waypoints.
+    fn pass_drawings(&self, community: &mut Community) {
+        for boat in &self.boats {
+            for msg in boat.visit(|boat| std::mem::take(&mut boat.drawings)) {
+                let text = msg.as_text().unwrap_or_default().to_owned();
+                let sent = community.publish(&msg.key, Value::Text(text));
+                self.share.iter().for_each(|share| share.send(&sent));
+            }
+        }
+    }
+
     /// Passes people's commands to the boats of this bridge.
     fn pass_commands(&mut self, community: &mut Community) {
         let mut heard = community.take_heard();
@@ -202,26 +230,25 @@ impl Shoreside<'_> {
                 self.redraw_s = f64::NEG_INFINITY;
             }
             for boat in &self.boats {
-                boat.visit(|boat| {
-                    command_to(&boat.name, &msg)
-                        .into_iter()
-                        .for_each(|command| boat.command(command));
-                });
+                boat.visit(|boat| pass_command(boat, &msg));
             }
         }
     }
 }
 
-/// The command in this message if it is meant for this boat, as `DEPLOY_BLUE_ONE` and `DEPLOY_ALL`
-/// are.
-fn command_to(boat: &str, msg: &Msg) -> Option<Msg> {
-    let own_suffix = format!("_{}", boat.to_uppercase());
-    let command = msg.key.strip_suffix(&own_suffix);
-    let command = command.or_else(|| msg.key.strip_suffix("_ALL"))?;
-    Some(Msg {
-        key: command.to_owned(),
-        ..msg.clone()
-    })
+/// Passes a command for this boat or for all.
+fn pass_command(boat: &mut Community, msg: &Msg) {
+    let own = format!("_{}", boat.name.to_uppercase());
+    let command = msg
+        .key
+        .strip_suffix(&own)
+        .or_else(|| msg.key.strip_suffix("_ALL"));
+    if let Some(command) = command {
+        boat.command(Msg {
+            key: command.to_owned(),
+            ..msg.clone()
+        });
+    }
 }
 
 /// Whether the node's keys, if any, let it see the true state.

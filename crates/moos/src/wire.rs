@@ -4,6 +4,7 @@
 //! number of messages (i32), a compression flag (u8, always 0), and the messages. A datagram of
 //! pShare is one message without a packet.
 
+use std::collections::BTreeMap;
 use thiserror::Error;
 
 /// The greeting of a client: 32 bytes, padded with zeros.
@@ -332,6 +333,24 @@ impl Framer {
         let messages: Result<Vec<Msg>, Malformed> = (0..count).map(|_| body.message()).collect();
         self.unread.drain(..length);
         messages.map(Some)
+    }
+}
+
+/// Maximum number of values that wait for the bridge.
+const HEARD_MAX: usize = 1024;
+/// Maximum length of a drawing for the shoreside, bytes.
+const DRAWING_MAX: usize = 8 << 10;
+
+/// Keeps the newest value of each variable, but all drawings: one variable draws many things.
+pub(crate) fn keep(heard: &mut BTreeMap<String, Msg>, msg: Msg) {
+    let is_drawing = msg.key.starts_with("VIEW_");
+    let key = match msg.as_text() {
+        Some(text) if is_drawing => format!("{} {text}", msg.key),
+        _ => msg.key.clone(),
+    };
+    let fits = heard.len() < HEARD_MAX && msg.bytes.len() < DRAWING_MAX;
+    if fits || !is_drawing {
+        heard.insert(key, msg);
     }
 }
 

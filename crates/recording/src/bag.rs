@@ -25,6 +25,9 @@ pub enum RecordingError {
         /// The system's error.
         reason: std::io::Error,
     },
+    /// A MOOS log cannot be understood; with file and line.
+    #[error("{0}")]
+    Log(String),
     /// It can no longer be read.
     #[error("cannot read the rest of the recording: {0}")]
     Unread(#[from] std::io::Error),

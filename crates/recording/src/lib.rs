@@ -27,6 +27,7 @@
 //! game also has `drawn` (the randomised values) and, unless the file is truncated, `result`
 //! (digest, outcome, run, number of dropped messages).
 
+pub mod alog;
 mod bag;
 mod damaged;
 mod game_recording;
