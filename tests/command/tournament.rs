@@ -248,7 +248,11 @@ fn the_report_has_every_number_and_is_the_same_on_one_thread_and_on_four() {
         matrix[0]["seeds"],
         serde_json::json!({ "first": 1, "last": 5 })
     );
+    check_table(&csv, &text, entries);
+}
 
+/// Checks the table of entries, as a file and on the terminal.
+fn check_table(csv: &str, text: &str, entries: &[Value]) {
     let lines: Vec<Vec<&str>> = csv.lines().map(|line| line.split(',').collect()).collect();
     assert_eq!((lines.len(), lines[0].len()), (4, 6 + 7 * 3), "{csv}");
     assert!(

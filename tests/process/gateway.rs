@@ -400,7 +400,7 @@ fn a_gateway_that_fails_sends_its_boat_standby_first_and_ends() {
     );
     refusal_within(
         LIMIT / 4,
-        squall(&[&args[..], &["--link", &nowhere]].concat()),
+        squall(&gateway_args("blue_one", &nowhere, &more)),
     );
 }
 

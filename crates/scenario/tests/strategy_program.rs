@@ -88,7 +88,6 @@ turn = "clockwise"
 "#;
 
 #[test]
-#[expect(clippy::too_many_lines, reason = "one table")]
 fn a_program_says_what_its_file_says() {
     let program = program(FULL);
     assert_eq!(
@@ -345,9 +344,11 @@ fn numbers_of_behaviours_have_the_ranges_and_defaults_that_are_declared() {
                 for value in [format!("{value:?}"), format!("\"{value:?} * 1\"")] {
                     let file = file(&format!("{key} = {value}\n"));
                     let problems = strategy_of(&file, &[]).unwrap_err().to_string();
-                    for part in [format!("{key} is"), format!("expected {low} to {high}")] {
-                        assert!(problems.contains(&part), "{kind} {key}: {problems}");
-                    }
+                    let parts = [format!("{key} is"), format!("expected {low} to {high}")];
+                    assert!(
+                        parts.iter().all(|part| problems.contains(part)),
+                        "{kind} {key}: {problems}"
+                    );
                     ranges += 1;
                 }
             }

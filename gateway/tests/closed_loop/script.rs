@@ -315,7 +315,6 @@ fn holds(rig: &Rig, condition: &str) -> bool {
 }
 
 /// The value with this name.
-#[expect(clippy::too_many_lines, reason = "one table")]
 fn value(rig: &Rig, name: &str) -> String {
     let boat = &rig.boat;
     let status = rig.bridge.status(rig.now);

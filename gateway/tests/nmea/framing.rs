@@ -176,7 +176,6 @@ fn lines_end_with_cr_or_lf_or_both() {
 }
 
 #[test]
-#[expect(clippy::too_many_lines, reason = "one table")]
 fn each_fault_has_its_count() {
     let overlong = format!("${}{COMMAND}", "x".repeat(1000));
     // What gpsd writes to find out who we are.

@@ -147,7 +147,6 @@ pub(crate) fn boat_sentences(domain: &Domain) -> BoxedStrategy<Sentence> {
     .boxed()
 }
 
-#[expect(clippy::too_many_lines, reason = "one table")]
 pub(crate) fn standard_sentences(domain: &Domain) -> BoxedStrategy<Sentence> {
     let angle = || option::of(domain.angles.clone());
     let size = || option::of(domain.sizes.clone());

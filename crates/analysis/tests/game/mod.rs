@@ -44,7 +44,6 @@ pub(crate) fn ending() -> Ending {
 
 /// The decision `seq`: the first boat drives north at 2 m/s and estimates its position 3 m too far
 /// north and 4 m too far east. It carries a flag at the third frame.
-#[expect(clippy::too_many_lines, reason = "one table")]
 pub(crate) fn decision(seq: u64) -> Decision {
     let at = |seq: u64, version| Stamp {
         valid_ns: SimTime(seq as i64 * 100_000_000),
