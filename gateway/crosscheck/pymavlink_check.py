@@ -231,9 +231,10 @@ def play_boat(processes):
     boat = Boat()
     gateway = processes.start("gateway", "surveyor", "--vehicle", "blue_one", "--no-record", "--game", "nobody", "--config", CONFIG,
                               "--link", f"tcp://127.0.0.1:{boat.port}")
-    sent = boat.serve(LIMIT_S, lambda boat: (boat.mode, boat.armed) == (HOLD, False))
+    is_beat = lambda message: message.get_type() == "HEARTBEAT"
+    sent = boat.serve(LIMIT_S, lambda boat: (boat.mode, boat.armed) == (HOLD, False) and any(map(is_beat, boat.sent)))
     check((boat.mode, boat.armed) == (HOLD, False), "a boat that is in GUIDED is put into HOLD and disarmed")
-    beats = [message for message in sent if message.get_type() == "HEARTBEAT"]
+    beats = [message for message in sent if is_beat(message)]
     check(beats and beats[0].type == mav.MAV_TYPE_GCS and beats[0].autopilot == mav.MAV_AUTOPILOT_INVALID, "its heartbeat")
     check(beats[0].base_mode == 0, "which says nothing of arms")
     check(beats[0].get_srcSystem() == 255 and beats[0].get_srcComponent() == 190, "as the ground station that it is configured as")

@@ -12,8 +12,8 @@ use std::path::Path;
 #[global_allocator]
 static HEAP: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
-/// Decisions until everything has happened once, up to a capture: every list has grown.
-const WARM_UP: u64 = 3_000;
+/// Decisions until everything has happened once, captures and a tag: every list has grown.
+const WARM_UP: u64 = 4_100;
 
 #[test]
 fn a_decision_takes_nothing_from_the_heap_unless_hulls_are_close_or_something_happens() {
@@ -50,5 +50,5 @@ fn a_decision_takes_nothing_from_the_heap_unless_hulls_are_close_or_something_ha
             );
         }
     }
-    assert!(free > 2_000, "{free} decisions without, {busy} with");
+    assert!(free > 1_500, "{free} decisions without, {busy} with");
 }
