@@ -166,13 +166,6 @@ fn result_of(report: &Report) -> Result<serde_json::Value> {
     Ok(value)
 }
 
-/// Parses a speed such as `10x` or `0.5`.
-pub(crate) fn speed(text: &str) -> Result<f64, String> {
-    let factor = text.strip_suffix('x').unwrap_or(text).parse().ok();
-    let factor = factor.filter(|factor| (0.01..=1000.0).contains(factor));
-    factor.ok_or_else(|| "expected a factor from 0.01x to 1000x, such as 10x".to_owned())
-}
-
 /// Parses a team and its file.
 fn team_and_file(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {

@@ -2,7 +2,7 @@
 //! `sim`.
 
 use super::child_process::{self, option};
-use crate::game_args::{GameArgs, speed};
+use crate::game_args::GameArgs;
 use anyhow::Result;
 use command_line::number::seconds;
 use scenario::Setting;
@@ -60,4 +60,11 @@ impl PaceArgs {
         option(&mut command, "--seed", game.seed);
         Ok(command)
     }
+}
+
+/// Parses a speed such as `10x` or `0.5`.
+fn speed(text: &str) -> Result<f64, String> {
+    let factor = text.strip_suffix('x').unwrap_or(text).parse().ok();
+    let factor = factor.filter(|factor| (0.01..=1000.0).contains(factor));
+    factor.ok_or_else(|| "expected a factor from 0.01x to 1000x, such as 10x".to_owned())
 }

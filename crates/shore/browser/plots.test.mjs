@@ -137,7 +137,7 @@ test('the time line shows time, score and event under the pointer, has a scale, 
     const text = await tip();
     const [, minutes, seconds] = text.match(/^(\d\d):(\d\d\.\d)/).map(Number);
     assert(Math.abs(60 * minutes + seconds - event.at_s) < 0.6, `${text} for ${event.at_s}`);
-    assert(text.includes(event.vehicle.replaceAll('_', ' ')) && text.includes(event.event === 'captured' ? 'captures' : 'grabs'), text);
+    assert(text.includes(event.vehicle.replaceAll('_', ' ')) && text.includes(event.event === 'captured' ? 'CAPTURES' : 'grabs'), text);
     await pointTo(event.at_s + 1.5);
     // The score as on the chart at that moment.
     const told = [...(await tip()).matchAll(/(?:blue|red) (\d+)/g)].slice(0, 2).map(([, points]) => Number(points));

@@ -18,9 +18,9 @@ const PIXEL_S = 0.6;
 const pav01 = scenario('games/pav01_vs_pav01.toml');
 
 /** Plays and records a game. Returns the recording and the result. */
-async function record(t) {
+async function record(t, game = pav01) {
   const place = folder(t);
-  await squall(t, 'run', pav01, '--in-process', '--record', place, '--json', join(place, 'result.json'));
+  await squall(t, 'run', game, '--in-process', '--record', place, '--json', join(place, 'result.json'));
   const file = readdirSync(place).find((name) => name.endsWith('.mcap'));
   return { file: join(place, file), result: readJson(join(place, 'result.json')) };
 }
@@ -48,7 +48,7 @@ async function scrub(sight, t_s) {
 }
 
 test('a recording agrees with its events at every moment', async (t) => {
-  const { file, result } = await record(t);
+  const { file, result } = await record(t, 'strategy_4_vs_3');
   const replay = new Program(t, 'replay', file, '--listen', '127.0.0.1:0');
   const sight = await Sight.open(t, browser, `${await replay.url()}#t=0`);
   assert.equal(await sight.get(() => squall.mode), 'replay');
