@@ -6,6 +6,7 @@ use crate::clock::MoosClock;
 use crate::community::{Community, Value};
 use crate::game::{self, flag_of};
 use crate::requests::{self, Requests};
+use crate::wire::DRAWINGS;
 use agent::Mind;
 use bus::Watched;
 use gateway::geodesy::LocalFrame;
@@ -29,15 +30,6 @@ pub fn reads() -> BTreeSet<String> {
         .collect()
 }
 
-/// What helms draw for viewers.
-const DRAWINGS: [&str; 6] = [
-    "VIEW_POINT",
-    "VIEW_SEGLIST",
-    "VIEW_POLYGON",
-    "VIEW_CIRCLE",
-    "VIEW_MARKER",
-    "VIEW_RANGE_PULSE",
-];
 /// Drawings that wait for the shoreside.
 const DRAWINGS_MAX: usize = 256;
 /// A helm that was silent for this long has been restarted, s.

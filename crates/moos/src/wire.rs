@@ -336,6 +336,15 @@ impl Framer {
     }
 }
 
+/// What helms draw for viewers.
+pub(crate) const DRAWINGS: [&str; 6] = [
+    "VIEW_POINT",
+    "VIEW_SEGLIST",
+    "VIEW_POLYGON",
+    "VIEW_CIRCLE",
+    "VIEW_MARKER",
+    "VIEW_RANGE_PULSE",
+];
 /// Maximum number of values that wait for the bridge.
 const HEARD_MAX: usize = 1024;
 /// Maximum length of a drawing for the shoreside, bytes.
@@ -343,7 +352,7 @@ const DRAWING_MAX: usize = 8 << 10;
 
 /// Keeps the newest value of each variable, but all drawings: one variable draws many things.
 pub(crate) fn keep(heard: &mut BTreeMap<String, Msg>, msg: Msg) {
-    let is_drawing = msg.key.starts_with("VIEW_");
+    let is_drawing = DRAWINGS.contains(&msg.key.as_str());
     let key = match msg.as_text() {
         Some(text) if is_drawing => format!("{} {text}", msg.key),
         _ => msg.key.clone(),
