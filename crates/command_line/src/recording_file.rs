@@ -76,13 +76,16 @@ pub fn open(file: &Path, to: &str) -> Result<Recording> {
 /// in the folder of the logs says which game it was.
 pub fn open_any(file: &Path, to: &str) -> Result<Bag> {
     let opened = if file.is_dir() || alog::is_log(file) {
-        logs(file)?
+        let Logs { files, game } = logs(file)?;
+        let base = game.as_deref();
+        let base = base.unwrap_or(Path::new("scenarios/games/pav01_vs_pav01.toml"));
+        alog::read(&files, scenario::load(base)?, game.is_some())
     } else {
         Bag::open(file)
     };
     let bag = opened.map_err(|error| match error {
-        // It names the file.
-        RecordingError::File { .. } => Error::new(error),
+        // These name the file.
+        RecordingError::File { .. } | RecordingError::Log(_) => Error::new(error),
         error => Error::new(error).context(format!("cannot {to} {}", file.display())),
     })?;
     if let [first, ..] = &bag.damage[..] {
@@ -101,19 +104,26 @@ pub fn open_any(file: &Path, to: &str) -> Result<Bag> {
     Ok(bag)
 }
 
-/// Opens MOOS logs: a file, or those in a folder and its folders, such as a mission's.
-fn logs(path: &Path) -> Result<Result<Bag, RecordingError>> {
-    let folder = if path.is_dir() {
-        path
-    } else {
-        path.parent().unwrap_or(path)
+/// MOOS logs of a game, and the file of the game beside them.
+struct Logs {
+    files: Vec<PathBuf>,
+    game: Option<PathBuf>,
+}
+
+/// Finds MOOS logs: a file, or those in a folder and its folders, such as a mission's.
+fn logs(path: &Path) -> Result<Logs> {
+    let folder = match path.parent() {
+        _ if path.is_dir() => path,
+        Some(parent) if parent != Path::new("") => parent,
+        _ => Path::new("."),
     };
     let listed = |folder: &Path| {
         let files = std::fs::read_dir(folder).into_iter().flatten();
         files.filter_map(Result::ok).map(|file| file.path())
     };
     let is_game = |file: &PathBuf| file.extension().is_some_and(|end| end == "toml");
-    let game = listed(folder).find(is_game);
+    // Of several, the first by name: folders are listed in no order.
+    let game = listed(folder).filter(is_game).min();
     let mut files: Vec<PathBuf> = if path.is_dir() {
         listed(path)
             .chain(listed(path).flat_map(|inner| listed(&inner)))
@@ -132,8 +142,5 @@ fn logs(path: &Path) -> Result<Result<Bag, RecordingError>> {
     if game.is_none() {
         terminal::remark("no game file beside the logs: field, flags and rules are unknown");
     }
-    let base = game
-        .as_deref()
-        .unwrap_or(Path::new("scenarios/games/pav01_vs_pav01.toml"));
-    Ok(alog::read(&files, scenario::load(base)?, game.is_some()))
+    Ok(Logs { files, game })
 }

@@ -46,6 +46,10 @@ struct Game {
 
 /// Whether a file is a log, by its content.
 pub fn is_log(path: &Path) -> bool {
+    // Opening a named pipe would wait for its writer.
+    if !path.is_file() {
+        return false;
+    }
     let mut start = [0; MAGIC.len()];
     std::fs::File::open(path)
         .and_then(|mut file| file.read_exact(&mut start))
