@@ -1,7 +1,7 @@
 //! `squall policy`: describes a trained model and explains its choices in a recorded game.
 
 use crate::minds::Minds;
-use crate::{helm_text, recording_file, scenario_files, screen};
+use crate::{helm_text, recording_file, scenario_files, screen, submission};
 use anyhow::{Context, Result, bail};
 use command_line::number::{seconds, significant, whole};
 use onnx::Network;
@@ -33,6 +33,12 @@ pub(crate) struct Args {
     /// Number of inputs to list, the most influential first
     #[arg(long, value_name = "COUNT", default_value_t = 12, value_parser = whole::<usize>(0, u64::MAX))]
     inputs: usize,
+    /// Writes the policy to this folder as an entry for the Maritime Capture the Flag competition
+    #[arg(long, value_name = "FOLDER", conflicts_with = "game")]
+    submission: Option<PathBuf>,
+    /// With --submission: actions are drawn by their probabilities, instead of the likeliest taken
+    #[arg(long, requires = "submission")]
+    sampled: bool,
 }
 
 /// Number of listed actions.
@@ -53,6 +59,12 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let model = PolicyModel::read(&name, &bytes, PartialSpec::default());
     let spec = model.as_ref().map(|model| model.spec).map_err(Clone::clone);
     screen::print(&about(&name, bytes.len(), &network, spec));
+    if let Some(folder) = &args.submission {
+        let no_entry = || format!("{name} cannot be an entry");
+        let model = model.map_err(anyhow::Error::msg).with_context(no_entry)?;
+        screen::print(&submission::write(&model, args.sampled, folder).with_context(no_entry)?);
+        return Ok(ExitCode::SUCCESS);
+    }
     if let (Some(game), Some(vehicle), Some(at_s)) = (&args.game, &args.vehicle, args.at) {
         let model = model.map_err(anyhow::Error::msg);
         let model =
@@ -135,6 +147,8 @@ fn evaluation_us(mut network: Network) -> f64 {
 fn observation_text(space: ObservationSpace) -> String {
     match space {
         ObservationSpace::Pyquaticus => format!("pyquaticus, version {}", space.version()),
+        ObservationSpace::Pyquaticus2023 => format!("pyquaticus_2023, version {}", space.version()),
+        ObservationSpace::Pyquaticus2026 => format!("pyquaticus_2026, version {}", space.version()),
         ObservationSpace::Squall {
             mates,
             enemies,

@@ -67,6 +67,13 @@ impl<M: Mind + ?Sized> MindRunner<M> {
             .map(|boat| &mut *boat.mind)
     }
 
+    /// Gives a boat another mind from the next decision on.
+    pub fn replace(&mut self, vehicle: VehicleId, mind: Box<M>) {
+        if let Some(boat) = self.boats.iter_mut().find(|boat| boat.vehicle == vehicle) {
+            boat.mind = mind;
+        }
+    }
+
     /// Delivers messages that mates in other processes sent after the previous decision. Minds
     /// ignore messages of the other team.
     pub fn receive(&mut self, messages: &[Word]) {

@@ -29,7 +29,7 @@ pub struct Game {
 }
 
 impl Game {
-    fn new(scenario: &Scenario, outcome: Outcome) -> Game {
+    pub(crate) fn new(scenario: &Scenario, outcome: Outcome) -> Game {
         let name = |side: usize| scenario.teams[side].name.as_str();
         Game {
             score: [0, 1].map(|side| outcome.score.teams[name(side)]),

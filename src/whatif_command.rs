@@ -1,0 +1,321 @@
+//! `squall whatif`: what would have happened from a moment of a recorded game on with other minds.
+
+use crate::jobs_args::JobsArgs;
+use crate::progress::Progress;
+use crate::water_args::within;
+use crate::{output_file, recording_file, scenario_files, screen, stop};
+use anyhow::{Context, Result, bail, ensure};
+use command_line::explain::UsageError;
+use command_line::number::whole;
+use experiment::whatif::{self, Past};
+use experiment::{Estimate, Game};
+use messages::input::Inputs;
+use primitives::{SimTime, VehicleId};
+use recording::{INPUTS, NewFile, Recording};
+use rules::count::Counts;
+use rules::event::EventCursor;
+use scenario::strategy::Strategy;
+use scenario::{Kind, load_file};
+use serde::Serialize;
+use sim::{Contest, GameRecorder, Report, Run};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Arc;
+
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// Recording: a file, or a part of a name that `squall runs` lists [default: the newest in runs]
+    #[arg(value_name = "RECORDING", value_parser = recording_file::named)]
+    file: Option<PathBuf>,
+    /// Time from which futures differ from the recorded game, s
+    #[arg(long, value_name = "SECONDS", value_parser = within(0.0, 86_400.0, "s"))]
+    at: f64,
+    /// Strategy that all blue boats continue with: a file or a name
+    #[arg(long, value_name = "STRATEGY")]
+    blue: Option<String>,
+    /// Strategy that all red boats continue with
+    #[arg(long, value_name = "STRATEGY")]
+    red: Option<String>,
+    /// Strategy that one boat continues with; repeatable
+    #[arg(long, value_name = "NAME=STRATEGY", value_parser = boat_and_strategy)]
+    vehicle: Vec<(String, String)>,
+    /// Number of futures
+    #[arg(long, value_name = "N", default_value_t = 200, value_parser = whole::<u32>(5, 100_000))]
+    futures: u32,
+    #[command(flatten)]
+    jobs: JobsArgs,
+    /// Writes the results of all futures to this file as JSON
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// Records the future that the changes affect most, to watch with `squall replay`
+    #[arg(long, value_name = "FILE")]
+    record: Option<PathBuf>,
+}
+
+fn boat_and_strategy(word: &str) -> Result<(String, String), String> {
+    let parts = word
+        .split_once('=')
+        .filter(|(a, b)| !a.is_empty() && !b.is_empty());
+    let (boat, strategy) = parts.ok_or("expected NAME=STRATEGY, such as red_one=learned")?;
+    Ok((boat.to_owned(), strategy.to_owned()))
+}
+
+/// The content of the `--json` file.
+#[derive(Serialize)]
+struct Compared<'a> {
+    game: &'a str,
+    at_s: f64,
+    teams: [&'a str; 2],
+    /// For each future the game as recorded and with the changes.
+    futures: &'a [[Game; 2]],
+}
+
+pub(crate) fn run(args: &Args) -> Result<ExitCode> {
+    let file = recording_file::or_newest(args.file.as_deref())?;
+    let recording = recording_file::open(&file, "play on")?;
+    let past =
+        past(&recording, args.at).with_context(|| format!("cannot play {} on", file.display()))?;
+    let changes = changes(args, &past)?;
+    for path in args.json.iter().chain(&args.record) {
+        output_file::check(path, "the result")?;
+    }
+    let stop = stop::on_ctrl_c()?;
+    let count = args.futures as usize;
+    let threads = args.jobs.threads(count);
+    let mut progress = Progress::of(count as u64, "futures");
+    let mut futures = vec![];
+    let played = whatif::compare(&past, &changes, count, (threads, &stop), |games| {
+        progress.add();
+        futures.push(games);
+        Ok(())
+    });
+    progress.end();
+    played.map_err(anyhow::Error::msg)?;
+    if futures.is_empty() {
+        return Ok(stop::interrupted());
+    }
+    let name = recording.header().game.as_str();
+    let teams = [0, 1].map(|team| past.scenario.teams[team].name.as_str());
+    screen::print(&text(name, args.at, teams, &futures));
+    if let Some(path) = &args.json {
+        let compared = Compared {
+            game: name,
+            at_s: args.at,
+            teams,
+            futures: &futures,
+        };
+        output_file::write_json(path, "the result", &compared)?;
+    }
+    if let Some(path) = &args.record {
+        record(path, name, &past, &changes, most_affected(&futures))?;
+    }
+    let is_whole = futures.len() == count;
+    Ok(if is_whole {
+        ExitCode::SUCCESS
+    } else {
+        stop::interrupted()
+    })
+}
+
+/// The recorded game up to a time.
+fn past(recording: &Recording, at_s: f64) -> Result<Past> {
+    if recording.header().info.pace == recording::alog::PACE {
+        bail!("MOOS logs do not contain the inputs of a game");
+    }
+    let scenario = recording.scenario().clone();
+    scenario.has_no_real_boats()?;
+    let mut inputs = vec![];
+    let mut end_s = 0.0;
+    for message in recording
+        .bag()
+        .messages()
+        .filter(|message| message.topic == INPUTS)
+    {
+        let given: Inputs = message.read()?;
+        end_s = given.stamp.valid_ns.as_s();
+        let all: Option<Vec<_>> = given.of(&scenario).collect();
+        inputs.extend(all.with_context(|| format!("cannot decode an input at {end_s:.1} s"))?);
+    }
+    ensure!(
+        at_s < end_s,
+        UsageError(format!(
+            "--at is {at_s}, expected less than {end_s:.1}, where the game ended"
+        ))
+    );
+    let until = SimTime::from_s(at_s);
+    Ok(Past {
+        scenario,
+        inputs,
+        until,
+    })
+}
+
+/// The boats that continue with other strategies.
+fn changes(args: &Args, past: &Past) -> Result<Vec<(VehicleId, Box<Strategy>)>> {
+    let vehicles = &past.scenario.vehicles;
+    let teams = [("blue", &args.blue), ("red", &args.red)];
+    let of_teams = teams
+        .into_iter()
+        .filter_map(|(team, strategy)| Some((team, strategy.as_ref()?)));
+    let mut changes = vec![];
+    let mut change = |key: &str, name: &str, strategy: &str, are: &dyn Fn(VehicleId) -> bool| {
+        let path = scenario_files::find(strategy, Kind::STRATEGY)?;
+        let strategy = load_file::<Strategy>(&path)?;
+        let boats = (0..vehicles.len())
+            .map(VehicleId::at)
+            .filter(|boat| are(*boat));
+        let before = changes.len();
+        changes.extend(boats.map(|boat| (boat, Box::new(strategy.clone()))));
+        if changes.len() == before {
+            let known: Vec<&str> = vehicles
+                .iter()
+                .map(|vehicle| vehicle.name.as_str())
+                .collect();
+            bail!(UsageError(format!(
+                "{key} is {name:?}, which this game does not have; its boats are {}",
+                known.join(", ")
+            )));
+        }
+        Ok(())
+    };
+    for (team, strategy) in of_teams {
+        change("the team", team, strategy, &|boat| {
+            past.scenario.teams[past.scenario.team_of(boat).index()].name == team
+        })?;
+    }
+    for (name, strategy) in &args.vehicle {
+        change("--vehicle", name, strategy, &|boat| {
+            vehicles[boat.index()].name == *name
+        })?;
+    }
+    ensure!(
+        !changes.is_empty(),
+        UsageError("nothing is changed, expected --blue, --red or --vehicle".to_owned())
+    );
+    Ok(changes)
+}
+
+/// How much better a team does than the other in a game, points.
+fn margin(game: &Game) -> i64 {
+    i64::from(game.score[0]) - i64::from(game.score[1])
+}
+
+/// The future in which the changes alter the result most.
+fn most_affected(futures: &[[Game; 2]]) -> usize {
+    let by = |games: &[Game; 2]| (margin(&games[1]) - margin(&games[0])).abs();
+    (0..futures.len())
+        .rev()
+        .max_by_key(|i| by(&futures[*i]))
+        .unwrap_or(0)
+}
+
+/// What is compared: its name, its value in a game for a team, and whether that is a share.
+type Quantity = (&'static str, fn(&Game, usize) -> f64, bool);
+
+const QUANTITIES: [Quantity; 7] = [
+    (
+        "wins",
+        |game, team| f64::from(game.winner == Some(team)),
+        true,
+    ),
+    ("points", |game, team| f64::from(game.score[team]), false),
+    ("grabs", |game, team| of(game, team, |c| c.grabs), false),
+    (
+        "captures",
+        |game, team| of(game, team, |c| c.captures),
+        false,
+    ),
+    ("tags", |game, team| of(game, team, |c| c.tags), false),
+    (
+        "out of bounds",
+        |game, team| of(game, team, |c| c.out_of_bounds),
+        false,
+    ),
+    (
+        "collisions",
+        |game, team| of(game, team, |c| c.collisions),
+        false,
+    ),
+];
+
+fn of(game: &Game, team: usize, count: fn(&Counts) -> u32) -> f64 {
+    f64::from(count(&game.counts[team]))
+}
+
+/// The table of all quantities, with 95 % intervals.
+fn text(name: &str, at_s: f64, teams: [&str; 2], futures: &[[Game; 2]]) -> String {
+    let mut text = format!(
+        "{} futures of {name} from {at_s} s on, each with the same draws as recorded and changed\n\n\
+         {:<22}{:>16}{:>16}{:>18}\n",
+        futures.len(),
+        "a game, ± 95 %",
+        "as recorded",
+        "changed",
+        "difference"
+    );
+    for (team, team_name) in teams.iter().enumerate() {
+        for (quantity, value, is_share) in QUANTITIES {
+            let column = |of: &dyn Fn(&[Game; 2]) -> f64, sign: &str| {
+                let all: Vec<f64> = futures.iter().map(of).collect();
+                let estimate = Estimate::of(&all);
+                let (times, unit, digits) = if is_share {
+                    (100.0, " %", 0)
+                } else {
+                    (1.0, "", 2)
+                };
+                let mean = estimate.mean * times;
+                let half = estimate.half_width().unwrap_or(f64::NAN) * times;
+                let sign = if mean > 0.0 { sign } else { "" };
+                format!("{sign}{mean:.digits$} ± {half:.digits$}{unit}")
+            };
+            text += &format!(
+                "{:<22}{:>16}{:>16}{:>18}\n",
+                format!("{team_name} {quantity}"),
+                column(&|games| value(&games[0], team), ""),
+                column(&|games| value(&games[1], team), ""),
+                column(
+                    &|games| value(&games[1], team) - value(&games[0], team),
+                    "+"
+                )
+            );
+        }
+    }
+    text
+}
+
+/// Plays a future again and records it.
+fn record(
+    path: &Path,
+    name: &str,
+    past: &Past,
+    changes: whatif::Changes<'_>,
+    future: usize,
+) -> Result<()> {
+    // `check` has created it if it did not exist, and removed it; nothing is overwritten.
+    let file =
+        NewFile::create(path).with_context(|| format!("cannot record to {}", path.display()))?;
+    let mut recorder = GameRecorder::in_process(file, name, env!("SQUALL_COMMIT"));
+    let mut written = EventCursor::default();
+    let watch = |contest: &mut Contest| {
+        let frame = Arc::new(contest.frame(&mut written));
+        recorder.decision(contest, frame);
+        true
+    };
+    let contest = whatif::play(past, changes, whatif::seed_of(past, future), watch)?;
+    let run = Run {
+        pace: "in process".to_owned(),
+        ..Run::default()
+    };
+    let outcome = contest.outcome();
+    let problem = recorder.end(&Report { outcome, run }).problem();
+    ensure!(
+        problem.is_none(),
+        "the recording is incomplete: {}",
+        problem.unwrap_or_default()
+    );
+    screen::remark(&format!(
+        "future {future}, which the changes affect most; show it with: squall replay {}",
+        path.display()
+    ));
+    Ok(())
+}
