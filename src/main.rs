@@ -26,12 +26,14 @@ mod runs_command;
 mod screen;
 mod sea_command;
 mod strategy_command;
+mod submission;
 mod sweep_command;
 mod tournament_command;
 mod train_command;
 mod trial_command;
 mod watch_files;
 mod water_args;
+mod whatif_command;
 
 use anyhow::Result;
 use clap::{ColorChoice, FromArgMatches, Parser, Subcommand};
@@ -89,6 +91,11 @@ enum Command {
         after_help = "Examples:\n  squall log\n  squall log strategy_4_vs_3 --csv events\n  squall log --compare strategy_4_vs_3 surveyor_2v2"
     )]
     Log(log_command::Args),
+    /// Plays futures of a recorded game in which boats continue with other strategies.
+    #[command(
+        after_help = "Examples:\n  squall whatif --at 60 --blue strategy_5\n  squall whatif strategy_4_vs_3 --at 60 --vehicle red_one=learned --futures 40 --record future.mcap"
+    )]
+    Whatif(whatif_command::Args),
     /// Describes and plots a sea and its effects on a boat.
     #[command(
         after_help = "Examples:\n  squall sea gale\n  squall sea gale --boat heron --plot gale.svg"
@@ -161,6 +168,7 @@ fn run(command: Command) -> Result<ExitCode> {
             cli::not_built("the page that shows recordings")
         )),
         Command::Tournament(args) => tournament_command::run(&args),
+        Command::Whatif(args) => whatif_command::run(&args),
         Command::Sweep(args) => sweep_command::run(&args),
         Command::Train(args) => train_command::run(&args),
         Command::Runs(args) => Ok(runs_command::run(&args)),

@@ -30,24 +30,36 @@ pub use turning_circle::warnings;
 
 use primitives::VehicleId;
 use scenario::Scenario;
-use scenario::strategy::Strategy;
+use scenario::strategy::{Program, Strategy, Task};
 
 /// The mind that the scenario's strategy assigns to this vehicle, for the scenario's seed.
 pub fn mind_of(scenario: &Scenario, vehicle: VehicleId) -> Box<dyn Mind> {
-    Box::new(HelmMind::restarting(
-        scenario,
-        vehicle,
-        roles::role_of(scenario, vehicle),
-    ))
+    mind(scenario, vehicle, roles::role_of(scenario, vehicle))
 }
 
 /// The mind that `strategy` assigns to this vehicle, whatever the scenario's own strategy.
 pub fn mind_by(scenario: &Scenario, vehicle: VehicleId, strategy: &Strategy) -> Box<dyn Mind> {
-    Box::new(HelmMind::restarting(
-        scenario,
-        vehicle,
-        roles::role_in(scenario, vehicle, strategy),
-    ))
+    let program = roles::role_in(scenario, vehicle, strategy);
+    mind(scenario, vehicle, program)
+}
+
+/// A helm, or a policy that steers without one.
+fn mind(scenario: &Scenario, vehicle: VehicleId, program: &Program) -> Box<dyn Mind> {
+    let direct = program
+        .behaviours
+        .iter()
+        .find_map(|behaviour| match &behaviour.task {
+            Task::Policy(policy) if policy.direct => Some((policy.model.clone()?, policy.sampled)),
+            _ => None,
+        });
+    let Some((model, is_sampled)) = direct else {
+        return Box::new(HelmMind::restarting(scenario, vehicle, program));
+    };
+    let spaces = Spaces {
+        observation: model.spec.observation,
+        action: model.spec.action,
+    };
+    Box::new(Pilot::direct(scenario, vehicle, spaces).by_model(model, is_sampled))
 }
 
 /// The minds of all vehicles, in the scenario's order.

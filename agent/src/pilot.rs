@@ -10,6 +10,7 @@ use crate::situation::Situation;
 use messages::helm::HelmReport;
 use messages::{Order, Picture, Word};
 use primitives::VehicleId;
+use primitives::angle::wrap_pi;
 use scenario::Scenario;
 use scenario::action::{Action, ActionSpace, SetPoint};
 use scenario::observation::ObservationSpace;
@@ -19,7 +20,7 @@ use std::collections::BTreeMap;
 
 /// How actions reach the boat.
 enum Control {
-    /// Directly: the set-point is the order.
+    /// Directly: the boat turns as the action says until the next one, as in Pyquaticus.
     Direct(Box<Situation>),
     /// Through a helm, as a proposal that it weighs against safety; with a teacher, not at all.
     Helm(Box<HelmMind>, Option<Teacher>),
@@ -111,9 +112,9 @@ impl Pilot {
         }
     }
 
-    /// The same pilot, with decisions made by a model.
-    pub fn by_model(mut self, model: PolicyModel) -> Pilot {
-        self.policy = Some(BoardPolicy::new(model));
+    /// The same pilot, with decisions made by a model: its likeliest actions, or drawn ones.
+    pub fn by_model(mut self, model: PolicyModel, is_sampled: bool) -> Pilot {
+        self.policy = Some(BoardPolicy::new(model, is_sampled));
         self
     }
 
@@ -202,15 +203,8 @@ fn steered(situation: &Situation, order: Order, actions: ActionSpace) -> Option<
     else {
         return None;
     };
-    let asked = SetPoint {
-        course_rad: heading_rad,
-        speed_m_s,
-    };
-    actions.nearest(
-        asked,
-        situation.own.nav.psi_rad,
-        situation.model.speed_max_m_s,
-    )
+    let turn_rad = wrap_pi(heading_rad - situation.own.nav.psi_rad);
+    actions.nearest(turn_rad, speed_m_s, situation.model.speed_max_m_s)
 }
 
 impl Control {
@@ -242,6 +236,7 @@ impl Mind for Pilot {
     fn decide(&mut self, picture: &Picture) -> Order {
         self.ask_model(picture);
         let SetPoint {
+            turn_rad,
             course_rad,
             speed_m_s,
         } = self.set_point;
@@ -266,8 +261,8 @@ impl Mind for Pilot {
             return Order::Hold;
         }
         if !situation.own.tagged {
-            return Order::Steer {
-                heading_rad: course_rad,
+            return Order::Turn {
+                by_rad: turn_rad,
                 speed_m_s,
             };
         }

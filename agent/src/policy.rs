@@ -5,6 +5,7 @@ use crate::observation::Observer;
 use crate::situation::Situation;
 use onnx::Network;
 use primitives::SimTime;
+use primitives::stream::Noise;
 use scenario::action::{self, Action, ActionSpace, SetPoint};
 use scenario::policy::PolicyModel;
 use thiserror::Error;
@@ -37,6 +38,9 @@ pub(crate) struct BoardPolicy {
     due: Option<SimTime>,
     /// The last choice.
     pub(crate) chosen: Result<Chosen, PolicyFault>,
+    /// Number of decisions so far.
+    decisions: u64,
+    is_sampled: bool,
 }
 
 /// A policy's choice.
@@ -49,7 +53,8 @@ pub(crate) enum Chosen {
 }
 
 impl BoardPolicy {
-    pub(crate) fn new(model: PolicyModel) -> BoardPolicy {
+    /// A policy that takes the likeliest action, or draws it if `is_sampled`.
+    pub(crate) fn new(model: PolicyModel, is_sampled: bool) -> BoardPolicy {
         let network = model.network();
         BoardPolicy {
             model,
@@ -57,6 +62,8 @@ impl BoardPolicy {
             observer: None,
             due: None,
             chosen: Ok(Chosen::SetPoint(SetPoint::default())),
+            decisions: 0,
+            is_sampled,
         }
     }
 
@@ -95,17 +102,26 @@ impl BoardPolicy {
             return Err(PolicyFault::Size { expected, found });
         }
         self.network.evaluate(observation);
-        let action = action_of(&self.model, self.network.output(self.model.output()))?;
+        let output = self.network.output(self.model.output());
+        let likeliest = action_of(&self.model, output)?;
+        let action = if self.is_sampled {
+            // Of its own for each boat: mates with the same network draw different actions.
+            let me = situation.model.me;
+            let noise = Noise::new(situation.model.seed, &format!("policy/{}", me.index()));
+            Action::drawn(output, noise.unit(self.decisions))
+        } else {
+            likeliest
+        };
+        self.decisions += 1;
         Ok(Chosen::of(spec.action, action, situation))
     }
 
     /// The policy's probability for each discrete action; empty for continuous actions.
     pub(crate) fn probabilities(&self) -> Vec<f32> {
-        let output = self.network.output(self.model.output());
-        if self.model.actions() != Some(output.len()) {
+        if !self.model.has_logits() {
             return vec![];
         }
-        action::probabilities(output)
+        action::probabilities(self.network.output(self.model.output()))
     }
 
     /// The last observation.

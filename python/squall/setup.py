@@ -25,8 +25,9 @@ class Options(TypedDict, total=False):
 
     game: File
     """The game, by default "surveyor_2v2". Both teams must have the same number of boats."""
-    observation: Literal["squall", "pyquaticus"]
-    """A boat's observation: "squall" (default), the data of its sensors and radio, or "pyquaticus", that environment's values."""
+    observation: Literal["squall", "pyquaticus", "pyquaticus_2023", "pyquaticus_2026"]
+    """A boat's observation: "squall" (default), the data of its sensors and radio, or that environment's values: "pyquaticus" (2024, 2025),
+    "pyquaticus_2023" or "pyquaticus_2026"."""
     frames: int
     """Number of decisions in an observation with "squall", newest first; 1 by default."""
     action: Literal["pyquaticus", "continuous", "options"]
@@ -110,7 +111,7 @@ def native_environment(
 def observation_space(native: _native.VectorEnvironment, options: Options, boats: int | None) -> gymnasium.spaces.Box:
     """The observation space of one boat, or of several as a table."""
     numbers = len(native.observation_names)
-    most = 1.0 if options.get("observation") == "pyquaticus" else np.inf
+    most = 1.0 if options.get("observation", "").startswith("pyquaticus") else np.inf
     return gymnasium.spaces.Box(-most, most, (numbers,) if boats is None else (boats, numbers), np.float32)
 
 

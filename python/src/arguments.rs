@@ -34,12 +34,14 @@ impl Arguments {
     pub(crate) fn setup(self) -> PyResult<RawSetup> {
         let observation = match self.observation.as_str() {
             "pyquaticus" => RawObservation::Space(ObservationSpace::Pyquaticus),
+            "pyquaticus_2023" => RawObservation::Space(ObservationSpace::Pyquaticus2023),
+            "pyquaticus_2026" => RawObservation::Space(ObservationSpace::Pyquaticus2026),
             "squall" => RawObservation::Squall {
                 frames: self.frames,
             },
             other => {
                 return Err(refused(format!(
-                    "observation is {other:?}, expected \"squall\" or \"pyquaticus\""
+                    "observation is {other:?}, expected \"squall\", \"pyquaticus\", \"pyquaticus_2023\" or \"pyquaticus_2026\""
                 )));
             }
         };

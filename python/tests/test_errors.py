@@ -22,7 +22,7 @@ import squall
         ({"starts": 0}, "starts is 0, expected 1 or more"),
         ({"frames": 0}, "frames is 0, expected 1 to 255"),
         ({"frames": 300}, "frames is 300, expected an integer from 0 to 255"),
-        ({"observation": "truth"}, 'observation is "truth", expected "squall" or "pyquaticus"'),
+        ({"observation": "truth"}, 'observation is "truth", expected "squall", "pyquaticus", "pyquaticus_2023" or "pyquaticus_2026"'),
         ({"action": "jump"}, 'action is "jump", expected "pyquaticus", "continuous" or "options"'),
         ({"control": "pav01"}, 'has no behaviour of kind "policy"'),
         ({"opponents": []}, "no opponent can be drawn"),

@@ -2,9 +2,9 @@
 
 use super::{BehaviourLogic, BehaviourOutput};
 use crate::ivp::{Objective, Peak};
+use crate::mind::Proposal;
 use crate::policy::{BoardPolicy, Chosen};
 use crate::situation::Situation;
-use scenario::action::SetPoint;
 use scenario::strategy::Policy;
 
 /// Width of the fall from the proposed speed to zero utility, m/s.
@@ -18,15 +18,21 @@ pub(super) struct PolicyBehaviour {
 
 impl PolicyBehaviour {
     pub(super) fn new(mut task: Policy) -> PolicyBehaviour {
-        let policy = task.model.take().map(BoardPolicy::new);
+        let is_sampled = task.sampled;
+        let policy = task.model.take();
+        let policy = policy.map(|model| BoardPolicy::new(model, is_sampled));
         PolicyBehaviour { task, policy }
     }
 
     /// The current proposal.
-    fn proposed(&self, situation: &Situation) -> Option<SetPoint> {
+    fn proposed(&self, situation: &Situation) -> Option<Proposal> {
         match &self.policy {
             Some(policy) => match policy.chosen {
-                Ok(Chosen::SetPoint(chosen)) => Some(chosen),
+                Ok(Chosen::SetPoint(chosen)) => Some(Proposal {
+                    at: situation.now,
+                    course_rad: chosen.course_rad,
+                    speed_m_s: chosen.speed_m_s,
+                }),
                 Ok(Chosen::Option(_)) | Err(_) => None,
             },
             None => {
@@ -35,10 +41,7 @@ impl PolicyBehaviour {
                 // the boat safe.
                 let is_fresh =
                     (situation.now - proposal.at).as_s() <= self.task.ttl_s.value(situation);
-                is_fresh.then_some(SetPoint {
-                    course_rad: proposal.course_rad,
-                    speed_m_s: proposal.speed_m_s,
-                })
+                is_fresh.then_some(proposal)
             }
         }
     }
@@ -63,9 +66,10 @@ impl BehaviourLogic for PolicyBehaviour {
         if self.task.sets.is_some() {
             return;
         }
-        let Some(SetPoint {
+        let Some(Proposal {
             course_rad,
             speed_m_s,
+            ..
         }) = self.proposed(situation)
         else {
             return;

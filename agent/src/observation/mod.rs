@@ -33,30 +33,29 @@ impl Observer {
 
     /// The observation at this decision of the policy.
     pub(crate) fn observe(&mut self, situation: &Situation) -> &[f32] {
-        match self.space {
-            ObservationSpace::Pyquaticus => {
-                pyquaticus::write(situation, &mut Numbers::new(&mut self.frames))
-            }
-            ObservationSpace::Squall {
-                mates,
-                enemies,
-                frames,
-            } => {
-                let size = self.frames.len() / usize::from(frames.max(1));
-                let kept = self.frames.len() - size;
-                self.frames.copy_within(..kept, size);
-                let (newest, older) = self.frames.split_at_mut(size);
-                squall::write(
-                    situation,
-                    (usize::from(mates), usize::from(enemies)),
-                    &mut Numbers::new(newest),
-                );
-                if !self.begun {
-                    // At the first decision all older frames repeat the current one.
-                    older
-                        .chunks_exact_mut(size)
-                        .for_each(|frame| frame.copy_from_slice(newest));
-                }
+        if let Some(edition) = self.space.edition() {
+            pyquaticus::write(situation, edition, &mut Numbers::new(&mut self.frames));
+        }
+        if let ObservationSpace::Squall {
+            mates,
+            enemies,
+            frames,
+        } = self.space
+        {
+            let size = self.frames.len() / usize::from(frames.max(1));
+            let kept = self.frames.len() - size;
+            self.frames.copy_within(..kept, size);
+            let (newest, older) = self.frames.split_at_mut(size);
+            squall::write(
+                situation,
+                (usize::from(mates), usize::from(enemies)),
+                &mut Numbers::new(newest),
+            );
+            if !self.begun {
+                // At the first decision all older frames repeat the current one.
+                older
+                    .chunks_exact_mut(size)
+                    .for_each(|frame| frame.copy_from_slice(newest));
             }
         }
         self.begun = true;

@@ -1,12 +1,12 @@
-//! The observation space of Pyquaticus (`state_to_obs` of its main branch, 2025): bearings relative
-//! to the heading in half turns clockwise, distances in field diagonals, everything scaled to -1 to
-//! 1, booleans as -1 and 1.
+//! The observation spaces of Pyquaticus (`state_to_obs` of its main branch, 2023 and 2025, and of the
+//! 2026 competition): bearings relative to the heading in half turns clockwise, distances in field
+//! diagonals, everything scaled to -1 to 1, booleans as -1 and 1.
 //!
 //! For the boat itself: the enemies' flag, its own flag, the walls to starboard, behind, to port
 //! and ahead as the team faces the enemies' end, the scrimmage line, speed, carrying, own side,
-//! time since its last tag, tagged, both scores. Then for each other boat, mates first: bearing,
+//! time since its last tag, tagged, out of action (2026), both scores (not 2023). Then for each other boat, mates first: bearing,
 //! distance, heading relative to the line to this boat, speed, carrying, own side, time since its
-//! last tag, tagged.
+//! last tag, tagged, out of action (2026).
 //!
 //! Pyquaticus provides the truth; this space provides the boat's knowledge. All values of an
 //! unknown boat are 0. An enemy's last tag time is known if it tagged a boat of the team.
@@ -16,28 +16,35 @@ use crate::situation::{OtherBoat, Situation};
 use primitives::angle::wrap_pi;
 use primitives::{Ned, SimTime};
 use rules::tag_wait_s;
-use scenario::observation::pyquaticus::OTHER;
+use scenario::observation::pyquaticus::Edition;
 use scenario::strategy::{Fact, Mark, Place, Values};
 use std::f64::consts::PI;
 
 /// Writes all values.
-pub(super) fn write(situation: &Situation, out: &mut Numbers<'_>) {
+pub(super) fn write(situation: &Situation, edition: Edition, out: &mut Numbers<'_>) {
     let model = &situation.model;
+    let longest_m = longest_m(situation, edition);
     for mark in [Mark::EnemyFlag, Mark::OwnFlag] {
         let place = situation
             .locate(&Place::Mark(mark))
             .map_or(situation.at, |point| point.at);
-        toward(situation, place, out);
+        toward(situation, place, longest_m, out);
     }
     // Corner 0 is to starboard of the first team's end, and corners continue clockwise: the walls
     // are 3 to 0, 0 to 1, 1 to 2, 2 to 3.
     let corners = &model.field.corners;
     for i in [3, 0, 1, 2].map(|i| i + 2 * model.team.index()) {
         let wall = (corners[i % 4], corners[(i + 1) % 4]);
-        toward(situation, nearest_of(wall, situation.at), out);
+        toward(situation, nearest_of(wall, situation.at), longest_m, out);
     }
     let [one, other] = model.field.scrimmage;
-    toward(situation, nearest_of((one, other), situation.at), out);
+    let scrimmage_m = if edition == Edition::Of2023 {
+        model.field.plan.width_m / 2.0
+    } else {
+        longest_m
+    };
+    let nearest = nearest_of((one, other), situation.at);
+    toward(situation, nearest, scrimmage_m, out);
     let own = &situation.own;
     out.push(unit(own.nav.speed_m_s(), fastest_m_s(situation)));
     truth(own.carried_flag().is_some(), out);
@@ -47,8 +54,13 @@ pub(super) fn write(situation: &Situation, out: &mut Numbers<'_>) {
     );
     out.push(since_tag(situation, own.tag_ready_ns));
     truth(own.tagged, out);
-    for score in [Fact::Score, Fact::EnemyScore] {
-        out.push(unit(situation.fact(score), model.score_max));
+    if edition == Edition::Of2026 {
+        truth(own.disabled, out);
+    }
+    if edition != Edition::Of2023 {
+        for score in [Fact::Score, Fact::EnemyScore] {
+            out.push(unit(situation.fact(score), model.score_max));
+        }
     }
     for vehicle in model.mates.iter().chain(&model.enemies) {
         match situation
@@ -56,15 +68,15 @@ pub(super) fn write(situation: &Situation, out: &mut Numbers<'_>) {
             .iter()
             .find(|other| other.vehicle == *vehicle)
         {
-            Some(other) => other_boat(situation, other, out),
-            None => out.skip(OTHER),
+            Some(other) => other_boat(situation, other, edition, out),
+            None => out.skip(edition.other_names().count()),
         }
     }
 }
 
-fn other_boat(situation: &Situation, other: &OtherBoat, out: &mut Numbers<'_>) {
+fn other_boat(situation: &Situation, other: &OtherBoat, edition: Edition, out: &mut Numbers<'_>) {
     let model = &situation.model;
-    toward(situation, other.at, out);
+    toward(situation, other.at, longest_m(situation, edition), out);
     out.push(wrap_pi(other.psi_rad - other.at.bearing_rad(situation.at)) / PI);
     out.push(unit(other.velocity().length(), fastest_m_s(situation)));
     truth(other.carrying.is_some(), out);
@@ -76,14 +88,26 @@ fn other_boat(situation: &Situation, other: &OtherBoat, out: &mut Numbers<'_>) {
     truth(is_own_side(situation, other.at, team), out);
     out.push(since_tag(situation, other.tag_ready));
     truth(other.tagged, out);
+    if edition == Edition::Of2026 {
+        truth(other.disabled, out);
+    }
+}
+
+/// The distance that counts as 1, m.
+fn longest_m(situation: &Situation, edition: Edition) -> f64 {
+    let plan = &situation.model.field.plan;
+    let beyond_m = if edition == Edition::Of2023 {
+        10.0
+    } else {
+        0.0
+    };
+    primitives::math::length(plan.width_m, plan.depth_m) + beyond_m
 }
 
 /// Bearing and distance of a place.
-fn toward(situation: &Situation, place: Ned, out: &mut Numbers<'_>) {
-    let plan = &situation.model.field.plan;
-    let diagonal_m = primitives::math::length(plan.width_m, plan.depth_m);
+fn toward(situation: &Situation, place: Ned, longest_m: f64, out: &mut Numbers<'_>) {
     out.push(wrap_pi(situation.at.bearing_rad(place) - situation.own.nav.psi_rad) / PI);
-    out.push(unit(situation.at.distance(place), diagonal_m));
+    out.push(unit(situation.at.distance(place), longest_m));
 }
 
 /// Whether a place is on a team's side of the scrimmage line, on the field or not, as in Pyquaticus

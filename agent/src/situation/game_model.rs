@@ -14,6 +14,8 @@ const HAS_ALL: &str = "a checked field has flags and corners for every team";
 pub(crate) struct GameModel {
     pub(crate) me: VehicleId,
     pub(crate) team: TeamId,
+    /// The game's seed.
+    pub(crate) seed: u64,
     pub(crate) field: Field,
     pub(crate) rules: Rules,
     /// The boat's index in its team.
@@ -66,6 +68,7 @@ impl GameModel {
         GameModel {
             me,
             team,
+            seed: scenario.seed,
             rank: of(true).position(|vehicle| vehicle == me).unwrap_or(0),
             enemies: of(false).collect(),
             mates: of(true).filter(|vehicle| *vehicle != me).collect(),

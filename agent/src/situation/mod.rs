@@ -48,6 +48,8 @@ pub(crate) struct OtherBoat {
     pub(crate) psi_rad: f64,
     yaw_rate_rad_s: f64,
     pub(crate) tagged: bool,
+    /// Whether power play has put it out of action.
+    pub(crate) disabled: bool,
     pub(crate) carrying: Option<FlagId>,
     /// The earliest time of its next tag: from a mate's own messages; for enemies only if they
     /// tagged a boat of the team.
@@ -116,6 +118,8 @@ pub(crate) struct Situation {
     /// By vehicle index: the earliest time of the next tag of enemies that tagged a boat of the
     /// team.
     tag_ready: Vec<SimTime>,
+    /// Boats that power play has put out of action.
+    disabled: Vec<VehicleId>,
     pub(crate) variables: Vec<f64>,
     pub(crate) team_messages: TeamMessages,
     /// A policy's last proposal.
@@ -157,6 +161,7 @@ impl Situation {
             others: Vec::new(),
             turns: Vec::new(),
             tag_ready: Vec::new(),
+            disabled: Vec::new(),
             variables: program
                 .variables
                 .iter()
@@ -206,7 +211,7 @@ impl Situation {
             self.step_s,
             !(own.disabled || own.tagged && self.model.rules.tagged_boat == TaggedBoat::IsDriven),
         );
-        self.note_tags(picture);
+        self.note_events(picture);
         self.others.clear();
         for mate in picture
             .own
@@ -227,6 +232,7 @@ impl Situation {
                 psi_rad: mate.nav.psi_rad,
                 yaw_rate_rad_s: mate.nav.yaw_rate_rad_s,
                 tagged: mate.tagged,
+                disabled: mate.disabled,
                 carrying: mate.carried_flag(),
                 tag_ready: mate.tag_ready_ns,
                 age_s: 0.0,
@@ -248,6 +254,7 @@ impl Situation {
                 psi_rad: contact.psi_rad,
                 yaw_rate_rad_s: turn.yaw_rate_rad_s(now),
                 tagged: contact.tagged,
+                disabled: self.disabled.contains(&contact.vehicle),
                 carrying: u8::try_from(contact.carrying).ok().map(FlagId),
                 tag_ready: self.tag_ready.get(i).copied().unwrap_or_default(),
                 age_s: (now - contact.seen_ns).as_s(),
@@ -275,18 +282,23 @@ impl Situation {
         true
     }
 
-    /// Enemies that have tagged a boat of the team cannot tag again for a while.
-    fn note_tags(&mut self, picture: &Picture) {
+    /// Notes which enemies have tagged a boat of the team, and so cannot tag again for a while, and
+    /// which boats are out of action.
+    fn note_events(&mut self, picture: &Picture) {
         for logged in picture.events.iter().filter_map(EventRecord::logged) {
-            if let Event::Tagged {
-                cause: TagCause::Opponent(by),
-                ..
-            } = logged.event
-            {
-                let i = by.index();
-                self.tag_ready
-                    .resize(self.tag_ready.len().max(i + 1), SimTime::ZERO);
-                self.tag_ready[i] = self.model.rules.tag_ready_after(logged.at);
+            match logged.event {
+                Event::Tagged {
+                    cause: TagCause::Opponent(by),
+                    ..
+                } => {
+                    let i = by.index();
+                    self.tag_ready
+                        .resize(self.tag_ready.len().max(i + 1), SimTime::ZERO);
+                    self.tag_ready[i] = self.model.rules.tag_ready_after(logged.at);
+                }
+                Event::Disabled(vehicle) => self.disabled.push(vehicle),
+                Event::Enabled(vehicle) => self.disabled.retain(|other| *other != vehicle),
+                _ => {}
             }
         }
     }

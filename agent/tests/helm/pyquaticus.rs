@@ -41,6 +41,8 @@ struct Boat {
     speed_m_s: f64,
     has_flag: u8,
     tagged: u8,
+    #[serde(default)]
+    disabled: u8,
     since_tag_s: f64,
     observation: Vec<f32>,
 }
@@ -84,6 +86,7 @@ fn picture(state: &State, team: usize) -> Picture {
             picture.own.push(OwnBoat {
                 tagged,
                 carrying,
+                disabled: boat.disabled == 1,
                 tag_ready_ns,
                 ..here.own(vehicle)
             });
@@ -96,18 +99,21 @@ fn picture(state: &State, team: usize) -> Picture {
             carrying,
             ..here.contact(vehicle, now)
         });
+        let mut happened = |at_s, event| {
+            let at = SimTime::from_s(at_s);
+            let logged = Logged { tick: 0, at, event };
+            picture.events.push(EventRecord::from(logged));
+        };
+        if boat.disabled == 1 {
+            happened(NOW_S - 10.0, Event::Disabled(VehicleId(vehicle)));
+        }
         if boat.since_tag_s < COOLDOWN_S {
             let cause = TagCause::Opponent(VehicleId(vehicle));
             let tagged = Event::Tagged {
                 vehicle: VehicleId::at(team * team_size),
                 cause,
             };
-            let at = SimTime::from_s(NOW_S - boat.since_tag_s);
-            picture.events.push(EventRecord::from(Logged {
-                tick: 0,
-                at,
-                event: tagged,
-            }));
+            happened(NOW_S - boat.since_tag_s, tagged);
         }
     }
     picture
@@ -115,11 +121,16 @@ fn picture(state: &State, team: usize) -> Picture {
 
 #[test]
 fn observations_are_those_of_the_program() {
-    let spaces = Spaces {
-        observation: ObservationSpace::Pyquaticus,
-        action: ActionSpace::Pyquaticus,
-    };
-    for file in ["1v1", "3v3"] {
+    for (file, observation) in [
+        ("1v1", ObservationSpace::Pyquaticus),
+        ("3v3", ObservationSpace::Pyquaticus),
+        ("2023_2v2", ObservationSpace::Pyquaticus2023),
+        ("2026_3v3", ObservationSpace::Pyquaticus2026),
+    ] {
+        let spaces = Spaces {
+            observation,
+            action: ActionSpace::Pyquaticus,
+        };
         let path = Path::new(env!("CARGO_MANIFEST_DIR"))
             .join(format!("tests/helm/pyquaticus/{file}.json"));
         let reference: Reference =

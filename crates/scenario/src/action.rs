@@ -30,6 +30,18 @@ pub enum Action {
 }
 
 impl Action {
+    /// The discrete action that these logits' probabilities give for a uniform number from 0 to 1.
+    pub fn drawn(logits: &[f32], unit: f64) -> Action {
+        let mut below = 0.0;
+        let all = probabilities(logits);
+        let drawn = all.iter().position(|share| {
+            below += f64::from(*share);
+            unit < below
+        });
+        // Rounding can leave the sum just below 1.
+        drawn.map_or_else(|| Action::likeliest(logits), Action::Discrete)
+    }
+
     /// The discrete action with the largest logit; ties go to the first.
     pub fn likeliest(logits: &[f32]) -> Action {
         Action::Discrete(
@@ -50,7 +62,7 @@ impl ActionSpace {
             1.0 => "full speed".to_owned(),
             share => format!("{:.0} % speed", 100.0 * share),
         };
-        match asked.course_rad.to_degrees().round() {
+        match asked.turn_rad.to_degrees().round() {
             0.0 => format!("{speed}, straight on"),
             turn_deg if turn_deg.abs() >= 180.0 => format!("{speed}, about"),
             turn_deg if turn_deg > 0.0 => format!("{speed}, {turn_deg:.0}° to starboard"),
@@ -70,10 +82,12 @@ pub fn probabilities(logits: &[f32]) -> Vec<f32> {
     parts.iter().map(|part| (part / sum) as f32).collect()
 }
 
-/// A course, rad clockwise from north, and a speed, m/s.
+/// What an action asks of a boat.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SetPoint {
-    /// Desired course, rad clockwise from north.
+    /// Desired turn, rad clockwise, -pi to pi: half a turn to either side is two different requests.
+    pub turn_rad: f64,
+    /// Desired course after this turn from the heading at the decision, rad clockwise from north.
     pub course_rad: f64,
     /// Desired speed, m/s.
     pub speed_m_s: f64,
@@ -105,11 +119,10 @@ impl ActionSpace {
         self != ActionSpace::Continuous
     }
 
-    /// The action nearest to this course and speed, the inverse of [`ActionSpace::set_point`]; none
-    /// for options.
-    pub fn nearest(self, asked: SetPoint, heading_rad: f64, speed_max_m_s: f64) -> Option<Action> {
-        let turn_rad = wrap_pi(asked.course_rad - heading_rad);
-        let share = (asked.speed_m_s / speed_max_m_s).clamp(0.0, 1.0);
+    /// The action nearest to this turn, rad clockwise, and this speed, the inverse of
+    /// [`ActionSpace::set_point`]; none for options.
+    pub fn nearest(self, turn_rad: f64, speed_m_s: f64, speed_max_m_s: f64) -> Option<Action> {
+        let share = (speed_m_s / speed_max_m_s).clamp(0.0, 1.0);
         if self == ActionSpace::Continuous {
             return Some(Action::Continuous(
                 [turn_rad / PI, 2.0 * share - 1.0].map(|number| number as f32),
@@ -117,16 +130,13 @@ impl ActionSpace {
         }
         // A turn of one radian counts as much as the whole speed range. A stop has no turn.
         let off = |action: usize| {
-            let SetPoint {
-                course_rad,
-                speed_m_s,
-            } = self.set_point(Action::Discrete(action), 0.0, 1.0);
-            let by_turn = if speed_m_s == 0.0 {
+            let asked = self.set_point(Action::Discrete(action), 0.0, 1.0);
+            let by_turn = if asked.speed_m_s == 0.0 {
                 0.0
             } else {
-                wrap_pi(course_rad - turn_rad)
+                wrap_pi(asked.turn_rad - turn_rad)
             };
-            let by_speed = speed_m_s - share;
+            let by_speed = asked.speed_m_s - share;
             by_turn * by_turn + by_speed * by_speed
         };
         (0..self.count()?)
@@ -134,7 +144,7 @@ impl ActionSpace {
             .map(Action::Discrete)
     }
 
-    /// The course and speed of an action for a boat with this heading and top speed. Actions of
+    /// The turn and speed of an action for a boat with this heading and top speed. Actions of
     /// another space, non-finite ones and options are a stop.
     pub fn set_point(self, action: Action, heading_rad: f64, speed_max_m_s: f64) -> SetPoint {
         let (turn_rad, share) = match (self, action) {
@@ -151,6 +161,7 @@ impl ActionSpace {
             _ => (0.0, 0.0),
         };
         SetPoint {
+            turn_rad,
             course_rad: wrap_pi(heading_rad + turn_rad),
             speed_m_s: share * speed_max_m_s,
         }
@@ -159,7 +170,7 @@ impl ActionSpace {
 
 #[cfg(test)]
 mod tests {
-    use super::{Action, ActionSpace, SetPoint};
+    use super::{Action, ActionSpace};
 
     #[test]
     fn the_discrete_actions_are_those_of_pyquaticus() {
@@ -171,10 +182,12 @@ mod tests {
         assert_eq!(space.count(), Some(17));
         for (i, (speed_m_s, turn_deg)) in want.enumerate() {
             let got = space.set_point(Action::Discrete(i), 1.0, 2.0);
-            let off_rad =
+            let off_rad = got.turn_rad - f64::to_radians(turn_deg);
+            let off_course_rad =
                 primitives::angle::wrap_pi(got.course_rad - 1.0 - f64::to_radians(turn_deg));
             assert!(
-                off_rad.abs() < 1e-12 && (got.speed_m_s - speed_m_s).abs() < 1e-12,
+                off_rad.abs().max(off_course_rad.abs()) < 1e-12
+                    && (got.speed_m_s - speed_m_s).abs() < 1e-12,
                 "{i}: {got:?}"
             );
         }
@@ -182,39 +195,46 @@ mod tests {
 
     #[test]
     fn the_nearest_action_is_the_one_that_asked() {
-        let heading_rad = 2.5;
         let fastest_m_s = 3.0;
         let space = ActionSpace::Pyquaticus;
         for action in (0..17).map(Action::Discrete) {
-            let asked = space.set_point(action, heading_rad, fastest_m_s);
-            assert_eq!(space.nearest(asked, heading_rad, fastest_m_s), Some(action));
+            let asked = space.set_point(action, 2.5, fastest_m_s);
+            let nearest = space.nearest(asked.turn_rad, asked.speed_m_s, fastest_m_s);
+            assert_eq!(nearest, Some(action));
         }
-        let asked = ActionSpace::Continuous.set_point(
-            Action::Continuous([-0.25, 0.5]),
-            heading_rad,
-            fastest_m_s,
-        );
-        let Some(Action::Continuous([turn, speed])) =
-            ActionSpace::Continuous.nearest(asked, heading_rad, fastest_m_s)
-        else {
-            panic!("no continuous action")
-        };
-        assert!(
-            (turn + 0.25).abs() < 1e-6 && (speed - 0.5).abs() < 1e-6,
-            "{turn} {speed}"
-        );
+        let space = ActionSpace::Continuous;
+        for asked in [[-0.25, 0.5], [1.0, 1.0], [-1.0, 1.0]] {
+            let wanted = space.set_point(Action::Continuous(asked), 2.5, fastest_m_s);
+            assert_eq!(
+                space.nearest(wanted.turn_rad, wanted.speed_m_s, fastest_m_s),
+                Some(Action::Continuous(asked))
+            );
+        }
         // Slowly, 10 degrees to starboard; and almost stopped, in any direction.
-        let slow = |turn_deg: f64, speed_m_s| SetPoint {
-            course_rad: heading_rad + turn_deg.to_radians(),
-            speed_m_s,
-        };
-        for (space, asked, want) in [
-            (space, slow(10.0, 1.4), Some(Action::Discrete(12))),
-            (space, slow(70.0, 0.1), Some(Action::Discrete(16))),
-            (ActionSpace::Options, asked, None),
+        for (space, turn_deg, speed_m_s, want) in [
+            (ActionSpace::Pyquaticus, 10.0, 1.4, Some(12)),
+            (ActionSpace::Pyquaticus, 70.0, 0.1, Some(16)),
+            (ActionSpace::Options, 10.0, 1.4, None),
         ] {
-            assert_eq!(space.nearest(asked, heading_rad, fastest_m_s), want);
+            assert_eq!(
+                space.nearest(f64::to_radians(turn_deg), speed_m_s, fastest_m_s),
+                want.map(Action::Discrete)
+            );
         }
+    }
+
+    #[test]
+    fn actions_are_drawn_as_often_as_their_probabilities_say() {
+        let logits = [1.0_f32, 2.0, 0.5].map(f32::ln);
+        let mut counts = [0; 3];
+        for i in 0..700 {
+            let Action::Discrete(action) = Action::drawn(&logits, (f64::from(i) + 0.5) / 700.0)
+            else {
+                panic!("no discrete action")
+            };
+            counts[action] += 1;
+        }
+        assert_eq!(counts, [200, 400, 100]);
     }
 
     #[test]

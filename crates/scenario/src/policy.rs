@@ -102,6 +102,11 @@ impl PolicyModel {
         (action.is_discrete()).then(|| action.count().unwrap_or(outputs))
     }
 
+    /// Whether it outputs a logit for each discrete action.
+    pub fn has_logits(&self) -> bool {
+        self.actions() == Some(self.network.outputs()[self.output].size)
+    }
+
     /// The names of its options, if its metadata has them.
     pub fn options(&self) -> Option<Vec<&str>> {
         let names = self.network.metadata().get(OPTIONS)?;
@@ -216,9 +221,9 @@ fn check_input(network: &Network, observation: ObservationSpace) -> Result<(), S
     let [input] = network.inputs() else {
         return wrong("one input");
     };
-    match observation {
+    match observation.edition() {
         // The size for a game of 1 against 1, and the size per other boat.
-        ObservationSpace::Pyquaticus => {
+        Some(_) => {
             let least = observation.size(0, 1);
             let other = observation.size(1, 1) - observation.size(0, 1);
             if input.size < least || !(input.size - least).is_multiple_of(other) {
@@ -226,7 +231,7 @@ fn check_input(network: &Network, observation: ObservationSpace) -> Result<(), S
                 return wrong(&expected);
             }
         }
-        ObservationSpace::Squall { .. } => {
+        None => {
             let size = observation.size(0, 0);
             if input.size != size {
                 return wrong(&format!("{size} numbers for {}", json(&observation)));

@@ -66,7 +66,7 @@ impl Game {
                     agent::mind_by(scenario, vehicle, strategy)
                 }
                 (false, Player::Model(model), _) => {
-                    Box::new(policy_pilot(setup, scenario, vehicle).by_model(model.clone()))
+                    Box::new(policy_pilot(setup, scenario, vehicle).by_model(model.clone(), false))
                 }
                 // Same as in the arena, but with pilots as minds: a test plays the same game in the
                 // arena and compares digests.

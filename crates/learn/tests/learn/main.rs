@@ -6,6 +6,7 @@ mod fixture;
 mod model;
 mod off_policy;
 mod off_policy_training;
+mod parity;
 mod ppo;
 mod primitives;
 mod seeds;

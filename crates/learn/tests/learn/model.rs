@@ -8,7 +8,7 @@ use onnx::Network;
 use primitives::VehicleId;
 use scenario::Scenario;
 use scenario::policy::{PartialSpec, PolicyModel, PolicySpec};
-use scenario::strategy::{Program, Strategy, Task};
+use scenario::strategy::{Policy, Program, Strategy, Task};
 use std::collections::BTreeMap;
 
 const SPEC: PolicySpec = PolicySpec {
@@ -118,6 +118,67 @@ fn a_model_in_a_strategy_plays_the_game_that_it_was_trained_in() {
     let held =
         arena::play_watched(&scenario, minds, 3, |contest| contest.decision() < 2000).unwrap();
     assert_ne!(held.digest, boat.digest);
+}
+
+/// The strategy `policy` with a model, changed by `change`.
+fn changed(change: impl Fn(&mut Policy)) -> Strategy {
+    let mut strategy = with_model(*strategy("policy"), &model(SPEC));
+    for behaviour in strategy
+        .roles
+        .iter_mut()
+        .flat_map(|role| &mut role.behaviours)
+    {
+        if let Task::Policy(policy) = &mut behaviour.task {
+            change(policy);
+        }
+    }
+    strategy
+}
+
+#[test]
+fn sampled_actions_are_drawn_by_the_seed() {
+    let played = |strategy: &Strategy, draws: u64| {
+        // The same boats, sea and starts: only the minds know this seed.
+        let mut scenario = game("surveyor_2v2").of_seed(3).unwrap();
+        scenario.seed = draws;
+        let minds = (0..4).map(|i| agent::mind_by(&scenario, VehicleId::at(i), strategy));
+        let minds = minds.collect();
+        let outcome = arena::play_watched(&scenario, minds, 3, |c| c.decision() < 500);
+        outcome.unwrap().digest
+    };
+    for direct in [false, true] {
+        let [likeliest, drawn] = [false, true]
+            .map(|sampled| changed(|policy| (policy.direct, policy.sampled) = (direct, sampled)));
+        assert_eq!(played(&likeliest, 1), played(&likeliest, 2));
+        assert_eq!(played(&drawn, 1), played(&drawn, 1));
+        assert_ne!(played(&drawn, 1), played(&drawn, 2));
+    }
+}
+
+#[test]
+fn a_direct_model_steers_without_a_helm() {
+    let scenario = game("surveyor_2v2");
+    let direct = changed(|policy| policy.direct = true);
+    let by_strategy = |i| agent::mind_by(&scenario, VehicleId::at(i), &direct);
+    let by_network = |i| -> Box<dyn Mind> {
+        let spaces = Spaces {
+            observation: SPEC.observation,
+            action: SPEC.action,
+        };
+        Box::new(Driven {
+            pilot: Pilot::direct(&scenario, VehicleId::at(i), spaces),
+            network: model(SPEC).network(),
+            decisions: 0,
+        })
+    };
+    let played = |minds: Vec<Box<dyn Mind>>| {
+        let outcome = arena::play_watched(&scenario, minds, 3, |c| c.decision() < 500);
+        outcome.unwrap().digest
+    };
+    assert_eq!(
+        played((0..4).map(by_strategy).collect()),
+        played((0..4).map(by_network).collect())
+    );
 }
 
 /// A network with non-finite outputs: its weights add up beyond single precision.

@@ -3,6 +3,7 @@
 pub mod pyquaticus;
 pub mod squall;
 
+use pyquaticus::Edition;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -13,6 +14,14 @@ pub enum ObservationSpace {
     /// Those of Pyquaticus, in its order: 21 of the own boat and 8 of each other boat, each from -1
     /// to 1.
     Pyquaticus,
+    /// Those of Pyquaticus from November 2023 to January 2024: `pyquaticus` without the scores, and
+    /// distances relative to the field's diagonal plus 10 m, but that of the scrimmage line to half
+    /// the field's width.
+    #[serde(rename = "pyquaticus_2023")]
+    Pyquaticus2023,
+    /// Those of the 2026 competition: `pyquaticus`, and for each boat whether it is out of action.
+    #[serde(rename = "pyquaticus_2026")]
+    Pyquaticus2026,
     /// Those of Squall: what sensors and radio report, in a frame that is the same for both teams.
     Squall {
         /// Number of mates with a slot.
@@ -28,46 +37,63 @@ pub enum ObservationSpace {
 }
 
 impl ObservationSpace {
+    /// The version of Pyquaticus' observations; `None` for other spaces.
+    pub fn edition(self) -> Option<Edition> {
+        match self {
+            ObservationSpace::Pyquaticus => Some(Edition::Of2025),
+            ObservationSpace::Pyquaticus2023 => Some(Edition::Of2023),
+            ObservationSpace::Pyquaticus2026 => Some(Edition::Of2026),
+            ObservationSpace::Squall { .. } => None,
+        }
+    }
+
     /// Incremented when the meaning of a value changes.
     pub fn version(self) -> u32 {
-        match self {
-            ObservationSpace::Pyquaticus => pyquaticus::VERSION,
-            ObservationSpace::Squall { .. } => squall::VERSION,
+        match self.edition() {
+            Some(_) => pyquaticus::VERSION,
+            None => squall::VERSION,
         }
     }
 
     /// The number of values for a boat with this many mates and enemies.
     pub fn size(self, mates: usize, enemies: usize) -> usize {
-        match self {
-            ObservationSpace::Pyquaticus => {
-                pyquaticus::OWN_NAMES.len() + (mates + enemies) * pyquaticus::OTHER
+        match (self, self.edition()) {
+            (_, Some(edition)) => {
+                let others = mates + enemies;
+                edition.own_names().count() + others * edition.other_names().count()
             }
-            ObservationSpace::Squall {
-                mates,
-                enemies,
-                frames,
-            } => {
+            (
+                ObservationSpace::Squall {
+                    mates,
+                    enemies,
+                    frames,
+                },
+                _,
+            ) => {
                 let others = usize::from(mates) + usize::from(enemies);
                 usize::from(frames) * (squall::OWN_NAMES.len() + others * squall::OTHER)
             }
+            _ => 0,
         }
     }
 
     /// The names of the values, in order. Names of older frames begin with their age in policy
     /// decisions: `t-1.speed`.
     pub fn names(self, mates: usize, enemies: usize) -> Vec<String> {
-        match self {
-            ObservationSpace::Pyquaticus => names_of(
-                &pyquaticus::OWN_NAMES,
-                &pyquaticus::OTHER_NAMES,
-                mates,
-                enemies,
-            ),
-            ObservationSpace::Squall {
-                mates,
-                enemies,
-                frames,
-            } => {
+        match (self, self.edition()) {
+            (_, Some(edition)) => {
+                let own: Vec<&str> = edition.own_names().collect();
+                let other: Vec<&str> = edition.other_names().collect();
+                names_of(&own, &other, mates, enemies)
+            }
+            (
+                ObservationSpace::Squall {
+                    mates,
+                    enemies,
+                    frames,
+                },
+                _,
+            ) => {
                 let newest = names_of(
                     &squall::OWN_NAMES,
                     &squall::OTHER_NAMES,
@@ -78,6 +104,7 @@ impl ObservationSpace {
                     .flat_map(|ago| newest.iter().map(move |name| format!("t-{ago}.{name}")));
                 newest.iter().cloned().chain(older).collect()
             }
+            _ => vec![],
         }
     }
 }
@@ -106,6 +133,8 @@ mod tests {
         for (space, mates, enemies) in [
             (ObservationSpace::Pyquaticus, 1, 2),
             (ObservationSpace::Pyquaticus, 0, 1),
+            (ObservationSpace::Pyquaticus2023, 1, 2),
+            (ObservationSpace::Pyquaticus2026, 2, 3),
             (squall(1), 1, 2),
             (squall(3), 1, 2),
         ] {
@@ -117,6 +146,12 @@ mod tests {
                 "{space:?}: {names:?}"
             );
         }
+        let sizes = [
+            ObservationSpace::Pyquaticus2023.size(1, 2),
+            ObservationSpace::Pyquaticus.size(2, 3),
+            ObservationSpace::Pyquaticus2026.size(2, 3),
+        ];
+        assert_eq!(sizes, [43, 61, 67]);
         assert_eq!(squall(2).names(2, 3)[0], "position_ahead");
         assert_eq!(
             ObservationSpace::Pyquaticus.names(1, 2)[21],

@@ -18,6 +18,14 @@ pub struct Policy {
     #[serde(default)]
     #[schemars(with = "Option<String>", extend("x-expected" = "the name of a variable with texts"))]
     pub sets: Option<u16>,
+    /// Whether each action is drawn by the model's probabilities, by the game's seed, instead of
+    /// the likeliest being taken. Only for a model with logits.
+    #[serde(default)]
+    pub sampled: bool,
+    /// Whether the model's actions are the boat's orders, as in Pyquaticus. Modes, rules and other
+    /// behaviours then have no effect, and nothing keeps the boat safe; a tagged boat drives home.
+    #[serde(default)]
+    pub direct: bool,
     /// Who proposes without a model.
     #[schemars(extend("default" = "program"))]
     pub by: Proposer,

@@ -70,6 +70,16 @@ fn one(scope: &Scope<'_>, modes: Option<&[Mode]>, name: &str, given: &Json) -> O
     } else {
         None
     };
+    let is_sampled = keys.get("sampled") == Some(&json!(true));
+    if is_sampled && !model.as_ref().is_some_and(PolicyModel::has_logits) {
+        let expected = "is true, expected a model with a logit for each of several actions";
+        return scope.refuse(&format!("{path}.sampled"), expected);
+    }
+    let is_direct = keys.get("direct") == Some(&json!(true));
+    if is_direct && (model.is_none() || sets.is_some()) {
+        let expected = "is true, expected a model that chooses courses and speeds";
+        return scope.refuse(&format!("{path}.direct"), expected);
+    }
     let weight = parameter(&keys, "weight")?;
     let duration_s = parameter(&keys, "duration_s");
     let mut task: Task = serde_json::from_value(json!({ variant: keys })).ok()?;
