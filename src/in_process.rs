@@ -6,11 +6,12 @@ use recording::NewFile;
 use rules::event::EventCursor;
 use scenario::Scenario;
 use sim::{Contest, GameRecorder, Report, Run};
+use std::num::NonZeroUsize;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Plays the game of `scenario` that `seed` selects, without a network, until it is over or `stop`
-/// is set. Calls `look` before every decision and at the end.
+/// is set. Many minds decide on `threads` threads. Calls `look` before every decision and at the end.
 ///
 /// # Errors
 /// If the game cannot start.
@@ -18,7 +19,7 @@ pub(crate) fn play(
     scenario: &Scenario,
     seed: u64,
     file: Option<NewFile>,
-    stop: &AtomicBool,
+    (threads, stop): (NonZeroUsize, &AtomicBool),
     mut look: impl FnMut(&Contest),
 ) -> Result<Report> {
     let scenario = scenario.of_seed(seed)?;
@@ -26,7 +27,7 @@ pub(crate) fn play(
     let mut recorder =
         file.map(|file| GameRecorder::in_process(file, &scenario.name, env!("SQUALL_COMMIT")));
     let mut written = EventCursor::default();
-    let watch = |contest: &mut Contest| {
+    let watch = |contest: &mut Contest, _: &_| {
         if let Some(recorder) = &mut recorder {
             let frame = Arc::new(contest.frame(&mut written));
             recorder.decision(contest, frame);
@@ -34,7 +35,8 @@ pub(crate) fn play(
         look(contest);
         !stop.load(Ordering::Relaxed)
     };
-    let outcome = arena::play_watched(&scenario, agent::minds_of(&scenario), seed, watch)?;
+    let runner = arena::runner_of(agent::minds_of(&scenario)).on_threads(threads.get());
+    let outcome = arena::play_on(&scenario, runner, seed, watch)?;
     let run = Run {
         pace: "in process".to_owned(),
         wall_s: start.elapsed().as_secs_f64(),

@@ -93,7 +93,7 @@ enum Command {
     Log(log_command::Args),
     /// Plays futures of a recorded game in which boats continue with other strategies.
     #[command(
-        after_help = "Examples:\n  squall whatif --at 60 --blue strategy_5\n  squall whatif strategy_4_vs_3 --at 60 --vehicle red_one=learned --futures 40 --record future.mcap"
+        after_help = "Examples:\n  squall whatif --at 60 --blue strategy_5 --futures 20\n  squall whatif strategy_4_vs_3 --at 60 --vehicle red_1=learned --futures 20 --record future.mcap"
     )]
     Whatif(whatif_command::Args),
     /// Describes and plots a sea and its effects on a boat.
@@ -159,7 +159,9 @@ fn run(command: Command) -> Result<ExitCode> {
         #[cfg(feature = "network")]
         Command::Network(command) => network::run(&command),
         #[cfg(not(feature = "network"))]
-        Command::Run(args) => run_command::run(&args, &mut run_command::InProcess),
+        Command::Run(args) => {
+            run_command::run(&args, &mut run_command::InProcess { jobs: args.jobs })
+        }
         #[cfg(not(feature = "network"))]
         Command::Replay(args) if args.check => replay_command::check(args.file.as_deref()),
         #[cfg(not(feature = "network"))]

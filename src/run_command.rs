@@ -8,9 +8,11 @@ use crate::style::Names;
 use crate::watch_files::WatchedFiles;
 use crate::{clock, explain, in_process, stop};
 use anyhow::{Result, bail};
+use command_line::number::whole;
 use recording::NewFile;
 use scenario::Scenario;
 use sim::{ProgressMessage, Report, Reporter};
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -32,6 +34,10 @@ pub(crate) struct Args {
     /// Plays in this process, without a network; the game is the same, byte for byte
     #[arg(long)]
     pub(crate) in_process: bool,
+    /// With --in-process: number of threads on which the minds of large fleets decide; does not
+    /// affect results [default: one per core]
+    #[arg(long, value_name = "N", requires = "in_process", value_parser = whole::<NonZeroUsize>(1, u64::MAX))]
+    pub(crate) jobs: Option<NonZeroUsize>,
 }
 
 /// The command that shows a recorded game; in a build without the page, the one that analyses it.
@@ -61,7 +67,9 @@ pub(crate) trait Player {
 }
 
 /// Plays games in this process.
-pub(crate) struct InProcess;
+pub(crate) struct InProcess {
+    pub(crate) jobs: Option<NonZeroUsize>,
+}
 
 /// Plays the game that the arguments describe.
 pub(crate) fn run(args: &Args, player: &mut dyn Player) -> Result<ExitCode> {
@@ -213,7 +221,9 @@ impl Player for InProcess {
         const SHOW_EVERY: Duration = Duration::from_millis(100);
         let mut reporter = Reporter::default();
         let mut shown = (clock::now(), 0.0);
-        let report = in_process::play(scenario, args.seed(scenario), file, stop, |contest| {
+        let threads = experiment::threads(self.jobs, scenario.vehicles.len());
+        let seed = args.seed(scenario);
+        let report = in_process::play(scenario, seed, file, (threads, stop), |contest| {
             // Reading the clock takes longer than a decision: read it only now and then.
             if contest.decision().is_multiple_of(64) && shown.0.elapsed() >= SHOW_EVERY {
                 let now_s = contest.now().as_s();

@@ -22,7 +22,11 @@ pub struct MindRunner<M: Mind + ?Sized = dyn Mind> {
     decided: Option<Stamp>,
     /// The minds' messages to their teams after the last decision.
     sent: Vec<Word>,
+    threads: usize,
 }
+
+/// Number of minds from which starting threads costs less than it saves.
+const MINDS_MIN: usize = 16;
 
 impl<M: Mind + ?Sized> MindRunner<M> {
     /// A runner of these minds before their first decision.
@@ -36,7 +40,15 @@ impl<M: Mind + ?Sized> MindRunner<M> {
             boats: minds.into_iter().map(boat).collect(),
             decided: None,
             sent: Vec::new(),
+            threads: 1,
         }
+    }
+
+    /// The same runner, whose minds decide on this many threads if there are many minds. The orders
+    /// are the same.
+    pub fn on_threads(mut self, threads: usize) -> MindRunner<M> {
+        self.threads = threads.max(1);
+        self
     }
 
     /// The minds and their boats, in the order in which they decide.
@@ -109,15 +121,34 @@ impl<M: Mind + ?Sized> MindRunner<M> {
         stamp: Stamp,
         picture_of: impl Fn(VehicleId) -> Option<&'p Picture>,
     ) {
-        for Boat {
-            vehicle,
-            order,
-            mind,
-        } in &mut self.boats
-        {
-            *order = picture_of(*vehicle)
-                .map(|picture| mind.decide(picture))
-                .unwrap_or_default();
+        let decide = |boat: &mut Boat<M>, picture: Option<&Picture>| {
+            let order = picture.map(|picture| boat.mind.decide(picture));
+            boat.order = order.unwrap_or_default();
+        };
+        if self.threads == 1 || self.boats.len() < MINDS_MIN {
+            for boat in &mut self.boats {
+                decide(boat, picture_of(boat.vehicle));
+            }
+        } else {
+            let each = self.boats.len().div_ceil(self.threads);
+            let pictures: Vec<_> = self
+                .boats
+                .iter()
+                .map(|boat| picture_of(boat.vehicle))
+                .collect();
+            std::thread::scope(|scope| {
+                let mut parts = self.boats.chunks_mut(each).zip(pictures.chunks(each));
+                let work = |(boats, pictures): (&mut [Boat<M>], &[Option<&Picture>])| {
+                    for (boat, picture) in boats.iter_mut().zip(pictures) {
+                        decide(boat, *picture);
+                    }
+                };
+                let own = parts.next();
+                for part in parts {
+                    scope.spawn(move || work(part));
+                }
+                own.into_iter().for_each(work);
+            });
         }
         self.decided = Some(stamp);
         let mut sent = std::mem::take(&mut self.sent);

@@ -85,7 +85,12 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         )));
     }
     if args.run.in_process {
-        return run_command::run(&args.run, &mut InProcess);
+        return run_command::run(
+            &args.run,
+            &mut InProcess {
+                jobs: args.run.jobs,
+            },
+        );
     }
     run_command::run(&args.run, &mut Processes { args, page: None })
 }

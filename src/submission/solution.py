@@ -62,7 +62,7 @@ def observed(numbers):
     # Of 2023: without scores, and distances relative to 10 m more, or to half the field for the scrimmage line.
     most_m = np.full(numbers.size, DIAGONAL_M + 10.0)
     most_m[13] = 80.0
-    scaled = np.minimum((numbers + 1.0) * (DIAGONAL_M / most_m) - 1.0, 1.0).astype(np.float32)
+    scaled = ((numbers + 1.0) * (DIAGONAL_M / most_m) - 1.0).astype(np.float32)
     return np.where(distance, scaled, numbers)[~(disabled | scores)]
 
 

@@ -28,14 +28,19 @@ pub(super) fn write(situation: &Situation, edition: Edition, out: &mut Numbers<'
         let place = situation
             .locate(&Place::Mark(mark))
             .map_or(situation.at, |point| point.at);
-        toward(situation, place, longest_m, out);
+        toward(situation, place, (edition, longest_m), out);
     }
     // Corner 0 is to starboard of the first team's end, and corners continue clockwise: the walls
     // are 3 to 0, 0 to 1, 1 to 2, 2 to 3.
     let corners = &model.field.corners;
     for i in [3, 0, 1, 2].map(|i| i + 2 * model.team.index()) {
         let wall = (corners[i % 4], corners[(i + 1) % 4]);
-        toward(situation, nearest_of(wall, situation.at), longest_m, out);
+        toward(
+            situation,
+            nearest_of(wall, situation.at),
+            (edition, longest_m),
+            out,
+        );
     }
     let [one, other] = model.field.scrimmage;
     let scrimmage_m = if edition == Edition::Of2023 {
@@ -44,22 +49,26 @@ pub(super) fn write(situation: &Situation, edition: Edition, out: &mut Numbers<'
         longest_m
     };
     let nearest = nearest_of((one, other), situation.at);
-    toward(situation, nearest, scrimmage_m, out);
+    toward(situation, nearest, (edition, scrimmage_m), out);
     let own = &situation.own;
-    out.push(unit(own.nav.speed_m_s(), fastest_m_s(situation)));
+    out.push(unit(edition, own.nav.speed_m_s(), fastest_m_s(situation)));
     truth(own.carried_flag().is_some(), out);
     truth(
-        is_own_side(situation, situation.at, model.team.index()),
+        is_own_side(
+            situation,
+            (situation.at, situation.velocity),
+            model.team.index(),
+        ),
         out,
     );
-    out.push(since_tag(situation, own.tag_ready_ns));
+    out.push(since_tag(situation, edition, own.tag_ready_ns));
     truth(own.tagged, out);
     if edition == Edition::Of2026 {
         truth(own.disabled, out);
     }
     if edition != Edition::Of2023 {
         for score in [Fact::Score, Fact::EnemyScore] {
-            out.push(unit(situation.fact(score), model.score_max));
+            out.push(unit(edition, situation.fact(score), model.score_max));
         }
     }
     for vehicle in model.mates.iter().chain(&model.enemies) {
@@ -76,17 +85,29 @@ pub(super) fn write(situation: &Situation, edition: Edition, out: &mut Numbers<'
 
 fn other_boat(situation: &Situation, other: &OtherBoat, edition: Edition, out: &mut Numbers<'_>) {
     let model = &situation.model;
-    toward(situation, other.at, longest_m(situation, edition), out);
+    toward(
+        situation,
+        other.at,
+        (edition, longest_m(situation, edition)),
+        out,
+    );
     out.push(wrap_pi(other.psi_rad - other.at.bearing_rad(situation.at)) / PI);
-    out.push(unit(other.velocity().length(), fastest_m_s(situation)));
+    out.push(unit(
+        edition,
+        other.velocity().length(),
+        fastest_m_s(situation),
+    ));
     truth(other.carrying.is_some(), out);
     let team = if other.is_enemy {
         1 - model.team.index()
     } else {
         model.team.index()
     };
-    truth(is_own_side(situation, other.at, team), out);
-    out.push(since_tag(situation, other.tag_ready));
+    truth(
+        is_own_side(situation, (other.at, other.velocity()), team),
+        out,
+    );
+    out.push(since_tag(situation, edition, other.tag_ready));
     truth(other.tagged, out);
     if edition == Edition::Of2026 {
         truth(other.disabled, out);
@@ -105,16 +126,22 @@ fn longest_m(situation: &Situation, edition: Edition) -> f64 {
 }
 
 /// Bearing and distance of a place.
-fn toward(situation: &Situation, place: Ned, longest_m: f64, out: &mut Numbers<'_>) {
+fn toward(
+    situation: &Situation,
+    place: Ned,
+    (edition, longest_m): (Edition, f64),
+    out: &mut Numbers<'_>,
+) {
     out.push(wrap_pi(situation.at.bearing_rad(place) - situation.own.nav.psi_rad) / PI);
-    out.push(unit(situation.at.distance(place), longest_m));
+    out.push(unit(edition, situation.at.distance(place), longest_m));
 }
 
-/// Whether a place is on a team's side of the scrimmage line, on the field or not, as in Pyquaticus
-/// and unlike `Field::is_own_side`.
-fn is_own_side(situation: &Situation, at: Ned, team: usize) -> bool {
+/// Whether a boat was on a team's side of the scrimmage line a tick ago, on the field or not:
+/// Pyquaticus tests this before a boat moves, and unlike `Field::is_own_side`.
+fn is_own_side(situation: &Situation, (at, velocity): (Ned, Ned), team: usize) -> bool {
     let field = &situation.model.field;
-    let beyond_m = (at - field.middle()).dot(field.along);
+    let before = at - velocity.scaled(situation.model.tick_s);
+    let beyond_m = (before - field.middle()).dot(field.along);
     // A boat on the line counts as on its own side for both teams.
     if team == 0 {
         beyond_m <= 0.0
@@ -130,10 +157,10 @@ fn nearest_of((a, b): (Ned, Ned), at: Ned) -> Ned {
 }
 
 /// The time since the last tag, s, limited to the cooldown.
-fn since_tag(situation: &Situation, ready: SimTime) -> f64 {
+fn since_tag(situation: &Situation, edition: Edition, ready: SimTime) -> f64 {
     let cooldown_s = situation.model.rules.tag_cooldown.as_s();
     let wait_s = tag_wait_s(ready, situation.now).min(cooldown_s);
-    unit(cooldown_s - wait_s, cooldown_s)
+    unit(edition, cooldown_s - wait_s, cooldown_s)
 }
 
 /// The top speed of the game's fastest boat, m/s.
@@ -146,12 +173,13 @@ fn fastest_m_s(situation: &Situation) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Maps 0 to `most` onto -1 to 1.
-fn unit(number: f64, most: f64) -> f64 {
-    if most > 0.0 {
-        (2.0 * number / most - 1.0).clamp(-1.0, 1.0)
-    } else {
-        1.0
+/// Maps 0 to `most` onto -1 to 1, which values beyond exceed in 2023.
+fn unit(edition: Edition, number: f64, most: f64) -> f64 {
+    let scaled = 2.0 * number / most - 1.0;
+    match edition {
+        _ if most <= 0.0 => 1.0,
+        Edition::Of2023 => scaled,
+        Edition::Of2025 | Edition::Of2026 => scaled.clamp(-1.0, 1.0),
     }
 }
 

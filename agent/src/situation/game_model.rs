@@ -16,6 +16,8 @@ pub(crate) struct GameModel {
     pub(crate) team: TeamId,
     /// The game's seed.
     pub(crate) seed: u64,
+    /// The physics' time step, s.
+    pub(crate) tick_s: f64,
     pub(crate) field: Field,
     pub(crate) rules: Rules,
     /// The boat's index in its team.
@@ -69,6 +71,7 @@ impl GameModel {
             me,
             team,
             seed: scenario.seed,
+            tick_s: scenario.tick.as_s(),
             rank: of(true).position(|vehicle| vehicle == me).unwrap_or(0),
             enemies: of(false).collect(),
             mates: of(true).filter(|vehicle| *vehicle != me).collect(),

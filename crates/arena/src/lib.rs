@@ -37,12 +37,24 @@ pub fn play_observed(
     scenario: &Scenario,
     minds: Vec<Box<dyn Mind>>,
     seed: u64,
-    mut observe: impl FnMut(&mut Contest, &MindRunner) -> bool,
+    observe: impl FnMut(&mut Contest, &MindRunner) -> bool,
 ) -> Result<Outcome, NoStart> {
     assert_eq!(minds.len(), scenario.vehicles.len(), "one mind a vehicle");
+    play_on(scenario, runner_of(minds), seed, observe)
+}
+
+/// Like [`play_observed`], with a runner of one mind per vehicle.
+///
+/// # Errors
+/// As [`play`].
+pub fn play_on(
+    scenario: &Scenario,
+    mut runner: MindRunner,
+    seed: u64,
+    mut observe: impl FnMut(&mut Contest, &MindRunner) -> bool,
+) -> Result<Outcome, NoStart> {
     scenario.has_no_real_boats()?;
     let mut contest = Contest::new(scenario, seed)?;
-    let mut runner = runner_of(minds);
     while observe(&mut contest, &runner) && !contest.is_over() {
         decide(&mut contest, &mut runner);
         contest.advance();

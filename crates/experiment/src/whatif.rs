@@ -1,7 +1,7 @@
 //! Futures of a recorded game: the same past up to a moment, and then other minds and other draws.
 
 use crate::pipeline::{Game, play_in_order};
-use agent::{Mind, MindRunner};
+use agent::MindRunner;
 use messages::input::Input;
 use primitives::reseed::Reseed;
 use primitives::{SimTime, VehicleId};
@@ -46,11 +46,9 @@ pub fn play(
     };
     let mut contest = Contest::new(&scenario, scenario.seed)?;
     let mut runner: MindRunner = arena::runner_of(agent::minds_of(&scenario));
-    let mut go_on = true;
     for input in &past.inputs {
         if *input == Input::Pictured {
-            go_on = contest.now() < past.until && watch(&mut contest);
-            if !go_on {
+            if contest.now() >= past.until || !watch(&mut contest) {
                 break;
             }
             let stamp = contest.pictures()[0].stamp;
@@ -89,7 +87,7 @@ pub fn compare(
                 let contest = contest.map_err(|why| why.to_string())?;
                 Ok::<Game, String>(Game::new(&past.scenario, contest.outcome()))
             };
-            Ok([game(&[])?, game(changes)?])
+            Ok::<_, String>([game(&[])?, game(changes)?])
         },
         |games| take(games?),
     )

@@ -61,7 +61,7 @@ def observations():
             kept = [number for name, number in given if not name.endswith("is_disabled")]
             check(np.array_equal(entry("pyquaticus").observed(numbers), kept), "2025")
             kept = [
-                min((number + 1) * diagonal_m / (80 if "scrimmage" in name else diagonal_m + 10) - 1, 1)
+                (number + 1) * diagonal_m / (80 if "scrimmage" in name else diagonal_m + 10) - 1
                 if name.endswith("distance")
                 else number
                 for name, number in given

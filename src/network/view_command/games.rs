@@ -9,6 +9,7 @@ use recording::NewFile;
 use scenario::Scenario;
 use shore::page::{PreparingView, Showing, Shown};
 use std::collections::VecDeque;
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -149,12 +150,18 @@ fn prepare(
     let end_s = scenario.rules.time_limit.as_s();
     let new =
         NewFile::create(file).with_context(|| format!("cannot record to {}", file.display()))?;
-    let report = in_process::play(scenario, seed, Some(new), stop, |contest| {
-        if contest.decision().is_multiple_of(TELL_EVERY) {
-            let share = 100.0 * (contest.now().as_s() / end_s).clamp(0.0, 1.0);
-            preparing.tell(&format!("{}: playing, {share:.0} %", game.about));
-        }
-    })?;
+    let report = in_process::play(
+        scenario,
+        seed,
+        Some(new),
+        (NonZeroUsize::MIN, stop),
+        |contest| {
+            if contest.decision().is_multiple_of(TELL_EVERY) {
+                let share = 100.0 * (contest.now().as_s() / end_s).clamp(0.0, 1.0);
+                preparing.tell(&format!("{}: playing, {share:.0} %", game.about));
+            }
+        },
+    )?;
     if let Some(problem) = report.run.recording_problem {
         bail!("{problem}");
     }

@@ -217,3 +217,17 @@ fn an_agent_that_is_killed_begins_anew_when_it_is_back() {
     assert!((spared - 20.0 * a_second).abs() < 2.0, "{decisions:?}");
     assert!((killed - 5.0 * a_second).abs() < 2.0, "{decisions:?}");
 }
+
+#[test]
+fn a_fleet_plays_the_same_game_on_any_number_of_threads() {
+    let fleet = shipped("fleet_20v20.toml");
+    let digest = |threads: usize| {
+        let runner = arena::runner_of(agent::minds_of(&fleet)).on_threads(threads);
+        let watch = |contest: &mut sim::Contest, _: &_| contest.decision() < 300;
+        arena::play_on(&fleet, runner, fleet.seed, watch)
+            .unwrap()
+            .digest
+    };
+    let [one, two, sixteen] = [1, 2, 16].map(digest);
+    assert_eq!([&two, &sixteen], [&one, &one]);
+}

@@ -100,6 +100,7 @@ fn boats_move_as_in_pyquaticus() {
         (&main, "main_heuristics"),
         (&competition, "mctf_2026_random"),
         (&competition, "mctf_2026_heuristics"),
+        (&competition, "mctf_2026_network"),
     ] {
         let recorded = Recorded::read(name);
         assert_eq!(recorded.actions.len(), 40);
