@@ -19,6 +19,7 @@ from squall.setup import (
     action_mask,
     action_space,
     actions_for,
+    checked_seed,
     native_environment,
     needs_no_policy,
     observation_space,
@@ -44,7 +45,7 @@ class SquallParallelEnv(Recreated, ParallelEnv[str, NDArray[np.float32], Any]): 
     def __init__(self, *, seed: int | None, render_mode: str | None, state: bool, options: Options) -> None:
         self._game = Game(self, options, seed=seed, state=state, render_mode=render_mode)
         self.native = self._game.native
-        self.np_random, _ = gymnasium.utils.seeding.np_random(seed)
+        self.np_random, _ = gymnasium.utils.seeding.np_random(None if seed is None else checked_seed(seed))
         self._recipe = functools.partial(type(self), seed=seed, render_mode=render_mode, state=state, options=options)
         self.metadata = {**self.metadata, "render_modes": available_modes(self.metadata["render_modes"])}
         self.render_mode = render_mode
@@ -101,6 +102,7 @@ class SquallParallelEnv(Recreated, ParallelEnv[str, NDArray[np.float32], Any]): 
     ) -> tuple[Shown, dict[str, dict[str, Any]]]:
         """Starts the game with this seed, or one drawn from `np_random`."""
         if seed is not None:
+            seed = checked_seed(seed)
             self.np_random, _ = gymnasium.utils.seeding.np_random(seed)
         self._game.reset(seed, self.np_random)
         self.agents = list(self.possible_agents)

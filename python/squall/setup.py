@@ -108,7 +108,7 @@ def native_environment(
     every = _number("record_every", options.get("record_every", 1), 2**64 - 1, least=1)
     return _native.VectorEnvironment(
         setup,
-        _number("seed", seed, 2**64 - 1),
+        checked_seed(seed),
         _number("games", games, 10**6),
         _number("threads", threads, 1024),
         None if folder is None else (os.fspath(folder), every),
@@ -166,6 +166,11 @@ def action_mask(native: _native.VectorEnvironment) -> NDArray[np.int8] | None:
     mask = np.ones((native.rows, native.action_count), dtype=np.int8)
     mask[~native.counts, :-1] = 0
     return mask
+
+
+def checked_seed(seed: Any) -> int:
+    """Converts a seed. Raises ValueError if it is not an integer of 64 bits."""
+    return _number("seed", seed, 2**64 - 1)
 
 
 def check_render_mode(render_mode: str | None, modes: Sequence[str]) -> None:

@@ -18,6 +18,7 @@ from squall.setup import (
     action_mask,
     action_space,
     actions_for,
+    checked_seed,
     needs_no_policy,
     observation_space,
 )
@@ -36,7 +37,7 @@ class _GameEnv(Recreated, gymnasium.Env[NDArray[np.float32], Any]):
         self._game = Game(self, options, seed=seed, mates=mates, render_mode=render_mode)
         self.native = self._game.native
         if seed is not None:
-            super().reset(seed=seed)
+            super().reset(seed=checked_seed(seed))
         kind: Any = type(self)
         of_kind = {} if is_team else {"mates": mates}
         self._recipe = functools.partial(kind, seed=seed, render_mode=render_mode, **of_kind, **options)
@@ -72,6 +73,7 @@ class _GameEnv(Recreated, gymnasium.Env[NDArray[np.float32], Any]):
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[NDArray[np.float32], dict[str, Any]]:
         """Starts the game with this seed, or one drawn from `np_random`."""
+        seed = None if seed is None else checked_seed(seed)
         super().reset(seed=seed)
         self._game.reset(seed, self.np_random)
         return self._shown(), self._info(self.native.standing(0))

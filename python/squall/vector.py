@@ -24,6 +24,7 @@ from squall.setup import (
     action_space,
     actions_for,
     check_render_mode,
+    checked_seed,
     native_environment,
     observation_space,
 )
@@ -181,9 +182,9 @@ class VectorEnv(Recreated, gymnasium.vector.VectorEnv[NDArray[np.float32], NDArr
         if self.phase is Phase.CLOSED:
             check_phase(self.phase)
         mask = (options or {}).get("reset_mask")
-        if mask is None and (seed is None or isinstance(seed, (int, np.integer))):
+        if mask is None and not isinstance(seed, (Sequence, np.ndarray)):
             if seed is not None or self.phase is not Phase.NEW:
-                self.native.restart(None if seed is None else int(seed))
+                self.native.restart(None if seed is None else checked_seed(seed))
         else:
             self.native.restart_games(self._chosen(seed, mask))
         self.phase = Phase.PLAYING
@@ -231,10 +232,10 @@ class VectorEnv(Recreated, gymnasium.vector.VectorEnv[NDArray[np.float32], NDArr
 
     def _chosen(self, seed: int | Sequence[int | None] | None, mask: Any) -> list[tuple[int, int | None]]:
         seeds: list[int | None] = [None] * self.games
-        if isinstance(seed, (int, np.integer)):
-            seeds = [int(seed) + game for game in range(self.games)]
+        if isinstance(seed, (Sequence, np.ndarray)):
+            seeds = [None if one is None else checked_seed(one) for one in seed]
         elif seed is not None:
-            seeds = [None if one is None else int(one) for one in seed]
+            seeds = [checked_seed(seed) + game for game in range(self.games)]
         if len(seeds) != self.games:
             raise ValueError(f"seed has {len(seeds)} numbers, expected one for each of {self.games} games")
         rows = np.ones(self.num_envs, dtype=bool) if mask is None else np.asarray(mask, dtype=bool)

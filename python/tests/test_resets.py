@@ -86,6 +86,16 @@ def test_calls_out_of_order_are_refused(make: Callable[..., Any], action: Any) -
             call()
 
 
+@pytest.mark.parametrize(("make", "action"), KINDS)
+def test_seeds_are_integers(make: Callable[..., Any], action: Any) -> None:
+    environment = make(seed=np.int64(5))
+    assert seed_of(environment.reset()[1]) == 5
+    assert seed_of(environment.reset(seed=np.int64(6))[1]) == 6
+    for seed in (-1, 3.7, "7"):
+        with pytest.raises(ValueError, match="seed is|seed has"):
+            environment.reset(seed=seed)
+
+
 def test_a_step_without_agents_is_empty() -> None:
     environment = agents(episode_max_s=0.5)
     with pytest.raises(gymnasium.error.ResetNeeded):
