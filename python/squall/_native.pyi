@@ -17,6 +17,8 @@ class Setup(TypedDict):
     action: str
     helm: str | None
     decision_s: float | None
+    decision_min_s: float
+    """How long an action holds at least, s, if `decision_s` is None."""
     episode_max_s: float | None
     starts: int | None
     team: str | None
@@ -87,10 +89,13 @@ class VectorEnvironment:
     boat_names: list[str]
     team_names: list[str]
 
-    def step(self, actions: NDArray[Any]) -> None:
-        """Plays one step of every game, without the interpreter's lock.
+    def step(self, actions: NDArray[Any], restarts: bool = True) -> None:
+        """Plays one step of every game, without the interpreter's lock. Games that end restart in it; without
+        `restarts` in the next step, which ignores their actions.
 
-        `actions` are (rows,) int64 below `action_count`, or (rows, 2) float32 from -1 to 1. Otherwise raises ValueError and plays nothing.
+        `actions` are (rows,) int64 below `action_count`, or (rows, 2) finite float32. Otherwise raises ValueError and plays nothing.
+
+        In a child process, this and the restarts start new threads, or raise RuntimeError if games are recorded.
         """
 
     def restart(self, seed: int | None = None) -> None:
@@ -117,11 +122,14 @@ class VectorEnvironment:
     def finished(self) -> list[tuple[int, bool, dict[str, int]]]:
         """The games that ended in the last step: index, whether cut off, and final state of play."""
 
+    def events(self, game: int) -> list[tuple[str, float, int | None, int | None, int | None]]:
+        """The events of a game's last step: name, time in s, boat, other boat, team; as in `squall.Event`."""
+
     def digest(self, game: int) -> str:
         """The digest of a game's state: equal digests, equal games."""
 
     def scene(self, game: int) -> Scene:
-        """A game seen from above."""
+        """A game seen from above; a game that ended in the last step as it ended."""
 
 class SweepPlan:
     """The games of a sweep. Immutable, so threads may share it."""

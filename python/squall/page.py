@@ -26,7 +26,7 @@ def program() -> str:
     Raises `gymnasium.error.DependencyNotInstalled` if there is none.
     """
     named = os.environ.get("SQUALL")
-    found = shutil.which(named or "squall")
+    found = _found()
     if found is None:
         where = "on PATH" if named is None else f"where the environment variable SQUALL says, {named!r}"
         raise gymnasium.error.DependencyNotInstalled(
@@ -34,6 +34,15 @@ def program() -> str:
             " `cargo build --release`, and put target/release on PATH or the program's path into SQUALL"
         )
     return found
+
+
+def is_installed() -> bool:
+    """Whether the program `squall` can be found."""
+    return _found() is not None
+
+
+def _found() -> str | None:
+    return shutil.which(os.environ.get("SQUALL") or "squall")
 
 
 class Page:

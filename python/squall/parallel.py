@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+import functools
+from collections.abc import Mapping
+from typing import Any
 
 import gymnasium
 import numpy as np
@@ -10,12 +12,14 @@ from numpy.typing import NDArray
 from pettingzoo import ParallelEnv
 from typing_extensions import Unpack
 
-from squall.picture import draw
-from squall.recording import Recordings, folder_to_show
+from squall.game import Game, Phase, Recreated, check_phase
+from squall.recording import available_modes
 from squall.setup import (
     Options,
+    action_mask,
     action_space,
-    check_render_mode,
+    actions_for,
+    checked_seed,
     native_environment,
     needs_no_policy,
     observation_space,
@@ -26,23 +30,24 @@ from squall.vector import seen_by_enemy
 Shown = dict[str, NDArray[np.float32]]
 
 
-class SquallParallelEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ignore[misc]
+class SquallParallelEnv(Recreated, ParallelEnv[str, NDArray[np.float32], Any]):  # type: ignore[misc]
     """A game whose agents are boats, with their names in the game.
 
     With `state=True`, `state()` is the truth about the game, for critics that know more than any agent; see the package's README.
     """
 
-    metadata: ClassVar[dict[str, Any]] = {
+    metadata: dict[str, Any] = {  # noqa: RUF012 (PettingZoo's own)
         "render_modes": ["human", "rgb_array"],
         "render_fps": 10,
         "name": "squall_v0",
     }
 
     def __init__(self, *, seed: int | None, render_mode: str | None, state: bool, options: Options) -> None:
-        check_render_mode(render_mode, self.metadata["render_modes"])
-        record = folder_to_show(render_mode)
-        self.native = native_environment(options, seed=seed, games=1, threads=1, state=state, record=record)
-        self._recordings = Recordings(self, self.native, render_mode)
+        self._game = Game(self, options, seed=seed, state=state, render_mode=render_mode)
+        self.native = self._game.native
+        self.np_random, _ = gymnasium.utils.seeding.np_random(None if seed is None else checked_seed(seed))
+        self._recipe = functools.partial(type(self), seed=seed, render_mode=render_mode, state=state, options=options)
+        self.metadata = {**self.metadata, "render_modes": available_modes(self.metadata["render_modes"])}
         self.render_mode = render_mode
         names = self.native.boat_names
         self.possible_agents = [names[boat] for boat in self.native.boats(0) if boat is not None]
@@ -51,10 +56,13 @@ class SquallParallelEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ig
         spaces = observation_space(self.native, options, None), action_space(self.native, None)
         self.observation_spaces = dict.fromkeys(self.possible_agents, spaces[0])
         self.action_spaces = {agent: action_space(self.native, None) for agent in self.possible_agents}
-        if state:
+        if self.native.state_names:
             self.state_space = state_space(self.native)
-        self._is_new = True
-        self._is_over = False
+
+    @property
+    def phase(self) -> Phase:  # type: ignore[override]
+        """The phase of the environment."""
+        return self._game.phase
 
     @property
     def observation_names(self) -> list[str]:
@@ -68,18 +76,17 @@ class SquallParallelEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ig
 
     @property
     def state_names(self) -> list[str]:
-        """The names of the values of the state, in order; empty without `state=True`."""
+        """The names of the values of the state, in order; empty without `state=True` and `reward`."""
         return self.native.state_names
 
     def state(self) -> NDArray[np.float32]:
         """The truth about the game from the view of its first agent; after the last step, at the end of the game.
 
-        Raises NotImplementedError without `state=True`.
+        Raises NotImplementedError without `state=True` and `reward`.
         """
         if not self.native.state_names:
             raise NotImplementedError("state() needs parallel_env(state=True)")
-        states = self.native.final_states if self._is_over else self.native.states
-        first: NDArray[np.float32] = states[0].copy()
+        first: NDArray[np.float32] = self.native.states[0].copy()
         return first
 
     def observation_space(self, agent: str) -> gymnasium.Space[Any]:
@@ -93,56 +100,73 @@ class SquallParallelEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ig
     def reset(
         self, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Shown, dict[str, dict[str, Any]]]:
-        """Starts the game with this seed, or the next one."""
-        if seed is not None or not self._is_new:
-            self.native.restart(seed)
-            self._recordings.show()
-        self.agents, self._is_new, self._is_over = list(self.possible_agents), True, False
-        return self._by_agent(self.native.observations.copy()), self._infos(self.native.standing(0))
+        """Starts the game with this seed, or one drawn from `np_random`."""
+        if seed is not None:
+            seed = checked_seed(seed)
+            self.np_random, _ = gymnasium.utils.seeding.np_random(seed)
+        self._game.reset(seed, self.np_random)
+        self.agents = list(self.possible_agents)
+        return self._shown(), self._infos()
 
     def step(
         self, actions: dict[str, Any]
     ) -> tuple[Shown, dict[str, float], dict[str, bool], dict[str, bool], dict[str, dict[str, Any]]]:
-        """Plays a step. Raises ValueError, and plays nothing, if an action is missing or outside the space."""
-        if not self.agents:
-            raise gymnasium.error.ResetNeeded("the game is over: call reset first")
-        native, agents = self.native, self.possible_agents
+        """Plays a step. Raises ValueError, and plays nothing, if an action is missing, outside the space or of an unknown agent.
+
+        After the end of the game, a step without actions returns empty dictionaries.
+        """
+        if self.phase is Phase.OVER and not actions:
+            return {}, {}, {}, {}, {}
+        check_phase(self.phase)
+        agents = self.possible_agents
+        rewards, terminated, truncated = self._game.step(self._rows_of(actions))
+        if terminated or truncated:
+            self.agents = []
+        ends = dict.fromkeys(agents, terminated), dict.fromkeys(agents, truncated)
+        return self._shown(), dict(zip(agents, rewards.tolist(), strict=True)), *ends, self._infos()
+
+    def _rows_of(self, actions: Any) -> NDArray[Any]:
+        """The agents' actions in order."""
+        if not isinstance(actions, Mapping):
+            raise ValueError(f"actions are {actions!r}, expected a dictionary with an entry for each agent")
+        agents = self.possible_agents
+        unknown = [agent for agent in actions if agent not in self.action_spaces]
+        if unknown:
+            raise ValueError(f"actions has entries for {unknown}, expected {agents}")
         missing = [agent for agent in agents if agent not in actions]
         if missing:
             raise ValueError(f"actions has no entries for {missing}")
-        kind = np.float32 if native.action_count is None else np.int64
-        native.step(np.array([actions[agent] for agent in agents], dtype=kind))
-        terminated, truncated = bool(native.terminated[0]), bool(native.truncated[0])
-        is_over = terminated or truncated
-        shown = native.final_observations if is_over else native.observations
-        infos = self._infos(native.finished()[0][2] if is_over else native.standing(0))
-        rewards = dict(zip(agents, native.rewards.tolist(), strict=True))
-        self._is_new = self._is_over = is_over
-        if is_over:
-            self.agents = []
-            self._recordings.show()
-        ends = dict.fromkeys(agents, terminated), dict.fromkeys(agents, truncated)
-        return self._by_agent(shown.copy()), rewards, *ends, infos
+        rows = []
+        for agent in agents:
+            try:
+                rows.append(actions_for(self.native, actions[agent], self.action_spaces[agent].shape))
+            except ValueError as error:
+                raise ValueError(f"{agent}: {error}") from None
+        return np.concatenate(rows)
 
     def render(self) -> NDArray[np.uint8] | None:
-        """The game from above, (height, width, 3); after its last step the next game. None except for "rgb_array".
+        """The game from above, (height, width, 3). None except for "rgb_array".
 
         With "human", Squall's page in a browser shows each game when it has ended: see the package's README.
         """
-        return draw(self.native.scene(0)) if self.render_mode == "rgb_array" else None
+        return self._game.picture()
 
     def close(self) -> None:
         """Completes the recording. With `render_mode="human"`, shows it."""
-        self._recordings.end()
+        self._game.close()
 
-    def _by_agent(self, observations: NDArray[np.float32]) -> Shown:
-        return dict(zip(self.possible_agents, observations, strict=True))
+    def _shown(self) -> Shown:
+        return dict(zip(self.possible_agents, self.native.observations.copy(), strict=True))
 
-    def _infos(self, standing: dict[str, int]) -> dict[str, dict[str, Any]]:
-        counts = self.native.counts.tolist()
+    def _infos(self) -> dict[str, dict[str, Any]]:
+        standing, counts, masks = self.native.standing(0), self.native.counts.tolist(), action_mask(self.native)
         views = [standing, seen_by_enemy(standing)] if len(counts) > self._per_team else [standing]
-        infos = [{"counts": is_counted, **views[place // self._per_team]} for place, is_counted in enumerate(counts)]
-        return dict(zip(self.possible_agents, infos, strict=True))
+        infos = {}
+        for place, agent in enumerate(self.possible_agents):
+            infos[agent] = {"counts": counts[place], **views[place // self._per_team]}
+            if masks is not None:
+                infos[agent]["action_mask"] = masks[place]
+        return infos
 
 
 def parallel_env(
@@ -152,8 +176,8 @@ def parallel_env(
 
     With `team`, the agents are the boats of that team, and `opponents` are as in the other environments. Without it, all boats are
     agents, and `opponents` is not allowed. An agent's `info` is its team's state of play, as for `TeamEnv`, and in `counts` whether its
-    actions take effect: a tagged boat drives home. With `state`, the environment also has `state()` and `state_space`: the truth about
-    the game. Raises ValueError with all faults of options and scenario files.
+    actions take effect: a tagged boat drives home. `action_mask` is that of `BoatEnv`. With `state`, the environment also has `state()`
+    and `state_space`: the truth about the game. Raises ValueError with all faults of options and scenario files.
     """
     if options.get("team") is not None:
         needs_no_policy(options, "one team's parallel_env")

@@ -6,7 +6,7 @@ import weakref
 from pathlib import Path
 
 from squall import _native
-from squall.page import PAGE, program
+from squall.page import PAGE, is_installed, program
 
 
 def folder_to_show(render_mode: str | None) -> Path | None:
@@ -18,6 +18,11 @@ def folder_to_show(render_mode: str | None) -> Path | None:
         return None
     program()
     return PAGE.folder()
+
+
+def available_modes(modes: list[str]) -> list[str]:
+    """The render modes without "human" if the program that it needs is not installed."""
+    return [mode for mode in modes if mode != "human" or is_installed()]
 
 
 class Recordings:

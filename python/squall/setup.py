@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import operator
 import os
 from collections.abc import Sequence
 from typing import Any, Literal, TypedDict
@@ -11,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from squall import _native
+from squall.reward import Reward
 from squall.scenario import path_of
 
 File = str | os.PathLike[str]
@@ -37,7 +40,8 @@ class Options(TypedDict, total=False):
     """How actions are carried out: "direct" (default) as orders, or through the helms of a strategy with a behaviour of kind `policy`,
     which keep the boat safe. "policy" and "teleop" are such strategies for turns and speeds, "options" is one for options."""
     decision_s: float | None
-    """How long an action holds, s: a multiple of the game's own period. 0.5 by default; None: the game's own period."""
+    """How long an action holds, s: a multiple of the game's own period. By default the smallest multiple from 0.5 on; None: the game's
+    own period."""
     episode_max_s: float | None
     """Time after which an episode is cut off (`truncated`), s. None (default): whole games."""
     starts: int | None
@@ -48,6 +52,8 @@ class Options(TypedDict, total=False):
     """The other team's players, by default "pav01"."""
     rewards: File | None
     """The rewards, by default "bold"; None: all are 0."""
+    reward: Reward | None
+    """A function that replaces these rewards: `squall.BoatStep` to number, called for each boat after each step. None (default): none."""
     discount: float
     """The value of a reward one step later, for the potentials in rewards; 0.99 by default."""
     record: str | os.PathLike[str] | None
@@ -79,15 +85,17 @@ def native_environment(
     if unknown:
         raise ValueError(f"unknown option {sorted(unknown)}, expected some of {sorted(Options.__annotations__)}")
     control, rewards = options.get("control", "direct"), options.get("rewards", "bold")
+    starts = options.get("starts")
     setup: _native.Setup = {
         "game": path_of("games", options.get("game", "surveyor_2v2")),
         "observation": options.get("observation", "squall"),
         "frames": _number("frames", options.get("frames", 1), 255),
         "action": options.get("action", "pyquaticus"),
         "helm": None if control == "direct" else path_of("strategies", control),
-        "decision_s": options.get("decision_s", 0.5),
+        "decision_s": options.get("decision_s"),
+        "decision_min_s": 0.0 if "decision_s" in options else 0.5,
         "episode_max_s": options.get("episode_max_s"),
-        "starts": options.get("starts"),
+        "starts": None if starts is None else _number("starts", starts, 2**32 - 1),
         "team": options.get("team"),
         "mates": None if mates is None else path_of("strategies", mates),
         "opponents": _opponents(options.get("opponents", "pav01")),
@@ -101,7 +109,7 @@ def native_environment(
     every = _number("record_every", options.get("record_every", 1), 2**64 - 1, least=1)
     return _native.VectorEnvironment(
         setup,
-        _number("seed", seed, 2**64 - 1),
+        checked_seed(seed),
         _number("games", games, 10**6),
         _number("threads", threads, 1024),
         None if folder is None else (os.fspath(folder), every),
@@ -130,21 +138,40 @@ def action_space(native: _native.VectorEnvironment, boats: int | None) -> gymnas
     return gymnasium.spaces.MultiDiscrete(np.full(boats, count))
 
 
-def actions_for(native: _native.VectorEnvironment, actions: Any) -> NDArray[Any]:
-    """Converts actions of any shape to rows. Raises ValueError if they have the wrong type or number."""
+def actions_for(native: _native.VectorEnvironment, actions: Any, shape: tuple[int, ...] | None) -> NDArray[Any]:
+    """Converts actions of this shape, of one boat or several, to rows. Raises ValueError if they have the wrong type or shape."""
+    try:
+        rows = np.asarray(actions)
+    except ValueError:
+        raise ValueError(f"actions are {actions!r}, expected an array with the shape {shape}") from None
+    is_discrete = native.action_count is not None
+    kind, numbers = (np.integer, "one") if is_discrete else (np.number, "two numbers")
+    if not np.issubdtype(rows.dtype, kind):
+        raise ValueError(f"actions have the type {rows.dtype}, expected {'integers' if is_discrete else 'numbers'}")
+    if rows.shape != shape:
+        boats = math.prod(shape or ()) // (1 if is_discrete else 2)
+        raise ValueError(
+            f"actions have the shape {rows.shape}, expected {numbers} for each of {boats} boats in the shape {shape}"
+        )
+    return (
+        rows.astype(np.int64, copy=False).reshape(-1)
+        if is_discrete
+        else rows.astype(np.float32, copy=False).reshape(-1, 2)
+    )
+
+
+def action_mask(native: _native.VectorEnvironment) -> NDArray[np.int8] | None:
+    """By row, 1 for each action that is possible: the last one alone if no action takes effect. None if actions are continuous."""
     if native.action_count is None:
-        rows = np.asarray(actions, dtype=np.float32)
-        if rows.size != 2 * native.rows:
-            raise ValueError(
-                f"actions have the shape {rows.shape}, expected two numbers for each of {native.rows} boats"
-            )
-        return rows.reshape(native.rows, 2)
-    rows = np.asarray(actions)
-    if not np.issubdtype(rows.dtype, np.integer):
-        raise ValueError(f"actions have the type {rows.dtype}, expected integers")
-    if rows.size != native.rows:
-        raise ValueError(f"actions have the shape {rows.shape}, expected one for each of {native.rows} boats")
-    return rows.astype(np.int64, copy=False).reshape(native.rows)
+        return None
+    mask = np.ones((native.rows, native.action_count), dtype=np.int8)
+    mask[~native.counts, :-1] = 0
+    return mask
+
+
+def checked_seed(seed: Any) -> int:
+    """Converts a seed. Raises ValueError if it is not an integer of 64 bits."""
+    return _number("seed", seed, 2**64 - 1)
 
 
 def check_render_mode(render_mode: str | None, modes: Sequence[str]) -> None:
@@ -167,7 +194,11 @@ def _opponents(given: Opponents) -> list[tuple[float, str | None]]:
     return [(float(weight), None if file == "policy" else path_of("strategies", file)) for weight, file in pairs]
 
 
-def _number(name: str, number: int, most: int, least: int = 0) -> int:
-    if not least <= number <= most:
-        raise ValueError(f"{name} is {number}, expected an integer from {least} to {most}")
-    return int(number)
+def _number(name: str, number: Any, most: int, least: int = 0) -> int:
+    try:
+        whole = operator.index(number)
+    except TypeError:
+        whole = least - 1
+    if not least <= whole <= most:
+        raise ValueError(f"{name} is {number!r}, expected an integer from {least} to {most}")
+    return whole

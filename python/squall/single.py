@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from typing import Any
 
 import gymnasium
@@ -9,21 +10,21 @@ import numpy as np
 from numpy.typing import NDArray
 from typing_extensions import Unpack
 
-from squall.picture import draw
-from squall.recording import Recordings, folder_to_show
+from squall.game import Game, Phase, Recreated, check_phase
+from squall.recording import available_modes
 from squall.setup import (
     File,
     Options,
+    action_mask,
     action_space,
     actions_for,
-    check_render_mode,
-    native_environment,
+    checked_seed,
     needs_no_policy,
     observation_space,
 )
 
 
-class _GameEnv(gymnasium.Env[NDArray[np.float32], Any]):
+class _GameEnv(Recreated, gymnasium.Env[NDArray[np.float32], Any]):
     """The common part of both environments."""
 
     metadata: dict[str, Any] = {"render_modes": ["human", "rgb_array"], "render_fps": 10}  # noqa: RUF012 (gymnasium's own)
@@ -32,18 +33,24 @@ class _GameEnv(gymnasium.Env[NDArray[np.float32], Any]):
     def __init__(
         self, *, is_team: bool, seed: int | None, mates: File | None, render_mode: str | None, options: Options
     ) -> None:
-        check_render_mode(render_mode, self.metadata["render_modes"])
         needs_no_policy(options, type(self).__name__)
-        record = folder_to_show(render_mode)
-        self.native = native_environment(options, seed=seed, games=1, threads=1, mates=mates, record=record)
-        self._recordings = Recordings(self, self.native, render_mode)
+        self._game = Game(self, options, seed=seed, mates=mates, render_mode=render_mode)
+        self.native = self._game.native
+        if seed is not None:
+            super().reset(seed=checked_seed(seed))
+        kind: Any = type(self)
+        of_kind = {} if is_team else {"mates": mates}
+        self._recipe = functools.partial(kind, seed=seed, render_mode=render_mode, **of_kind, **options)
+        self.metadata = {**self.metadata, "render_modes": available_modes(self.metadata["render_modes"])}
         self.render_mode = render_mode
         boats = self.native.rows if is_team else None
         self.observation_space = observation_space(self.native, options, boats)
         self.action_space = action_space(self.native, boats)
-        self._is_over = False
-        # A game has started that no reset has returned yet.
-        self._is_new = True
+
+    @property
+    def phase(self) -> Phase:  # type: ignore[override]
+        """The phase of the environment."""
+        return self._game.phase
 
     @property
     def observation_names(self) -> list[str]:
@@ -55,50 +62,50 @@ class _GameEnv(gymnasium.Env[NDArray[np.float32], Any]):
         """The names of the discrete actions, in order; None if actions are continuous."""
         return self.native.action_names
 
+    def action_masks(self) -> NDArray[np.bool_]:
+        """The possible actions of all boats in one row, for sb3-contrib. Raises ValueError if actions are continuous."""
+        mask = action_mask(self.native)
+        if mask is None:
+            raise ValueError("continuous actions have no mask")
+        return mask.astype(bool).reshape(-1)
+
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[NDArray[np.float32], dict[str, Any]]:
-        """Starts the game with this seed, or the next one."""
+        """Starts the game with this seed, or one drawn from `np_random`."""
+        seed = None if seed is None else checked_seed(seed)
         super().reset(seed=seed)
-        if seed is not None or not self._is_new:
-            self.native.restart(seed)
-            self._recordings.show()
-        self._is_over, self._is_new = False, True
-        return self._shown(self.native.observations), self._info(self.native.standing(0))
+        self._game.reset(seed, self.np_random)
+        return self._shown(), self._info(self.native.standing(0))
 
     def step(self, action: Any) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
         """Plays a step. Raises ValueError, and plays nothing, for an action outside the space."""
-        if self._is_over:
-            raise gymnasium.error.ResetNeeded("the game is over: call reset first")
-        native = self.native
-        native.step(actions_for(native, action))
-        terminated, truncated = bool(native.terminated[0]), bool(native.truncated[0])
-        reward = float(native.rewards.mean())
-        self._is_over = self._is_new = terminated or truncated
-        if self._is_over:
-            shown, standing = native.final_observations, native.finished()[0][2]
-            self._recordings.show()
-        else:
-            shown, standing = native.observations, native.standing(0)
-        return self._shown(shown), reward, terminated, truncated, self._info(standing)
+        check_phase(self.phase)
+        rows = actions_for(self.native, action, self.action_space.shape)
+        rewards, terminated, truncated = self._game.step(rows)
+        return self._shown(), float(rewards.mean()), terminated, truncated, self._info(self.native.standing(0))
 
     def render(self) -> NDArray[np.uint8] | None:
-        """The game from above, (height, width, 3); after its last step the next game. None except for "rgb_array".
+        """The game from above, (height, width, 3). None except for "rgb_array".
 
         With "human", Squall's page in a browser shows each game when it has ended: see the package's README.
         """
-        return draw(self.native.scene(0)) if self.render_mode == "rgb_array" else None
+        return self._game.picture()
 
     def close(self) -> None:
         """Completes the recording. With `render_mode="human"`, shows it."""
-        self._recordings.end()
+        self._game.close()
 
-    def _shown(self, observations: NDArray[np.float32]) -> NDArray[np.float32]:
-        return observations.reshape(self.observation_space.shape).copy()
+    def _shown(self) -> NDArray[np.float32]:
+        return self.native.observations.reshape(self.observation_space.shape).copy()
 
     def _info(self, standing: dict[str, int]) -> dict[str, Any]:
-        counts = self.native.counts
-        return {"counts": bool(counts[0]) if len(counts) == 1 else counts.copy(), **standing}
+        counts, mask = self.native.counts, action_mask(self.native)
+        is_boat = len(self.observation_space.shape) == 1
+        info: dict[str, Any] = {"counts": bool(counts[0]) if is_boat else counts.copy(), **standing}
+        if mask is not None:
+            info["action_mask"] = mask[0] if is_boat else mask
+        return info
 
 
 class TeamEnv(_GameEnv):
@@ -106,7 +113,8 @@ class TeamEnv(_GameEnv):
 
     Observations are (boats, values), actions have an entry for each boat, and the reward is the mean over the boats. A strategy plays the
     other team. `info` is the state of play: `seed`, `team` (0 is the game's first), `steps`, `score`, `grabs`, `captures`, `tags`,
-    `tagged`, `out_of_bounds`, `collisions`, the same with the prefix `enemy_`, and `counts`: the boats whose actions take effect.
+    `tagged`, `out_of_bounds`, `collisions`, the same with the prefix `enemy_`, and `counts`: the boats whose actions take effect. With
+    discrete actions, `action_mask` has a row for each boat, with 1 for each possible action: only the last one if none takes effect.
     """
 
     def __init__(self, *, seed: int | None = None, render_mode: str | None = None, **options: Unpack[Options]) -> None:
@@ -119,7 +127,7 @@ class BoatEnv(_GameEnv):
 
     A strategy controls its mates, so that there is one agent and nothing else in its world learns. The seed selects the boat, each in
     turn. To train a policy for all boats of a team, prefer `VectorEnv`, which has a row for each. `info` is that of `TeamEnv`, with a
-    single truth value in `counts`.
+    single truth value in `counts` and a single row in `action_mask`.
     """
 
     def __init__(

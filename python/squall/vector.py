@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import os
 from collections.abc import Sequence
 from typing import Any, Literal
@@ -12,23 +13,27 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 from typing_extensions import Unpack
 
+from squall.game import Phase, Recreated, check_phase
 from squall.picture import draw
 from squall.recording import Recordings
+from squall.reward import RewardFunction
 from squall.setup import (
     File,
     Options,
+    action_mask,
     action_space,
     actions_for,
     check_render_mode,
+    checked_seed,
     native_environment,
     observation_space,
 )
 
-# gymnasium 1.0 lacks this enumeration: its environments reset at the next step, and ours document their mode.
-_SAME_STEP = getattr(getattr(gymnasium.vector, "AutoresetMode", None), "SAME_STEP", "SameStep")
+# gymnasium 1.0 lacks this enumeration.
+_MODES = {mode: getattr(gymnasium.vector, "AutoresetMode", str)(mode) for mode in ("SameStep", "NextStep")}
 
 
-class VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], NDArray[Any]]):
+class VectorEnv(Recreated, gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], NDArray[Any]]):
     """Parallel games, with one environment per row.
 
     A row is a boat (`row="boat"`, the default), for policies shared by boats, or a team (`row="team"`). For a team an observation is
@@ -37,11 +42,14 @@ class VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], ND
     together.
 
     A game restarts in the step in which it ends (`AutoresetMode.SAME_STEP`): that step returns the first observation of the new game,
-    `info["final_obs"]` has the last one of the old game, and `info["final_info"]` its final state of play.
+    `info["final_obs"]` has the last one of the old game, and `info["final_info"]` its final state of play. With
+    `autoreset_mode="NextStep"`, for wrappers such as `NormalizeObservation`, the last observation is the step's own; the next step
+    returns the first one of the new game, and ignores the actions of its rows.
 
     `info["counts"]` (num_envs,) is whether a row's next action takes effect: a tagged boat drives home whatever its action, and against a
     strategy the enemies need no actions (their rows are 0). A policy should ignore samples where it is False; a critic should learn from
-    them, or it misjudges being tagged. `info["seed"]` (num_envs,) is the seed of the game.
+    them, or it misjudges being tagged. With discrete actions, `info["action_mask"]` has 1 for each possible action of each boat: only the
+    last one if none takes effect. `info["seed"]` (num_envs,) is the seed of the game.
 
     With `record`, every game or every `record_every`th is recorded. Each has an open file and a thread that writes it.
 
@@ -51,7 +59,7 @@ class VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], ND
     metadata: dict[str, Any] = {  # noqa: RUF012 (gymnasium's own declaration)
         "render_modes": ["rgb_array"],
         "render_fps": 10,
-        "autoreset_mode": _SAME_STEP,
+        "autoreset_mode": _MODES["SameStep"],
     }
 
     # gymnasium also closes an environment whose creation failed.
@@ -68,6 +76,7 @@ class VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], ND
         copy: bool = True,
         state: bool = False,
         render_mode: str | None = None,
+        autoreset_mode: Any = "SameStep",
         **options: Unpack[Options],
     ) -> None:
         """Starts `games` games on this many threads (None: one per core), with seeds that count up from `seed` (None: any).
@@ -78,10 +87,35 @@ class VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], ND
         if row not in ("boat", "team"):
             raise ValueError(f'row is {row!r}, expected "boat" or "team"')
         check_render_mode(render_mode, self.metadata["render_modes"])
-        threads = min(games, os.cpu_count() or 1) if threads is None else threads
-        self.native = native_environment(
-            options, seed=seed, games=games, threads=max(threads, 1), mates=mates, state=state
+        mode = getattr(autoreset_mode, "value", autoreset_mode)
+        if mode not in _MODES:
+            raise ValueError(f'autoreset_mode is {mode!r}, expected "SameStep" or "NextStep"')
+        self.metadata = {**self.metadata, "autoreset_mode": _MODES[mode]}
+        self._is_same_step = mode == "SameStep"
+        self._recipe = functools.partial(
+            type(self),
+            games,
+            row=row,
+            threads=threads,
+            seed=seed,
+            mates=mates,
+            copy=copy,
+            state=state,
+            render_mode=render_mode,
+            autoreset_mode=mode,
+            **options,
         )
+        threads = min(games, os.cpu_count() or 1) if threads is None else threads
+        function = options.get("reward")
+        self.native = native_environment(
+            options,
+            seed=seed,
+            games=games,
+            threads=max(threads, 1),
+            mates=mates,
+            state=state or function is not None,
+        )
+        self._reward = None if function is None else RewardFunction(function, self.native)
         self._recordings = Recordings(self, self.native)
         self.render_mode, self.copy, self.games = render_mode, copy, games
         native = self.native
@@ -97,7 +131,7 @@ class VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], ND
         self._observations = native.observations.reshape(self.observation_space.shape)
         self._final_observations = native.final_observations.reshape(self.observation_space.shape)
         self._first_of_row = slice(None, None, self.boats_per_row)
-        self._is_begun = True
+        self.phase = Phase.NEW
         self._note_seeds()
 
     @property
@@ -110,11 +144,19 @@ class VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], ND
         """The names of the discrete actions, in order; None if actions are continuous."""
         return self.native.action_names
 
+    def action_masks(self) -> NDArray[np.bool_]:
+        """The possible actions of each row, one boat after the other, for sb3-contrib. Raises ValueError if actions are continuous."""
+        mask = action_mask(self.native)
+        if mask is None:
+            raise ValueError("continuous actions have no mask")
+        return mask.astype(bool).reshape(self.num_envs, -1)
+
     @property
     def states(self) -> NDArray[np.float32]:
         """The truth from the view of each row's boat, (rows, values), for critics that know more than a policy.
 
-        With `row="team"` there is still one per boat: (games x boats, values). 0 for boats without actions. Empty without `state=True`.
+        With `row="team"` there is still one per boat: (games x boats, values). 0 for boats without actions. Empty without `state=True` and
+        `reward`.
         """
         return self._shown(self.native.states)
 
@@ -125,7 +167,7 @@ class VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], ND
 
     @property
     def state_names(self) -> list[str]:
-        """The names of the values of a state, in order; empty without `state=True`."""
+        """The names of the values of a state, in order; empty without `state=True` and `reward`."""
         return self.native.state_names
 
     def reset(
@@ -133,16 +175,21 @@ class VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], ND
     ) -> tuple[NDArray[np.float32], dict[str, Any]]:
         """Restarts games.
 
-        An int: seeds count up from it, as at creation. A sequence: a seed for each game, or None for its next one. None: the next seeds.
+        An int: seeds count up from it, as at creation. A sequence: a seed for each game, or None for its next one. None: the next seeds; at
+        first those of creation.
         `options={"reset_mask": mask}`, (num_envs,) bool, restarts only games with a True row.
         """
+        if self.phase is Phase.CLOSED:
+            check_phase(self.phase)
         mask = (options or {}).get("reset_mask")
-        if mask is None and (seed is None or isinstance(seed, (int, np.integer))):
-            if seed is not None or not self._is_begun:
-                self.native.restart(None if seed is None else int(seed))
+        if mask is None and not isinstance(seed, (Sequence, np.ndarray)):
+            if seed is not None or self.phase is not Phase.NEW:
+                self.native.restart(None if seed is None else checked_seed(seed))
         else:
             self.native.restart_games(self._chosen(seed, mask))
-        self._is_begun = True
+        self.phase = Phase.PLAYING
+        if self._reward is not None:
+            self._reward.begin()
         self._note_seeds()
         return self._shown(self._observations), self._info()
 
@@ -150,13 +197,17 @@ class VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], ND
         self, actions: NDArray[Any]
     ) -> tuple[NDArray[np.float32], NDArray[Any], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
         """Plays a step of all games with one action per row. Raises ValueError, and plays nothing, for invalid actions."""
+        check_phase(self.phase)
         native = self.native
-        native.step(actions_for(native, actions))
-        self._is_begun = False
-        rewards = native.rewards
+        rows = actions_for(native, actions, self.action_space.shape)
+        has_ended = not self._is_same_step and (native.terminated | native.truncated)
+        native.step(rows, restarts=self._is_same_step)
+        rewards = native.rewards if self._reward is None else self._reward.rewards(rows, has_ended)
         if self.boats_per_row > 1:
             rewards = rewards.reshape(self.num_envs, self.boats_per_row).mean(axis=1)
         terminated, truncated = native.terminated[self._first_of_row], native.truncated[self._first_of_row]
+        if np.any(has_ended):
+            self._note_seeds()
         info = self._info()
         if terminated.any() or truncated.any():
             self._add_final(info, terminated | truncated)
@@ -164,7 +215,7 @@ class VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], ND
         return shown(self._observations), shown(rewards), shown(terminated), shown(truncated), info
 
     def render(self) -> tuple[NDArray[np.uint8], ...] | None:
-        """A picture of each row's game, (height, width, 3); None without `render_mode`."""
+        """A picture of each row's game, (height, width, 3); of its end if it ended in the last step. None without `render_mode`."""
         if self.render_mode is None:
             return None
         pictures = [draw(self.native.scene(game)) for game in range(self.games)]
@@ -172,6 +223,7 @@ class VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], ND
 
     def close_extras(self, **kwargs: Any) -> None:
         """Completes the recordings."""
+        self.phase = Phase.CLOSED
         if self._recordings is not None:
             self._recordings.end()
 
@@ -180,10 +232,10 @@ class VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], ND
 
     def _chosen(self, seed: int | Sequence[int | None] | None, mask: Any) -> list[tuple[int, int | None]]:
         seeds: list[int | None] = [None] * self.games
-        if isinstance(seed, (int, np.integer)):
-            seeds = [int(seed) + game for game in range(self.games)]
+        if isinstance(seed, (Sequence, np.ndarray)):
+            seeds = [None if one is None else checked_seed(one) for one in seed]
         elif seed is not None:
-            seeds = [None if one is None else int(one) for one in seed]
+            seeds = [checked_seed(seed) + game for game in range(self.games)]
         if len(seeds) != self.games:
             raise ValueError(f"seed has {len(seeds)} numbers, expected one for each of {self.games} games")
         rows = np.ones(self.num_envs, dtype=bool) if mask is None else np.asarray(mask, dtype=bool)
@@ -201,12 +253,15 @@ class VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], ND
         if self.boats_per_row > 1:
             counts = counts.reshape(self.num_envs, self.boats_per_row)
         everywhere = np.ones(self.num_envs, dtype=bool)
-        return {
+        info = {
             "counts": self._shown(counts),
             "_counts": everywhere,
             "seed": self._shown(self._seeds),
             "_seed": everywhere,
         }
+        if (mask := action_mask(self.native)) is not None:
+            info.update(action_mask=mask.reshape(*counts.shape, -1), _action_mask=everywhere)
+        return info
 
     def _add_final(self, info: dict[str, Any], ended: NDArray[np.bool_]) -> None:
         """Adds `final_obs` and `final_info`, as gymnasium's own vector environments do."""
@@ -222,9 +277,11 @@ class VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], ND
                     array = final.setdefault(name, np.zeros(self.num_envs, dtype=dtype))
                     array[game * self.rows_per_game + place] = number
         final.update({f"_{name}": ended.copy() for name in list(final)})
-        info.update(final_obs=observations, _final_obs=ended, final_info=final, _final_info=ended.copy())
-        self._note_seeds()
-        info["seed"] = self._shown(self._seeds)
+        info.update(final_info=final, _final_info=ended.copy())
+        if self._is_same_step:
+            info.update(final_obs=observations, _final_obs=ended)
+            self._note_seeds()
+            info["seed"] = self._shown(self._seeds)
 
 
 def seen_by_enemy(standing: dict[str, int]) -> dict[str, int]:

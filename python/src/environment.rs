@@ -4,12 +4,13 @@
 use crate::arguments::{Arguments, refused};
 use crate::{scene, standing};
 use learn::environment::{
-    Action, Games, RecordingLog, RecordingNames, Recordings, Rows, Setup, check_recording_folder,
+    Action, Event, Games, Logged, RecordingLog, RecordingNames, Recordings, Rows, Setup,
+    check_recording_folder,
 };
 use numpy::{
     PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods,
 };
-use pyo3::exceptions::{PyIndexError, PyRuntimeWarning};
+use pyo3::exceptions::{PyIndexError, PyRuntimeError, PyRuntimeWarning};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::ffi::CString;
@@ -22,8 +23,20 @@ pub(crate) struct VectorEnvironment {
     games: Mutex<Games>,
     actions: Vec<Action>,
     arrays: Arrays,
-    recordings: Arc<RecordingLog>,
+    /// None if no games are recorded.
+    recordings: Option<Arc<RecordingLog>>,
+    /// The process in which the threads run.
+    process: u32,
 }
+
+/// An event: name, time in s, boat, other boat, and team (of the boat, or the winner).
+type EventParts = (
+    &'static str,
+    f64,
+    Option<usize>,
+    Option<usize>,
+    Option<usize>,
+);
 
 /// The arrays that a step writes: rows × values, or rows.
 struct Arrays {
@@ -141,7 +154,7 @@ impl VectorEnvironment {
             }
         }
         let setup = setup.setup()?;
-        let recordings = Arc::<RecordingLog>::default();
+        let recordings = record.as_ref().map(|_| Arc::<RecordingLog>::default());
         if let Some((folder, _)) = &record {
             let wrong = |error: std::io::Error| {
                 format!("record is {folder:?}, expected a folder for recordings: {error}")
@@ -150,15 +163,17 @@ impl VectorEnvironment {
                 .map_err(wrong)
                 .map_err(refused)?;
         }
-        let watches = record.map(|(folder, every)| {
-            let recorded = Recordings {
-                folder,
-                names: RecordingNames::ByTime,
-                every,
-                commit: "unknown".to_owned(),
-            };
-            recorded.watches(Arc::clone(&recordings))
-        });
+        let watches = record
+            .zip(recordings.clone())
+            .map(|((folder, every), log)| {
+                let recorded = Recordings {
+                    folder,
+                    names: RecordingNames::ByTime,
+                    every,
+                    commit: "unknown".to_owned(),
+                };
+                recorded.watches(log)
+            });
         let begin = || {
             setup
                 .check()
@@ -171,12 +186,15 @@ impl VectorEnvironment {
             actions: Vec::new(),
             arrays,
             recordings,
+            process: std::process::id(),
         };
         environment.show(py)?;
         Ok(environment)
     }
 
-    fn step(&mut self, py: Python<'_>, actions: &Bound<'_, PyAny>) -> PyResult<()> {
+    #[pyo3(signature = (actions, restarts=true))]
+    fn step(&mut self, py: Python<'_>, actions: &Bound<'_, PyAny>, restarts: bool) -> PyResult<()> {
+        self.continue_after_fork()?;
         let VectorEnvironment {
             games,
             actions: read,
@@ -189,7 +207,7 @@ impl VectorEnvironment {
             None => read_continuous(actions, games.rows().0, read)?,
         }
         arrays
-            .write(py, |rows| games.step(read, rows))?
+            .write(py, |rows| games.step(read, restarts, rows))?
             .map_err(refused)?;
         arrays.end(py, games)?;
         self.warn(py)
@@ -197,6 +215,7 @@ impl VectorEnvironment {
 
     #[pyo3(signature = (seed=None))]
     fn restart(&mut self, py: Python<'_>, seed: Option<u64>) -> PyResult<()> {
+        self.continue_after_fork()?;
         let games = self.games.get_mut().unwrap_or_else(PoisonError::into_inner);
         py.detach(|| games.restart(seed)).map_err(refused)?;
         self.show(py)?;
@@ -204,6 +223,7 @@ impl VectorEnvironment {
     }
 
     fn restart_games(&mut self, py: Python<'_>, chosen: Vec<(usize, Option<u64>)>) -> PyResult<()> {
+        self.continue_after_fork()?;
         let games = self.games.get_mut().unwrap_or_else(PoisonError::into_inner);
         for (game, seed) in chosen {
             check_index(games, game)?;
@@ -215,13 +235,16 @@ impl VectorEnvironment {
     }
 
     fn end_recordings(&mut self, py: Python<'_>) -> PyResult<()> {
+        if self.recordings.is_none() || self.process != std::process::id() {
+            return Ok(());
+        }
         let games = self.games.get_mut().unwrap_or_else(PoisonError::into_inner);
         py.detach(|| games.end_watches());
         self.warn(py)
     }
 
     fn take_recording(&self) -> Option<PathBuf> {
-        self.recordings.take_newest()
+        self.recordings.as_ref()?.take_newest()
     }
 
     #[getter]
@@ -314,6 +337,27 @@ impl VectorEnvironment {
         games.finished().iter().map(one).collect()
     }
 
+    fn events(&self, game: usize) -> PyResult<Vec<EventParts>> {
+        let games = self.games();
+        check_index(&games, game)?;
+        let (contest, events) = games.last_step(game);
+        let parts = |logged: &Logged| {
+            let boat = logged.event.vehicle();
+            let team = match logged.event {
+                Event::Ended { winner } => winner,
+                _ => boat.map(|boat| contest.scenario().team_of(boat)),
+            };
+            (
+                logged.event.into(),
+                logged.at.as_s(),
+                boat.map(|boat| boat.index()),
+                logged.event.other().map(|other| other.index()),
+                team.map(|team| team.index()),
+            )
+        };
+        Ok(events.iter().map(parts).collect())
+    }
+
     fn digest(&self, game: usize) -> PyResult<String> {
         let games = self.games();
         check_index(&games, game)?;
@@ -372,9 +416,29 @@ impl VectorEnvironment {
         self.games.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
+    /// Starts the threads again after a fork.
+    fn continue_after_fork(&mut self) -> PyResult<()> {
+        if self.process == std::process::id() {
+            return Ok(());
+        }
+        if self.recordings.is_some() {
+            return Err(PyRuntimeError::new_err(
+                "this environment records its games in the process that it was created in: \
+                 create another one in this process",
+            ));
+        }
+        let games = self.games.get_mut().unwrap_or_else(PoisonError::into_inner);
+        games.continue_after_fork();
+        self.process = std::process::id();
+        Ok(())
+    }
+
     /// Warns about failed recordings; the games continue.
     fn warn(&self, py: Python<'_>) -> PyResult<()> {
-        for problem in self.recordings.take_problems() {
+        let Some(recordings) = &self.recordings else {
+            return Ok(());
+        };
+        for problem in recordings.take_problems() {
             // A file name contains no byte 0.
             let text = CString::new(problem).unwrap_or_default();
             PyErr::warn(py, &py.get_type::<PyRuntimeWarning>(), &text, 2)?;
@@ -386,6 +450,15 @@ impl VectorEnvironment {
         let games = self.games.get_mut().unwrap_or_else(PoisonError::into_inner);
         self.arrays.write(py, |rows| games.show(rows))?;
         self.arrays.end(py, games)
+    }
+}
+
+impl Drop for VectorEnvironment {
+    fn drop(&mut self) {
+        if self.process != std::process::id() {
+            let games = self.games.get_mut().unwrap_or_else(PoisonError::into_inner);
+            games.continue_after_fork();
+        }
     }
 }
 

@@ -12,7 +12,7 @@ pub(crate) fn dict<'py>(
     games: &Games,
     game: usize,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let contest = games.contest(game);
+    let (contest, _) = games.last_step(game);
     let scenario = contest.scenario();
     let field = &scenario.field;
     let frame = contest.frame(&mut Default::default());

@@ -54,6 +54,17 @@ def test_stable_baselines3_accepts(name: str) -> None:
     checker.check_env(gymnasium.make(name))
 
 
+def test_every_game_with_equal_teams_has_an_environment_by_default() -> None:
+    games = sorted(file.stem for file in squall.SCENARIOS.glob("games/*.toml") if "500v500" not in file.name)
+    assert "mctf_2026" in games
+    for game in games:
+        if game != "uneven_3v2":
+            environment = squall.TeamEnv(game=game, seed=1)
+            environment.reset()
+            environment.step(environment.action_space.sample())
+            assert environment.native.step_s == (1.0 if game == "mctf_2026" else 0.5)
+
+
 def test_single_games_are_those_of_the_vector() -> None:
     vector = squall.VectorEnv(1, row="team", seed=7, episode_max_s=30)
     single = squall.TeamEnv(seed=7, episode_max_s=30)
@@ -67,8 +78,8 @@ def test_single_games_are_those_of_the_vector() -> None:
         assert (observation == (info["final_obs"][0] if truncated else shown[0])).all()
     assert truncated
     assert single_info["seed"] == info["final_info"]["seed"][0] == 7
-    assert {f"_{name}" for name in single_info if name != "counts"} <= info["final_info"].keys()
-    assert (single.reset()[0] == shown[0]).all() and info["seed"][0] == 8
+    assert {f"_{name}" for name in single_info if name not in ("counts", "action_mask")} <= info["final_info"].keys()
+    assert (single.reset(seed=8)[0] == shown[0]).all() and info["seed"][0] == 8
 
 
 def test_a_team_is_its_boats() -> None:

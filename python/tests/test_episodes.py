@@ -54,7 +54,6 @@ def test_an_episode_can_be_played_again_by_its_seed() -> None:
 def test_the_next_games_come_without_a_seed() -> None:
     environment = squall.VectorEnv(2, seed=1, game="pyquaticus_2v2", row="team")
     assert environment.reset()[1]["seed"].tolist() == [1, 2], "the games that have already started"
-    assert environment.reset()[1]["seed"].tolist() == [1, 2], "no step has been played"
     environment.step(np.zeros((2, 2), dtype=int))
     assert environment.reset()[1]["seed"].tolist() == [3, 4]
     assert environment.reset(seed=[70, None])[1]["seed"].tolist() == [70, 6]
@@ -62,6 +61,7 @@ def test_the_next_games_come_without_a_seed() -> None:
     masked = {"reset_mask": np.array([True, False])}
     assert environment.reset(options=masked)[1]["seed"].tolist() == [72, 6]
     assert environment.native.standing(1)["steps"] == 1, "the other game continues"
+    assert environment.reset()[1]["seed"].tolist() == [74, 8], "no step has been played"
 
 
 def test_unseeded_environments_differ() -> None:
@@ -98,6 +98,7 @@ def test_starts_come_round() -> None:
 def test_a_step_leaves_the_interpreter_to_others() -> None:
     # Ten seconds of 64 games take a tenth of a second at least.
     environment = squall.VectorEnv(64, threads=1, seed=1, opponents="policy", decision_s=10.0)
+    environment.reset()
     actions = np.zeros(environment.num_envs, dtype=int)
     is_over, wakings = threading.Event(), 0
 

@@ -20,6 +20,11 @@ import squall
         ({"decision_s": float("nan")}, "decision_s is NaN"),
         ({"episode_max_s": -1}, "episode_max_s is -1, expected more than 0"),
         ({"starts": 0}, "starts is 0, expected 1 or more"),
+        ({"starts": 3.7}, "starts is 3.7, expected an integer"),
+        ({"frames": 3.7}, "frames is 3.7, expected an integer from 0 to 255"),
+        ({"games": 3.7}, "games is 3.7, expected an integer"),
+        ({"seed": 3.7}, "seed is 3.7, expected an integer"),
+        ({"seed": "7"}, "seed is '7', expected an integer"),
         ({"frames": 0}, "frames is 0, expected 1 to 255"),
         ({"frames": 300}, "frames is 300, expected an integer from 0 to 255"),
         ({"observation": "truth"}, 'observation is "truth", expected "squall", "pyquaticus", "pyquaticus_2023" or "pyquaticus_2026"'),
@@ -58,10 +63,17 @@ def test_everything_that_is_wrong_with_a_file_is_told(tmp_path: Path) -> None:
         (np.full(4, 17), "the action in row 0 is 17, expected 0 to 16"),
         (np.array([0, 0, -1, 0]), "the action in row 2 is -1, expected 0 to 16"),
         (np.zeros(4), "have the type float64, expected integers"),
+        (np.full(4, 3.7), "have the type float64, expected integers"),
+        (np.zeros((2, 2), dtype=int), r"have the shape \(2, 2\), expected one for each of 4 boats in the shape \(4,\)"),
+        ([[0, 0], [0]], r"actions are \[\[0, 0\], \[0\]\], expected an array with the shape \(4,\)"),
+        ([True] * 4, "have the type bool, expected integers"),
+        (["port"] * 4, "have the type <U4, expected integers"),
+        (None, "have the type object, expected integers"),
     ],
 )
 def test_actions_are_refused_and_nothing_is_played(actions: np.ndarray, message: str) -> None:
     environment = squall.VectorEnv(2, seed=1)
+    environment.reset()
     before = environment.native.digest(0)
     with pytest.raises(ValueError, match=message):
         environment.step(actions)
@@ -72,10 +84,56 @@ def test_actions_are_refused_and_nothing_is_played(actions: np.ndarray, message:
 
 def test_continuous_actions_are_finite() -> None:
     environment = squall.VectorEnv(1, action="continuous")
+    environment.reset()
     with pytest.raises(ValueError, match=r"the action in row 1 is \[NaN, 1.0\], expected two finite numbers"):
         environment.step(np.array([[0, 0], [np.nan, 1]]))
     with pytest.raises(ValueError, match="two numbers for each of 2 boats"):
         environment.step(np.zeros(2))
+
+
+def test_a_single_environment_refuses_actions_of_another_shape() -> None:
+    for environment, action, message in (
+        (squall.BoatEnv(), 3.7, "have the type float64, expected integers"),
+        (squall.BoatEnv(), [3, 3], r"have the shape \(2,\), expected one for each of 1 boats in the shape \(\)"),
+        (squall.TeamEnv(), 3, r"have the shape \(\), expected one for each of 2 boats in the shape \(2,\)"),
+        (squall.TeamEnv(), [[3], [3]], r"have the shape \(2, 1\), expected one"),
+        (
+            squall.BoatEnv(action="continuous"),
+            [0, 0, 0],
+            r"have the shape \(3,\), expected two numbers for each of 1 boats",
+        ),
+        (squall.BoatEnv(action="continuous"), "ahead", "have the type <U5, expected numbers"),
+        (squall.TeamEnv(action="continuous"), np.zeros(4), r"have the shape \(4,\), expected two .* shape \(2, 2\)"),
+    ):
+        environment.reset()
+        before = environment.native.digest(0)
+        with pytest.raises(ValueError, match=message):
+            environment.step(action)
+        assert environment.native.digest(0) == before
+
+
+def test_agents_have_one_action_each() -> None:
+    pytest.importorskip("pettingzoo")
+    environment = squall.parallel_env()
+    environment.reset()
+    before = environment.native.digest(0)
+    good = dict.fromkeys(environment.agents, 3)
+    for actions, message in (
+        ({**good, "red_2": 3.7}, "red_2: actions have the type float64, expected integers"),
+        ({**good, "red_2": [3]}, r"red_2: actions have the shape \(1,\), expected one for each of 1 boats"),
+        ({**good, "red_2": None}, "red_2: actions have the type object"),
+        (
+            {**good, "green_1": 3},
+            r"actions has entries for \['green_1'\], expected \['blue_1', 'blue_2', 'red_1', 'red_2'\]",
+        ),
+        ({**good, "red_2": 17}, "the action in row 3 is 17, expected 0 to 16"),
+        ({}, r"actions has no entries for \['blue_1', 'blue_2', 'red_1', 'red_2'\]"),
+        ([3, 3, 3, 3], "expected a dictionary with an entry for each agent"),
+        (None, "actions are None, expected a dictionary"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            environment.step(actions)
+        assert environment.native.digest(0) == before
 
 
 def test_seeds_and_masks_fit_the_games() -> None:

@@ -23,6 +23,7 @@ def test_there_is_an_action_for_each_option() -> None:
     assert squall.TeamEnv(**OPTIONS).action_space.nvec.tolist() == [len(PLANS)] * 2
     environment = squall.VectorEnv(2, **OPTIONS)
     assert environment.single_action_space.n == len(PLANS) and environment.action_names == PLANS
+    environment.reset()
     with pytest.raises(ValueError, match="the action in row 1 is 10, expected 0 to 9"):
         environment.step(np.array([9, 10, 0, 0]))
 

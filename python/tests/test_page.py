@@ -6,6 +6,7 @@ from pathlib import Path
 import gymnasium
 import pytest
 from conftest import Shown
+from gymnasium.utils.env_checker import check_env
 
 import squall
 from squall.page import PAGE
@@ -19,13 +20,13 @@ def test_a_game_is_shown_when_it_ends_and_the_next_on_the_same_page(page: Shown,
     environment.step(0)
     assert environment.render() is None and page.commands() == []
     environment.step(0)
-    environment.reset()
+    _, info = environment.reset()
     environment.step(0)
     assert page.browser == ["http://127.0.0.1:8088/"] and len(page.commands()) == 1
     environment.reset()
     first, second = page.commands()
     assert first.startswith("replay ") and first.endswith("_surveyor_2v2_1.mcap --listen 127.0.0.1:0")
-    assert second.endswith("_surveyor_2v2_2.mcap --listen 127.0.0.1:8088"), "an abandoned game is shown too"
+    assert second.endswith(f"_surveyor_2v2_{info['seed']}.mcap --listen 127.0.0.1:8088"), "an abandoned game is shown too"
     assert page.browser == ["http://127.0.0.1:8088/"], "the page moves to the next game by itself"
     environment.step(0)
     environment.close()
@@ -61,6 +62,15 @@ def test_it_is_said_what_is_missing(monkeypatch: pytest.MonkeyPatch, named: str 
     where = "on PATH" if named is None else "where the environment variable SQUALL says, '/nowhere/squall'"
     with pytest.raises(gymnasium.error.DependencyNotInstalled, match=f"the program squall, which is not {where}"):
         squall.TeamEnv(render_mode="human")
+
+
+@pytest.mark.filterwarnings("ignore:.*A Box observation space m.*imum value is.*infinity")
+@pytest.mark.parametrize("name", [name for name in gymnasium.registry if name.startswith("Squall/")])
+def test_gymnasium_accepts_environments_without_the_program(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+    monkeypatch.setenv("SQUALL", "/nowhere/squall")
+    environment = gymnasium.make(name, render_mode="rgb_array")
+    check_env(environment.unwrapped)
+    assert environment.metadata["render_modes"] == ["rgb_array"]
 
 
 def test_it_is_said_why_the_program_shows_nothing(

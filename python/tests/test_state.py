@@ -93,6 +93,7 @@ def test_a_boat_that_nobody_is_asked_for_is_told_nothing() -> None:
 def test_arrays_are_the_callers_unless_copying_is_off() -> None:
     for copy in (True, False):
         environment = squall.VectorEnv(2, seed=1, state=True, copy=copy)
+        environment.reset()
         first = environment.states
         kept = first.copy()
         environment.step(np.full(environment.num_envs, 4))

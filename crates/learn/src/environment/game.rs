@@ -9,7 +9,7 @@ use messages::Picture;
 use primitives::stream::Stream;
 use primitives::{TeamId, VehicleId};
 use rules::count::Tally;
-use rules::event::EventCursor;
+use rules::event::{EventCursor, Logged};
 use scenario::Scenario;
 use sim::Contest;
 use std::any::Any;
@@ -32,6 +32,8 @@ pub(super) struct Game {
     /// The boats that receive actions; the learning policy's come first.
     pilots: Vec<VehicleId>,
     read: EventCursor,
+    /// The number of events before the last step.
+    events_before: usize,
     tally: Tally,
     /// By vehicle index.
     boats: Vec<BoatProgress>,
@@ -83,6 +85,7 @@ impl Game {
             pilots,
             contest,
             read: EventCursor::default(),
+            events_before: 0,
             tally: Tally::new(count),
             boats: vec![],
             rewards: vec![0.0; count],
@@ -117,6 +120,7 @@ impl Game {
     }
 
     pub(super) fn step(&mut self, setup: &Setup) -> Ending {
+        self.events_before = self.contest.events().len();
         for _ in 0..setup.decisions_per_step {
             if self.contest.is_over() {
                 break;
@@ -150,6 +154,19 @@ impl Game {
 
     pub(super) fn end_watch(&mut self) {
         self.watch = None;
+    }
+
+    /// Removes the watch without ending it.
+    pub(super) fn forget_watch(&mut self) {
+        std::mem::forget(self.watch.take());
+    }
+
+    /// The events of the last step.
+    pub(super) fn events(&self) -> &[Logged] {
+        self.contest
+            .events()
+            .get(self.events_before..)
+            .unwrap_or_default()
     }
 
     /// The boat's reward in the last step.

@@ -9,6 +9,7 @@ use agent::Action;
 use primitives::VehicleId;
 use rayon::prelude::*;
 use rules::count::Counts;
+use rules::event::Logged;
 use sim::Contest;
 
 /// The state of play of a game.
@@ -72,8 +73,12 @@ pub struct Games {
 /// Plays games one after the other.
 struct Slot {
     game: Game,
+    /// The game that ended in the last step, and has been replaced.
+    last: Option<Game>,
     /// Number of the current game; grows by the number of slots.
     number: u64,
+    /// Grows likewise. With repeating starts, selects one of them.
+    seed: u64,
     ended: Option<Finished>,
     /// The teacher's actions in the last step, by row.
     taught: Vec<Option<Action>>,
@@ -97,20 +102,17 @@ impl Games {
         watches: Option<Watches>,
     ) -> Result<Games, SetupError> {
         setup.check()?;
-        let pool = || {
-            rayon::ThreadPoolBuilder::new()
-                .num_threads(threads)
-                .build()
-                .expect("threads can be started")
-        };
         let starts = Starts::new(&setup, seed, watches);
         let slot = |i: usize| {
-            let game = starts.game(&setup, i as u64)?;
+            let seed = seed.wrapping_add(i as u64);
+            let game = starts.game(&setup, i as u64, seed)?;
             let taught = vec![];
             let truth = [vec![], vec![]];
             Ok(Slot {
                 game,
+                last: None,
                 number: i as u64,
+                seed,
                 ended: None,
                 taught,
                 truth,
@@ -121,7 +123,7 @@ impl Games {
         Ok(Games {
             slots: slots?,
             starts,
-            pool: (threads > 1).then(pool),
+            pool: (threads > 1).then(|| pool(threads)),
             rows_per_game: setup.rows_per_game(),
             observation_size: setup.observation_size(),
             setup,
@@ -177,6 +179,27 @@ impl Games {
         self.slots.iter_mut().for_each(|slot| slot.game.end_watch());
     }
 
+    /// Starts the threads again in a child process, which inherits none, and removes the watches.
+    pub fn continue_after_fork(&mut self) {
+        self.starts.end_watches();
+        // Neither may be dropped: they would wait for threads of the parent process.
+        self.slots
+            .iter_mut()
+            .for_each(|slot| slot.game.forget_watch());
+        if let Some(lost) = self.pool.take() {
+            self.pool = Some(pool(lost.current_num_threads()));
+            std::mem::forget(lost);
+        }
+    }
+
+    /// The game of a slot's last step, even if it has ended and been replaced, and its events in
+    /// that step.
+    pub fn last_step(&self, game: usize) -> (&Contest, &[Logged]) {
+        let slot = &self.slots[game];
+        let game = slot.last.as_ref().unwrap_or(&slot.game);
+        (game.contest(), game.events())
+    }
+
     /// The game that a slot is playing.
     pub fn contest(&self, game: usize) -> &Contest {
         self.slots[game].game.contest()
@@ -211,17 +234,14 @@ impl Games {
     /// # Errors
     /// [`SetupError::NoStart`] if a game cannot begin.
     pub fn restart(&mut self, seed: Option<u64>) -> Result<(), SetupError> {
+        let count = self.slots.len() as u64;
         if let Some(seed) = seed {
             self.starts = self.starts.from(&self.setup, seed);
-            self.slots
-                .iter_mut()
-                .enumerate()
-                .for_each(|(i, slot)| slot.number = i as u64);
+            for (i, slot) in (0..).zip(&mut self.slots) {
+                (slot.number, slot.seed) = (i, seed.wrapping_add(i));
+            }
         } else {
-            let count = self.slots.len() as u64;
-            self.slots
-                .iter_mut()
-                .for_each(|slot| slot.number = slot.number.wrapping_add(count));
+            self.slots.iter_mut().for_each(|slot| slot.count_on(count));
         }
         self.finished.clear();
         let Games {
@@ -231,7 +251,7 @@ impl Games {
             pool,
             ..
         } = self;
-        let begin = |slot: &mut Slot| slot.begin(setup, starts);
+        let begin = |slot: &mut Slot| slot.begin(setup, starts).map(drop);
         let begun: Vec<Result<(), SetupError>> = match pool {
             Some(pool) => pool.install(|| slots.par_iter_mut().map(begin).collect()),
             None => slots.iter_mut().map(begin).collect(),
@@ -248,22 +268,29 @@ impl Games {
     pub fn restart_game(&mut self, game: usize, seed: Option<u64>) -> Result<(), SetupError> {
         let count = self.slots.len() as u64;
         let slot = &mut self.slots[game];
-        slot.number = match seed {
-            Some(seed) => self.starts.number_of(seed)?,
-            None => slot.number.wrapping_add(count),
-        };
+        if let Some(seed) = seed {
+            self.starts.check(seed)?;
+            slot.seed = seed.wrapping_sub(count);
+        }
+        slot.count_on(count);
         self.finished.clear();
-        slot.begin(&self.setup, &self.starts)
+        slot.begin(&self.setup, &self.starts).map(drop)
     }
 
-    /// Plays one step of every game with one action per row.
+    /// Plays one step of every game with one action per row. A game that ends `restarts` in the same
+    /// step; otherwise in the next one, whose action and reward do not count.
     ///
     /// # Errors
     /// [`SetupError::NoStart`] if a new game cannot begin.
     ///
     /// # Panics
     /// If the number of actions or the length of a slice is not the number of rows.
-    pub fn step(&mut self, actions: &[Action], rows: Rows<'_>) -> Result<(), SetupError> {
+    pub fn step(
+        &mut self,
+        actions: &[Action],
+        restarts: bool,
+        rows: Rows<'_>,
+    ) -> Result<(), SetupError> {
         assert_eq!(actions.len(), self.rows().0, "one action per row");
         let count = self.slots.len() as u64;
         let per_game = self.rows_per_game;
@@ -271,15 +298,27 @@ impl Games {
             if !slot.is_shown {
                 slot.show(setup, rows);
             }
+            if !restarts && slot.ended.is_some() {
+                slot.count_on(count);
+                slot.begin(setup, starts)?;
+                rows.rewards.fill(0.0);
+                slot.show(setup, rows);
+                return Ok(());
+            }
             slot.play(setup, i, &actions[i * per_game..(i + 1) * per_game], rows);
             if slot.ended.is_none() {
                 return Ok(());
             }
             rows.final_observations.copy_from_slice(rows.observations);
-            slot.number = slot.number.wrapping_add(count);
-            slot.begin(setup, starts)?;
-            slot.truth.swap(0, 1);
-            slot.show(setup, rows);
+            let [now, last] = &mut slot.truth;
+            last.clone_from(now);
+            if restarts {
+                let ended = slot.ended;
+                slot.count_on(count);
+                slot.last = Some(slot.begin(setup, starts)?);
+                slot.ended = ended;
+                slot.show(setup, rows);
+            }
             Ok(())
         });
         self.finished.clear();
@@ -341,14 +380,29 @@ impl Games {
     }
 }
 
+fn pool(threads: usize) -> rayon::ThreadPool {
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .expect("threads can be started")
+}
+
 impl Slot {
-    fn begin(&mut self, setup: &Setup, starts: &Starts) -> Result<(), SetupError> {
-        self.game = starts.game(setup, self.number)?;
+    fn count_on(&mut self, games: u64) {
+        self.number = self.number.wrapping_add(games);
+        self.seed = self.seed.wrapping_add(games);
+    }
+
+    /// Begins the next game, and returns the previous one.
+    fn begin(&mut self, setup: &Setup, starts: &Starts) -> Result<Game, SetupError> {
+        let game = starts.game(setup, self.number, self.seed)?;
         self.is_shown = false;
-        Ok(())
+        (self.last, self.ended) = (None, None);
+        Ok(std::mem::replace(&mut self.game, game))
     }
 
     fn play(&mut self, setup: &Setup, game: usize, actions: &[Action], rows: &mut Rows<'_>) {
+        self.last = None;
         let pilots = self.game.pilots();
         actions
             .iter()

@@ -23,6 +23,7 @@ pub use raw::{RawObservation, RawSetup};
 pub use recorder::{
     RecordingLog, RecordingNames, Recordings, check_recording_folder, recording_name,
 };
+pub use rules::event::{Event, Logged};
 pub(crate) use setup::wrong;
 pub use setup::{Control, Player, Setup, SetupError, Teacher};
 pub use vector::VectorEnvironment;

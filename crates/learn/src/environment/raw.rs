@@ -34,8 +34,11 @@ pub struct RawSetup {
     pub action: ActionSpace,
     /// The strategy file whose helms apply the actions. None: actions are orders.
     pub helm: Option<PathBuf>,
-    /// How long an action holds, s: a multiple of the game's `decision_s`, which is the default.
+    /// How long an action holds, s: a multiple of the game's `decision_s`. None: the smallest one
+    /// from `decision_min_s` on.
     pub decision_s: Option<f64>,
+    /// How long an action holds at least, s, if `decision_s` is None.
+    pub decision_min_s: f64,
     /// The maximum length of an episode, s.
     pub episode_max_s: Option<f64>,
     /// The number of repeating starts; see [`Setup::starts`].
@@ -84,9 +87,12 @@ impl RawSetup {
         if self.starts == Some(0) {
             return Err(wrong("starts", 0, "1 or more"));
         }
-        let decisions_per_step = self.decision_s.map_or(Ok(1), |decision_s| {
-            decisions_per_step(decision_s, &scenario)
-        })?;
+        let least = (self.decision_min_s / scenario.decision().as_s() - 1e-6).ceil();
+        let decisions_per_step = self
+            .decision_s
+            .map_or(Ok((least as u32).max(1)), |decision_s| {
+                decisions_per_step(decision_s, &scenario)
+            })?;
         let setup = Setup {
             spaces: Spaces {
                 observation: self.observation.check(&scenario)?,

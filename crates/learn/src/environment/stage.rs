@@ -26,6 +26,7 @@ impl Setup {
             action: training.action,
             helm: stage.helm.clone(),
             decision_s: Some(training.period_s),
+            decision_min_s: 0.0,
             episode_max_s: stage.episode_max_s,
             starts: stage.starts,
             team: None,

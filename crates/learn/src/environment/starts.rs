@@ -33,18 +33,17 @@ impl Starts {
         self.watches = None;
     }
 
-    pub(super) fn game(&self, setup: &Setup, number: u64) -> Result<Game, SetupError> {
+    /// The game with this seed. `number` decides whether it is watched.
+    pub(super) fn game(&self, setup: &Setup, number: u64, seed: u64) -> Result<Game, SetupError> {
         let watch = self.watches.as_ref().and_then(|watches| watches(number));
         // Repeating starts must outnumber the parallel games: with 64 of each, every game always
         // had the same start, and the policy learnt nothing. A repeated start takes 0.03 ms; a new
         // one with a sea takes 0.41 ms.
-        let number = if self.made.is_empty() {
-            number
-        } else {
-            number % self.made.len() as u64
-        };
-        let seed = self.seed.wrapping_add(number);
-        let place = self.made.get(number as usize);
+        let index = seed
+            .wrapping_sub(self.seed)
+            .checked_rem(self.made.len() as u64);
+        let seed = index.map_or(seed, |index| self.seed.wrapping_add(index));
+        let place = index.map(|index| &self.made[index as usize]);
         let contest = match place.and_then(OnceLock::get) {
             Some(contest) => contest.clone(),
             None => Contest::new(&setup.scenario, seed)?,
@@ -55,9 +54,8 @@ impl Starts {
         Ok(Game::new(setup, contest, seed, watch))
     }
 
-    pub(super) fn number_of(&self, seed: u64) -> Result<u64, SetupError> {
-        let number = seed.wrapping_sub(self.seed);
-        if !self.made.is_empty() && number >= self.made.len() as u64 {
+    pub(super) fn check(&self, seed: u64) -> Result<(), SetupError> {
+        if !self.made.is_empty() && seed.wrapping_sub(self.seed) >= self.made.len() as u64 {
             let last = self.seed.wrapping_add(self.made.len() as u64 - 1);
             return Err(SetupError::SeedOfStarts {
                 seed,
@@ -65,6 +63,6 @@ impl Starts {
                 last,
             });
         }
-        Ok(number)
+        Ok(())
     }
 }

@@ -132,7 +132,7 @@ impl VectorEnvironment {
     /// # Panics
     /// If the number of actions is not the number of rows.
     pub fn step(&mut self, actions: &[Action]) -> Result<(), SetupError> {
-        self.games.step(actions, self.shown.rows())?;
+        self.games.step(actions, true, self.shown.rows())?;
         self.actions
             .iter_mut()
             .for_each(|collected| collected.extend_from_slice(actions));

@@ -61,6 +61,7 @@ pub(crate) fn raw() -> RawSetup {
         action: ActionSpace::Pyquaticus,
         helm: None,
         decision_s: Some(0.5),
+        decision_min_s: 0.0,
         episode_max_s: Some(5.0),
         starts: None,
         team: None,

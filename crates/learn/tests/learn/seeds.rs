@@ -12,7 +12,7 @@ fn games(raw: &RawSetup, count: usize, seed: u64) -> Games {
 fn step(games: &mut Games, action: usize) {
     written(games, |games, rows| {
         let actions = vec![Action::Discrete(action); games.rows().0];
-        games.step(&actions, rows).expect("new games begin");
+        games.step(&actions, true, rows).expect("new games begin");
     });
 }
 

@@ -96,7 +96,7 @@ fn step(games: &mut Games, step: usize) {
         let actions: Vec<Action> = (0..games.rows().0)
             .map(|row| Action::Discrete((3 * step + row) % 17))
             .collect();
-        games.step(&actions, rows).expect("new games begin");
+        games.step(&actions, true, rows).expect("new games begin");
     });
 }
 
