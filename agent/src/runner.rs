@@ -15,6 +15,19 @@ struct Boat<M: ?Sized> {
     mind: Box<M>,
 }
 
+impl<M: Mind + ?Sized> Boat<M> {
+    fn decide(&mut self, picture: Option<&Picture>) {
+        let order = picture.map(|picture| self.mind.decide(picture));
+        self.order = order.unwrap_or_default();
+    }
+}
+
+fn decide_each<M: Mind + ?Sized>(boats: &mut [(Option<&Picture>, &mut Boat<M>)]) {
+    for (picture, boat) in boats {
+        boat.decide(*picture);
+    }
+}
+
 /// The minds of one process.
 pub struct MindRunner<M: Mind + ?Sized = dyn Mind> {
     boats: Vec<Boat<M>>,
@@ -121,33 +134,21 @@ impl<M: Mind + ?Sized> MindRunner<M> {
         stamp: Stamp,
         picture_of: impl Fn(VehicleId) -> Option<&'p Picture>,
     ) {
-        let decide = |boat: &mut Boat<M>, picture: Option<&Picture>| {
-            let order = picture.map(|picture| boat.mind.decide(picture));
-            boat.order = order.unwrap_or_default();
-        };
         if self.threads == 1 || self.boats.len() < MINDS_MIN {
             for boat in &mut self.boats {
-                decide(boat, picture_of(boat.vehicle));
+                boat.decide(picture_of(boat.vehicle));
             }
         } else {
-            let each = self.boats.len().div_ceil(self.threads);
-            let pictures: Vec<_> = self
-                .boats
-                .iter()
-                .map(|boat| picture_of(boat.vehicle))
-                .collect();
+            let boats = self.boats.iter_mut();
+            let mut all: Vec<_> = boats.map(|boat| (picture_of(boat.vehicle), boat)).collect();
+            let each = all.len().div_ceil(self.threads);
             std::thread::scope(|scope| {
-                let mut parts = self.boats.chunks_mut(each).zip(pictures.chunks(each));
-                let work = |(boats, pictures): (&mut [Boat<M>], &[Option<&Picture>])| {
-                    for (boat, picture) in boats.iter_mut().zip(pictures) {
-                        decide(boat, *picture);
-                    }
-                };
+                let mut parts = all.chunks_mut(each);
                 let own = parts.next();
                 for part in parts {
-                    scope.spawn(move || work(part));
+                    scope.spawn(|| decide_each(part));
                 }
-                own.into_iter().for_each(work);
+                own.into_iter().for_each(decide_each);
             });
         }
         self.decided = Some(stamp);

@@ -3,6 +3,7 @@
 use super::fixture::game;
 use agent::{Action, ActionSpace, Mind, ObservationSpace, Pilot, Spaces};
 use messages::{Order, Picture};
+use primitives::math::length;
 use primitives::{SimTime, VehicleId};
 use scenario::Scenario;
 
@@ -82,7 +83,7 @@ fn greatest_gap_m(scenario: &Scenario, recorded: &Recorded) -> f64 {
         .iter()
         .flatten()
         .zip(recorded.at_m.iter().flatten());
-    let gaps_m = pairs.map(|([x, y], [want_x, want_y])| (x - want_x).hypot(y - want_y));
+    let gaps_m = pairs.map(|([x, y], [want_x, want_y])| length(x - want_x, y - want_y));
     gaps_m.fold(0.0, f64::max)
 }
 
