@@ -6,7 +6,7 @@ use std::io::{Error, ErrorKind, Read};
 use std::os::unix::fs::OpenOptionsExt;
 use std::path::Path;
 
-/// Size limit of a table that this program appends to, bytes: some millions of games.
+/// Size limit of a table that this program appends to, and of a log, bytes: some millions of games.
 pub const TABLE_BYTES_MAX: u64 = 2 << 30;
 
 /// Opens a file for reading.
@@ -27,25 +27,30 @@ pub fn open(path: &Path) -> Result<File, Error> {
     Ok(file)
 }
 
-/// Reads a file of at most `bytes_max` bytes. Ignores the reported size, since files of `/proc`
+/// Reads a file of at most `bytes_max` bytes. The reported size does not suffice: files of `/proc`
 /// report 0.
 ///
 /// # Errors
 /// The system's error, that it is not a regular file, or that it is too long.
 pub fn read(path: &Path, bytes_max: u64) -> Result<Vec<u8>, Error> {
     let mut bytes = vec![];
-    let length = open(path)?
-        .take(bytes_max.saturating_add(1))
-        .read_to_end(&mut bytes)
-        .map_err(|error| {
-            let waits = error.kind() == ErrorKind::WouldBlock;
-            if waits {
-                Error::new(ErrorKind::InvalidInput, "it has no end")
-            } else {
-                error
-            }
-        })?;
-    if length as u64 > bytes_max {
+    let file = open(path)?;
+    let reported = file.metadata()?.len();
+    // Nothing of a file that is known to be too long: its bytes would fill the memory.
+    let most = if reported > bytes_max {
+        0
+    } else {
+        bytes_max.saturating_add(1)
+    };
+    let length = file.take(most).read_to_end(&mut bytes).map_err(|error| {
+        let waits = error.kind() == ErrorKind::WouldBlock;
+        if waits {
+            Error::new(ErrorKind::InvalidInput, "it has no end")
+        } else {
+            error
+        }
+    })?;
+    if reported.max(length as u64) > bytes_max {
         return Err(Error::new(
             ErrorKind::FileTooLarge,
             format!("it is longer than {bytes_max} bytes"),

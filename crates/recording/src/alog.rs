@@ -8,7 +8,7 @@ use crate::{Bag, Decision, Ending, Entry, Header, RecordingError, Writer};
 use messages::picture::{FlagView, Nav};
 use messages::{EventRecord, Frame, GameInfo, Message, Stamp, VehicleTruth, water::Water};
 use primitives::angle::{rad_from_compass_deg, wrap_pi};
-use primitives::{FlagId, Ned, TeamId, VehicleId};
+use primitives::{FlagId, Ned, TeamId, VehicleId, input_file};
 use rules::event::{Event, Logged, TagCause};
 use rules::field::{Field, Plan};
 use scenario::{Outcome, Scenario, Source, Vehicle};
@@ -72,9 +72,9 @@ pub fn read(files: &[PathBuf], game: Scenario, is_known: bool) -> Result<Bag, Re
 
 impl Game {
     fn add(&mut self, path: &Path) -> Result<(), RecordingError> {
-        let bytes = std::fs::read(path).map_err(|reason| RecordingError::File {
-            path: path.to_owned(),
-            reason,
+        let bytes = input_file::read(path, input_file::TABLE_BYTES_MAX).map_err(|reason| {
+            let path = path.to_owned();
+            RecordingError::File { path, reason }
         })?;
         let mut name = name_of(&path.file_stem().unwrap_or_default().to_string_lossy());
         let (mut own, mut start_s) = (BTreeMap::<String, Series>::new(), None);
@@ -531,5 +531,14 @@ mod tests {
         let far = SHORE.replace("1001.0", "900000.0");
         let error = read_text(&[BLUE, &far]).expect_err("two games").to_string();
         assert!(error.ends_with("are they of one game?"), "{error}");
+    }
+
+    #[test]
+    fn a_log_that_is_too_long_is_not_read() {
+        let long = tempfile::NamedTempFile::new().expect("a file");
+        let sized = long.as_file().set_len(input_file::TABLE_BYTES_MAX + 1);
+        sized.expect("it takes no space");
+        let error = Game::default().add(long.path()).expect_err("refused");
+        assert!(error.to_string().contains("it is longer than"), "{error}");
     }
 }

@@ -4,23 +4,13 @@ import { BadgeLine } from './badge.js';
 import { MARKS } from './game.js';
 import { palette, teamColour } from './palette.js';
 import { Roster } from './roster.js';
-import { bearing, fill, make, number, plain, show, write } from './words.js';
+import { bearing, fill, make, number, plain, show, svg, write } from './words.js';
 
-const SVG = 'http://www.w3.org/2000/svg';
 const ARROW = 'M0-9 6 8 0 4-6 8z';
 const FLAG = 'M-6 9V-9L7-4-4 1V9z';
 
 /** A small drawing with a single path. */
-function glyph(classes, path) {
-  const svg = document.createElementNS(SVG, 'svg');
-  svg.setAttribute('viewBox', '-10 -10 20 20');
-  svg.setAttribute('class', classes);
-  svg.setAttribute('aria-hidden', 'true');
-  const shape = document.createElementNS(SVG, 'path');
-  shape.setAttribute('d', path);
-  svg.append(shape);
-  return svg;
-}
+const glyph = (classes, path) => svg('svg', { viewBox: '-10 -10 20 20', class: classes, 'aria-hidden': 'true' }, svg('path', { d: path }));
 
 export class BoatList {
   /** `on` has `choose(name)`, for a pressed boat, and `hover(index)`, for the boat pointed at; -1 is none. */

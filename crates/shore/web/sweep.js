@@ -4,7 +4,8 @@ import { addressOfGame, keepAddress } from './address.js';
 import { commandOf } from './command.js';
 import { ticksOf } from './diagram.js';
 import { palette } from './palette.js';
-import { stem } from './words.js';
+import { scrolled, tableOf } from './table.js';
+import { make, significant, stem, svg } from './words.js';
 
 /** What never changes. Texts of a report only ever become text nodes. */
 const SECTIONS = `
@@ -119,22 +120,8 @@ export class Sweep {
 
 const byId = (id) => document.getElementById(id);
 
-function fill(element, attributes, children) {
-  for (const [name, value] of Object.entries(attributes)) {
-    if (value === null || value === undefined || value === false) continue;
-    if (name.startsWith('on')) element.addEventListener(name.slice(2), value);
-    else if (name === 'style') element.style.cssText = value;
-    else element.setAttribute(name, value === true ? '' : value);
-  }
-  element.append(...children.flat().filter((child) => child !== null && child !== undefined));
-  return element;
-}
-const el = (tag, attributes = {}, ...children) => fill(document.createElement(tag), attributes, children);
-const svg = (tag, attributes = {}, ...children) =>
-  fill(document.createElementNS('http://www.w3.org/2000/svg', tag), attributes, children);
-
 /** A name that may be broken after dots, dashes and underscores. */
-const soft = (text) => text.split(/(?<=[._/-])(?=\D..)/).flatMap((part, i) => (i === 0 ? [part] : [el('wbr'), part]));
+const soft = (text) => text.split(/(?<=[._/-])(?=\D..)/).flatMap((part, i) => (i === 0 ? [part] : [make('wbr'), part]));
 
 function say(text) {
   byId('said').textContent = text;
@@ -184,24 +171,11 @@ const metricNow = () => metricTitle(report.metrics[state.metric]);
 /* Numbers as people read them. */
 
 const NONE = '\u2013';
-const MINUS = '\u2212';
 const NARROW = '\u202f';
-
-/** A number with three significant digits; whole above a hundred. */
-function number(x, digits = 3) {
-  if (x === null || x === undefined || !Number.isFinite(x)) return NONE;
-  const size = Math.abs(x);
-  let text;
-  if (size !== 0 && (size >= 1e9 || size < 1e-4)) text = x.toExponential(digits - 1);
-  else if (size >= 10 ** (digits - 1)) text = x.toFixed(0);
-  else text = String(Number(x.toPrecision(digits)));
-  return text.replaceAll('-', MINUS);
-}
-
 const isShare = () => report.metrics[state.metric].name.endsWith('_share');
 const unit = () => unitOf(report.metrics[state.metric]);
 const withUnit = (text) => (text === NONE || unit() === '' ? text : `${text}${NARROW}${unit()}`);
-const bare = (x) => number(x === null || x === undefined ? x : x * (isShare() ? 100 : 1));
+const bare = (x) => significant(typeof x === 'number' ? x * (isShare() ? 100 : 1) : x);
 /** A number of the chosen metric, with its unit. */
 const shown = (x) => withUnit(bare(x));
 /** The same with its sign: a difference. */
@@ -221,12 +195,12 @@ function interval(estimate, least = 0) {
 
 /** An estimate on two lines of a table. */
 const twoLines = (estimate, of = shown) =>
-  estimate ? [of(estimate.mean), interval(estimate) && el('small', {}, interval(estimate, of === shown ? 0 : -1))] : [NONE];
+  estimate ? [of(estimate.mean), interval(estimate) && make('small', '', interval(estimate, of === shown ? 0 : -1))] : [NONE];
 
 /** A value of an axis: numbers with as many digits as tell its levels apart. */
 function valueText(axis, text) {
   const value = Number(text);
-  return text.trim() === '' || !Number.isFinite(value) ? text : number(value, axisDigits[axis]);
+  return text.trim() === '' || !Number.isFinite(value) ? text : significant(value, axisDigits[axis]);
 }
 
 function digitsFor(axis) {
@@ -235,7 +209,7 @@ function digitsFor(axis) {
   if (values.some((value) => !Number.isFinite(value))) return 3;
   const wanted = new Set(values).size;
   for (let digits = 3; digits < 9; digits += 1) {
-    if (new Set(values.map((value) => number(value, digits))).size === wanted) return digits;
+    if (new Set(values.map((value) => significant(value, digits))).size === wanted) return digits;
   }
   return 9;
 }
@@ -261,15 +235,13 @@ let axisDigits = [];
 
 /* Tables. */
 
-const tableOf = (heads, rows) => el('table', { class: 'list' }, el('thead', {}, el('tr', {}, heads)), el('tbody', {}, rows));
-const columnHead = (children, isNumber, more = {}) => el('th', { scope: 'col', class: isNumber ? 'number' : null, ...more }, children);
-const pointHead = (index) => el('th', { scope: 'row', class: 'number' }, String(index));
-const estimateCell = (estimate) => el('td', { class: 'estimate' }, twoLines(estimate));
+const columnHead = (children, isNumber, more = {}) => make('th', { scope: 'col', class: isNumber ? 'number' : null, ...more }, '', children);
+const pointHead = (index) => make('th', { scope: 'row', class: 'number' }, String(index));
+const estimateCell = (estimate) => make('td', 'estimate', '', twoLines(estimate));
 const isOfNumbers = (axis) => levelsOf(axis).every((level) => level.value !== null);
 const axisHeads = () => report.axes.map((_, axis) => columnHead(soft(axisName(axis)), isOfNumbers(axis)));
 const valueCells = (values) => values.map((value, axis) =>
-  el('td', { class: isOfNumbers(axis) ? 'value number' : 'value' }, soft(valueText(axis, value))));
-const scrolled = (label, table) => el('div', { class: 'scroll', tabindex: 0, role: 'region', 'aria-label': label }, table);
+  make('td', { class: isOfNumbers(axis) ? 'value number' : 'value' }, '', soft(valueText(axis, value))));
 
 /* Entries: a colour, a dash and a mark each. */
 
@@ -286,7 +258,7 @@ const dashOf = (entry) => DASHES[Math.floor(entry / 4) % DASHES.length] || null;
 const markOf = (entry, x, y) => svg('path', { class: `mark ${entryClass(entry)}`, d: MARKS[entry % MARKS.length](x, y) });
 const sampleOf = (entry) => svg('svg', { width: 30, height: 14, 'aria-hidden': 'true', class: entryClass(entry) },
   svg('path', { class: 'sample', d: 'M0 7H30', 'stroke-dasharray': dashOf(entry) }), markOf(entry, 15, 7));
-const entryHead = (entry) => el('h3', {}, sampleOf(entry), ' ', soft(report.entries[entry]));
+const entryHead = (entry) => make('h3', '', '', sampleOf(entry), ' ', soft(report.entries[entry]));
 
 /* Head */
 
@@ -303,21 +275,21 @@ function drawFacts() {
     let what = labels.length > 5 ? `${labels.length} levels from ${labels[0]} to ${labels.at(-1)}` : labels.join(', ');
     if (isSampled() && isOfNumbers(i)) {
       const values = points.map((point) => Number(point.values[i]));
-      what = `sampled from ${number(Math.min(...values))} to ${number(Math.max(...values))}`;
+      what = `sampled from ${significant(Math.min(...values))} to ${significant(Math.max(...values))}`;
     }
-    return el('span', { title: key }, el('strong', {}, soft(axisName(i))), ' ', soft(what));
+    return make('span', { title: key }, '', make('strong', '', '', soft(axisName(i))), ' ', soft(what));
   };
   const without = points.filter((point) => point.seeds === 0).length;
   const facts = [
-    ['Game', el('span', { title: report.game }, soft(stem(report.game)))],
-    ['Opponent', el('span', { title: report.opponent }, soft(stem(report.opponent)))],
+    ['Game', make('span', { title: report.game }, '', soft(stem(report.game)))],
+    ['Opponent', make('span', { title: report.opponent }, '', soft(stem(report.opponent)))],
     ['Design', `${DESIGNS[report.design] ?? report.design}, ${points.length} ${points.length === 1 ? 'point' : 'points'}`],
     ['Seeds', `${firstSeed()}${seeds > 1 ? ` to ${last}` : ''}; ${report.games_per_point} games per entry and point`],
     ['Games', `${done} of ${games}${without > 0 ? `; ${without} of ${points.length} points have no complete seed yet` : ''}`],
     ['Version', `Squall ${report.version}`],
     ['Axes', report.axes.map(axis)],
   ];
-  const fact = ([term, what]) => el('div', { class: term === 'Axes' ? 'axes' : null }, el('dt', {}, term), el('dd', {}, what));
+  const fact = ([term, what]) => make('div', { class: term === 'Axes' ? 'axes' : null }, '', make('dt', '', term), make('dd', '', '', what));
   byId('sweep-facts').replaceChildren(...facts.map(fact));
 }
 
@@ -331,8 +303,8 @@ function drawChooser() {
   const groups = new Map();
   report.metrics.forEach((metric, i) => {
     const label = groupOf(metric, i);
-    if (!groups.has(label)) groups.set(label, el('optgroup', { label }));
-    groups.get(label).append(el('option', { value: metric.name }, withParentheses(metricTitle(metric), unitOf(metric))));
+    if (!groups.has(label)) groups.set(label, make('optgroup', { label }));
+    groups.get(label).append(make('option', { value: metric.name }, '', withParentheses(metricTitle(metric), unitOf(metric))));
   });
   const chooser = byId('metric');
   chooser.replaceChildren(...groups.values());
@@ -360,16 +332,16 @@ function drawLegend() {
   const { name, about, unit: unitName } = report.metrics[state.metric];
   byId('metric').value = name;
   byId('metric-label').dataset.metric = metricNow();
-  byId('about-metric').replaceChildren(`${capital(isShare() ? `${about}; shown as %` : `${about}${unitName ? `, ${unitName}` : ''}`)} `, el('code', { title: 'Name in tables' }, name));
+  byId('about-metric').replaceChildren(`${capital(isShare() ? `${about}; shown as %` : `${about}${unitName ? `, ${unitName}` : ''}`)} `, make('code', { title: 'Name in tables' }, name));
   const focused = document.activeElement?.dataset?.entry;
   byId('entries').replaceChildren(...report.entries.map((entry, i) => {
-    if (report.entries.length === 1) return el('span', { class: 'one' }, sampleOf(i), entry);
+    if (report.entries.length === 1) return make('span', 'one', '', sampleOf(i), entry);
     const toggle = () => {
       if (!state.hidden.delete(i)) state.hidden.add(i);
       draw();
     };
     const pressed = String(!state.hidden.has(i));
-    return el('button', { type: 'button', 'data-entry': i, 'aria-pressed': pressed, title: 'show or hide', onclick: toggle }, sampleOf(i), entry);
+    return make('button', { type: 'button', 'data-entry': i, 'aria-pressed': pressed, title: 'show or hide', onclick: toggle }, '', sampleOf(i), entry);
   }));
   if (focused !== undefined) byId('entries').querySelector(`[data-entry="${focused}"]`)?.focus();
 }
@@ -561,11 +533,11 @@ function showLevel(card, at) {
   box.hidden = at === null;
   guide.setAttribute('d', at === null ? '' : `M${xs[at]} ${top}v${deep}`);
   if (at === null) return;
-  const rows = [...of].map(([entry, estimates]) => el('tr', {}, el('td', {}, sampleOf(entry)), el('td', {}, report.entries[entry]),
-    el('td', {}, el('strong', {}, shown(estimates[at]?.mean))), el('td', { class: 'faint' }, interval(estimates[at]))));
+  const rows = [...of].map(([entry, estimates]) => make('tr', '', '', make('td', '', '', sampleOf(entry)), make('td', '', report.entries[entry]),
+    make('td', '', '', make('strong', '', shown(estimates[at]?.mean))), make('td', 'faint', interval(estimates[at]))));
   const { points } = levels[at];
   const heading = `${labels[at]}${points > 1 ? ` (${points} points)` : ''}`;
-  box.replaceChildren(el('strong', {}, heading), el('table', {}, el('tbody', {}, rows.slice(0, 12))));
+  box.replaceChildren(make('strong', '', heading), make('table', '', '', make('tbody', '', '', rows.slice(0, 12))));
   const holder = card.querySelector('.chart');
   const scale = holder.clientWidth / wide;
   const x = holder.offsetLeft + xs[at] * scale;
@@ -594,20 +566,20 @@ function stepLevel(card, event) {
 
 function drawCurveTable(card, axis) {
   const levels = levelsOf(axis);
-  const row = (level, i) => el('tr', {}, el('th', { scope: 'row', class: 'value' }, soft(valueText(axis, level.label))),
+  const row = (level, i) => make('tr', '', '', make('th', { scope: 'row', class: 'value' }, '', soft(valueText(axis, level.label))),
     entriesShown().map((entry) => estimateCell(metricOf(effectOf(axis, entry).levels[i].metrics))));
   const heads = [columnHead(soft(axisName(axis)), false), ...entriesShown().map((entry) => columnHead(soft(report.entries[entry]), true))];
-  card.querySelector('details .scroll').replaceChildren(tableOf(heads, levels.map(row)));
+  card.querySelector('details .scroll').replaceWith(tableOf(axisName(axis), heads, levels.map(row)));
 }
 
 function makeCurves() {
   const cards = variedAxes().map((axis) => {
     const key = report.axes[axis];
-    const chart = el('div', { class: 'chart', tabindex: 0, role: 'group', 'aria-roledescription': 'chart' });
-    const card = el('figure', { class: 'card', 'data-axis': key }, el('h3', {}, soft(axisName(axis)), ' ', el('small', { class: 'scale' })),
-      el('p', { class: 'about-axis faint' }, `${axisTitles[axis].about} `, el('code', {}, soft(key))), chart,
-      el('div', { class: 'values', hidden: true, 'aria-hidden': 'true' }),
-      el('details', {}, el('summary', {}, 'As a table', el('span', { class: 'hidden-text' }, `: ${axisName(axis)}`)), el('div', { class: 'scroll' })));
+    const chart = make('div', { class: 'chart', tabindex: 0, role: 'group', 'aria-roledescription': 'chart' });
+    const card = make('figure', { class: 'card', 'data-axis': key }, '', make('h3', '', '', soft(axisName(axis)), ' ', make('small', 'scale')),
+      make('p', 'about-axis faint', '', `${axisTitles[axis].about} `, make('code', '', '', soft(key))), chart,
+      make('div', { class: 'values', hidden: true, 'aria-hidden': 'true' }),
+      make('details', '', '', make('summary', '', '', 'As a table', make('span', 'hidden-text', `: ${axisName(axis)}`)), make('div', 'scroll')));
     chart.addEventListener('pointermove', (event) => showLevel(card, nearest(card, event)));
     chart.addEventListener('pointerdown', (event) => showLevel(card, nearest(card, event)));
     chart.addEventListener('pointerleave', () => document.activeElement === chart || showLevel(card, null));
@@ -673,20 +645,20 @@ function heatCells(places, entry) {
 
 function heatTable(cells, [low, high], entry) {
   const [rows, columns] = [state.rows, state.columns];
-  const header = (axis, scope) => levelsOf(axis).map((level) => el('th', { scope }, soft(valueText(axis, level.label))));
+  const header = (axis, scope) => levelsOf(axis).map((level) => make('th', { scope }, '', soft(valueText(axis, level.label))));
   const rowHeads = header(rows, 'row');
   const cell = ({ mean, title }) => {
-    if (mean === null) return el('td', { class: 'none', title }, NONE);
+    if (mean === null) return make('td', { class: 'none', title }, '', NONE);
     const { background, ink } = heatColour(high > low ? (mean - low) / (high - low) : 0.5);
-    return el('td', { style: `background: ${background}; color: ${ink}`, title }, bare(mean));
+    return make('td', { style: `background: ${background}; color: ${ink}`, title }, bare(mean));
   };
-  const table = el('table', { class: 'heat' },
-    el('caption', { class: 'hidden-text' }, `${metricNow()} of ${report.entries[entry]}`),
-    el('thead', {}, el('tr', {}, el('th', { class: 'axis' }, soft(axisName(rows))),
-      el('th', { class: 'axis', colspan: cells[0].length, scope: 'colgroup' }, soft(axisName(columns)))),
-      el('tr', {}, el('td', { class: 'corner', style: 'height: 0; border: 0' }), header(columns, 'col'))),
-    el('tbody', {}, cells.map((row, i) => el('tr', {}, rowHeads[i], row.map(cell)))));
-  return el('div', { class: 'card' }, entryHead(entry), scrolled(`Heat map of ${report.entries[entry]}`, table));
+  const table = make('table', 'heat', '',
+    make('caption', 'hidden-text', `${metricNow()} of ${report.entries[entry]}`),
+    make('thead', '', '', make('tr', '', '', make('th', 'axis', '', soft(axisName(rows))),
+      make('th', { class: 'axis', colspan: cells[0].length, scope: 'colgroup' }, '', soft(axisName(columns)))),
+      make('tr', '', '', make('td', { class: 'corner', style: 'height: 0; border: 0' }), header(columns, 'col'))),
+    make('tbody', '', '', cells.map((row, i) => make('tr', '', '', rowHeads[i], row.map(cell)))));
+  return make('div', 'card', '', entryHead(entry), scrolled(`Heat map of ${report.entries[entry]}`, table));
 }
 
 function makeHeat() {
@@ -694,7 +666,7 @@ function makeHeat() {
   Object.assign(state, { rows: first, columns: second });
   const [rows, columns] = [byId('heat-rows'), byId('heat-columns')];
   for (const [select, own, other] of [[rows, 'rows', 'columns'], [columns, 'columns', 'rows']]) {
-    select.replaceChildren(...report.axes.map((_, axis) => el('option', { value: axis }, axisName(axis))));
+    select.replaceChildren(...report.axes.map((_, axis) => make('option', { value: axis }, axisName(axis))));
     select.addEventListener('change', () => {
       const before = state[own];
       state[own] = Number(select.value);
@@ -746,24 +718,24 @@ function tornadoDomain(contrasts) {
 
 function track(contrast, [low, high]) {
   const at = (value) => 100 * ((Math.min(high, Math.max(low, value)) - low) / (high - low));
-  const piece = (name, from, to) => el('div', { class: name, style: `left: ${at(from).toFixed(2)}%; width: ${(at(to) - at(from)).toFixed(2)}%` });
-  const parts = [el('div', { class: 'zero', style: `left: ${at(0).toFixed(2)}%` })];
+  const piece = (name, from, to) => make('div', { class: name, style: `left: ${at(from).toFixed(2)}%; width: ${(at(to) - at(from)).toFixed(2)}%` });
+  const parts = [make('div', { class: 'zero', style: `left: ${at(0).toFixed(2)}%` })];
   if (contrast) parts.push(piece('effect', Math.min(0, contrast.mean), Math.max(0, contrast.mean)));
   if (isBounded(contrast)) {
     const cut = `${contrast.low < low ? ' cut-low' : ''}${contrast.high > high ? ' cut-high' : ''}`;
     parts.push(piece(`span${cut}`, contrast.low, contrast.high));
   }
-  return el('div', { class: 'track', 'aria-hidden': 'true' }, parts);
+  return make('div', { class: 'track', 'aria-hidden': 'true' }, '', parts);
 }
 
 /** The numbers below a tornado chart: its ends, and 0 where it does not touch them. */
 function endsOf([low, high]) {
   const zero = 100 * (-low / (high - low));
-  const marks = [el('span', { style: 'left: 0' }, signed(low)), el('span', { style: 'right: 0' }, signed(high))];
-  if (zero < 1) marks[0] = el('span', { style: 'left: 0' }, '0');
-  else if (zero > 99) marks[1] = el('span', { style: 'right: 0' }, '0');
-  else if (zero > 24 && zero < 76) marks.push(el('span', { style: `left: ${zero}%; transform: translateX(-50%)` }, '0'));
-  return el('div', { class: 'ends', 'aria-hidden': 'true' }, marks);
+  const marks = [make('span', { style: 'left: 0' }, signed(low)), make('span', { style: 'right: 0' }, signed(high))];
+  if (zero < 1) marks[0] = make('span', { style: 'left: 0' }, '0');
+  else if (zero > 99) marks[1] = make('span', { style: 'right: 0' }, '0');
+  else if (zero > 24 && zero < 76) marks.push(make('span', { style: `left: ${zero}%; transform: translateX(-50%)` }, '0'));
+  return make('div', { class: 'ends', 'aria-hidden': 'true' }, '', marks);
 }
 
 function tornadoOf(entry, domain) {
@@ -774,14 +746,14 @@ function tornadoOf(entry, domain) {
     const contrast = of[axis];
     const levels = levelsOf(axis);
     const ends = levels.length > 1 ? ` ${valueText(axis, levels[0].label)} → ${valueText(axis, levels.at(-1).label)}` : '';
-    const without = el('small', {}, levels.length > 1 ? noneYet() : 'one level only');
-    const amount = contrast ? [el('strong', {}, signed(contrast.mean)), ' ', el('small', {}, interval(contrast, -1))] : [without];
-    const what = el('span', {}, soft(axisName(axis)), el('small', {}, soft(ends)));
-    return el('li', { 'data-axis': report.axes[axis] },
-      el('div', { class: 'what' }, what, el('span', { class: 'amount' }, amount)), track(contrast, domain));
+    const without = make('small', '', '', levels.length > 1 ? noneYet() : 'one level only');
+    const amount = contrast ? [make('strong', '', signed(contrast.mean)), ' ', make('small', '', interval(contrast, -1))] : [without];
+    const what = make('span', '', '', soft(axisName(axis)), make('small', '', '', soft(ends)));
+    return make('li', { 'data-axis': report.axes[axis] }, '',
+      make('div', 'what', '', what, make('span', 'amount', '', amount)), track(contrast, domain));
   };
-  return el('div', { class: `card ${entryClass(entry)}`, 'data-entry': report.entries[entry] },
-    entryHead(entry), el('ol', { class: 'tornado' }, order.map(row)), of.some(Boolean) ? endsOf(domain) : null);
+  return make('div', { class: `card ${entryClass(entry)}`, 'data-entry': report.entries[entry] }, '',
+    entryHead(entry), make('ol', 'tornado', '', order.map(row)), of.some(Boolean) ? endsOf(domain) : null);
 }
 
 function drawTornado() {
@@ -811,10 +783,10 @@ function paged(name, rows, redraw, size = PAGE_ROWS) {
     say(`Page ${to + 1} of ${pages}`);
   };
   const button = (text, which, to) =>
-    el('button', { type: 'button', 'data-go': which, disabled: to < 0 || to >= pages, onclick: go(to, which) }, text);
-  const nav = pages === 1 ? null : el('nav', { class: 'pages', 'data-pages': name, 'aria-label': `Pages of ${name}` },
+    make('button', { type: 'button', 'data-go': which, disabled: to < 0 || to >= pages, onclick: go(to, which) }, text);
+  const nav = pages === 1 ? null : make('nav', { class: 'pages', 'data-pages': name, 'aria-label': `Pages of ${name}` }, '',
     button('Back', 'back', page - 1),
-    el('span', {}, `${page * size + 1} to ${Math.min(rows.length, (page + 1) * size)} of ${rows.length}`), button('Next', 'next', page + 1));
+    make('span', '', `${page * size + 1} to ${Math.min(rows.length, (page + 1) * size)} of ${rows.length}`), button('Next', 'next', page + 1));
   return { rows: rows.slice(page * size, (page + 1) * size), nav };
 }
 
@@ -825,9 +797,9 @@ const sureness = (estimate) => (!isBounded(estimate) ? 0 : estimate.low > 0 ? 1 
 
 function differenceCell(estimate) {
   const sure = sureness(estimate);
-  if (sure === 0) return el('td', { class: 'estimate unsure' }, twoLines(estimate, signed));
-  const mark = el('span', { class: `sure ${sure > 0 ? 'more' : 'less'}` }, sure > 0 ? '▲ significantly more' : '▼ significantly less');
-  return el('td', { class: 'estimate' }, el('strong', {}, signed(estimate.mean)), el('small', {}, interval(estimate, -1)), mark);
+  if (sure === 0) return make('td', 'estimate unsure', '', twoLines(estimate, signed));
+  const mark = make('span', `sure ${sure > 0 ? 'more' : 'less'}`, '', sure > 0 ? '▲ significantly more' : '▼ significantly less');
+  return make('td', 'estimate', '', make('strong', '', signed(estimate.mean)), make('small', '', interval(estimate, -1)), mark);
 }
 
 function drawDifferences() {
@@ -840,9 +812,9 @@ function drawDifferences() {
     const count = (sign) => all.filter((estimate) => sureness(estimate) === sign).length;
     const counts = `significantly more at ${count(1)} and less at ${count(-1)} of ${all.length} points`;
     const what = hasIntervals() ? counts : 'significance requires five seeds';
-    return el('li', {}, el('strong', {}, soft(entry)), ` less ${report.entries[0]}: ${what}`);
+    return make('li', '', '', make('strong', '', '', soft(entry)), ` less ${report.entries[0]}: ${what}`);
   });
-  const toggle = el('input', { type: 'checkbox', id: 'only-sure', onchange: (event) => {
+  const toggle = make('input', { type: 'checkbox', id: 'only-sure', onchange: (event) => {
     state.onlySure = event.target.checked;
     state.pages.differences = 0;
     drawDifferences();
@@ -851,15 +823,15 @@ function drawDifferences() {
   toggle.checked = state.onlySure;
   const text = `${metricNow()}: each other entry minus ${report.entries[0]}, on the same seeds. A difference is significant if its 95 % interval does not `
     + 'contain 0; without any true difference, about one in twenty would still be significant.';
-  const choice = el('p', { class: 'on-screen' }, el('label', {}, toggle, ' only points with a sure difference'));
-  byId('differences-note').replaceChildren(el('p', { class: 'faint' }, text), el('ul', {}, summary), hasIntervals() ? choice : '');
+  const choice = make('p', 'on-screen', '', make('label', '', '', toggle, ' only points with a sure difference'));
+  byId('differences-note').replaceChildren(make('p', 'faint', text), make('ul', '', '', summary), hasIntervals() ? choice : '');
   const rows = report.points.map((point, index) => ({ point, index }))
     .filter(({ point }) => !state.onlySure || others.some((_, k) => sureness(of(point, k)) !== 0));
   const page = paged('differences', rows, drawDifferences);
-  const less = (entry) => columnHead([...soft(entry), el('br'), el('small', {}, 'minus ', soft(report.entries[0]))], true);
+  const less = (entry) => columnHead([...soft(entry), make('br'), make('small', '', '', 'minus ', soft(report.entries[0]))], true);
   const heads = [columnHead('Point', true), ...axisHeads(), ...others.map(less)];
-  const row = ({ point, index }) => el('tr', {}, pointHead(index), valueCells(point.values), others.map((_, k) => differenceCell(of(point, k))));
-  const table = rows.length === 0 ? el('p', {}, 'None.') : scrolled('Differences', tableOf(heads, page.rows.map(row)));
+  const row = ({ point, index }) => make('tr', '', '', pointHead(index), valueCells(point.values), others.map((_, k) => differenceCell(of(point, k))));
+  const table = rows.length === 0 ? make('p', '', 'None.') : tableOf('Differences', heads, page.rows.map(row));
   byId('differences-table').replaceChildren(table, page.nav ?? '');
 }
 
@@ -877,17 +849,17 @@ function halvesOf(key) {
 function interactionCard(one) {
   const [low, second, first, both] = one.cells;
   const [rows, columns] = one.axes.map(halvesOf);
-  const p = one.p < 0.001 ? 'p < 0.001' : `p = ${number(one.p, 2)}`;
-  const head = (text) => el('th', { scope: 'col' }, soft(text));
+  const p = one.p < 0.001 ? 'p < 0.001' : `p = ${significant(one.p, 2)}`;
+  const head = (text) => make('th', { scope: 'col' }, '', soft(text));
   const names = one.axes.map((key) => axisName(report.axes.indexOf(key)));
-  return el('div', { class: 'card interaction' }, el('h3', {}, names[0], ' with ', names[1]),
-    el('div', {}, soft(one.entry), ': ', el('strong', {}, signed(one.contrast.mean)), ' ', el('small', {}, `${interval(one.contrast, -1)}; ${p}`)),
-    el('div', { class: 'scroll' }, el('table', { class: 'cells' },
-      el('thead', {}, el('tr', {}, el('th', { class: 'axis' }, names[0]),
-        el('th', { class: 'axis', colspan: 2, scope: 'colgroup' }, names[1])),
-        el('tr', {}, el('td'), head(columns[0]), head(columns[1]))),
-      el('tbody', {}, el('tr', {}, el('th', { scope: 'row' }, soft(rows[0])), el('td', {}, shown(low)), el('td', {}, shown(second))),
-        el('tr', {}, el('th', { scope: 'row' }, soft(rows[1])), el('td', {}, shown(first)), el('td', {}, shown(both)))))));
+  return make('div', 'card interaction', '', make('h3', '', '', names[0], ' with ', names[1]),
+    make('div', '', '', soft(one.entry), ': ', make('strong', '', signed(one.contrast.mean)), ' ', make('small', '', `${interval(one.contrast, -1)}; ${p}`)),
+    make('div', 'scroll', '', make('table', 'cells', '',
+      make('thead', '', '', make('tr', '', '', make('th', 'axis', '', names[0]),
+        make('th', { class: 'axis', colspan: 2, scope: 'colgroup' }, '', names[1])),
+        make('tr', '', '', make('td'), head(columns[0]), head(columns[1]))),
+      make('tbody', '', '', make('tr', '', '', make('th', { scope: 'row' }, '', soft(rows[0])), make('td', '', shown(low)), make('td', '', shown(second))),
+        make('tr', '', '', make('th', { scope: 'row' }, '', soft(rows[1])), make('td', '', shown(first)), make('td', '', shown(both)))))));
 }
 
 function drawInteractions() {
@@ -907,9 +879,9 @@ function drawInteractions() {
     choose(metric);
     byId('metric').focus();
   };
-  const links = elsewhere.map((metric) => el('button', { type: 'button', onclick: follow(metric) }, `${metricTitle({ name: metric })}: ${countOf(metric)}`));
-  const others = links.length > 0 ? el('p', { class: 'pages' }, 'In other metrics:', links) : '';
-  byId('interactions-note').replaceChildren(el('p', { class: 'faint' }, text), others);
+  const links = elsewhere.map((metric) => make('button', { type: 'button', onclick: follow(metric) }, `${metricTitle({ name: metric })}: ${countOf(metric)}`));
+  const others = links.length > 0 ? make('p', 'pages', '', 'In other metrics:', links) : '';
+  byId('interactions-note').replaceChildren(make('p', 'faint', text), others);
   const page = paged('interactions', matter, drawInteractions, 12);
   byId('interactions-list').replaceChildren(...page.rows.map(interactionCard));
   byId('interactions-pages').replaceChildren(page.nav ?? '');
@@ -917,7 +889,7 @@ function drawInteractions() {
 
 /** A link to a game, if a server plays it again. */
 function watchOf(game, what = `game ${game}`) {
-  return isPlayable ? el('a', { class: 'watch', href: addressOfGame(game), 'aria-label': `Watch ${what}` }, 'Watch') : null;
+  return isPlayable ? make('a', { class: 'watch', href: addressOfGame(game), 'aria-label': `Watch ${what}` }, 'Watch') : null;
 }
 
 /* All points */
@@ -954,28 +926,28 @@ function drawPoints() {
     };
     const order = is ? (state.sort.down ? 'descending' : 'ascending') : null;
     const arrow = is ? (state.sort.down ? ' ▼' : ' ▲') : '';
-    const button = el('button', { type: 'button', 'data-sort': column, title: 'sort by this', onclick: sort }, children, arrow);
+    const button = make('button', { type: 'button', 'data-sort': column, title: 'sort by this', onclick: sort }, '', children, arrow);
     return columnHead(button, isNumber, { 'aria-sort': order });
   };
   const entries = entriesShown();
   const heads = [head('point', 'Point', true), ...report.axes.map((_, axis) => head(`axis ${axis}`, soft(axisName(axis)), isOfNumbers(axis))),
     columnHead('Seeds', true), ...entries.map((entry) => head(`entry ${entry}`, soft(report.entries[entry]), true)),
     isPlayable ? columnHead('Games', false) : null, columnHead('Command', false)].filter(Boolean);
-  const row = ({ point, index }) => el('tr', {}, pointHead(index), valueCells(point.values), el('td', { class: 'number' }, String(point.seeds)),
+  const row = ({ point, index }) => make('tr', '', '', pointHead(index), valueCells(point.values), make('td', 'number', String(point.seeds)),
     entries.map((entry) => estimateCell(metricOf(point.entries[entry].metrics))),
-    isPlayable ? el('td', {}, gamesOf(index)) : null,
-    el('td', {}, commandOf(point.command, `plays a game of point ${index}`)));
+    isPlayable ? make('td', '', '', gamesOf(index)) : null,
+    make('td', '', '', commandOf(point.command, `plays a game of point ${index}`)));
   byId('points-note').textContent = `${metricNow()}: means per game${hasIntervals() ? ', with 95 % intervals over seeds' : ''}. `
     + "The command plays one of the point's games: that of the first seed, with the first entry as the first team."
     + `${isPlayable ? ' Games lists all of them.' : ''}`;
   const page = paged('points', sortedPoints(), drawPoints);
-  byId('points-table').replaceChildren(scrolled('All points', tableOf(heads, page.rows.map(row))), page.nav ?? '');
+  byId('points-table').replaceChildren(tableOf('All points', heads, page.rows.map(row)), page.nav ?? '');
 }
 
 /** A button that lists all games of a point. */
 function gamesOf(index) {
   const show = () => showGames(index, true);
-  return el('button', { type: 'button', 'aria-pressed': String(state.point === index), 'aria-label': `List the games of point ${index}`, onclick: show }, 'Games');
+  return make('button', { type: 'button', 'aria-pressed': String(state.point === index), 'aria-label': `List the games of point ${index}`, onclick: show }, 'Games');
 }
 
 /* The games of a point. The server has them: all together would be many times as much as the report. */
@@ -1007,11 +979,11 @@ async function showGames(point, isAsked) {
 }
 
 function gameRow({ game, entry, team, seed, score, why }) {
-  const points = score === null ? NONE : `${number(score[0])} : ${number(score[1])}`;
+  const points = score === null ? NONE : `${significant(score[0])} : ${significant(score[1])}`;
   const name = report.entries[entry] ?? '';
   const result = score === null ? why ?? 'not played yet' : resultOf({ score });
-  return el('tr', {}, el('td', {}, watchOf(game, `seed ${seed}, ${name} as ${team}, ${points}`)), el('td', {}, sampleOf(entry), ' ', soft(name)),
-    el('td', {}, team), el('td', { class: 'number' }, seed), el('td', { class: 'number' }, points), el('td', {}, result));
+  return make('tr', '', '', make('td', '', '', watchOf(game, `seed ${seed}, ${name} as ${team}, ${points}`)), make('td', '', '', sampleOf(entry), ' ', soft(name)),
+    make('td', '', team), make('td', 'number', seed), make('td', 'number', points), make('td', '', result));
 }
 
 function drawGames() {
@@ -1030,13 +1002,13 @@ function drawGames() {
   const heads = [columnHead('', false), columnHead('Entry', false), columnHead('Team', false), columnHead('Seed', true), columnHead('Points', true),
     columnHead('Result', false)];
   const page = paged('games', rows, drawGames);
-  byId('games-table').replaceChildren(rows.length === 0 ? '' : scrolled('Games of the point', tableOf(heads, page.rows.map(gameRow))), page.nav ?? '');
+  byId('games-table').replaceChildren(rows.length === 0 ? '' : tableOf('Games of the point', heads, page.rows.map(gameRow)), page.nav ?? '');
 }
 
 function makeGames() {
   if (!isPlayable) return;
   const filter = byId('games-filter');
-  filter.replaceChildren(...Object.entries(RESULTS).map(([value, text]) => el('option', { value }, text)));
+  filter.replaceChildren(...Object.entries(RESULTS).map(([value, text]) => make('option', { value }, text)));
   filter.addEventListener('change', () => {
     state.pages.games = 0;
     drawGames();
@@ -1050,23 +1022,23 @@ function makeGames() {
 function worstCard(game) {
   const values = game.values.map((value, axis) => axisValue(axis, value)).join(', ');
   const [own, theirs] = game.score;
-  const counts = [['contacts', game.contacts], ['times out of bounds', game.out_of_bounds]].map(([what, count]) => `${number(count)} ${what}`);
-  return el('div', { class: 'card game' }, el('p', {}, el('strong', {}, `${number(own)} : ${number(theirs)}`), ` at ${values}; ${counts.join(', ')} `,
-    el('small', {}, `game ${game.game}`)), el('div', { class: 'replay' }, watchOf(game.game), commandOf(game.command, `plays game ${game.game}`)));
+  const counts = [['contacts', game.contacts], ['times out of bounds', game.out_of_bounds]].map(([what, count]) => `${significant(count)} ${what}`);
+  return make('div', 'card game', '', make('p', '', '', make('strong', '', `${significant(own)} : ${significant(theirs)}`), ` at ${values}; ${counts.join(', ')} `,
+    make('small', '', `game ${game.game}`)), make('div', 'replay', '', watchOf(game.game), commandOf(game.command, `plays game ${game.game}`)));
 }
 
 function drawWorst() {
   const gamesOf = (entry) => report.worst.filter((game) => game.entry === report.entries[entry]);
   const groups = entriesShown().filter((entry) => gamesOf(entry).length > 0);
-  byId('worst-list').replaceChildren(...groups.map((entry) => el('div', {}, entryHead(entry), gamesOf(entry).map(worstCard))));
-  if (report.worst.length === 0) byId('worst-list').replaceChildren(el('p', {}, 'No entry has lost or drawn a game.'));
+  byId('worst-list').replaceChildren(...groups.map((entry) => make('div', '', '', entryHead(entry), gamesOf(entry).map(worstCard))));
+  if (report.worst.length === 0) byId('worst-list').replaceChildren(make('p', '', 'No entry has lost or drawn a game.'));
 }
 
 function drawFailures() {
   byId('failures').hidden = report.failures.length === 0;
   const page = paged('failures', report.failures, drawFailures, 20);
-  const card = (failure) => el('div', { class: 'card game' }, el('p', {}, el('small', {}, `game ${failure.game}`)),
-    el('p', { class: 'why' }, failure.why), commandOf(failure.command, `plays game ${failure.game}`));
+  const card = (failure) => make('div', 'card game', '', make('p', '', '', make('small', '', `game ${failure.game}`)),
+    make('p', 'why', '', failure.why), commandOf(failure.command, `plays game ${failure.game}`));
   byId('failures-list').replaceChildren(...page.rows.map(card), page.nav ?? '');
 }
 

@@ -5,28 +5,20 @@ import { make } from './words.js';
 export const cell = (text, classes = '') => make('td', classes, text);
 
 /** The header of a row or a column. */
-export function head(scope, text, classes = '') {
-  const th = make('th', classes, text);
-  th.scope = scope;
-  return th;
-}
+export const head = (scope, text, classes = '', ...children) => make('th', { scope, class: classes || null }, text, ...children);
 
 /** A link to a game. */
 export function watch(address, label) {
-  const link = make('a', 'watch', 'Watch');
-  link.href = address;
-  link.setAttribute('aria-label', label);
-  return make('td', '', '', link);
+  return make('td', '', '', make('a', { class: 'watch', href: address, 'aria-label': label }, 'Watch'));
 }
 
-/** A table with column headers `[text, classes]`. It scrolls sideways, also by keys. */
+/** What scrolls sideways, also by keys. */
+export const scrolled = (label, table) => make('div', { class: 'scroll', tabindex: 0, role: 'region', 'aria-label': label }, '', table);
+
+/** A table with column headers, each `[text, classes]` or an element. */
 export function tableOf(label, heads, rows, classes = 'list') {
-  const columns = heads.map(([text, of]) => head('col', text, of));
-  const box = make('div', 'scroll', '', make('table', classes, '', make('thead', '', '', make('tr', '', '', ...columns)), make('tbody', '', '', ...rows)));
-  box.tabIndex = 0;
-  box.setAttribute('role', 'region');
-  box.setAttribute('aria-label', label);
-  return box;
+  const columns = heads.map((each) => (Array.isArray(each) ? head('col', ...each) : each));
+  return scrolled(label, make('table', classes, '', make('thead', '', '', make('tr', '', '', columns)), make('tbody', '', '', rows)));
 }
 
 /**

@@ -14,14 +14,27 @@ export function show(element, visible) {
   if (element.hidden === visible) element.hidden = !visible;
 }
 
-/** Creates an element with classes, text and children. */
-export function make(tag, classes = '', text = '', ...children) {
-  const element = document.createElement(tag);
-  if (classes) element.className = classes;
-  if (text !== '') write(element, text);
-  element.append(...children);
+/** Gives an element its attributes, and children: those that are missing are left out, and lists may be nested. */
+function furnish(element, attributes, children) {
+  for (const [name, value] of Object.entries(attributes)) {
+    if (value === null || value === undefined || value === false) continue;
+    if (name.startsWith('on')) element.addEventListener(name.slice(2), value);
+    else if (name === 'style') element.style.cssText = value;
+    else element.setAttribute(name, value === true ? '' : value);
+  }
+  element.append(...children.flat().filter((child) => child !== null && child !== undefined));
   return element;
 }
+
+/** Creates an element with classes or attributes, text and children. */
+export function make(tag, of = '', text = '', ...children) {
+  const element = document.createElement(tag);
+  if (text !== '') write(element, text);
+  return furnish(element, typeof of === 'string' ? { class: of || null } : of, children);
+}
+
+/** Creates an element of a drawing. */
+export const svg = (tag, attributes = {}, ...children) => furnish(document.createElementNS('http://www.w3.org/2000/svg', tag), attributes, children);
 
 /** `mm:ss.t` */
 export function clock(t_s) {
@@ -49,6 +62,15 @@ export function number(value, places = 1, unit = '') {
   if (typeof value !== 'number' || !Number.isFinite(value)) return '–';
   const text = value.toFixed(places).replace('-', '−');
   return unit ? `${text}\u00a0${unit}` : text;
+}
+
+/** A number with this many significant digits, whole if it has more, or a dash. */
+export function significant(value, digits = 3) {
+  if (typeof value !== 'number' || !Number.isFinite(value)) return '–';
+  const size = Math.abs(value);
+  if (size >= 10 ** (digits - 1) && size < 1e9) return number(value, 0);
+  const text = size !== 0 && (size >= 1e9 || size < 1e-4) ? value.toExponential(digits - 1) : String(Number(value.toPrecision(digits)));
+  return text.replaceAll('-', '−');
 }
 
 /** A size in bytes, readable. */
