@@ -39,7 +39,7 @@ pub fn play_observed(
     seed: u64,
     mut observe: impl FnMut(&mut Contest, &MindRunner) -> bool,
 ) -> Result<Outcome, NoStart> {
-    assert_eq!(minds.len(), scenario.vehicles.len(), "one mind a vehicle");
+    assert_eq!(minds.len(), scenario.vehicles.len(), "one mind per vehicle");
     scenario.has_no_real_boats()?;
     let mut contest = Contest::new(scenario, seed)?;
     let mut runner = runner_of(minds);

@@ -354,7 +354,7 @@ fn show(news: &StopNews) {
                 command.operator_command()
             )
         }
-        StopNews::Sim(Ok(after)) => format!("sim  obeys  after {} ms\n", after.as_millis()),
+        StopNews::Sim(Ok(after)) => format!("sim  confirmed  after {} ms\n", after.as_millis()),
         StopNews::Sim(Err(reason)) => format!("sim  {reason}\n"),
         StopNews::State { vehicle, state } => format!("{vehicle}  {state}\n"),
         StopNews::Silent { vehicle } => format!("{vehicle}  silent\n"),

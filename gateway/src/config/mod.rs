@@ -314,9 +314,8 @@ pub struct FailsafeActions {
     /// The gateway hung.
     #[schemars(extend("default" = "standby"))]
     pub hung: FailsafeAction,
-    /// Arms the boat again after a failsafe for want of a fresh order, once orders have been fresh
-    /// for 1 s and every other condition holds, if that is within this time, s. At 0, an operator
-    /// has to arm it.
+    /// Time after a failsafe for lack of fresh orders within which the boat arms itself again, once
+    /// orders have been fresh for 1 s and it is ready, s; 0: never.
     #[schemars(range(min = 0, max = 600), extend("default" = 0))]
     pub rearm_within_s: f64,
 }

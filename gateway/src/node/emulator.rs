@@ -26,7 +26,7 @@ use std::time::Duration;
 
 /// The settings of an emulated boat.
 pub struct EmulatorSettings {
-    /// The game; without a name, the only one there is.
+    /// The game to join. `None`: the only one available.
     pub game: Option<GameName>,
     /// Where the sim is.
     pub place: Place,
