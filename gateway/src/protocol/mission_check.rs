@@ -21,7 +21,7 @@ pub(super) fn check(mission: &Mission) -> Result<(), String> {
     }
     if !(1..=WAYPOINTS_MAX).contains(&mission.waypoints.len()) {
         return Err(format!(
-            "waypoints are {}, expected 1 to {WAYPOINTS_MAX}",
+            "the mission has {} waypoints, expected 1 to {WAYPOINTS_MAX}",
             mission.waypoints.len()
         ));
     }
