@@ -1,7 +1,7 @@
 //! The emulator's node: joins a game as the agent of a simulated boat, which a back seat drives
 //! with the boat's own protocol.
 
-use super::LOOK;
+use super::POLL;
 use super::error::NodeError;
 use super::game_terms::{declination_rad, pace_factor};
 use super::node_event::NodeEvent;
@@ -319,7 +319,7 @@ impl EmulatorNode {
         notify: &mut dyn FnMut(NodeEvent<'_>),
     ) -> Result<(), NodeError> {
         while !stop.load(Ordering::Relaxed) {
-            incoming.wait(LOOK, Incoming::is_something);
+            incoming.wait(POLL, Incoming::is_something);
             let Incoming {
                 bytes,
                 remarks,
