@@ -94,7 +94,7 @@ impl Track {
         ))
     }
 
-    /// The event that the boat is lost or back, once each.
+    /// An event when the boat is lost or back, once per change.
     pub(crate) fn event(&mut self, vehicle: VehicleId, now: SimTime) -> Option<Event> {
         let is_lost = self.is_lost(now);
         let was_lost = std::mem::replace(&mut self.reported_lost, is_lost);

@@ -159,7 +159,7 @@ fn sees(sharing: &Sharing, own: &Contact, other: &Contact) -> bool {
 }
 
 fn blurred(sharing: &Sharing, seen: Contact, noise: Noise, draw: u64) -> Contact {
-    // Counts chosen to differ from the units': a pair uses the units of twice its count.
+    // Distinct from the counters of units: a pair uses units at twice its count.
     let (north, east) = noise.normal_pair(draw / 2 + (1 << 60));
     let (velocity_north, velocity_east) = noise.normal_pair(draw / 2 + 1 + (1 << 60));
     Contact {

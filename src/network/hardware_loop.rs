@@ -22,7 +22,7 @@ pub(crate) struct LoopArgs {
     /// file; prints the gateways' final status
     #[arg(long, conflicts_with_all = ["in_process", "rehearse"])]
     emulate: bool,
-    /// Gateway file or name for the emulated boats [default: a Surveyor with careful limits]
+    /// Gateway file or name for the emulated boats [default: a Surveyor with conservative limits]
     #[arg(long, value_name = "GATEWAY", requires = "emulate", value_parser = scenario_files::file_of(Kind::of::<Gateway>()))]
     gateway: Option<PathBuf>,
     /// Records the link traffic of each gateway to NAME.mcap in this folder

@@ -15,7 +15,7 @@ use std::time::Duration;
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Boats to connect. NAME serves a MOOSDB on the next port from --port, NAME=:PORT or
-    /// NAME=IP:PORT on this one; NAME=tcp/HOST:PORT uses a running MOOSDB
+    /// NAME=IP:PORT on this port; NAME=tcp/HOST:PORT uses a running MOOSDB
     #[arg(long, num_args = 1.., value_name = "NAME[=ADDRESS]", value_parser = boat)]
     vehicle: Vec<(String, Option<Address>)>,
     /// Connects all boats of this team, each with its own MOOSDB
@@ -89,7 +89,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
             && !at.ip().is_loopback()
         {
             screen::remark(&format!(
-                "{at}: anyone who reaches this address can command the boat: MOOS knows no keys"
+                "{at}: anyone who reaches this address can command the boat: MOOS does not support keys"
             ));
         }
     }

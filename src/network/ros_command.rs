@@ -20,11 +20,11 @@ pub(crate) struct Args {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Shows a running game to ROS 2 over rmw_zenoh, and drives boats by its topics.
+    /// Publishes a running game to ROS 2 over rmw_zenoh, and drives boats from its topics.
     Bridge(Box<BridgeArgs>),
     /// Writes the package squall_msgs for a colcon workspace.
     Messages {
-        /// The folder of the package, for example src/squall_msgs
+        /// Folder for the package, for example src/squall_msgs
         folder: PathBuf,
     },
 }
@@ -40,12 +40,12 @@ struct BridgeArgs {
     /// Hides the true state from ROS 2: no topics with truth, no markers of boats
     #[arg(long)]
     no_truth: bool,
-    /// Lets every ROS 2 node pause, resume, step and end the game and release stops, by this node's
+    /// Lets every ROS 2 node pause, resume, step and end the game and release stops, using this node's
     /// token
     #[arg(long)]
     operator: bool,
-    /// Endpoint of the ROS 2 router (rmw_zenohd); on this machine the bridge becomes it if there is
-    /// none
+    /// Endpoint of the ROS 2 router (rmw_zenohd); if none is running on this machine, the bridge
+    /// acts as the router
     #[arg(long, value_name = "ENDPOINT", default_value = "tcp/127.0.0.1:7447", value_parser = endpoint)]
     router: String,
     /// ROS domain [default: ROS_DOMAIN_ID, or 0]
@@ -109,9 +109,10 @@ fn bridge(args: &BridgeArgs) -> Result<ExitCode> {
         stop: stop.clone(),
     };
     let mut tell = |news: News<'_>| match news {
-        News::OnRos { is_router: true } => {
-            screen::remark(&format!("no router ran at {}: this is it now", args.router))
-        }
+        News::OnRos { is_router: true } => screen::remark(&format!(
+            "no router at {}: the bridge is now the router",
+            args.router
+        )),
         News::OnRos { is_router: false } => {
             screen::remark(&format!("connected to the router at {}", args.router))
         }

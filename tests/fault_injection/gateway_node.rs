@@ -17,7 +17,7 @@ const SILENCE: Duration = Duration::from_secs(3);
 /// Duration of connecting.
 const CONNECT: Duration = Duration::from_millis(100);
 /// How often a link without a boat checks whether to end.
-const LOOK: Duration = Duration::from_millis(500);
+const POLL: Duration = Duration::from_millis(500);
 
 /// The gateway's settings.
 static GATEWAY: LazyLock<Gateway> = LazyLock::new(|| {
@@ -91,7 +91,7 @@ fn read(wire: &Wire, link: u64, tell: &(dyn Fn(LinkEvent) + Send + Sync)) {
     let is_over = || wire.visit(|state, _| state.links != link);
     let mut peer = 0;
     while !is_over() {
-        if !wire.wait(LOOK, |state| state.links != link || state.is_whole) {
+        if !wire.wait(POLL, |state| state.links != link || state.is_whole) {
             continue;
         }
         clock::rest(CONNECT);

@@ -12,8 +12,8 @@ use std::f64::consts::PI;
 
 /// A returning boat steers for a point this far inside the edge, m.
 const WELL_IN_M: f64 = 5.0;
-/// A boat keeps away from the edges by this many seconds of the drift's standard deviation more,
-/// because waves and gusts displace it and delay its turns. In a gale over a lake that deviation is
+/// Additional distance from the edges, as seconds of the drift's standard deviation, because waves
+/// and gusts displace a boat and delay its turns. In a gale over a lake that deviation is
 /// 0.3 to 0.5 m/s. The farthest metres count little, or a few centimetres would outweigh the boat's
 /// task, which has a twentieth of the weight.
 const GUST_S: f64 = 36.0;
@@ -31,7 +31,7 @@ enum Side {
 pub(super) struct OpRegionBehaviour {
     task: OpRegion,
     side: Side,
-    /// When the boat crossed to the other side than its counted one.
+    /// When the boat crossed from the side on which it counts to the other.
     crossed: Option<SimTime>,
     table: Table,
     instructions: Instructions,

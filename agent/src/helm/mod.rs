@@ -52,7 +52,8 @@ pub struct HelmMind {
     /// Values posted in this decision; they take effect after all behaviours have run.
     posted: Vec<(u16, f64)>,
     decided: Decided,
-    /// A new helm for the one that a fault has killed, if any does.
+    /// Creates the helm that replaces this one after a fault that kills the agent, if the scenario
+    /// has any.
     restarted: Option<Box<dyn Fn() -> HelmMind + Send>>,
 }
 
@@ -117,8 +118,8 @@ impl HelmMind {
             .restarted
             .take_if(|_| picture.events.iter().any(is_back))
         {
-            // The arena kills no process, and its result must match that of separate processes, so
-            // the mind forgets what a process would.
+            // The arena does not kill processes, and its result must match that of separate
+            // processes, so the mind forgets what a restarted process would.
             let shown = self.functions.shown;
             *self = restarted();
             self.functions.shown = shown;
@@ -261,8 +262,9 @@ impl HelmMind {
             Decided::Hold(_) => None,
         };
         // A share of the weights, at most a tenth (checked when the file is loaded): it can delay a
-        // change of mind, but not outweigh safety. An edge does not move, so noise about it turns no
-        // boat round, while its share would hold a boat beside it that has work elsewhere.
+        // change of mind, but not outweigh safety. Edges do not count: they do not move, so noise
+        // does not cause changes of mind near them, and their share would keep a boat there that is
+        // needed elsewhere.
         let moves = |function: &&WeightedFunction| {
             !matches!(
                 self.program.behaviours[function.behaviour].task,

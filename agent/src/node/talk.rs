@@ -51,8 +51,8 @@ impl Talk {
         talking.sort_unstable();
         talking.dedup();
         let own: Vec<VehicleId> = runner.minds().map(|(vehicle, _)| vehicle).collect();
-        // By the scenario's strategies: a mate with another one from `--strategy` may be awaited
-        // once at most.
+        // By the scenario's strategies: if a mate plays another one (`--strategy`), the agent waits
+        // for its messages once at most.
         let talks = |vehicle| {
             roles::role_of(scenario, vehicle)
                 .variables

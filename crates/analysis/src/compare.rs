@@ -76,8 +76,8 @@ pub enum Incomparable {
         /// The boats of B.
         b: String,
     },
-    /// The games have no time in common.
-    #[error("the games have no time in common: one of the recordings has no frames")]
+    /// The games do not overlap in time.
+    #[error("the games do not overlap in time: one of the recordings has no frames")]
     Time,
 }
 

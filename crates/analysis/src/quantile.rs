@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 
 /// The number of mantissa bits dropped: 7 of 52 are kept.
-const LEFT_AWAY: u32 = 52 - 7;
+const DROPPED_BITS: u32 = 52 - 7;
 /// Values below share a bin, and so do values above.
 const RANGE: (f64, f64) = (1e-3, 1e9);
 
@@ -27,7 +27,7 @@ impl Quantile {
         // 1.3 GB took 500 MB.
         let (count, largest) = self
             .bins
-            .entry(value.clamp(RANGE.0, RANGE.1).to_bits() >> LEFT_AWAY)
+            .entry(value.clamp(RANGE.0, RANGE.1).to_bits() >> DROPPED_BITS)
             .or_default();
         (*count, *largest) = (*count + 1, largest.max(value));
         self.count += 1;

@@ -73,7 +73,7 @@ pub struct StatisticsBuilder {
 
 #[derive(Default)]
 struct BoatSums {
-    /// The statistics; its means, counts and errors are known in the end.
+    /// The statistics. Means, counts and errors are valid after the last decision.
     sums: BoatStatistics,
     before: Option<Ned>,
     travelled_m: f64,

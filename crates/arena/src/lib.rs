@@ -39,7 +39,7 @@ pub fn play_observed(
     seed: u64,
     observe: impl FnMut(&mut Contest, &MindRunner) -> bool,
 ) -> Result<Outcome, NoStart> {
-    assert_eq!(minds.len(), scenario.vehicles.len(), "one mind a vehicle");
+    assert_eq!(minds.len(), scenario.vehicles.len(), "one mind per vehicle");
     play_on(scenario, runner_of(minds), seed, observe)
 }
 

@@ -21,7 +21,7 @@ use zenoh::session::LinkEvent;
 use zenoh::{Session, Wait};
 
 /// How often the port is checked, and how often while many connections are pending.
-const LOOK: Duration = Duration::from_millis(100);
+const POLL: Duration = Duration::from_millis(100);
 const LOOK_OFTEN: Duration = Duration::from_millis(10);
 
 type Links = Mutex<BTreeSet<Ends>>;
@@ -155,7 +155,7 @@ impl Port {
         if self.is_closed || are_many {
             LOOK_OFTEN
         } else {
-            LOOK
+            POLL
         }
     }
 

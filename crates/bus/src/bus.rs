@@ -30,7 +30,7 @@ pub enum Priority {
 pub enum Delivery {
     /// In order; a lost packet is sent again, and what follows it waits.
     Reliable,
-    /// Each in its own datagram. A lost one is not sent again, and delays no other.
+    /// Each in its own datagram. A lost one is not sent again and does not delay others.
     Newest,
 }
 

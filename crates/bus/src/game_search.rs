@@ -33,7 +33,7 @@ pub enum Refusal {
     #[error("{0}")]
     Refused(String),
     /// The sim has another version of Squall; the text describes it.
-    #[error("not of one version: this program is {ours}, {0}", ours = primitives::VERSION)]
+    #[error("different versions: this program is {ours}, {0}", ours = primitives::VERSION)]
     Version(String),
 }
 
@@ -162,7 +162,7 @@ fn only_game(bus: &Bus) -> Result<GameName, Missing> {
         // One game is the usual case, and requiring its name would be a nuisance. With several, a
         // guess could join boats to another person's game.
         [game] => Ok(game.clone()),
-        [] => Err(Missing::Yet("no sim is on the network".to_owned())),
+        [] => Err(Missing::Yet("no sim found on the network".to_owned())),
         several => {
             let message = format!("select one with --game: {}", listed(several));
             Err(Missing::Forever(Refusal::Refused(message)))

@@ -23,7 +23,7 @@ pub struct Entry {
     pub pid: u32,
     /// The game's token, for processes of the same user, which may read the file.
     pub token: Option<String>,
-    /// Whether it is only the water of emulated boats, which no one means without naming it.
+    /// Whether it is only the water of emulated boats, which commands use only if it is named.
     #[serde(default)]
     pub is_water: bool,
 }

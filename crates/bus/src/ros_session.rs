@@ -13,7 +13,7 @@ use std::time::Duration;
 use zenoh::Wait;
 
 /// How long to wait for the tokens of games at a router: they arrive with its first answer.
-const LOOK: Duration = Duration::from_secs(1);
+const POLL: Duration = Duration::from_secs(1);
 
 /// A session on a ROS 2 network.
 pub struct RosSession {
@@ -40,7 +40,7 @@ impl RosSession {
         match open(net.leaf()?, what.clone()) {
             Ok(session) => {
                 if session
-                    .who_is_alive(&topic::everyone_alive(), LOOK)?
+                    .who_is_alive(&topic::everyone_alive(), POLL)?
                     .is_empty()
                 {
                     return Ok(RosSession {

@@ -119,7 +119,7 @@ impl Runtime for System {
             // Read in this order, the difference is never too large.
             let boot_time = read(ClockId::Boottime);
             // `CLOCK_MONOTONIC` stops while a machine is suspended, `CLOCK_BOOTTIME` does not. The
-            // difference is time lost to a closed lid, for which a sim blames no node.
+            // difference is time lost to a closed lid, which a sim does not count against any node.
             boot_time.saturating_sub(read(ClockId::Monotonic))
         }
         #[cfg(not(target_os = "linux"))]

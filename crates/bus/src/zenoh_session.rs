@@ -187,8 +187,8 @@ impl Session for ZenohSession {
             Priority::Normal => qos::Priority::DataLow,
         };
         let query = self.0.get(key).payload(question.bytes).timeout(limit);
-        // All queryables are queried, and each answer is passed on as it arrives: a silent one
-        // delays no other.
+        // All queryables are queried, and each answer is passed on as it arrives: a silent one does
+        // not delay the others.
         let query = query
             .target(QueryTarget::All)
             .consolidation(ConsolidationMode::None);

@@ -125,7 +125,7 @@ fn whose_keys_do_not_fit_is_told_why() {
     let (sim, endpoint) = hub(None);
     let _sim = sim.expect("it listens");
     let text = refused(&endpoint, bundle(&own, "observer"));
-    assert!(text.contains("does not speak TLS"), "{text}");
+    assert!(text.contains("does not use TLS"), "{text}");
 }
 
 #[test]

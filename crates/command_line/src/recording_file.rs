@@ -38,8 +38,8 @@ pub fn stem(path: &Path) -> String {
         .into_owned()
 }
 
-/// Parses an argument that names a recording: a path, or a part of a name in `runs`, where the
-/// newest counts.
+/// Parses an argument that names a recording: a path, or a part of a name in `runs`, which selects
+/// the newest match.
 pub fn named(word: &str) -> Result<PathBuf> {
     let path = Path::new(word);
     if word.contains(['/', '\\']) || path.extension().is_some() || path.exists() {

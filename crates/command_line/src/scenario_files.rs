@@ -98,7 +98,7 @@ pub fn find_beside(word: &str, kind: Kind, beside: Option<&Path>) -> Result<Path
             let there = names_in(folder, TOML);
             let there: Vec<&str> = there.iter().map(String::as_str).collect();
             if !word.contains('/') && contents(kind, &name).is_some() {
-                bail!("there is no file {word}, but there is a built-in {kind} of the name {name}");
+                bail!("there is no file {word}, but there is a built-in {kind} named {name}");
             }
             bail!("there is no file {word}{}", did_you_mean(&name, &there))
         }
@@ -240,7 +240,7 @@ fn built_in_names(folder: &str, extension: &str) -> BTreeSet<String> {
         .collect()
 }
 
-/// The user's own files of a kind by name: those on the disk that are no copies of built-in ones.
+/// The user's own files of a kind by name: those on the disk that are not copies of built-in ones.
 pub fn own(kind: Kind) -> BTreeMap<String, PathBuf> {
     let names = folders(kind.folder(), None)
         .into_iter()

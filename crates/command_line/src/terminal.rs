@@ -11,8 +11,8 @@ use std::sync::OnceLock;
 /// The first error of standard output, except that its reader has closed it.
 static OUTPUT_ERROR: OnceLock<std::io::Error> = OnceLock::new();
 
-/// Checks that everything printed so far was written. `main` calls it last, so that a full disk
-/// stops no game, and is reported.
+/// Checks that everything printed so far was written. `main` calls it last, so that a full disk is
+/// reported but does not stop a game.
 pub fn check_output() -> Result<()> {
     match OUTPUT_ERROR.get() {
         Some(error) => bail!("cannot write to standard output: {error}"),

@@ -25,7 +25,7 @@ impl Estimate {
     /// If `observations` is empty.
     pub fn of(observations: &[f64]) -> Estimate {
         let count = observations.len();
-        assert!(count > 0, "a mean of nothing");
+        assert!(count > 0, "a mean needs values");
         let (mean, squares) = mean_and_squares(observations);
         let degrees = count as f64 - 1.0;
         // Over seeds: all games of a seed have the same sea, which favours an entry from both sides

@@ -20,7 +20,8 @@ pub(crate) fn teams_of(game: &Path, files: &Arc<Files>) -> Result<Vec<String>, P
         .collect())
 }
 
-/// A game without real boats, which cannot be played here: a problem of `file`.
+/// Checks that a game has no real boats, which cannot be played here; otherwise it is a problem of
+/// `file`.
 pub(crate) fn load_game(
     game: &Path,
     overrides: &Overrides,

@@ -187,7 +187,7 @@ pub fn scenario(game: &GameName) -> String {
     format!("squall/{}/scenario", game.0)
 }
 
-/// Control of the game: anybody may publish stops; all other commands are queries to the sim.
+/// Control of the game: anyone may publish stops; all other commands are queries to the sim.
 pub fn control(game: &GameName) -> String {
     format!("squall/{}/control", game.0)
 }

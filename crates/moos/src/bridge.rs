@@ -149,7 +149,7 @@ pub fn serve(settings: &Settings, tell: Tell<'_>) -> Result<(), BridgeError> {
 }
 
 impl Bridge<'_> {
-    /// The places of the communities, and what missions have to say to match the game.
+    /// The addresses of the communities, and the values that missions need to match the game.
     fn opened(&self) -> Vec<String> {
         let place = |community: &Arc<Watched<Community>>| {
             community.visit(|community| format!("{}: {}", community.name, community.place))

@@ -163,7 +163,7 @@ impl Database {
             self.dropped.refused += 1;
             return Err(reason);
         }
-        // The difference of two clocks at most: the packet was on its way as well.
+        // An upper bound of the clocks' difference, since it includes the packet's transit time.
         let skew_s = if hello.time_s.is_finite() {
             now_s - hello.time_s
         } else {

@@ -233,7 +233,7 @@ pub(crate) enum End {
     Closed,
     /// The peer was silent.
     Stalled,
-    /// The peer sent bytes that are no packet.
+    /// The peer sent bytes that are not a packet.
     Malformed,
 }
 

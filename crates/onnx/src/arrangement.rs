@@ -224,7 +224,7 @@ pub(super) fn concat(planner: &mut Planner, node: &Node) -> Result<Value, Networ
     Ok(Value::Computed(output))
 }
 
-/// The lists of constant integers that are all inputs of a node, as one list: a shape.
+/// All inputs of a node, which must be lists of constant integers, joined to one list: a shape.
 fn joined_integers(planner: &mut Planner, node: &Node) -> Result<Option<Tensor>, NetworkError> {
     let mut joined = vec![];
     for index in 0..node.proto.input.len() {
@@ -442,7 +442,7 @@ pub(super) fn repeated(before: &[usize], shape: &[usize]) -> Vec<u32> {
     strided(shape, &strides)
 }
 
-/// Input `index` of a node, a shape: as typed, and its dimensions if none is negative.
+/// The shape in input `index` of a node: as given, and its dimensions if none is negative.
 fn asked_shape(
     planner: &Planner,
     node: &Node,
@@ -563,7 +563,7 @@ fn picked(
     shape: Vec<usize>,
     from: impl FnOnce() -> Vec<u32>,
 ) -> Result<Row, NetworkError> {
-    // The shape is checked first: `from` is as long.
+    // The shape is checked first, because `from` has the same length.
     let output = Row {
         element: row.element,
         ..planner.new_row(shape)?

@@ -179,7 +179,7 @@ impl Game {
         let stop_s = when(0.0).filter(|end| *end > start_s);
         let length_s = stop_s.unwrap_or(last_s) - start_s;
         if !(0.0..LENGTH_MAX_S).contains(&length_s) {
-            return Err("they do not fit into one day: are they of one game?".to_owned());
+            return Err("they span more than a day: are they from one game?".to_owned());
         }
         let header = Header {
             commit: String::new(),

@@ -165,7 +165,7 @@ fn give(
     Ok(())
 }
 
-/// Checks that this many texts exist with their stated lengths; none if not.
+/// Checks that this many texts exist with their stated lengths; `None` if they do not.
 fn texts_of(content: &[u8], fixed: usize, texts: usize, has_list: bool) -> Option<()> {
     let mut rest = content.get(fixed..)?;
     for _ in 0..texts {

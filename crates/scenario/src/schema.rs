@@ -102,7 +102,7 @@ pub(super) const DRAWN: &str = "x-drawn";
 pub(super) const TABLE: &str = "x-table";
 
 /// Converts the schema of a table for editors: without Squall's own marks, with distributions where
-/// they are allowed. Keys are required in entries of lists only, except those that default to an
+/// they are allowed, and each description in one line. Keys are required in entries of lists only, except those that default to an
 /// empty list or a table of defaults.
 fn publish(value: &mut Value, is_drawn: bool, is_item: bool) {
     let object = match value {
@@ -116,6 +116,10 @@ fn publish(value: &mut Value, is_drawn: bool, is_item: bool) {
     };
     let is_drawn = is_drawn || object.contains_key(DRAWN);
     object.retain(|key, _| !key.starts_with("x-") && (is_item || key != "required"));
+    if let Some(Value::String(text)) = object.get_mut("description") {
+        // The line breaks are those of a wrapped comment.
+        *text = text.replace('\n', " ");
+    }
     if let Some(properties) = object.get("properties").cloned() {
         object.insert("additionalProperties".into(), false.into());
         if let Some(Value::Array(required)) = object.get_mut("required") {

@@ -180,7 +180,7 @@ impl State {
 
     /// Ends the effects of a fault that is over.
     pub(crate) fn recover(&mut self, node: usize) {
-        self.note("is well again", node, "", &[]);
+        self.note("recovers", node, "", &[]);
         self.end_silence(node);
     }
 

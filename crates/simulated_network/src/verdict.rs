@@ -1,4 +1,4 @@
-//! What a simulation shows: its published messages, how it ended, and its nodes.
+//! The result of a simulation: its published messages, how it ended, and its nodes.
 
 use std::time::Duration;
 

@@ -44,8 +44,7 @@ pub struct Mistake {
 impl Sheet {
     /// Reads a file whose name in messages is `file`.
     ///
-    /// # Errors
-    /// If it is no table, has no rows, or has two columns with the same name.
+    /// # Errors If it is not a table, has no rows, or has two columns with the same name.
     pub fn read(file: &str, input: impl Read) -> Result<Sheet, Mistake> {
         let mut bytes = vec![];
         let whole = |message| Mistake {

@@ -32,7 +32,7 @@ const PATIENCE: Patience = Patience {
 /// When input ends, wait this long for unfinished stops.
 const LAST: Duration = Duration::from_secs(5);
 /// Polling interval for the end of the program.
-const LOOK: Duration = Duration::from_millis(100);
+const POLL: Duration = Duration::from_millis(100);
 
 const HELP: &str = "\
   (empty line), estop     E-stop of all boats
@@ -147,7 +147,7 @@ impl Console {
             terminal::print("type help for the commands; Enter alone E-stops all boats\n> ");
         }
         while !self.is_over.load(Ordering::Relaxed) {
-            match lines.recv_timeout(LOOK) {
+            match lines.recv_timeout(POLL) {
                 Ok(line) if line == "quit" => return,
                 Ok(line) => self
                     .obey(&line)
@@ -321,7 +321,7 @@ impl Console {
 
     fn print_news(&self) {
         while !self.is_over.load(Ordering::Relaxed) {
-            self.client.news(LOOK).iter().for_each(show);
+            self.client.news(POLL).iter().for_each(show);
         }
     }
 }
@@ -354,7 +354,7 @@ fn show(news: &StopNews) {
                 command.operator_command()
             )
         }
-        StopNews::Sim(Ok(after)) => format!("sim  obeys  after {} ms\n", after.as_millis()),
+        StopNews::Sim(Ok(after)) => format!("sim  confirmed  after {} ms\n", after.as_millis()),
         StopNews::Sim(Err(reason)) => format!("sim  {reason}\n"),
         StopNews::State { vehicle, state } => format!("{vehicle}  {state}\n"),
         StopNews::Silent { vehicle } => format!("{vehicle}  silent\n"),

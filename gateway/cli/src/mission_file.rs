@@ -83,7 +83,7 @@ impl Lines {
     fn take(&mut self, line: usize, sentence: &Sentence) -> Result<(), String> {
         match sentence {
             Sentence::MissionSettings(_) if self.throttle_pct.is_some() => {
-                return Err("a second PSEAR, expected one, with the throttle".to_owned());
+                return Err("a second PSEAR, expected only one".to_owned());
             }
             Sentence::MissionSettings(settings) => self.throttle_pct = Some(settings.throttle_pct),
             Sentence::Waypoint(waypoint) => {

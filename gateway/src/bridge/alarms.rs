@@ -130,7 +130,7 @@ impl Alarms {
             now,
             tilt_deg,
             TILT_S,
-            (tilt_text, "the boat lay on its side"),
+            (tilt_text, "the boat was lying on its side"),
         ));
     }
 

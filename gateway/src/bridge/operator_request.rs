@@ -4,8 +4,8 @@ use super::Bridge;
 use crate::supervisor::{OperatorRequest, Scope, Task};
 use messages::external::{BoatMode, OperatorCommand};
 
-/// The supervisor request in a command; `None` if it has none or if the request depends on the
-/// boat.
+/// The request that a command makes to the supervisor; `None` if it makes none, or if the request
+/// depends on the boat.
 pub(super) fn request_from(command: &OperatorCommand) -> Option<OperatorRequest> {
     match command {
         OperatorCommand::Arm => Some(OperatorRequest::Arm),

@@ -51,7 +51,7 @@ pub struct Gateway {
     pub battery: BatteryWatch,
     /// Currents that raise alarms, without stopping the boat.
     pub currents: CurrentWatch,
-    /// What the boat does after a failsafe, by cause; after any other, it stops.
+    /// What the boat does after a failsafe.
     pub failsafe: FailsafeActions,
     /// How the gateway verifies that it controls the boat.
     pub control: ControlWatch,
@@ -103,8 +103,7 @@ pub struct Mavlink {
     /// The boat's system, 1 to 255; 0: the first boat heard.
     #[schemars(range(min = 0, max = 255), extend("default" = 0))]
     pub boat_system: u8,
-    /// The gateway's system. ArduPilot's ground station failsafe watches the system in its
-    /// parameter, 255 by default.
+    /// The gateway's system, which ArduPilot's ground station failsafe watches.
     #[schemars(range(min = 1, max = 255), extend("default" = 255))]
     pub system: u8,
     /// The gateway's component.
@@ -251,7 +250,7 @@ struct SpeedAndDistance(
     #[schemars(range(min = 0.1, max = 10000))] f64,
 );
 
-/// A box ahead of the boat, its length proportional to speed, in which no other real boat may be.
+/// A box ahead of the boat; its length is proportional to the speed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Halt {
     /// Length at 2 m/s, from midships, m; 0: off.
@@ -289,8 +288,7 @@ pub struct CurrentWatch {
     /// A; 0: off.
     #[schemars(range(min = 0, max = 1000), extend("default" = 0.5))]
     pub thruster_min_a: f64,
-    /// Current from which a bilge pump counts as running, A; 0: off. A running pump means water in
-    /// the boat.
+    /// Current from which a bilge pump counts as running, A; 0: off.
     #[schemars(range(min = 0, max = 1000), extend("default" = 0.1))]
     pub bilge_a: f64,
     /// How long a current must last before it counts, s.
@@ -298,8 +296,7 @@ pub struct CurrentWatch {
     pub debounce_s: f64,
 }
 
-/// What the boat does after a failsafe. Other causes always stop it: the boat is unreachable, has
-/// no position or heading, or is not moved by its thrusters.
+/// What the boat does after a failsafe for one of these causes; any other cause stops it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FailsafeActions {
     /// No fresh order.
@@ -314,9 +311,8 @@ pub struct FailsafeActions {
     /// The gateway hung.
     #[schemars(extend("default" = "standby"))]
     pub hung: FailsafeAction,
-    /// Arms the boat again after a failsafe for want of a fresh order, once orders have been fresh
-    /// for 1 s and every other condition holds, if that is within this time, s. At 0, an operator
-    /// has to arm it.
+    /// Time after a failsafe for lack of fresh orders within which the boat arms itself again, once
+    /// orders have been fresh for 1 s and it is ready, s; 0: never.
     #[schemars(range(min = 0, max = 600), extend("default" = 0))]
     pub rearm_within_s: f64,
 }

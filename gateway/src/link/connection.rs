@@ -66,7 +66,7 @@ impl Connection {
 
     fn read_on(&self, received_at: &mut Instant) -> End {
         let mut buffer = vec![0; CHUNK];
-        // A pseudo-terminal may have no reader for hours, which is no fault.
+        // A pseudo-terminal may have no reader for hours, which is not a fault.
         let silence = self
             .threads
             .settings

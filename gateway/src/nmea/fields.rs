@@ -42,5 +42,5 @@ fn fields_mean_what_the_list_says() {
         LONGITUDE.printed(-80.372_288_3, 4).as_deref(),
         Some("08022.3373,W")
     );
-    assert_eq!(number(&"9".repeat(400)), None, "a number past every f64");
+    assert_eq!(number(&"9".repeat(400)), None, "a number too large for f64");
 }

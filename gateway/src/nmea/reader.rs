@@ -84,9 +84,11 @@ impl<'a> Reader<'a> {
                 *valid = self.valid()? && !matches!(self.peek(ahead), "E" | "M" | "S" | "N");
             }
             Field::Time(time) => {
-                *time = self.parsed(TimeOfDay::parse, "a time hhmmss.ss or nothing")?
+                *time = self.parsed(TimeOfDay::parse, "a time hhmmss.ss or an empty field")?
             }
-            Field::Date(date) => *date = self.parsed(Date::parse, "a date ddmmyy or nothing")?,
+            Field::Date(date) => {
+                *date = self.parsed(Date::parse, "a date ddmmyy or an empty field")?
+            }
             Field::DayMonthYear(date) => *date = self.day_month_year()?,
             Field::Position(at, _) => *at = self.position()?,
             Field::Place(at, _) => {
@@ -131,7 +133,7 @@ impl<'a> Reader<'a> {
 
     /// The number in the next field, if any.
     fn number(&mut self) -> Result<Option<f64>, ParseError> {
-        self.parsed(number, "a number or nothing")
+        self.parsed(number, "a number or an empty field")
     }
 
     /// The whole number in the next field, if any.
@@ -143,7 +145,7 @@ impl<'a> Reader<'a> {
                 .ok()
                 .filter(|_| text.bytes().all(|byte| byte.is_ascii_digit()))
         };
-        self.parsed(whole, "a small whole number or nothing")
+        self.parsed(whole, "a small whole number or an empty field")
     }
 
     fn mode(&mut self) -> Result<Mode, ParseError> {
@@ -182,12 +184,12 @@ impl<'a> Reader<'a> {
         let date = match (self.whole()?, self.whole()?, self.whole()?) {
             (None, None, None) => return Ok(None),
             (Some(day), Some(month), Some(year)) => Date { year, month, day },
-            _ => return Err(self.wrong_at(first, "a day, month and year, or none of them")),
+            _ => return Err(self.wrong_at(first, "day, month and year, or three empty fields")),
         };
         if date.is_valid() {
             Ok(Some(date))
         } else {
-            Err(self.wrong_at(first, "a date of the calendar"))
+            Err(self.wrong_at(first, "a valid date"))
         }
     }
 
@@ -198,7 +200,7 @@ impl<'a> Reader<'a> {
             // Some receivers put D (differential) here.
             "A" | "D" => Ok(true),
             "V" | "" => Ok(false),
-            _ => Err(self.wrong("A, D, V or nothing")),
+            _ => Err(self.wrong("A, D, V or an empty field")),
         }
     }
 

@@ -1,7 +1,7 @@
 //! The emulator's node: joins a game as the agent of a simulated boat, which a back seat drives
 //! with the boat's own protocol.
 
-use super::LOOK;
+use super::POLL;
 use super::error::NodeError;
 use super::game_terms::{declination_rad, pace_factor};
 use super::node_event::NodeEvent;
@@ -26,7 +26,7 @@ use std::time::Duration;
 
 /// The settings of an emulated boat.
 pub struct EmulatorSettings {
-    /// The game; without a name, the only one there is.
+    /// The game to join. `None`: the only one available.
     pub game: Option<GameName>,
     /// Where the sim is.
     pub place: Place,
@@ -319,7 +319,7 @@ impl EmulatorNode {
         notify: &mut dyn FnMut(NodeEvent<'_>),
     ) -> Result<(), NodeError> {
         while !stop.load(Ordering::Relaxed) {
-            incoming.wait(LOOK, Incoming::is_something);
+            incoming.wait(POLL, Incoming::is_something);
             let Incoming {
                 bytes,
                 remarks,

@@ -59,7 +59,7 @@ fn find(settings: &Settings, tell: &mut dyn FnMut(&str)) -> Result<FoundGame, No
         declination_rad,
         coasting,
     };
-    // The thread that keeps it joined asks again, and gets the same boat.
+    // The thread that keeps the boat joined repeats the request and gets the same boat.
     let names = [plan.vehicle.clone()];
     let all = (&game, &info.scenario);
     // Joining once here reports a wrong token or a taken boat while the operator is still

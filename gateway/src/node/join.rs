@@ -1,7 +1,7 @@
 //! Keeps the gateway in the game: joins whenever a sim is available, for as long as the gateway
 //! runs.
 
-use super::LOOK;
+use super::POLL;
 use super::loop_input::Call;
 use bus::game_search::{self, GameSearch, Joined, Missing, NotFound};
 use bus::{Bus, BusError, InboxSender, NodeThread, Patience, Place, SimWatch};
@@ -68,7 +68,7 @@ fn keep_joined(
     calls: &InboxSender<Call>,
 ) {
     while !stop.load(Ordering::Relaxed) {
-        if !sim.find(LOOK) {
+        if !sim.find(POLL) {
             continue;
         }
         let mut say = |reason: &str| calls.put(Call::Remark(format!("joining: {reason}")));
@@ -81,7 +81,7 @@ fn keep_joined(
             }
             Err(NotFound::InTime(..)) => return,
         }
-        while !stop.load(Ordering::Relaxed) && !sim.is_lost(LOOK) {}
+        while !stop.load(Ordering::Relaxed) && !sim.is_lost(POLL) {}
         calls.put(Call::SimGone);
     }
 }

@@ -54,7 +54,7 @@ use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 /// How often a thread that waits for something else checks whether it must end.
-const LOOK: Duration = Duration::from_millis(100);
+const POLL: Duration = Duration::from_millis(100);
 
 /// A gateway's connections other than the game's network: the boat, and a port for operators.
 pub struct Outside {

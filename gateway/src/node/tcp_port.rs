@@ -1,7 +1,7 @@
 //! A TCP port that is served until dropped, with one thread for each of a limited number of
 //! connections.
 
-use super::LOOK;
+use super::POLL;
 use bus::{Connections, Slot, clock};
 use socket2::SockRef;
 use std::io;
@@ -40,7 +40,7 @@ impl TcpPort {
     ) -> io::Result<TcpPort> {
         let listener = TcpListener::bind(listen)?;
         // On Linux this applies to `accept` too.
-        SockRef::from(&listener).set_read_timeout(Some(LOOK))?;
+        SockRef::from(&listener).set_read_timeout(Some(POLL))?;
         let address = listener.local_addr()?;
         let server = Arc::new(Server {
             name: name.to_owned(),
@@ -80,7 +80,7 @@ impl Server {
                 Ok((stream, from)) => self.open(stream, from.ip()),
                 Err(e) if e.kind() == io::ErrorKind::WouldBlock => {}
                 // For example too many open files, which may pass.
-                Err(_) => clock::rest(LOOK),
+                Err(_) => clock::rest(POLL),
             }
         }
     }

@@ -8,7 +8,7 @@ use std::os::unix::fs::OpenOptionsExt;
 use std::time::Duration;
 
 /// How often the terminal is polled.
-const LOOK: Duration = Duration::from_millis(50);
+const POLL: Duration = Duration::from_millis(50);
 
 /// Calls `pressed` whenever Enter is pressed in this process's terminal, while it has one.
 ///
@@ -26,7 +26,7 @@ pub fn on_enter(pressed: impl Fn() + Send + 'static) {
     let read = move || {
         let mut bytes = [0; 256];
         loop {
-            clock::rest(LOOK);
+            clock::rest(POLL);
             if !is_in_foreground(&terminal) {
                 continue;
             }

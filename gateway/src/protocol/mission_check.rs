@@ -21,7 +21,7 @@ pub(super) fn check(mission: &Mission) -> Result<(), String> {
     }
     if !(1..=WAYPOINTS_MAX).contains(&mission.waypoints.len()) {
         return Err(format!(
-            "waypoints are {}, expected 1 to {WAYPOINTS_MAX}",
+            "the mission has {} waypoints, expected 1 to {WAYPOINTS_MAX}",
             mission.waypoints.len()
         ));
     }
@@ -31,7 +31,7 @@ pub(super) fn check(mission: &Mission) -> Result<(), String> {
     {
         if !((-90.0..=90.0).contains(lat_deg) && (-180.0..=180.0).contains(lon_deg)) {
             return Err(format!(
-                "waypoint {index} is [{lat_deg}, {lon_deg}], expected latitude and longitude"
+                "waypoint {index} is [{lat_deg}, {lon_deg}], expected latitude -90 to 90 and longitude -180 to 180"
             ));
         }
     }

@@ -75,7 +75,7 @@ fn what_came_but_cannot_be_used_is_missing_with_the_reason() {
         ),
         (
             "GPGGA,150503.00,4121.2880,N,07403.3060,W,1,12,.9,12.0,M,-33.2,M,,",
-            "a position: GPGGA field 8 is \".9\", expected a number or nothing",
+            "a position: GPGGA field 8 is \".9\", expected a number or an empty field",
         ),
         (
             "GPGGA,150503.00,,,,,1,12,0.9,12.0,M,-33.2,M,,",

@@ -56,7 +56,7 @@ pub enum ControlFault {
     #[error("the boat does not follow its commands: it still shows an older command")]
     Deaf,
     /// The boat echoes a command that we have not sent.
-    #[error("the boat receives orders that are not ours: another gateway may be at work")]
+    #[error("the boat receives orders that are not ours: another gateway may be active")]
     ForeignOrders,
 }
 

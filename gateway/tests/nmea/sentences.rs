@@ -157,7 +157,7 @@ pub(crate) fn standard_sentences(domain: &Domain) -> BoxedStrategy<Sentence> {
     let date = || {
         let dates = (domain.years.clone(), 1..=12_u8, 1..=31_u8);
         let dates = dates.prop_map(|(year, month, day)| Date { year, month, day });
-        option::of(dates.prop_filter("a date of the calendar", |date| date.is_valid()))
+        option::of(dates.prop_filter("a valid date", |date| date.is_valid()))
     };
     let gga = (
         talker(),

@@ -442,7 +442,7 @@ impl Contest {
         }
     }
 
-    /// Makes all boats hold for now, or ends that (not an E-stop), with an event if the state
+    /// Orders all boats to hold, or ends the hold (but not an E-stop), with an event if the state
     /// changes.
     pub fn halt(&mut self, halted: bool) {
         if std::mem::replace(&mut self.state.halted, halted) != halted {

@@ -46,7 +46,7 @@ pub struct HullWaves {
     instructions: Instructions,
     blocks: Vec<Block<Row>>,
     /// For each component: velocity in surge and sway per cosine of the phase and in yaw per sine,
-    /// and a R, which does not depend on the heading.
+    /// and an R, which does not depend on the heading.
     lines: HeadingTable,
     /// The mean drift force divided by the sum of c²: surge, sway, and two zeros.
     drift: HeadingTable,

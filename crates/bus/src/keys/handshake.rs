@@ -49,8 +49,7 @@ pub(crate) fn refusal(endpoint: &str, keys: &Bundle) -> Option<BusError> {
         return Some(refused(explained(error, host, &keys.identity)));
     }
     // A suspended sim does not answer either, and may resume.
-    let reason =
-        "who listens there does not speak TLS: the game may be served without keys".to_owned();
+    let reason = "the server there does not use TLS: the game may have no keys".to_owned();
     tls.is_handshaking().then(|| BusError::Open {
         what: format!("to connect to {endpoint}"),
         reason,

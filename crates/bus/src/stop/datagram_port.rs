@@ -10,7 +10,7 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 /// How often the reading thread checks whether to end.
-const LOOK: Duration = Duration::from_millis(100);
+const POLL: Duration = Duration::from_millis(100);
 
 /// A UDP socket and the thread that reads it. Closed on drop.
 pub struct DatagramPort {
@@ -29,7 +29,7 @@ impl DatagramPort {
         name: &str,
         mut serve: impl FnMut(&[u8]) -> Option<Vec<u8>> + Send + 'static,
     ) -> io::Result<DatagramPort> {
-        socket.set_read_timeout(Some(LOOK))?;
+        socket.set_read_timeout(Some(POLL))?;
         let is_closing = Arc::new(AtomicBool::new(false));
         let closing = Arc::clone(&is_closing);
         let read = move || {
@@ -50,7 +50,7 @@ impl DatagramPort {
                             e.kind(),
                             io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut
                         ) => {}
-                    Err(_) => clock::rest(LOOK),
+                    Err(_) => clock::rest(POLL),
                 }
             }
         };

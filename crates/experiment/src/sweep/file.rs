@@ -95,8 +95,8 @@ impl ScenarioFile for Sweep {
         let Err(Problems(mut problems)) = checked else {
             return Ok(());
         };
-        // Each value is read as a setting of its own: the same problem, but a line that no file
-        // has.
+        // Each value is read as its own setting, so the same problem has a line that is not in any
+        // file.
         for problem in problems.iter_mut().filter(|one| one.path == self.path) {
             problem.source.clear();
         }

@@ -94,7 +94,7 @@ impl Game {
         // Before the first pictures, so that the watch sees all inputs of the game.
         game.show(Moment::Decision);
         game.contest.pictures();
-        game.boats = progress(&game.contest, setup.rewards.mind_others());
+        game.boats = progress(&game.contest, setup.rewards.depend_on_others());
         game
     }
 
@@ -214,7 +214,7 @@ impl Game {
             .iter()
             .map(|boat| rewards.potential.of(boat) + rewards.place.of(boat))
             .collect();
-        self.boats = progress(&self.contest, rewards.mind_others());
+        self.boats = progress(&self.contest, rewards.depend_on_others());
         let scenario = self.contest.scenario();
         let step_s = scenario.tick.as_s()
             * f64::from(scenario.ticks_per_decision * setup.decisions_per_step);

@@ -51,22 +51,22 @@ impl ScenarioFile for Rewards {
 /// Events of a boat.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Worth {
-    /// It grabbed the enemies' flag.
+    /// The boat grabs the enemies' flag.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub grab: f64,
-    /// It captured the flag.
+    /// The boat captures the flag.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub capture: f64,
     /// The boat tags an enemy.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub tag: f64,
-    /// It tagged a carrier; replaces `tag`.
+    /// The boat tags a carrier; replaces `tag`.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub tag_carrier: f64,
     /// An enemy tags the boat.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub tagged: f64,
-    /// It was tagged while carrying a flag; replaces `tagged`.
+    /// The boat is tagged while carrying a flag; replaces `tagged`.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub tagged_carrying: f64,
     /// The boat is untagged.
@@ -75,7 +75,7 @@ pub struct Worth {
     /// The boat leaves the field.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub left_field: f64,
-    /// It came within the collision distance of another boat.
+    /// The boat comes within the collision distance of another.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub collided: f64,
 }
@@ -83,7 +83,7 @@ pub struct Worth {
 /// The end of the game.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct End {
-    /// Win; a loss costs as much.
+    /// For a win; a loss costs as much.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub win: f64,
     /// Per point of lead.
@@ -95,8 +95,8 @@ pub struct End {
 /// (Ng, Harada and Russell, ICML 1999). It does not change the optimal policy.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Potential {
-    /// At the enemies' flag; 0 a field's width away. A carrier has this much, and as much again
-    /// after the capture; a tagged boat has none.
+    /// At the enemies' flag; 0 a field's width away. For a carrier, it rises to twice this at the
+    /// capture place.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub attack: f64,
     /// Negative, for a tagged boat: this much per field's width from its untag place.
@@ -104,12 +104,12 @@ pub struct Potential {
     pub untag: f64,
 }
 
-/// Values of positions: each step adds the change in value. With discount γ, it is as if each step
-/// in the position earned (1 - γ) of the value. Unlike `potential`, these change the optimal
-/// policy: use them for policies with a single task. For a tagged boat all are 0.
+/// Values of positions, 0 for a tagged boat: each step adds the change in value. With discount γ,
+/// staying earns (1 - γ) of the value per step. Unlike `potential`, these change the optimal
+/// policy: use them for policies with a single task.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Place {
-    /// Value at the enemies' flag, or anywhere while carrying it; 0 one field width away.
+    /// At the enemies' flag, or anywhere while carrying it; 0 a field's width away.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub flag: f64,
     /// At the capture or untag place; 0 a field's width away.
@@ -169,7 +169,7 @@ impl Potential {
 
 impl Rewards {
     /// Whether the positions of other boats matter; see [`Among`].
-    pub fn mind_others(&self) -> bool {
+    pub fn depend_on_others(&self) -> bool {
         let Place {
             intruder,
             guard,
@@ -299,7 +299,7 @@ mod tests {
         let mut rewards = Rewards::default();
         (rewards.place.home, rewards.place.flag) = (1.0, 1.0);
         rewards.potential.attack = 1.0;
-        assert!(!rewards.mind_others());
+        assert!(!rewards.depend_on_others());
         for change in [
             |rewards: &mut Rewards| rewards.place.guard = 1.0,
             |rewards: &mut Rewards| rewards.place.shield = -1.0,
@@ -308,7 +308,7 @@ mod tests {
         ] {
             let mut rewards = rewards;
             change(&mut rewards);
-            assert!(rewards.mind_others(), "{rewards:?}");
+            assert!(rewards.depend_on_others(), "{rewards:?}");
         }
     }
 }

@@ -102,7 +102,7 @@ fn index_of(name: &str) -> Option<usize> {
     BEGINNING.iter().position(|(known, _)| *known == name)
 }
 
-/// Whether a value is valid for a parameter: a system number must be one.
+/// Whether a value is valid for a parameter: a system must be a valid system number.
 fn is_allowed(name: &str, value: f32) -> bool {
     value.is_finite()
         && (!name.starts_with("SYSID_") || (1.0..=255.0).contains(&value) && value.fract() == 0.0)

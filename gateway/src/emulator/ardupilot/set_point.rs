@@ -176,7 +176,7 @@ impl SetPoints {
                     ahead.ahead().scaled(offset.north) + ahead.starboard().scaled(offset.east);
                 (pose.psi_rad, pose.at + turned)
             }
-            _ => return Err("set-point ignored: its frame"),
+            _ => return Err("set-point ignored: unsupported frame"),
         };
         let velocity = [target.vx, target.vy];
         self.follow(
@@ -204,7 +204,7 @@ impl SetPoints {
         speed_max_m_s: f64,
     ) -> Result<(), &'static str> {
         if !is_global(target.coordinate_frame) {
-            return Err("set-point ignored: its frame");
+            return Err("set-point ignored: unsupported frame");
         }
         let velocity = [target.vx, target.vy];
         let yaw = [target.yaw, target.yaw_rate];
@@ -236,7 +236,7 @@ impl SetPoints {
             return if self.go_to(place) {
                 Ok(())
             } else {
-                Err("set-point ignored: its position")
+                Err("set-point ignored: invalid position")
             };
         }
         let (x_m_s, y_m_s) = target.velocity.unwrap_or((0.0, 0.0));
@@ -245,7 +245,9 @@ impl SetPoints {
             (Some(_), Some(_)) => return Err("set-point ignored: yaw and yaw rate"),
             (Some(yaw_rad), None) => Course::Heading(yaw_rad + target.frame_rad),
             (None, Some(rate_rad_s)) => Course::Turn(rate_rad_s),
-            (None, None) if target.velocity.is_none() => return Err("set-point ignored: its mask"),
+            (None, None) if target.velocity.is_none() => {
+                return Err("set-point ignored: mask without a target");
+            }
             (None, None) => Course::Heading(math::atan2(y_m_s, x_m_s) + target.frame_rad),
         };
         // The sign of x becomes that of the speed, even in frames where x points north. This is the

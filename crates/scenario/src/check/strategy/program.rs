@@ -58,7 +58,7 @@ fn check_functions(scope: &Scope<'_>, program: &Program) {
         let functions: usize = behaviours.map(most).sum();
         if functions > FUNCTIONS_MAX {
             let message = format!(
-                "could ask for {functions} functions at once, expected at most {FUNCTIONS_MAX}: {NEAREST_MAX} for each \
+                "may need {functions} functions at once, expected at most {FUNCTIONS_MAX}: {NEAREST_MAX} for each \
                  avoid_collision and avoid_obstacle, 2 for each cut_range, 1 for each other behaviour"
             );
             scope.note_mode(program, leaf, &message);
