@@ -18,7 +18,7 @@ fn shipped(name: &str) -> PathBuf {
 
 /// A game of a minute and a half, recorded, up to `UNTIL_S`.
 fn past() -> Past {
-    let mut scenario = scenario::load(&shipped("games/surveyor_2v2")).unwrap();
+    let mut scenario = scenario::load(&shipped("games/surveyor_2v2")).expect("a game");
     scenario.rules.time_limit = SimTime::from_s(90.0);
     let mut inputs = vec![];
     let minds = agent::minds_of(&scenario);
@@ -27,7 +27,7 @@ fn past() -> Past {
         contest.keep_inputs();
         true
     });
-    played.unwrap();
+    played.expect("it starts");
     Past {
         scenario,
         inputs,
