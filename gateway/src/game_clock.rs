@@ -103,6 +103,7 @@ mod tests {
             stamp,
             given_ns: SimTime::from_s(given_s),
             order,
+            others_m: vec![],
         }
     }
 

@@ -70,6 +70,16 @@ fn events(contest: &Contest) -> Vec<Event> {
 }
 
 #[test]
+fn a_real_boat_is_told_where_the_other_real_boats_are() {
+    let mut contest = started(&game("source = \"external\"", ""));
+    report(&mut contest, nav(62.0, 31.0, 90.0, 0.0));
+    contest.advance();
+    assert_eq!(contest.other_real_boats_m(OTHER), [31.0, 62.0]);
+    let contest = started(&game("at = [150, 5]", ""));
+    assert!(contest.other_real_boats_m(REAL).is_empty());
+}
+
+#[test]
 fn a_real_boat_that_is_reported_at_the_flag_grabs_it() {
     let mut contest = started(&game("at = [150, 5]", ""));
     sail(&mut contest, 50.0, 135.0, 3.0);
@@ -152,7 +162,7 @@ fn a_real_boat_is_tagged_and_its_effective_command_is_what_the_rules_make_of_its
     // The command to the boat is valid.
     let sent = messages::VehicleOrder::new(REAL, contest.effective_command(REAL));
     assert!(
-        sent.order().expect("the kind is known").check().is_ok() && ExternalOrder::VERSION == 2
+        sent.order().expect("the kind is known").check().is_ok() && ExternalOrder::VERSION == 3
     );
     // A boat without an agent holds.
     contest.lose_agent(REAL);

@@ -95,6 +95,7 @@ impl WireMonitor {
             stamp,
             given_ns,
             order,
+            ..
         } = external;
         let age_s = (stamp.valid_ns - *given_ns).as_s();
         // The rules drive a boat home by themselves while its agent is connected: even then the

@@ -95,7 +95,7 @@ impl Gateway {
     }
 
     fn newest(&self) -> Option<ExternalOrder> {
-        self.orders.lock().expect("whole").last().copied()
+        self.orders.lock().expect("whole").last().cloned()
     }
 
     fn received(&self) -> usize {

@@ -99,7 +99,6 @@ const GATEWAY: Rights = Rights {
     ],
     hears: &[
         "external/{boat}",
-        "frame",
         "run",
         "control",
         "stop/{boat}",

@@ -254,7 +254,7 @@ fn check(who: &str, did: bool, words: &str, what: &str) {
 
 /// Topics that the sim publishes, and who receives them.
 const HEARD: [(&str, &str); 9] = [
-    ("frame", "gateway gateway-red_one observer operator"),
+    ("frame", "observer operator"),
     ("picture/blue", "team-blue observer operator"),
     ("picture/red", "team-red observer operator"),
     ("say/blue", "team-blue observer operator"),

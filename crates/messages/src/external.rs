@@ -32,7 +32,7 @@ pub struct NavReport {
 }
 
 /// The effective command for a real boat, from the sim.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ExternalOrder {
     /// Time and decision of the game.
     pub stamp: Stamp,
@@ -40,6 +40,8 @@ pub struct ExternalOrder {
     pub given_ns: SimTime,
     /// The order, limited by the referee.
     pub order: VehicleOrder,
+    /// Positions of the other real boats: north and east of each, m.
+    pub others_m: Vec<f64>,
 }
 
 impl Message for NavReport {
@@ -49,7 +51,7 @@ impl Message for NavReport {
 
 impl Message for ExternalOrder {
     const SCHEMA: &'static str = "squall_msgs/msg/ExternalOrder";
-    const VERSION: u8 = 2;
+    const VERSION: u8 = 3;
 }
 
 /// Bytes between a gateway and its boat.

@@ -281,6 +281,7 @@ fn messages_survive_and_damaged_ones_are_refused() {
         stamp: self::stamp::<ExternalOrder>(),
         given_ns: SimTime(7),
         order,
+        others_m: vec![12.5, -3.0],
     });
 }
 

@@ -20,16 +20,16 @@ use crate::supervisor::{Scope, State};
 use bus::token::{self, Checked, Guard};
 use bus::{Bus, Declaration, Delivery, Priority, Publisher, Query, clock};
 use messages::external::{FleetCommand, GatewayCommand, OperatorCommand, OperatorReply, Reported};
-use messages::{Frame, Order, topic};
+use messages::{Order, topic};
 use primitives::frame::Ned;
-use primitives::{SimTime, VehicleId, codec};
+use primitives::{SimTime, VehicleId};
 use recording::Recorder;
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 /// How often the status is published, and shown.
-const STATUS_EVERY: Duration = Duration::from_millis(500);
+const STATUS_EVERY: Duration = Duration::from_secs(1);
 /// Maximum time for the shutdown message.
 const SHUTDOWN_MAX: Duration = Duration::from_millis(500);
 /// How long the loop waits after an error for a boat that has not been reached yet, to send it
@@ -73,8 +73,6 @@ pub(super) struct InGame {
     /// Every byte of the link, for recorders and observers.
     pub(super) link_bytes: Publisher,
     pub(super) vehicle: VehicleId,
-    /// The other real boats.
-    others: Vec<VehicleId>,
     _join: Join,
     _subscriptions: Vec<Declaration>,
 }
@@ -275,10 +273,6 @@ impl GatewayLoop<'_> {
             status: newest(topic::report(&game, Reported::Status, name))?,
             link_bytes: newest(topic::report(&game, Reported::Link, name))?,
             vehicle,
-            others: scenario
-                .externals()
-                .filter(|other| *other != vehicle)
-                .collect(),
             _subscriptions: subscribe(&bus, &game, &info, vehicle, &self.input.back)?,
             _join: Join::begin(
                 &bus,
@@ -304,7 +298,6 @@ impl GatewayLoop<'_> {
         match call {
             Call::Link(event) => self.take_link(event)?,
             Call::Order => self.take_order()?,
-            Call::Frame(bytes) => self.take_frame(&bytes)?,
             Call::Release => self.step(Input::Fleet(FleetCommand::Release), None)?,
             // Otherwise the end of every game would be a failsafe. A task of the boat's own
             // controller continues: it needs no game.
@@ -411,6 +404,11 @@ impl GatewayLoop<'_> {
         if Some(message.order.vehicle) != self.vehicle() {
             return self.step(Input::BadOrder, None);
         }
+        let others = message.others_m.as_chunks::<2>().0;
+        if !others.is_empty() {
+            let places = others.iter().map(|&[north, east]| Ned { north, east });
+            self.step(Input::Others(places.collect()), None)?;
+        }
         // Checked here as well as in the sim: the core receives only valid numbers, whatever is on
         // the topic.
         let sound = message
@@ -424,21 +422,6 @@ impl GatewayLoop<'_> {
             }
             None => self.step(Input::BadOrder, None),
         }
-    }
-
-    fn take_frame(&mut self, bytes: &[u8]) -> Result<(), NodeError> {
-        let Ok(frame) = codec::decode::<Frame>(bytes) else {
-            return Ok(());
-        };
-        let place = |vehicle: &VehicleId| {
-            frame
-                .vehicles
-                .get(vehicle.index())
-                .map(|truth| truth.nav.at())
-        };
-        let others = self.in_game.iter().flat_map(|in_game| &in_game.others);
-        let others: Vec<Ned> = others.filter_map(place).collect();
-        self.step(Input::Others(others), None)
     }
 
     /// Answers a query; with an objection, nothing that needs the token is done.

@@ -24,7 +24,6 @@ pub(super) enum Call {
     Link(LinkEvent),
     /// `latest_order` holds a new order.
     Order,
-    Frame(Vec<u8>),
     /// A stop or a request is waiting; the loop reads these before calls.
     Look,
     Release,

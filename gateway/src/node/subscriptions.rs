@@ -19,8 +19,7 @@ pub(super) fn subscribe(
     input: &LoopInput,
 ) -> Result<Vec<Declaration>, BusError> {
     let scenario = &info.scenario;
-    let [orders, queries, stops, controls, releases, frames, runs] =
-        std::array::from_fn(|_| input.clone());
+    let [orders, queries, stops, controls, releases, runs] = std::array::from_fn(|_| input.clone());
     let take_order = move |bytes: &[u8]| {
         let Ok(order) = codec::decode(bytes) else {
             return;
@@ -32,7 +31,7 @@ pub(super) fn subscribe(
         }
     };
     let name = &scenario.vehicles[vehicle.index()].name;
-    let mut subscriptions = vec![
+    Ok(vec![
         // From the sim, not from agents: only the sim knows whose order counts (tickets), what the
         // referee allows, and when an agent is lost. A second implementation on the way to the boat
         // would eventually be wrong.
@@ -67,13 +66,7 @@ pub(super) fn subscribe(
                 runs.calls.put(Call::Over);
             }
         })?,
-    ];
-    // Frames are published only if there is a subscriber.
-    if scenario.externals().nth(1).is_some() {
-        let take_frame = move |bytes: &[u8]| frames.calls.put(Call::Frame(bytes.to_vec()));
-        subscriptions.push(bus.subscribe(topic::frame(game), take_frame)?);
-    }
-    Ok(subscriptions)
+    ])
 }
 
 /// The topics that stop the boat: an operator's command to it, or to all boats.

@@ -3,6 +3,7 @@
 
 #![expect(deprecated, reason = "ground stations send the older messages, too")]
 
+use crate::rig::e7;
 use crate::station::Station;
 use gateway::mavlink::dialect::{
     COMMAND_LONG_DATA, FILE_TRANSFER_PROTOCOL_DATA, LOG_REQUEST_DATA_DATA, LOG_REQUEST_LIST_DATA,
@@ -189,7 +190,7 @@ fn every_request_of_a_ground_station_gets_its_reply() {
 }
 
 /// Command, its first parameters, and the result of it in HOLD, disarmed.
-const RESULTS: [(u16, [f32; 2], u8); 12] = [
+const RESULTS: [(u16, [f32; 2], u8); 15] = [
     (60_000, [0.0; 2], 3),
     // DO_START_MAG_CAL and DO_SEND_BANNER, of ArduPilot's own dialect.
     (42_424, [0.0; 2], 3),
@@ -205,12 +206,16 @@ const RESULTS: [(u16, [f32; 2], u8); 12] = [
     (
         MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL as u16,
         [60_000.0, 1e6],
-        4,
+        2,
     ),
+    // An interval below -1, a mode without the flag that it is ArduPilot's, and neither 0 nor 1.
+    (MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL as u16, [33.0, -2.0], 2),
+    (MavCmd::MAV_CMD_DO_SET_MODE as u16, [8.0, 15.0], 2),
+    (MavCmd::MAV_CMD_COMPONENT_ARM_DISARM as u16, [0.5, 0.0], 3),
     (MavCmd::MAV_CMD_RUN_PREARM_CHECKS as u16, [0.0; 2], 0),
     (MavCmd::MAV_CMD_DO_CHANGE_SPEED as u16, [1.0, 1.0], 4),
     (MavCmd::MAV_CMD_MISSION_START as u16, [0.0; 2], 4),
-    (MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT as u16, [9.0, 0.0], 4),
+    (MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT as u16, [9.0, 0.0], 2),
 ];
 
 #[test]
@@ -321,6 +326,51 @@ fn a_mission_begins_at_the_item_that_was_set_and_continues_after_an_interruption
 }
 
 #[test]
+fn a_disarmed_boat_begins_its_mission_anew_unless_it_is_in_auto() {
+    let (set_mode, arm) = (
+        MavCmd::MAV_CMD_DO_SET_MODE as u16,
+        MavCmd::MAV_CMD_COMPONENT_ARM_DISARM as u16,
+    );
+    for (mode, seq) in [(10.0, 2), (5.0, 1)] {
+        let mut station = Station::new();
+        station.upload(4, MavMissionType::MAV_MISSION_TYPE_MISSION);
+        let current = MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT as u16;
+        station.command(true, current, [2.0, 0.0]);
+        for (command, params) in [(set_mode, [1.0, mode]), (arm, [1.0, 0.0]), (arm, [0.0; 2])] {
+            assert_eq!(station.command(true, command, params), Some(0));
+        }
+        let shown = station.run(2.0);
+        let is_it = |message: &MavMessage| matches!(message, MavMessage::MISSION_CURRENT(current) if current.seq == seq);
+        assert!(shown.iter().any(is_it), "{mode}: {shown:?}");
+    }
+}
+
+#[test]
+fn a_home_without_a_position_is_where_the_boat_is() {
+    let mut station = Station::new();
+    let set_home = MavCmd::MAV_CMD_DO_SET_HOME as u16;
+    assert_eq!(station.command(true, set_home, [2.0, 0.0]), Some(0));
+    let at = e7(station.boat.at);
+    let elsewhere = (at.0 + 500, at.1);
+    assert_eq!(
+        station.command_at(false, set_home, [2.0, 0.0, 0.0, 0.0], elsewhere),
+        Some(4)
+    );
+    let command = MavCmd::MAV_CMD_GET_HOME_POSITION;
+    let ask = COMMAND_LONG_DATA {
+        command,
+        target_system: 1,
+        ..Default::default()
+    };
+    let heard = station.reply(&MavMessage::COMMAND_LONG(ask));
+    let is_here = |message: &MavMessage| {
+        matches!(message, MavMessage::HOME_POSITION(home)
+        if home.latitude.abs_diff(at.0) < 20 && home.longitude.abs_diff(at.1) < 20)
+    };
+    assert!(heard.iter().any(is_here), "{heard:?}");
+}
+
+#[test]
 fn a_new_system_number_takes_effect_after_the_reply_to_it() {
     let mut station = Station::new();
     let set = PARAM_SET_DATA {
@@ -368,4 +418,21 @@ fn the_state_of_the_estimator_is_sent() {
     // EKF_STATUS_REPORT, of ArduPilot's own dialect.
     assert!(station.unknown(193) >= 2, "{}", station.unknown(193));
     assert!(matches!(station.order, Order::Hold));
+}
+
+#[test]
+fn the_boat_shows_no_battery_fault_and_no_sensor_that_it_lacks() {
+    let heard = Station::new().run(2.0);
+    let faults = heard.iter().filter_map(|message| match message {
+        MavMessage::BATTERY_STATUS(battery) => Some(battery.fault_bitmask.bits()),
+        MavMessage::SYS_STATUS(status) => {
+            Some(status.onboard_control_sensors_present_extended.bits())
+        }
+        _ => None,
+    });
+    let faults: Vec<u32> = faults.collect();
+    assert!(
+        faults.len() >= 2 && faults.iter().all(|bits| *bits == 0),
+        "{faults:?}"
+    );
 }

@@ -11,9 +11,10 @@ use crate::station::Station;
 use gateway::mavlink::RoverMode;
 use gateway::mavlink::dialect::{
     HEARTBEAT_DATA, MISSION_ITEM_DATA, MISSION_ITEM_INT_DATA, MavCmd, MavFrame, MavMessage,
-    PARAM_SET_DATA, PositionTargetTypemask, SET_POSITION_TARGET_GLOBAL_INT_DATA,
-    SET_POSITION_TARGET_LOCAL_NED_DATA,
+    MavState, PARAM_SET_DATA, PositionTargetTypemask, RC_CHANNELS_OVERRIDE_DATA,
+    SET_POSITION_TARGET_GLOBAL_INT_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA,
 };
+use messages::Order;
 use primitives::angle::wrap_pi;
 use primitives::frame::Ned;
 use std::f64::consts::FRAC_PI_2;
@@ -99,6 +100,10 @@ fn positions_in_every_frame_that_rover_takes_are_reached_and_kept() {
     ]
     .map(|(frame, at)| MavMessage::SET_POSITION_TARGET_LOCAL_NED(local(frame, POSITION, at, 0.0)))
     .into();
+    // Rover reads the accelerations of no position.
+    let (mask, at) = (POSITION & !0b1_1100_0000, [2.0, 1.0]);
+    let target = local(MavFrame::MAV_FRAME_LOCAL_NED, mask, at, 0.0);
+    messages.push(MavMessage::SET_POSITION_TARGET_LOCAL_NED(target));
     let (lat_int, lon_int) = e7(goal());
     for coordinate_frame in [
         MavFrame::MAV_FRAME_GLOBAL,
@@ -153,7 +158,7 @@ fn positions_in_every_frame_that_rover_takes_are_reached_and_kept() {
         );
         let is_shown = |message: &MavMessage| {
             matches!(message, MavMessage::POSITION_TARGET_GLOBAL_INT(shown)
-            if shown.lat_int.abs_diff(lat_int) < 200 && shown.lon_int.abs_diff(lon_int) < 200)
+            if shown.type_mask.bits() == 0xFDF8 && shown.lat_int.abs_diff(lat_int) < 200 && shown.lon_int.abs_diff(lon_int) < 200)
         };
         assert!(heard.iter().any(is_shown), "{message:?}");
     }
@@ -389,6 +394,52 @@ fn set(station: &mut Station, name: &str, param_value: f32) {
     station.send(&MavMessage::PARAM_SET(set));
 }
 
+/// The state in the boat's heartbeat.
+fn state(station: &mut Station) -> MavState {
+    let heard = station.run(1.0);
+    let beat = |message: &MavMessage| match message {
+        MavMessage::HEARTBEAT(beat) => Some(beat.system_status),
+        _ => None,
+    };
+    heard.iter().rev().find_map(beat).expect("a heartbeat")
+}
+
+#[test]
+fn a_boat_is_in_standby_in_hold_alone_armed_or_not() {
+    let mut station = Station::new();
+    for (mode, arm, want) in [
+        (4.0, 1.0, MavState::MAV_STATE_STANDBY),
+        (4.0, 0.0, MavState::MAV_STATE_STANDBY),
+        (0.0, 0.0, MavState::MAV_STATE_ACTIVE),
+        (15.0, 1.0, MavState::MAV_STATE_ACTIVE),
+    ] {
+        station.command(true, MavCmd::MAV_CMD_DO_SET_MODE as u16, [1.0, mode]);
+        let arming = MavCmd::MAV_CMD_COMPONENT_ARM_DISARM as u16;
+        station.command(true, arming, [arm, 0.0]);
+        assert_eq!(state(&mut station), want, "mode {mode}, armed {arm}");
+    }
+}
+
+#[test]
+fn a_remote_control_steers_the_stern_when_the_boat_goes_astern() {
+    let mut station = guided();
+    station.ardupilot.set_mode(RoverMode::Manual);
+    for (chan3_raw, port_is_more) in [(1700, true), (1300, false)] {
+        let channels = RC_CHANNELS_OVERRIDE_DATA {
+            chan1_raw: 1600,
+            chan3_raw,
+            target_system: 1,
+            ..Default::default()
+        };
+        station.reply(&MavMessage::RC_CHANNELS_OVERRIDE(channels));
+        assert!(
+            matches!(station.order, Order::Thrust { port, starboard } if (port > starboard) == port_is_more),
+            "{:?}",
+            station.order
+        );
+    }
+}
+
 #[test]
 fn a_lost_ground_station_stops_the_boat_after_the_time_that_rover_takes() {
     for (gcs_timeout_s, action, after_s, mode) in [
@@ -399,6 +450,7 @@ fn a_lost_ground_station_stops_the_boat_after_the_time_that_rover_takes() {
         (None, 3.0, 6.5, (RoverMode::Rtl, true)),
         (None, 4.0, 6.5, (RoverMode::Hold, true)),
         (None, 5.0, 6.5, (RoverMode::Guided, false)),
+        (None, 6.0, 6.5, (RoverMode::Guided, true)),
     ] {
         let mut station = guided();
         set(&mut station, "FS_GCS_ENABLE", 1.0);
@@ -417,6 +469,7 @@ fn a_lost_ground_station_stops_the_boat_after_the_time_that_rover_takes() {
         );
         station.run(0.4);
         assert_eq!(station.ardupilot.mode(), mode, "{action}");
+        assert_eq!(state(&mut station), MavState::MAV_STATE_CRITICAL);
         // Who takes the boat then keeps it, although the station is still lost.
         station.ardupilot.set_mode(RoverMode::Guided);
         station.run(10.0);

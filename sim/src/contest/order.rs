@@ -67,6 +67,13 @@ impl Contest {
         self.state.orders[vehicle.index()].given_at
     }
 
+    /// Positions of the other real boats: north and east of each, m.
+    pub fn other_real_boats_m(&self, vehicle: VehicleId) -> Vec<f64> {
+        let others = self.scenario.externals().filter(|v| *v != vehicle);
+        let places = others.map(|v| self.world.state().boats[v.index()].pose.at);
+        places.flat_map(|at| [at.north, at.east]).collect()
+    }
+
     /// A vehicle's effective command: its order in force, as modified by rules and operators. A
     /// boat driven home gets a course at the speed that the rules allow; a speed limit also scales
     /// thrust. A real boat holds while its position or its agent is lost, after its order has

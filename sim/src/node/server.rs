@@ -352,6 +352,7 @@ impl<'w> GameServer<'w> {
             stamp,
             given_ns,
             order: VehicleOrder::new(vehicle, order),
+            others_m: self.contest.other_real_boats_m(vehicle),
         };
         let bytes = codec::encode(&order);
         publisher.send_encoded::<ExternalOrder>(bytes.clone())?;

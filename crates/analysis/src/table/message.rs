@@ -136,6 +136,7 @@ pub(super) fn rows(
                 stamp,
                 given_ns,
                 order: of_vehicle,
+                ..
             } = message.read()?;
             let mut cells = of_vehicle.order().map(order).unwrap_or_default();
             put(&mut cells, "given_s", time(given_ns));

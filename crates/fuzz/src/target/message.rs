@@ -83,6 +83,7 @@ fn seeds() -> Vec<Vec<u8>> {
         stamp: stamp(ExternalOrder::VERSION),
         given_ns: SimTime(7),
         order,
+        others_m: vec![12.5, -3.0],
     });
     let orders = Orders {
         stamp: stamp(Orders::VERSION),

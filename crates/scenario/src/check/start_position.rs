@@ -106,8 +106,8 @@ pub(super) fn somewhere(
 }
 
 /// The start positions of all entries, in order. Those without a given one are on their team's
-/// line: midway between its flag and the scrimmage line, facing the opponent, evenly spaced from the
-/// same side of the field for both teams, as in Pyquaticus: the first team's port.
+/// line: midway between its flag and the scrimmage line, evenly spaced from port to starboard,
+/// facing the opponent.
 pub(super) fn all(entries: &[Entry], field: &Field) -> Vec<StartPosition> {
     let plan = &field.plan;
     let along_m = (plan.flag_inset_m + plan.width_m / 2.0) / 2.0;
@@ -122,9 +122,11 @@ pub(super) fn all(entries: &[Entry], field: &Field) -> Vec<StartPosition> {
         }
         let team = entry.team.index();
         placed[team] += 1;
-        let from_side_m = plan.depth_m * placed[team] as f64 / (in_line[team] + 1) as f64;
-        let along_m = [along_m, plan.width_m - along_m][team];
-        let at = field.at(along_m, plan.depth_m - from_side_m);
+        let from_port_m = plan.depth_m * placed[team] as f64 / (in_line[team] + 1) as f64;
+        let at = match team {
+            0 => field.at(along_m, plan.depth_m - from_port_m),
+            _ => field.at(plan.width_m - along_m, from_port_m),
+        };
         start_at(at, entry.heading_deg, field, entry.team)
     };
     entries.iter().map(&mut start_position_of).collect()

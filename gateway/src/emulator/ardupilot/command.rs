@@ -10,7 +10,7 @@ use super::set_point::is_global;
 use crate::mavlink::RoverMode;
 use crate::mavlink::dialect::{
     AUTOPILOT_VERSION_DATA, COMMAND_ACK_DATA, COMMAND_INT_DATA, COMMAND_LONG_DATA,
-    HOME_POSITION_DATA, MavCmd, MavFrame, MavResult, MavSeverity,
+    HOME_POSITION_DATA, MavCmd, MavFrame, MavModeFlag, MavResult, MavSeverity,
 };
 use ::mavlink::MessageData;
 use primitives::SimTime;
@@ -61,15 +61,15 @@ impl ArduPilot {
         from: (u8, u8),
         command: &COMMAND_INT_DATA,
     ) {
-        let COMMAND_INT_DATA {
-            param1,
-            param2,
-            x,
-            y,
-            ..
-        } = *command;
+        let COMMAND_INT_DATA { param1, param2, .. } = *command;
         let result = match command.command {
-            MavCmd::MAV_CMD_DO_SET_MODE => self.command_mode(param2 as u32),
+            MavCmd::MAV_CMD_DO_SET_MODE => {
+                let base_mode = MavModeFlag::from_bits_truncate(param1 as u8);
+                self.command_own_mode(base_mode, param2 as u32)
+            }
+            MavCmd::MAV_CMD_COMPONENT_ARM_DISARM if !matches!(param1, 0.0 | 1.0) => {
+                MavResult::MAV_RESULT_UNSUPPORTED
+            }
             MavCmd::MAV_CMD_COMPONENT_ARM_DISARM => self.command_arming(param1 == 1.0),
             MavCmd::MAV_CMD_RUN_PREARM_CHECKS if self.is_armed => {
                 MavResult::MAV_RESULT_TEMPORARILY_REJECTED
@@ -86,7 +86,7 @@ impl ArduPilot {
             MavCmd::MAV_CMD_GET_HOME_POSITION => {
                 result_of(self.send_message(now, HOME_POSITION_DATA::ID))
             }
-            MavCmd::MAV_CMD_DO_SET_HOME => self.command_home(param1 == 1.0, (x, y)),
+            MavCmd::MAV_CMD_DO_SET_HOME => self.command_home(command),
             MavCmd::MAV_CMD_DO_CHANGE_SPEED if !matches!(param1 as i32, 0 | 1) => DENIED,
             MavCmd::MAV_CMD_DO_CHANGE_SPEED => result_of(self.change_speed(f64::from(param2))),
             MavCmd::MAV_CMD_DO_REPOSITION => self.command_reposition(command),
@@ -95,7 +95,8 @@ impl ArduPilot {
             // Rover does not support a part of the mission either.
             MavCmd::MAV_CMD_MISSION_START if param1 != 0.0 || param2 != 0.0 => DENIED,
             MavCmd::MAV_CMD_MISSION_START => self.command_mode(RoverMode::Auto.number()),
-            MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT => result_of(self.set_current(param1 as u16)),
+            MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT if self.set_current(param1 as u16) => DONE,
+            MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT => DENIED,
             _ => MavResult::MAV_RESULT_UNSUPPORTED,
         };
         self.acknowledge(from, command.command as u16, result);
@@ -127,6 +128,15 @@ impl ArduPilot {
         );
     }
 
+    /// Like Rover, it knows its own modes only.
+    pub(super) fn command_own_mode(&mut self, base_mode: MavModeFlag, number: u32) -> MavResult {
+        if base_mode.contains(MavModeFlag::MAV_MODE_FLAG_CUSTOM_MODE_ENABLED) {
+            self.command_mode(number)
+        } else {
+            DENIED
+        }
+    }
+
     pub(super) fn command_mode(&mut self, number: u32) -> MavResult {
         let mode = RoverMode::from_number(number);
         let can = match mode {
@@ -146,6 +156,10 @@ impl ArduPilot {
 
     fn command_arming(&mut self, arm: bool) -> MavResult {
         if !arm {
+            // As in ArduPilot: outside AUTO, the mission begins again.
+            if self.is_armed && self.mode != RoverMode::Auto {
+                self.autopilot.next = 1;
+            }
             self.is_armed = false;
             return DONE;
         }
@@ -166,11 +180,16 @@ impl ArduPilot {
         DONE
     }
 
-    fn command_home(&mut self, is_here: bool, at_e7: (i32, i32)) -> MavResult {
+    fn command_home(&mut self, command: &COMMAND_INT_DATA) -> MavResult {
+        let at_e7 = (command.x, command.y);
+        let is_here = command.param1 == 1.0 || at_e7 == (0, 0);
+        if !is_here && command.param1 == 0.0 && !is_global(command.frame) {
+            return DENIED;
+        }
         let home = if is_here {
             self.lat_lon_e7()
         } else {
-            self.place(at_e7).map(|_| at_e7)
+            Some(at_e7).filter(|at_e7| command.param1 == 0.0 && self.place(*at_e7).is_some())
         };
         home.into_iter().for_each(|home| self.set_home(home));
         result_of(home.is_some())

@@ -14,7 +14,7 @@ pub(super) struct StationWatch {
     lost_at: Option<SimTime>,
     /// Whether the failsafe has acted on this loss: only once, so that it does not overrule an
     /// operator who takes over.
-    is_triggered: bool,
+    pub(super) is_triggered: bool,
 }
 
 impl ArduPilot {
@@ -56,13 +56,13 @@ impl ArduPilot {
             );
         }
         match self.parameters.value("FS_ACTION") as i32 {
-            0 => {}
             // SmartRTL, which is not emulated, falls back to RTL, and RTL to HOLD.
             1 | 3
                 if self.command_mode(RoverMode::Rtl.number()) == MavResult::MAV_RESULT_ACCEPTED => {
             }
             5 => self.is_armed = false,
-            _ => self.set_mode(RoverMode::Hold),
+            1..=4 => self.set_mode(RoverMode::Hold),
+            _ => {}
         }
     }
 }

@@ -215,7 +215,7 @@ impl ArduPilot {
         match message {
             MavMessage::HEARTBEAT(_) if is_station => self.station.heard_at = Some(now),
             MavMessage::SET_MODE(set) => {
-                let result = self.command_mode(set.custom_mode);
+                let result = self.command_own_mode(set.base_mode, set.custom_mode);
                 // No command has this message's number, but ArduPilot does the same.
                 self.acknowledge(from, message.message_id() as u16, result);
             }

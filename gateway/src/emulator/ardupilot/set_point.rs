@@ -229,15 +229,15 @@ impl SetPoints {
         target: &Target,
         speed_max_m_s: f64,
     ) -> Result<(), &'static str> {
-        if target.has_acceleration {
-            return Err("set-point ignored: set ACC_IGNORE in mask");
-        }
         if let Some(place) = target.place {
             return if self.go_to(place) {
                 Ok(())
             } else {
                 Err("set-point ignored: invalid position")
             };
+        }
+        if target.has_acceleration {
+            return Err("set-point ignored: set ACC_IGNORE in mask");
         }
         let (x_m_s, y_m_s) = target.velocity.unwrap_or((0.0, 0.0));
         let course = match (target.yaw_rad, target.yaw_rate_rad_s) {
@@ -359,7 +359,9 @@ impl SetPoints {
     pub(super) fn manual(&self, now: SimTime) -> Order {
         match self.manual {
             Some((at, throttle, steering)) if (now - at).as_s() <= HELD_S => {
-                autopilot::thrust(100.0 * throttle, 100.0 * steering)
+                // PILOT_STEER_TYPE 0: going astern, the remote control steers the stern.
+                let side = if throttle < 0.0 { -1.0 } else { 1.0 };
+                autopilot::thrust(100.0 * throttle, 100.0 * side * steering)
             }
             _ => Order::Hold,
         }

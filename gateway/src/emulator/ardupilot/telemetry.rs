@@ -11,9 +11,10 @@ use crate::mavlink::dialect::{
     ATTITUDE_DATA, AUTOPILOT_VERSION_DATA, BATTERY_STATUS_DATA, GLOBAL_POSITION_INT_DATA,
     GPS_GLOBAL_ORIGIN_DATA, GPS_RAW_INT_DATA, GpsFixType, HEARTBEAT_DATA, HOME_POSITION_DATA,
     LOCAL_POSITION_NED_DATA, MESSAGE_INTERVAL_DATA, MISSION_CURRENT_DATA, MavAutopilot,
-    MavDataStream, MavMessage, MavModeFlag, MavProtocolCapability, MavResult, MavState,
-    MavSysStatusSensor, MavType, NAV_CONTROLLER_OUTPUT_DATA, POSITION_TARGET_GLOBAL_INT_DATA,
-    REQUEST_DATA_STREAM_DATA, SYS_STATUS_DATA, SYSTEM_TIME_DATA, VFR_HUD_DATA,
+    MavBatteryFault, MavDataStream, MavMessage, MavModeFlag, MavProtocolCapability, MavResult,
+    MavState, MavSysStatusSensor, MavSysStatusSensorExtended, MavType, NAV_CONTROLLER_OUTPUT_DATA,
+    POSITION_TARGET_GLOBAL_INT_DATA, PositionTargetTypemask, REQUEST_DATA_STREAM_DATA,
+    SYS_STATUS_DATA, SYSTEM_TIME_DATA, VFR_HUD_DATA,
 };
 use ::mavlink::MessageData;
 use primitives::SimTime;
@@ -21,6 +22,8 @@ use primitives::angle::compass_deg_from_rad;
 use primitives::frame::Ned;
 use std::collections::BTreeMap;
 
+/// POSITION_TARGET_GLOBAL_INT of Rover: only the position counts.
+const POSITION_ALONE: u16 = 0xFDF8;
 /// Minimum interval of a message, s.
 const INTERVAL_MIN_S: f64 = 0.02;
 /// Version 4.5.7, in ArduPilot's encoding.
@@ -107,8 +110,8 @@ impl Streams {
     // (MAV_CMD_SET_MESSAGE_INTERVAL).
     pub(super) fn set_interval(&mut self, id: u32, interval_us: f64) -> MavResult {
         let is_streamed = streamed().any(|known| known == id);
-        if !is_streamed && !ON_REQUEST.contains(&id) {
-            return MavResult::MAV_RESULT_FAILED;
+        if !is_streamed && !ON_REQUEST.contains(&id) || interval_us < -1.0 {
+            return MavResult::MAV_RESULT_DENIED;
         }
         let every_s = if interval_us > 0.0 {
             Some(1e-6 * interval_us)
@@ -209,6 +212,7 @@ impl ArduPilot {
                 let (lat_int, lon_int) = self.e7(self.position_target()?);
                 MavMessage::POSITION_TARGET_GLOBAL_INT(POSITION_TARGET_GLOBAL_INT_DATA {
                     time_boot_ms: boot_ms(now),
+                    type_mask: PositionTargetTypemask::from_bits_retain(POSITION_ALONE),
                     lat_int,
                     lon_int,
                     ..Default::default()
@@ -253,10 +257,11 @@ impl ArduPilot {
             mavtype: MavType::MAV_TYPE_SURFACE_BOAT,
             autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
             base_mode,
-            system_status: if self.is_armed {
-                MavState::MAV_STATE_ACTIVE
-            } else {
-                MavState::MAV_STATE_STANDBY
+            // By the mode, armed or not.
+            system_status: match self.mode {
+                _ if self.station.is_triggered => MavState::MAV_STATE_CRITICAL,
+                RoverMode::Hold => MavState::MAV_STATE_STANDBY,
+                _ => MavState::MAV_STATE_ACTIVE,
             },
             ..HEARTBEAT_DATA::default()
         }
@@ -271,6 +276,10 @@ impl ArduPilot {
             onboard_control_sensors_present: sensors,
             onboard_control_sensors_enabled: sensors,
             onboard_control_sensors_health: sensors,
+            // The crate's default for flags is the first one.
+            onboard_control_sensors_present_extended: MavSysStatusSensorExtended::empty(),
+            onboard_control_sensors_enabled_extended: MavSysStatusSensorExtended::empty(),
+            onboard_control_sensors_health_extended: MavSysStatusSensorExtended::empty(),
             load: 120,
             voltage_battery: self.millivolts(),
             current_battery: self.centiamps(),
@@ -304,6 +313,7 @@ impl ArduPilot {
             energy_consumed: -1,
             temperature: i16::MAX,
             voltages,
+            fault_bitmask: MavBatteryFault::empty(),
             current_battery: self.centiamps(),
             battery_remaining: self.percent_left(),
             ..BATTERY_STATUS_DATA::default()
@@ -422,6 +432,7 @@ fn version() -> AUTOPILOT_VERSION_DATA {
         | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_PARAM_FLOAT
         | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_SET_ATTITUDE_TARGET
         | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_LOCAL_NED
+        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_GLOBAL_INT
         | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MAVLINK2;
     AUTOPILOT_VERSION_DATA {
         capabilities,
