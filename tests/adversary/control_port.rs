@@ -222,6 +222,7 @@ fn orders_ahead_of_the_game_are_refused_and_the_sims_orders_still_count() {
                     starboard: 1.0,
                 },
             ),
+            others_m: vec![],
         };
         wait_until("it is refused and counted", || {
             intruder.publish("external/blue_one", codec::encode(&forged));
