@@ -21,7 +21,9 @@ const GROUPS: [(&str, &[&str]); 6] = [
     ("Learn", &["train", "policy"]),
     (
         "Watch",
-        &["view", "watch", "list", "runs", "replay", "log", "helm"],
+        &[
+            "view", "watch", "list", "runs", "replay", "log", "whatif", "helm",
+        ],
     ),
     (
         "Over a network, and real boats",
