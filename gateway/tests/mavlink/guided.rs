@@ -242,8 +242,8 @@ fn velocities_headings_and_rates_of_turn_are_followed_in_every_frame_that_rover_
 fn a_set_point_that_rover_ignores_is_reported_and_moves_nothing() {
     let north = [1.0, 0.0];
     for (frame, mask, words) in [
-        (MavFrame::MAV_FRAME_BODY_FRD, VELOCITY, "its frame"),
-        (MavFrame::MAV_FRAME_GLOBAL, VELOCITY, "its frame"),
+        (MavFrame::MAV_FRAME_BODY_FRD, VELOCITY, "unsupported frame"),
+        (MavFrame::MAV_FRAME_GLOBAL, VELOCITY, "unsupported frame"),
         (
             MavFrame::MAV_FRAME_LOCAL_NED,
             VELOCITY & !0b1_1100_0000,
@@ -257,7 +257,7 @@ fn a_set_point_that_rover_ignores_is_reported_and_moves_nothing() {
         (
             MavFrame::MAV_FRAME_LOCAL_NED,
             VELOCITY | POSITION,
-            "its mask",
+            "mask without a target",
         ),
     ] {
         let mut station = guided();
