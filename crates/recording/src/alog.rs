@@ -530,7 +530,7 @@ mod tests {
         }
         let far = SHORE.replace("1001.0", "900000.0");
         let error = read_text(&[BLUE, &far]).expect_err("two games").to_string();
-        assert!(error.ends_with("are they of one game?"), "{error}");
+        assert!(error.ends_with("are they from one game?"), "{error}");
     }
 
     #[test]

@@ -96,6 +96,10 @@ fn boats_move_as_in_pyquaticus() {
     let mut competition = game("mctf_2026");
     // Off in the recording too.
     competition.rules.power_play = SimTime::ZERO;
+    // There, both teams start from the north.
+    let red_1 = competition.vehicles[3].start_position.clone();
+    competition.vehicles[3].start_position = competition.vehicles[5].start_position.clone();
+    competition.vehicles[5].start_position = red_1;
     for (scenario, name) in [
         (&main, "main_random"),
         (&main, "main_heuristics"),
