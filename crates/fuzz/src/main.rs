@@ -13,7 +13,7 @@ squall-fuzz seeds FOLDER                                         write real inpu
 
 /// The command that runs this program.
 const COMMAND: &str =
-    "cargo run --manifest-path crates/fuzz/Cargo.toml --target-dir target/outside --";
+    "cargo run --release --manifest-path crates/fuzz/Cargo.toml --target-dir target --";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
