@@ -1,4 +1,4 @@
-"""Stable-Baselines3 trains on `squall.sb3.VecEnv`. Where it is not installed, a stand-in for its base class takes its place in some."""
+"""Stable-Baselines3 trains on `squall.sb3.VecEnv`. Without it, some tests use a stub of its base class."""
 
 import importlib
 import sys

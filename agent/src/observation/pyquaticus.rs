@@ -1,12 +1,12 @@
-//! The observation spaces of Pyquaticus (`state_to_obs` of its main branch, 2023 and 2025, and of the
-//! 2026 competition): bearings relative to the heading in half turns clockwise, distances in field
+//! The observation spaces of Pyquaticus (`state_to_obs` of its main branch, 2023 and 2025, and of
+//! the 2026 competition): bearings relative to the heading in half turns clockwise, distances in field
 //! diagonals, everything scaled to -1 to 1, booleans as -1 and 1.
 //!
 //! For the boat itself: the enemies' flag, its own flag, the walls to starboard, behind, to port
 //! and ahead as the team faces the enemies' end, the scrimmage line, speed, carrying, own side,
-//! time since its last tag, tagged, out of action (2026), both scores (not 2023). Then for each other boat, mates first: bearing,
-//! distance, heading relative to the line to this boat, speed, carrying, own side, time since its
-//! last tag, tagged, out of action (2026).
+//! time since its last tag, tagged, out of action (2026), both scores (not 2023). Then for each
+//! other boat, mates first: bearing, distance, heading relative to the line to this boat, speed,
+//! carrying, own side, time since its last tag, tagged, out of action (2026).
 //!
 //! Pyquaticus provides the truth; this space provides the boat's knowledge. All values of an
 //! unknown boat are 0. An enemy's last tag time is known if it tagged a boat of the team.
