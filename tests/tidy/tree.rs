@@ -23,8 +23,9 @@ impl Tree {
     }
 
     fn add(&mut self, folder: &Path, path: &str) {
-        // Cargo marks its output folders, wherever they are; npm does not.
-        if folder.join("CACHEDIR.TAG").exists() || folder.ends_with("node_modules") {
+        // Cargo marks the output folders that it creates; `target` may be older than its first build.
+        let is_output = folder.join("CACHEDIR.TAG").exists() || path == "target";
+        if is_output || folder.ends_with("node_modules") {
             return;
         }
         let entries = fs::read_dir(folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display()));
