@@ -1,11 +1,13 @@
 //! `squall log`: analyses a recorded game.
 
+use crate::jobs_args::JobsArgs;
 use crate::style::Names;
 use crate::water_args::within;
 use crate::{output_file, recording_file, screen};
 use analysis::{Comparison, GameSeries, Summary};
 use anyhow::{Context, Result};
 use command_line::explain::UsageError;
+use command_line::number::whole;
 use recording::{Bag, Damaged, Kind, Recording};
 use scenario::Scenario;
 use std::collections::BTreeSet;
@@ -16,6 +18,7 @@ mod difference;
 mod export;
 mod page;
 mod quality;
+mod turning;
 
 #[derive(clap::Args)]
 #[command(after_help = AFTER_HELP)]
@@ -47,6 +50,23 @@ pub(crate) struct Args {
     /// orbits
     #[arg(long, conflicts_with_all = ["events", "csv", "alog", "compare"])]
     quality: bool,
+    /// Finds the moments that changed the chance of winning most, and what each boat added, from
+    /// futures of the game: about a minute on two cores
+    #[arg(long, conflicts_with_all = ["events", "csv", "alog", "compare", "quality"])]
+    turning_points: bool,
+    /// With --turning-points: number of futures of the game's moments
+    #[arg(long, value_name = "N", default_value_t = 400, value_parser = whole::<u32>(50, 100_000), requires = "turning_points")]
+    futures: u32,
+    /// With --turning-points: the strategy with which each boat is compared
+    #[arg(
+        long,
+        value_name = "STRATEGY",
+        default_value = "idle",
+        requires = "turning_points"
+    )]
+    baseline: String,
+    #[command(flatten)]
+    jobs: JobsArgs,
     /// With --compare: maximum time between matching events, s
     #[arg(long, value_name = "S", default_value_t = 5.0, value_parser = within(0.0, 3600.0, "s"), requires = "compare")]
     tolerance_s: f64,
@@ -63,6 +83,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     }
     match files.as_slice() {
         files if args.quality => quality::print(files, args.json.as_deref())?,
+        [file] if args.turning_points => return turning::print(args, file),
         [a, b] if args.compare => compare(args, [a, b])?,
         [file] if !args.compare => look_at(args, file)?,
         files => {

@@ -88,7 +88,7 @@ enum Command {
     Runs(runs_command::Args),
     /// Analyses a recorded game: summary, tables, MOOS logs, comparison with another game.
     #[command(
-        after_help = "Examples:\n  squall log\n  squall log strategy_4_vs_3 --csv events\n  squall log --compare strategy_4_vs_3 surveyor_2v2"
+        after_help = "Examples:\n  squall log\n  squall log strategy_4_vs_3 --csv events\n  squall log --compare strategy_4_vs_3 surveyor_2v2\n  squall log --turning-points --futures 50"
     )]
     Log(log_command::Args),
     /// Plays futures of a recorded game with other strategies.

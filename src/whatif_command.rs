@@ -73,8 +73,8 @@ struct Compared<'a> {
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let file = recording_file::or_newest(args.file.as_deref())?;
     let recording = recording_file::open(&file, "play on")?;
-    let past =
-        past(&recording, args.at).with_context(|| format!("cannot play {} on", file.display()))?;
+    let past = past_at(&recording, args.at)
+        .with_context(|| format!("cannot play {} on", file.display()))?;
     let changes = changes(args, &past)?;
     for path in args.json.iter().chain(&args.record) {
         output_file::check(path, "the result")?;
@@ -117,36 +117,48 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     })
 }
 
-/// The recorded game up to a time.
-fn past(recording: &Recording, at_s: f64) -> Result<Past> {
+/// A recorded game, up to its end.
+pub(crate) fn past(recording: &Recording) -> Result<Past> {
     if recording.header().info.pace == recording::alog::PACE {
         bail!("MOOS logs do not contain the inputs of a game");
     }
     let scenario = recording.scenario().clone();
     scenario.has_no_real_boats()?;
     let mut inputs = vec![];
-    let mut end_s = 0.0;
+    let mut until = SimTime::ZERO;
     for message in recording
         .bag()
         .messages()
         .filter(|message| message.topic == INPUTS)
     {
         let given: Inputs = message.read()?;
-        end_s = given.stamp.valid_ns.as_s();
+        until = given.stamp.valid_ns;
         let all: Option<Vec<_>> = given.of(&scenario).collect();
-        inputs.extend(all.with_context(|| format!("cannot decode an input at {end_s:.1} s"))?);
+        let all = all.with_context(|| format!("cannot decode an input at {:.1} s", until.as_s()));
+        inputs.extend(all?);
     }
+    Ok(Past {
+        scenario,
+        inputs,
+        until,
+    })
+}
+
+/// The recorded game up to the first decision at or after a time.
+fn past_at(recording: &Recording, at_s: f64) -> Result<Past> {
+    let past = past(recording)?;
+    let end_s = past.until.as_s();
     ensure!(
         at_s < end_s,
         UsageError(format!(
             "--at is {at_s}, expected less than {end_s:.1}, where the game ended"
         ))
     );
-    let until = SimTime::from_s(at_s);
+    let decision = past.scenario.decision();
+    let decisions = (at_s / decision.as_s() - 1e-9).ceil().max(0.0);
     Ok(Past {
-        scenario,
-        inputs,
-        until,
+        until: decision * decisions as i64,
+        ..past
     })
 }
 

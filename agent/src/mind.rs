@@ -40,6 +40,11 @@ pub trait Mind: Any + Send {
     /// functions from the next decision on.
     fn show(&mut self, _shown: bool) {}
 
+    /// A mind in the same state that continues independently; `None` if this kind cannot be copied.
+    fn fork(&self) -> Option<Box<dyn Mind>> {
+        None
+    }
+
     /// The state of the mind's helm, if any.
     fn report(&self) -> Option<HelmReport> {
         None

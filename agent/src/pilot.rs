@@ -19,6 +19,7 @@ use scenario::strategy::{Fact, Mark, Place, Program, Values};
 use std::collections::BTreeMap;
 
 /// How actions reach the boat.
+#[derive(Clone)]
 enum Control {
     /// Directly: the boat turns as the action says until the next one, as in Pyquaticus.
     Direct(Box<Situation>),
@@ -28,6 +29,7 @@ enum Control {
 
 /// Makes a helm play in place of the policy that imitates it: actions are ignored, and the helm's
 /// own serve as a demonstration.
+#[derive(Clone)]
 struct Teacher {
     /// The option that each mode corresponds to, by mode index.
     options: Vec<Option<usize>>,
@@ -46,6 +48,7 @@ pub struct Spaces {
 }
 
 /// A mind whose decisions are made outside.
+#[derive(Clone)]
 pub struct Pilot {
     control: Control,
     observer: Observer,
@@ -274,6 +277,10 @@ impl Mind for Pilot {
             situation.model.speed_max_m_s,
         );
         situation.motion.order(heading_rad, speed_m_s)
+    }
+
+    fn fork(&self) -> Option<Box<dyn Mind>> {
+        Some(Box::new(self.clone()))
     }
 
     fn shares(&self) -> bool {

@@ -29,6 +29,7 @@ pub(crate) enum PolicyFault {
 }
 
 /// A policy that decides for one boat.
+#[derive(Clone)]
 pub(crate) struct BoardPolicy {
     pub(crate) model: PolicyModel,
     network: Network,

@@ -195,6 +195,25 @@ impl<M: Mind + ?Sized> MindRunner<M> {
     }
 }
 
+impl MindRunner {
+    /// A runner in the same state that continues independently; `None` if a mind cannot be copied.
+    pub fn fork(&self) -> Option<MindRunner> {
+        let boats = self.boats.iter().map(|boat| {
+            Some(Boat {
+                vehicle: boat.vehicle,
+                order: boat.order,
+                mind: boat.mind.fork()?,
+            })
+        });
+        Some(MindRunner {
+            boats: boats.collect::<Option<_>>()?,
+            decided: self.decided,
+            sent: self.sent.clone(),
+            threads: self.threads,
+        })
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

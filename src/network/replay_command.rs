@@ -7,6 +7,8 @@ use crate::replay_command;
 use crate::{recording_file, screen, stop};
 use anyhow::{Result, bail};
 use command_line::explain::UsageError;
+use experiment::turning::{Point, Report};
+use serde_json::{Value, json};
 use shore::page::replay::{Recorded, ReplayView};
 use std::path::Path;
 use std::process::ExitCode;
@@ -43,15 +45,34 @@ pub(crate) fn show(file: &Path, page: &PageArgs) -> Result<ExitCode> {
 /// Opens a recording for a page, with a sentence about its origin if there is one.
 pub(crate) fn open(file: &Path, about: Option<String>) -> Result<ReplayView> {
     let recording = Arc::new(replay_command::open(file)?);
-    let recorded = Recorded::new(Arc::clone(&recording), file.display().to_string());
+    let mut recorded = Recorded::new(Arc::clone(&recording), file.display().to_string());
     recorded
         .damaged
         .remark()
         .iter()
         .for_each(|remark| screen::remark(remark));
+    recorded.chances = chances(file);
     Ok(ReplayView::about(
         about,
         Arc::new(recorded),
         Some(Box::new(ReplayHelms::new(recording))),
     ))
+}
+
+/// The chance of winning, if `squall log --turning-points` has computed it.
+fn chances(recording: &Path) -> Option<Value> {
+    let path = recording::turning_points_of(recording);
+    let text = std::fs::read_to_string(&path).ok()?;
+    let report = serde_json::from_str::<Report>(&text)
+        .map_err(|error| screen::remark(&format!("{} is ignored: {error}", path.display())))
+        .ok()?;
+    let of = |get: fn(&Point) -> Option<f64>| report.curve.iter().map(get).collect::<Vec<_>>();
+    let turns = report.turning_points.iter();
+    Some(json!({
+        "t_s": of(|point| Some(point.at_s)),
+        "chance": of(|point| Some(point.chance.mean)),
+        "low": of(|point| point.chance.low),
+        "high": of(|point| point.chance.high),
+        "turns_s": turns.map(|turn| f64::midpoint(turn.from_s, turn.to_s)).collect::<Vec<_>>(),
+    }))
 }

@@ -11,6 +11,7 @@ use primitives::instructions::Instructions;
 use rules::field::Obstacle;
 use scenario::strategy::AvoidObstacle;
 
+#[derive(Clone)]
 pub(super) struct AvoidObstacleBehaviour {
     task: AvoidObstacle,
     /// Precomputed outlines of polygonal obstacles, by obstacle; empty before the first decision.

@@ -7,6 +7,7 @@ use primitives::SimTime;
 use scenario::strategy::{AvoidCollision, Parameter};
 
 /// Collision avoidance, with a halt as the last resort.
+#[derive(Clone)]
 pub(super) struct HaltingAvoidance {
     avoidance: AvoidCollision,
     halt: Halt,

@@ -9,6 +9,7 @@ use rules::field::{distance_to_outline, sides};
 use scenario::strategy::{Ellipse, Loiter, Shape, Turn};
 use std::f64::consts::TAU;
 
+#[derive(Clone)]
 pub(super) struct LoiterBehaviour {
     task: Loiter,
     /// The corners, clockwise.

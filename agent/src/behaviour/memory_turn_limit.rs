@@ -11,6 +11,7 @@ use std::f64::consts::PI;
 /// Maximum number of remembered headings.
 const MOST: usize = 256;
 
+#[derive(Clone)]
 pub(super) struct MemoryTurnLimitBehaviour {
     task: MemoryTurnLimit,
     headings: VecDeque<(SimTime, f64)>,

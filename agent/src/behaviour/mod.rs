@@ -29,10 +29,11 @@ pub(crate) use output::{BehaviourOutput, Functions, WeightedFunction};
 
 use crate::policy::BoardPolicy;
 use crate::situation::Situation;
+use dyn_clone::DynClone;
 use scenario::strategy::Task;
 
 /// The logic of a behaviour; the helm decides when it runs.
-pub(crate) trait BehaviourLogic: Send {
+pub(crate) trait BehaviourLogic: DynClone + Send {
     /// Observes the situation of a decision, whether the behaviour runs or not.
     fn observe(&mut self, _situation: &Situation) {}
 
@@ -52,6 +53,8 @@ pub(crate) trait BehaviourLogic: Send {
         None
     }
 }
+
+dyn_clone::clone_trait_object!(BehaviourLogic);
 
 pub(crate) fn logic_of(task: &Task) -> Box<dyn BehaviourLogic> {
     match task.clone() {

@@ -7,6 +7,7 @@ use scenario::strategy::{Boat, Contacts, NEAREST_MAX};
 const TAG_FORESIGHT_S: f64 = 5.0;
 
 /// The nearest few, without heap allocation; no behaviour responds to more.
+#[derive(Clone)]
 pub(super) struct Nearest {
     /// Distance, m, and index; nearest first, ties by insertion order.
     entries: [(f64, usize); NEAREST_MAX],

@@ -28,6 +28,7 @@ enum Side {
     Out,
 }
 
+#[derive(Clone)]
 pub(super) struct OpRegionBehaviour {
     task: OpRegion,
     side: Side,
@@ -137,6 +138,7 @@ impl BehaviourLogic for OpRegionBehaviour {
 }
 
 /// The region around the boat.
+#[derive(Clone)]
 struct Region {
     /// By edge: outward unit normal, and the boat's distance inside the edge, m.
     edges: [(Ned, f64); 4],

@@ -13,6 +13,7 @@ use rules::field::{is_within, sides};
 const ROUNDING_M: f64 = 1e-6;
 
 /// A polygon with lower bounds on its distance.
+#[derive(Clone)]
 pub(super) struct Outline {
     corners: Vec<Ned>,
     sides: Vec<Side>,
@@ -79,6 +80,7 @@ impl Places {
 }
 
 /// The points of a group of straight runs that are nearest to a corner.
+#[derive(Clone)]
 struct Foot {
     /// Time, s; negative if before the start of the run.
     after_s: Lanes<f64>,
@@ -87,6 +89,7 @@ struct Foot {
 }
 
 /// A group of straight runs.
+#[derive(Clone)]
 struct Runs {
     from: Places,
     along: Places,

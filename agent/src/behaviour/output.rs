@@ -16,6 +16,7 @@ pub(crate) struct WeightedFunction {
 }
 
 /// The functions of all behaviours at one decision.
+#[derive(Clone)]
 pub(crate) struct Functions {
     pub(crate) problem: Problem,
     pub(crate) list: Vec<WeightedFunction>,

@@ -10,6 +10,7 @@ use scenario::strategy::Policy;
 /// Width of the fall from the proposed speed to zero utility, m/s.
 const SPEED_BASE_M_S: f64 = 1.0;
 
+#[derive(Clone)]
 pub(super) struct PolicyBehaviour {
     task: Policy,
     /// The model that proposes; `None` for an external source.

@@ -10,6 +10,7 @@ use std::f64::consts::PI;
 /// Width of the fall from the peak of the speed to zero utility, m/s.
 const SPEED_BASE_M_S: f64 = 0.8;
 
+#[derive(Clone)]
 pub(super) struct StationKeepBehaviour {
     task: StationKeep,
     /// The boat's position at the start of the behaviour.

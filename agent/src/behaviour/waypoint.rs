@@ -7,6 +7,7 @@ use crate::situation::Situation;
 use primitives::Ned;
 use scenario::strategy::Waypoint;
 
+#[derive(Clone)]
 pub(super) struct WaypointBehaviour {
     task: Waypoint,
     /// Number of points reached in this round.

@@ -22,9 +22,11 @@ use run_state::BehaviourRun;
 use scenario::Scenario;
 use scenario::fault::{Fault, FaultKind};
 use scenario::strategy::{Expression, Moment, Parameter, Program, Proposer, Rule, Task, What, Who};
+use std::sync::Arc;
 use steadiness::Steadiness;
 
 /// A behaviour of the program.
+#[derive(Clone)]
 struct BehaviourInstance {
     run: BehaviourRun,
     logic: Box<dyn BehaviourLogic>,
@@ -42,6 +44,7 @@ enum Decided {
 }
 
 /// A mind that follows a program.
+#[derive(Clone)]
 pub struct HelmMind {
     program: Program,
     pub(crate) situation: Situation,
@@ -54,7 +57,7 @@ pub struct HelmMind {
     decided: Decided,
     /// Creates the helm that replaces this one after a fault that kills the agent, if the scenario
     /// has any.
-    restarted: Option<Box<dyn Fn() -> HelmMind + Send>>,
+    restarted: Option<Arc<dyn Fn() -> HelmMind + Send + Sync>>,
 }
 
 impl HelmMind {
@@ -102,7 +105,7 @@ impl HelmMind {
         if scenario.faults.iter().any(is_killed) {
             let scenario = scenario.clone();
             let program = program.clone();
-            helm.restarted = Some(Box::new(move || {
+            helm.restarted = Some(Arc::new(move || {
                 HelmMind::new(&scenario, vehicle, &program)
             }));
         }
@@ -332,6 +335,10 @@ impl Mind for HelmMind {
         let stop = self.mode.is_none_or(|mode| self.run_behaviours(mode));
         self.decided = self.solve(stop);
         self.order()
+    }
+
+    fn fork(&self) -> Option<Box<dyn Mind>> {
+        Some(Box::new(self.clone()))
     }
 
     fn shares(&self) -> bool {

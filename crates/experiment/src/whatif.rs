@@ -3,6 +3,7 @@
 use crate::pipeline::{Game, play_in_order};
 use agent::MindRunner;
 use messages::input::Input;
+use parking_lot::Mutex;
 use primitives::reseed::Reseed;
 use primitives::{SimTime, VehicleId};
 use scenario::Scenario;
@@ -12,21 +13,88 @@ use std::num::NonZeroUsize;
 use std::sync::atomic::AtomicBool;
 
 /// A game up to a moment.
+#[derive(Clone)]
 pub struct Past {
     /// The game, with its seed.
     pub scenario: Scenario,
     /// All inputs of the recorded game, in order.
     pub inputs: Vec<Input>,
-    /// The moment from which futures differ.
+    /// The moment from which futures differ: the time of a decision.
     pub until: SimTime,
 }
 
 /// Boats that continue with other minds, and the strategies that these follow.
 pub type Changes<'a> = &'a [(VehicleId, Box<Strategy>)];
 
-/// Plays the past and one of its futures, in which everything is drawn by `seed`. All minds see what
-/// they saw in the past. Stops when `watch`, which sees the contest before every decision and at the
-/// end, returns `false`. Returns the contest.
+/// A game at a moment, with its minds. It continues any number of times.
+pub(crate) struct Moment {
+    pub(crate) contest: Contest,
+    runner: MindRunner,
+}
+
+impl Moment {
+    pub(crate) fn new(contest: Contest, runner: MindRunner) -> Moment {
+        Moment { contest, runner }
+    }
+
+    /// Plays the past. All minds see what they saw. Stops early when `watch`, which sees contest
+    /// and minds before every decision, returns `false`.
+    pub(crate) fn of(
+        past: &Past,
+        mut watch: impl FnMut(&mut Contest, &MindRunner) -> bool,
+    ) -> Result<Moment, NoStart> {
+        let mut contest = Contest::new(&past.scenario, past.scenario.seed)?;
+        let mut runner: MindRunner = arena::runner_of(agent::minds_of(&past.scenario));
+        for input in &past.inputs {
+            if *input == Input::Pictured {
+                if contest.now() >= past.until || !watch(&mut contest, &runner) {
+                    break;
+                }
+                let stamp = contest.pictures()[0].stamp;
+                runner.decide(stamp, |vehicle| Some(contest.picture_of(vehicle)));
+            }
+            contest.give(*input);
+        }
+        Ok(Moment { contest, runner })
+    }
+
+    /// The same moment, from which everything is drawn by `seed`.
+    pub(crate) fn reseeded(&self, seed: u64) -> Result<Moment, String> {
+        let contest = self.contest.reseeded(seed);
+        Ok(Moment {
+            contest: contest.map_err(|why| why.to_string())?,
+            runner: fork(&self.runner)?,
+        })
+    }
+
+    /// Lets boats continue with other minds, and plays to the end, or until `watch`, which sees the
+    /// contest before every decision and at the end, returns `false`.
+    pub(crate) fn end(
+        mut self,
+        changes: Changes<'_>,
+        mut watch: impl FnMut(&mut Contest) -> bool,
+    ) -> Contest {
+        for (vehicle, strategy) in changes {
+            let mind = agent::mind_by(self.contest.scenario(), *vehicle, strategy);
+            self.runner.replace(*vehicle, mind);
+        }
+        while watch(&mut self.contest) && !self.contest.is_over() {
+            arena::decide(&mut self.contest, &mut self.runner);
+            self.contest.advance();
+        }
+        self.contest
+    }
+}
+
+/// A copy of all minds.
+pub(crate) fn fork(runner: &MindRunner) -> Result<MindRunner, String> {
+    let copy = runner.fork();
+    copy.ok_or_else(|| "a mind of this game cannot be copied".to_owned())
+}
+
+/// Plays the past and one of its futures, in which everything is drawn by `seed`. Stops when
+/// `watch`, which sees the contest before every decision and at the end, returns `false`. Returns
+/// the contest. Its scenario has the seed, so that a recording of it replays.
 ///
 /// # Errors
 /// If the game cannot start.
@@ -36,34 +104,13 @@ pub fn play(
     seed: u64,
     mut watch: impl FnMut(&mut Contest) -> bool,
 ) -> Result<Contest, NoStart> {
-    let reseed = vec![Reseed {
+    let mut past = past.clone();
+    past.scenario.reseed.push(Reseed {
         after_s: past.until.as_s(),
         seed,
-    }];
-    let scenario = Scenario {
-        reseed,
-        ..past.scenario.clone()
-    };
-    let mut contest = Contest::new(&scenario, scenario.seed)?;
-    let mut runner: MindRunner = arena::runner_of(agent::minds_of(&scenario));
-    for input in &past.inputs {
-        if *input == Input::Pictured {
-            if contest.now() >= past.until || !watch(&mut contest) {
-                break;
-            }
-            let stamp = contest.pictures()[0].stamp;
-            runner.decide(stamp, |vehicle| Some(contest.picture_of(vehicle)));
-        }
-        contest.give(*input);
-    }
-    for (vehicle, strategy) in changes {
-        runner.replace(*vehicle, agent::mind_by(&scenario, *vehicle, strategy));
-    }
-    while watch(&mut contest) && !contest.is_over() {
-        arena::decide(&mut contest, &mut runner);
-        contest.advance();
-    }
-    Ok(contest)
+    });
+    let moment = Moment::of(&past, |contest, _| watch(contest))?;
+    Ok(moment.end(changes, watch))
 }
 
 /// Plays futures numbered from 0: each as recorded and with the changes, both with the same draws.
@@ -78,13 +125,15 @@ pub fn compare(
     (threads, stop): (NonZeroUsize, &AtomicBool),
     mut take: impl FnMut([Game; 2]) -> Result<(), String>,
 ) -> Result<(), String> {
+    let moment = Moment::of(past, |_, _| true).map_err(|why| why.to_string())?;
+    let moment = Mutex::new(moment);
     play_in_order(
         futures,
         (threads, stop),
         |(), i, stop| {
             let game = |changes| {
-                let contest = play(past, changes, seed_of(past, i), |_| !stop.is_set());
-                let contest = contest.map_err(|why| why.to_string())?;
+                let future = moment.lock().reseeded(seed_of(past, i))?;
+                let contest = future.end(changes, |_| !stop.is_set());
                 Ok::<Game, String>(Game::new(&past.scenario, contest.outcome()))
             };
             Ok::<_, String>([game(&[])?, game(changes)?])

@@ -49,7 +49,13 @@ pub use writer::{Decision, Entry, Opening, Writer};
 
 use std::collections::BTreeMap;
 use std::fmt::{Display, Formatter};
+use std::path::{Path, PathBuf};
 use thiserror::Error;
+
+/// The file with the turning points of a recorded game, beside the recording.
+pub fn turning_points_of(recording: &Path) -> PathBuf {
+    recording.with_extension("turning-points.json")
+}
 
 /// The contents of a metadata record.
 pub type Facts = BTreeMap<String, String>;

@@ -18,9 +18,9 @@ const PIXEL_S = 0.6;
 const pav01 = scenario('games/pav01_vs_pav01.toml');
 
 /** Plays and records a game. Returns the recording and the result. */
-async function record(t, game = pav01) {
+async function record(t, game = pav01, ...more) {
   const place = folder(t);
-  await squall(t, 'run', game, '--in-process', '--record', place, '--json', join(place, 'result.json'));
+  await squall(t, 'run', game, '--in-process', '--record', place, '--json', join(place, 'result.json'), ...more);
   const file = readdirSync(place).find((name) => name.endsWith('.mcap'));
   return { file: join(place, file), result: readJson(join(place, 'result.json')) };
 }
@@ -77,6 +77,21 @@ test('a recording agrees with its events at every moment', async (t) => {
   await scrub(sight, result.duration_s);
   await check('at the end');
   assert.deepEqual(await sight.get(() => squall.score), names.map((name) => result.score.teams[name]));
+});
+
+test('the chance of winning is on the time line once it is known', async (t) => {
+  const { file } = await record(t, 'strategy_4_vs_3', '--set', 'game.duration_s=60');
+  await squall(t, 'log', file, '--turning-points', '--futures', '50');
+  const { curve, teams } = readJson(file.replace('.mcap', '.turning-points.json'));
+  const replay = new Program(t, 'replay', file, '--listen', '127.0.0.1:0');
+  const sight = await Sight.open(t, browser, await replay.url());
+  assert.deepEqual(await sight.get(() => squall.hello.chart.chances.chance), curve.map(({ chance }) => chance.mean));
+  const line = await sight.page.locator('#timeline').boundingBox();
+  const { at_s, chance } = curve[4];
+  await sight.page.mouse.move(line.x + 34 + ((at_s + 1) / 60) * (line.width - 48), line.y + 30);
+  const percent = (part) => Math.round(100 * part);
+  const words = `${teams[0]} wins: ${percent(chance.mean)} % (${percent(chance.low)} to ${percent(chance.high)})`;
+  await sight.until('the tip shows it', (words) => document.getElementById('timeline-tip').innerText.includes(words), words);
 });
 
 test('the buttons of a replay: on, back, to events, faster', async (t) => {

@@ -117,6 +117,7 @@ export class Timeline {
     this.wanted_s = null;
     this.marksVersion = -1;
     this.score = null;
+    this.chances = game.chart.chances ?? null;
     this.pointers.clear();
     this.point(null);
     show(this.box, game.mode === 'replay');
@@ -207,9 +208,14 @@ export class Timeline {
     this.tip.style.bottom = `${this.box.clientHeight - this.canvas.offsetTop + 4}px`;
   }
 
-  /** The score at a moment. */
+  /** The score at a moment, and the chance of winning if it is known. */
   scoreAt(t_s) {
     const line = make('span', 'tip-score');
+    if (this.chances) {
+      const at = sampleAt(this.chances.t_s, t_s);
+      const [chance, low, high] = ['chance', 'low', 'high'].map((key) => number(100 * this.chances[key][at], 0));
+      line.append(make('span', '', `${plain(this.game.chart.teams[0].name)} wins: ${chance} % (${low} to ${high})`));
+    }
     if (!this.score) return line;
     const at = sampleAt(this.score.t_s, t_s);
     this.score.score.forEach((points, team) => line.append(make('span', `team-${team}`, '', make('span', 'swatch'), plain(this.game.chart.teams[team]?.name ?? ''), make('strong', '', number(points[at] ?? 0, 0)))));
@@ -366,6 +372,7 @@ export class Timeline {
     context.beginPath();
     context.rect(LEFT - 6, 0, width - LEFT - RIGHT + 12, height);
     context.clip();
+    this.drawChances(context, base);
     this.drawScore(context, base);
     for (const mark of this.marks) {
       context.fillStyle = palette.teams[mark.team] ?? palette.ink;
@@ -427,6 +434,38 @@ export class Timeline {
   scoreY(points, base) {
     const low = base - 9;
     return low - (points / this.score.most) * (low - this.scoreTop);
+  }
+
+  /** Draws the chance of winning: the first team's share of the height from below, with its turning points. */
+  drawChances(context, base) {
+    if (!this.chances) return;
+    const { t_s, chance, turns_s } = this.chances;
+    const [top, low] = [this.scoreTop, base - 9];
+    const y = (share) => low - share * (low - top);
+    const line = () => {
+      context.beginPath();
+      t_s.forEach((at_s, i) => context.lineTo(this.xOf(at_s), y(chance[i])));
+    };
+    const [first, last] = [this.xOf(t_s[0]), this.xOf(t_s.at(-1))];
+    context.globalAlpha = 0.18;
+    [low, top].forEach((side, team) => {
+      line();
+      context.lineTo(last, side);
+      context.lineTo(first, side);
+      context.fillStyle = palette.teams[team] ?? palette.faint;
+      context.fill();
+    });
+    context.globalAlpha = 1;
+    line();
+    context.strokeStyle = palette.ink;
+    context.lineWidth = 1;
+    context.stroke();
+    context.fillStyle = palette.ink;
+    for (const at_s of turns_s) {
+      context.beginPath();
+      context.arc(this.xOf(at_s), y(chance[sampleAt(t_s, at_s)]), 3, 0, 2 * Math.PI);
+      context.fill();
+    }
   }
 
   /** Draws the score as steps, below the marks. */

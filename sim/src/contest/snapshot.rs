@@ -4,7 +4,9 @@ use super::Contest;
 use super::state::ContestState;
 use crate::radio::RadioState;
 use crate::sighting::SightingState;
+use crate::spawn::NoStart;
 use crate::state::State;
+use primitives::reseed::Reseed;
 use scenario::Scenario;
 use thiserror::Error;
 use xxhash_rust::xxh3;
@@ -75,8 +77,11 @@ impl Contest {
         if check != xxh3::xxh3_64(body).to_le_bytes() {
             return Err(RestoreError::Damaged);
         }
-        let (world, state, radio, sightings): Parts =
-            postcard::from_bytes(body).map_err(|_| RestoreError::Damaged)?;
+        self.put(postcard::from_bytes(body).map_err(|_| RestoreError::Damaged)?);
+        Ok(())
+    }
+
+    fn put(&mut self, (world, state, radio, sightings): Parts) {
         self.world.set_state(world);
         self.state = state;
         self.radio
@@ -87,7 +92,27 @@ impl Contest {
             .iter_mut()
             .zip(sightings)
             .for_each(|(sightings, state)| sightings.state = state);
-        Ok(())
+    }
+
+    /// A contest in the same state in which everything after now is drawn by `seed`.
+    ///
+    /// # Errors
+    /// [`NoStart`], which the same game without another seed would have met before.
+    pub fn reseeded(&self, seed: u64) -> Result<Contest, NoStart> {
+        let mut scenario = (*self.scenario).clone();
+        scenario.reseed.push(Reseed {
+            after_s: self.now().as_s(),
+            seed,
+        });
+        let (radio, sightings) = self.messages();
+        let mut contest = Contest::new(&scenario, scenario.seed)?;
+        contest.put((
+            self.world.state().clone(),
+            self.state.clone(),
+            radio.cloned(),
+            sightings.cloned(),
+        ));
+        Ok(contest)
     }
 
     /// A 128-bit hash over world, standing and all events. In games with radio links, limits on

@@ -48,7 +48,10 @@ impl ReplayView {
     ) -> ReplayView {
         let news = Changes::default();
         let scenario = source.recording.scenario().clone();
-        let chart = chart(&scenario, &source.recording.header().water);
+        let mut chart = chart(&scenario, &source.recording.header().water);
+        if let Some(chances) = &source.chances {
+            chart["chances"] = chances.clone();
+        }
         let plotter = Plotter::new(Arc::clone(&source.recording));
         let queries = QueryThread::open(
             Sources {

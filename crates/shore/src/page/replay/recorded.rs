@@ -5,6 +5,7 @@ use messages::picture::{OwnBoat, Picture};
 use primitives::{SimTime, VehicleId};
 use recording::{Damaged, Recording, picture};
 use scenario::outcome::EventOutcome;
+use serde_json::Value;
 use std::sync::Arc;
 
 /// A recording ready for replay.
@@ -22,6 +23,8 @@ pub struct Recorded {
     pictures: Vec<Vec<(SimTime, usize)>>,
     /// By vehicle: the same for every status from its gateway.
     statuses: Vec<Vec<(SimTime, usize)>>,
+    /// The chance of winning over time, if known: times, chances, bounds and turning points.
+    pub chances: Option<Value>,
     /// All events, including gateways' failsafes.
     pub(super) events: Vec<EventOutcome>,
 }
@@ -54,6 +57,7 @@ impl Recorded {
             damaged: Damaged::default(),
             pictures,
             statuses,
+            chances: None,
             events: Vec::new(),
         };
         for (number, frame) in recording.frames().enumerate() {
