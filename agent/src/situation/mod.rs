@@ -29,6 +29,9 @@ use turn_estimate::{TurnEstimate, turning_on};
 const KEEPS_ON_S: f64 = 15.0;
 /// A contact is assumed to be at rest after this long, s.
 const STILL_AFTER_S: f64 = 30.0;
+/// A boat of the team is dead reckoned after this time without a fix, s: at the usual delays it moves
+/// less than a receiver errs, and to rotate the motion of a whole fleet takes time.
+const LATE_S: f64 = 0.5;
 /// Distance to anything unknown, m.
 const NOWHERE_M: f64 = 1e9;
 /// A boat this far inside its untagging place was tagged there and must leave it, as a share of the
@@ -92,6 +95,15 @@ impl OtherBoat {
     }
 }
 
+/// The way of a boat of the team since its last fix, at the velocity that it had then along its axes.
+#[derive(Clone, Copy, Debug)]
+struct Track {
+    fix: SimTime,
+    velocity: Body,
+    gone: Ned,
+    until: SimTime,
+}
+
 /// The helm's current knowledge.
 #[derive(Clone, Debug)]
 pub(crate) struct Situation {
@@ -113,6 +125,8 @@ pub(crate) struct Situation {
     pub(crate) motion: OwnMotion,
     /// All other known boats: mates first, then enemies, each in the scenario's order.
     pub(crate) others: Vec<OtherBoat>,
+    /// Tracks of the team's boats, by vehicle index.
+    tracks: Vec<Option<Track>>,
     /// Turn estimates of contacts, by vehicle index.
     turns: Vec<Option<TurnEstimate>>,
     /// By vehicle index: the earliest time of the next tag of enemies that tagged a boat of the
@@ -159,6 +173,7 @@ impl Situation {
             ahead: Ned::default(),
             velocity: Ned::default(),
             others: Vec::new(),
+            tracks: Vec::new(),
             turns: Vec::new(),
             tag_ready: Vec::new(),
             disabled: Vec::new(),
@@ -203,9 +218,9 @@ impl Situation {
         };
         (self.now, self.begun) = (now, true);
         self.own = *own;
-        self.at = own.nav.at();
         self.ahead = own.nav.pose().rotation().ahead();
-        self.velocity = own.nav.velocity_m_s();
+        let (at, velocity) = self.reckoned(own, now);
+        (self.at, self.velocity) = (at, ned_from_body(own.nav.pose().rotation(), velocity));
         self.motion.observe(
             own,
             self.step_s,
@@ -213,22 +228,16 @@ impl Situation {
         );
         self.note_events(picture);
         self.others.clear();
-        for mate in picture
-            .own
-            .iter()
-            .filter(|boat| boat.vehicle != self.model.me)
-        {
-            let at = mate.nav.at();
+        let me = self.model.me;
+        for mate in picture.own.iter().filter(|boat| boat.vehicle != me) {
+            let (at, velocity) = self.reckoned(mate, now);
             self.others.push(OtherBoat {
                 vehicle: mate.vehicle,
                 is_enemy: false,
                 at,
                 // In games of 20 against 20 and more, rotating all of them to the field's frame
                 // measurably slowed decisions, and few are needed.
-                velocity: Velocity::Body(Body {
-                    ahead: mate.nav.surge_m_s,
-                    starboard: mate.nav.sway_m_s,
-                }),
+                velocity: Velocity::Body(velocity),
                 psi_rad: mate.nav.psi_rad,
                 yaw_rate_rad_s: mate.nav.yaw_rate_rad_s,
                 tagged: mate.tagged,
@@ -280,6 +289,33 @@ impl Situation {
         self.leaving =
             own.tagged && (from_home < WELL_INSIDE || self.leaving && from_home <= WELL_OUTSIDE);
         true
+    }
+
+    /// The position of a boat of the team now, and its velocity along its axes. Fixes drop out for
+    /// seconds, and links are silent; headings do not drop out, and the last position is one that the
+    /// boat has left.
+    fn reckoned(&mut self, boat: &OwnBoat, now: SimTime) -> (Ned, Body) {
+        let i = boat.vehicle.index();
+        let fix = boat.fix_ns;
+        self.tracks.resize(self.tracks.len().max(i + 1), None);
+        let mut track = self.tracks[i]
+            .filter(|track| track.fix == fix)
+            .unwrap_or(Track {
+                fix,
+                velocity: Body {
+                    ahead: boat.nav.surge_m_s,
+                    starboard: boat.nav.sway_m_s,
+                },
+                gone: Ned::default(),
+                until: fix,
+            });
+        if (LATE_S..KEEPS_ON_S).contains(&(now - fix).as_s()) {
+            let velocity = ned_from_body(boat.nav.pose().rotation(), track.velocity);
+            track.gone = track.gone + velocity.scaled((now - track.until).as_s());
+            track.until = now;
+        }
+        self.tracks[i] = Some(track);
+        (boat.nav.at() + track.gone, track.velocity)
     }
 
     /// Notes which enemies have tagged a boat of the team, and so cannot tag again for a while, and

@@ -1,6 +1,8 @@
 //! Each behaviour alone: its decisions in given scenes.
 
-use crate::scene::{Boat, alone, decided, helm, only, picture, scenario, steered, without_safety};
+use crate::scene::{
+    Boat, alone, decided, helm, only, picture, scenario, set_time, steered, without_safety,
+};
 use agent::Mind;
 use messages::helm::{HelmReport, RunState};
 use messages::picture::Picture;
@@ -115,7 +117,7 @@ fn driven(behaviour: &str, from: Boat, turn_rad_s: f64, contact: Boat, steps: u3
     let mut track = vec![];
     for step in 0..steps {
         let mut scene = with_contact(own, contact);
-        scene.stamp.valid_ns = SimTime::from_s(0.1 * f64::from(step));
+        set_time(&mut scene, 0.1 * f64::from(step));
         let wanted = steered(&mut helm, &scene);
         let off_rad = primitives::angle::wrap_pi((wanted.0 - own.heading_deg).to_radians());
         own.heading_deg += off_rad
@@ -467,7 +469,7 @@ fn a_boat_that_came_too_near_halts_until_it_is_released() {
     let mut helm = helm(&only(behaviour));
     let mut halts = |at_s: f64, contact_m: f64| {
         let mut scene = with_contact(Boat::at(0.0, 0.0).going(0.0, 1.0), Boat::at(contact_m, 0.0));
-        scene.stamp.valid_ns = SimTime::from_s(at_s);
+        set_time(&mut scene, at_s);
         decided(&mut helm, &scene).hold.is_some()
     };
     for (at_s, contact_m, want) in [

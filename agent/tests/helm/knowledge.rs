@@ -67,6 +67,42 @@ fn measures_are_of_one_place_or_between_two() {
 }
 
 #[test]
+fn boats_of_the_team_go_on_while_their_fixes_drop_out() {
+    // Two boats that go east at 2 m/s, turn north, and have had no fix since 10 s.
+    let [own, mate] = [Boat::at(-20.0, 0.0), Boat::at(-40.0, 0.0)];
+    let far = [Boat::at(70.0, 30.0), Boat::at(70.0, -30.0)];
+    for expression in ["distance(own_flag)", "distance(mate_carrier, own_flag)"] {
+        let mut helm = asking(expression);
+        let east_m = if expression.contains("mate") {
+            20.0
+        } else {
+            40.0
+        };
+        for (at_s, heading_deg, north_m, gone_m) in [
+            (10.5, 90.0, 0.0, 1.0),
+            (12.0, 90.0, 0.0, 4.0),
+            (15.0, 0.0, 6.0, 4.0),
+        ] {
+            let mut scene = picture(
+                at_s,
+                [own, mate].map(|boat| boat.going(heading_deg, 2.0)),
+                far,
+            );
+            scene.own[1].carrying = 1;
+            for boat in &mut scene.own {
+                boat.fix_ns = primitives::SimTime::from_s(10.0);
+            }
+            let want_m = f64::hypot(east_m + gone_m, north_m);
+            let got_m = answer(&mut helm, &scene);
+            assert!(
+                (got_m - want_m).abs() < 1e-9,
+                "{expression} at {at_s} s: {got_m}"
+            );
+        }
+    }
+}
+
+#[test]
 fn an_intruder_is_assigned_to_one_boat_and_to_the_same_by_everybody() {
     let own_x = |x: f64| [Boat::at(x, 0.0), Boat::at(-70.0, 0.0)];
     let mut mine = asking("known(assigned_intruder) ? distance(assigned_intruder) : -1");

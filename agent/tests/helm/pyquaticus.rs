@@ -88,6 +88,7 @@ fn picture(state: &State, team: usize) -> Picture {
                 carrying,
                 disabled: boat.disabled == 1,
                 tag_ready_ns,
+                fix_ns: now,
                 ..here.own(vehicle)
             });
             continue;

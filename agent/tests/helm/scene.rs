@@ -122,8 +122,15 @@ pub(crate) fn picture(at_s: f64, [one, two]: [Boat; 2], [three, four]: [Boat; 2]
         score: vec![0, 0],
         ..Picture::default()
     };
-    picture.stamp.valid_ns = now;
+    set_time(&mut picture, at_s);
     picture
+}
+
+/// Moves a picture and its fixes to a time.
+pub(crate) fn set_time(picture: &mut Picture, at_s: f64) {
+    let now = SimTime::from_s(at_s);
+    picture.stamp.valid_ns = now;
+    picture.own.iter_mut().for_each(|boat| boat.fix_ns = now);
 }
 
 /// Far from all other boats.
