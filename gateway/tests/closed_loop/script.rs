@@ -24,7 +24,7 @@ expect speed > 1.2";
 const COMPARISONS: [&str; 8] = ["=", "!=", "~", "!~", "^", "!^", "<", ">"];
 
 #[test]
-fn every_scenario_goes_as_it_is_written() {
+fn every_scenario_runs_as_written() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/closed_loop/scenarios");
     let mut count = 0;
     let mut failures = Vec::new();
