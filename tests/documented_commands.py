@@ -60,7 +60,7 @@ SERVES = {
     r"squall gateway emulate (?!.*--help).*": "",
     r"squall watch.*": "blue",
     r"squall moos --team.*": "MOOSTimeWarp",
-    r"squall ros bridge.*": "ROS 2 sees",
+    r"squall ros bridge.*": "to ROS 2",
     r"squall gateway sitl .*": "firmware at",
 }
 

@@ -68,7 +68,7 @@ cp whole.toml scenarios/strategies/mine.toml
 heard 2 "after 600 s"
 kill -TERM $watching
 wait $watching || [[ $? -eq 130 ]]
-refuse "the file scenarios/strategies/mine.toml exists already" squall new strategy mine
+refuse "the file scenarios/strategies/mine.toml already exists" squall new strategy mine
 for kind in boat sea game sweep training tournament; do
     expect "created scenarios/$kind" squall new "$kind" mine
 done

@@ -134,7 +134,7 @@ mod tests {
         assert!(
             error
                 .to_string()
-                .contains("\"green_one\"; there are blue_one, blue_two, red_one, red_two"),
+                .contains("\"green_one\"; the vehicles are: blue_one, blue_two, red_one, red_two"),
             "{error}"
         );
     }

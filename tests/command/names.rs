@@ -41,7 +41,7 @@ fn a_name_does_for_every_scenario_file() {
     );
     assert!(
         refusal(&dir, &["check", "min"])
-            .contains("there is no scenario file min (did you mean mine?)")
+            .contains("no scenario file named \"min\" (did you mean mine?)")
     );
     assert!(
         printed(&dir, &["policy", "options"]).contains("options: a value of a strategy's variable")
@@ -69,7 +69,7 @@ fn a_recording_has_a_name_and_the_newest_needs_none() {
     let dir = tempfile::tempdir().unwrap();
     for args in [&["log"][..], &["replay", "--check"]] {
         assert!(
-            refusal(&dir, args).contains("there is no recording in runs; record a game"),
+            refusal(&dir, args).contains("no recordings in runs/; record a game"),
             "{args:?}"
         );
     }
@@ -121,7 +121,7 @@ fn a_recording_has_a_name_and_the_newest_needs_none() {
         let said = printed(&dir, args);
         assert!(said.contains(want), "{args:?}: {said}");
     }
-    assert!(refusal(&dir, &["log", "gale"]).contains("there is no recording gale in runs"));
+    assert!(refusal(&dir, &["log", "gale"]).contains("no recording matches \"gale\" in runs/"));
 }
 
 #[test]

@@ -457,7 +457,7 @@ fn manoeuvres_have_the_numbers_of_the_current_and_of_the_published_boat() {
         &["--current-m-s", "0.5", "--current-toward-deg", "30"],
     );
     assert!(
-        (drift["drift speed"] - 0.5).abs() < 0.005 && (drift["drift toward"] - 30.0).abs() < 0.5,
+        (drift["drift speed"] - 0.5).abs() < 0.005 && (drift["drift direction"] - 30.0).abs() < 0.5,
         "{drift:?}"
     );
     let ahead = manoeuvre(

@@ -127,7 +127,7 @@ fn a_gateway_stops_its_boat_and_serves_operators_before_there_is_a_game() {
     let output = run(&["gateway", "stop", &afloat.link]);
     assert!(
         output.status.success()
-            && stdout(&output).contains("the gateway of blue_one has the link: e-stopped")
+            && stdout(&output).contains("the gateway of blue_one holds the link: e-stopped")
     );
     gateway.signal("TERM");
     assert!(gateway.wait().success());

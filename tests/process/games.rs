@@ -213,7 +213,7 @@ fn a_game_is_not_registered_in_a_folder_that_another_user_could_have_linked() {
     sim.env("XDG_RUNTIME_DIR", dir.path());
     let said = all_output(sim);
     assert!(
-        said.contains("found by its address only") && said.contains("squall is a link"),
+        said.contains("can be found only by its address") && said.contains("squall is a link"),
         "{said}"
     );
     assert_eq!(

@@ -95,7 +95,7 @@ fn a_mavlink_boat_is_armed_with_a_passed_report_too() {
         "{printed}"
     );
     assert!(
-        said.contains("nothing but requests for telemetry"),
+        said.contains("only requests for telemetry"),
         "{said}"
     );
     all.restart_gateway(&[

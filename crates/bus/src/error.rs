@@ -8,7 +8,7 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 pub enum BusError {
     /// The session could not be opened.
-    #[error("cannot open the network {what}: {reason}")]
+    #[error("cannot {what}: {reason}")]
     Open {
         /// The endpoint or role that failed to open.
         what: String,
@@ -95,7 +95,7 @@ pub(crate) fn reason(error: &zenoh::Error) -> String {
         .unwrap_or(&text)
         .trim_end_matches(['!', ' ']);
     if text.starts_with("Unable to connect to any of") {
-        return "nothing answers there; check the address and the port, and that the sim runs"
+        return "no response; check the address and port, and that the sim is running"
             .to_owned();
     }
     match text
@@ -116,7 +116,7 @@ mod tests {
         for (text, want) in [
             (
                 "Unable to connect to any of [Single(tcp/10.0.0.5:1)]! at /a/b.rs:1.",
-                "nothing answers there; check",
+                "no response; check",
             ),
             (
                 "Can not create a new TCP listener bound to tcp/10.0.0.5:1: [10.0.0.5:1: Address already in use (os error \

@@ -41,7 +41,7 @@ pub enum Refusal {
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum NotFound {
     /// The search timed out; the text names what was still missing.
-    #[error("no game to join after {0:.0?}: {1}")]
+    #[error("found no game to join within {0:.0?}: {1}")]
     InTime(Duration, String),
     /// The search can never succeed.
     #[error(transparent)]
@@ -195,10 +195,10 @@ fn game_info(bus: &Bus, game: &GameName) -> Result<GameInfo, Missing> {
         let others = if others.is_empty() {
             String::new()
         } else {
-            format!("; there is {}", listed(&others))
+            format!("; running games: {}", listed(&others))
         };
         return Err(Missing::Yet(format!(
-            "no sim answers for game {:?}{others}",
+            "no sim is serving game {:?}{others}",
             game.as_str()
         )));
     };

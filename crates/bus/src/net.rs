@@ -176,7 +176,7 @@ impl Net {
             None => Config::default(),
             Some(path) => {
                 let refused = |reason| BusError::Open {
-                    what: path.display().to_string(),
+                    what: format!("use {}", path.display()),
                     reason,
                 };
                 // The library would read any file, whatever its type and size.

@@ -375,7 +375,7 @@ fn boats(settings: &Settings, scenario: &Scenario) -> Result<Vec<(String, Addres
         };
         let index = scenario.teams.iter().position(|known| known.name == *team);
         let index =
-            index.ok_or_else(|| format!("there is no team {team:?}; there are {}", names()))?;
+            index.ok_or_else(|| format!("no team named {team:?}; the teams are: {}", names()))?;
         for boat in scenario
             .vehicles
             .iter()

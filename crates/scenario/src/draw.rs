@@ -80,7 +80,7 @@ pub(super) fn draw(
     ) else {
         let key = path.rsplit('.').next().unwrap_or(path);
         let message = format!(
-            "{key} is not a distribution, expected one of {{ uniform = [low, high] }}, {{ normal = [mean, sigma] }}, \
+            "{key} is not a valid distribution, expected one of {{ uniform = [low, high] }} with low < high, {{ normal = [mean, sigma] }}, \
              {{ log_normal = [median, sigma] }} with a median above 0, {{ choice = [a, b, ...] }}, \
              optionally with times = FACTOR"
         );

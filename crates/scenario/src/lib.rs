@@ -226,7 +226,7 @@ impl Scenario {
 
 /// A name that no vehicle of the game has.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("there is no vehicle {name:?}; there are {}", .known.join(", "))]
+#[error("no vehicle named {name:?}; the vehicles are: {}", .known.join(", "))]
 pub struct UnknownVehicle {
     /// The name.
     pub name: String,

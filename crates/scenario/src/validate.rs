@@ -156,9 +156,10 @@ impl<'a> Validator<'a> {
             let is_table = |item: &&Node| matches!(item.value, Value::Table(_));
             let surplus = items.get(*counts(schema).end()).filter(is_table);
             let message = format!(
-                "{} has {} entries, expected {}",
+                "{} has {} item{}, expected {}",
                 self.key(),
                 items.len(),
+                if items.len() == 1 { "" } else { "s" },
                 allowed(schema)
             );
             self.loader

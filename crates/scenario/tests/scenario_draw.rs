@@ -173,7 +173,7 @@ fn the_numbers_have_the_distribution_that_was_asked_for() {
 #[test]
 fn a_distribution_that_reaches_where_a_number_may_not_is_refused_with_its_place() {
     let dir = tempfile::tempdir().unwrap();
-    let none = "boats/drawn.toml:2:12: length_m is not a distribution";
+    let none = "boats/drawn.toml:2:12: length_m is not a valid distribution";
     for (boat, sea, want) in [
         (
             "length_m = { uniform = [0.05, 2] }\n",
@@ -193,7 +193,7 @@ fn a_distribution_that_reaches_where_a_number_may_not_is_refused_with_its_place(
         (
             "length_m = { uniform = [2, 1] }\n",
             "",
-            "boats/drawn.toml:2:12: length_m is not a distribution, expected one of { uniform",
+            "boats/drawn.toml:2:12: length_m is not a valid distribution, expected one of { uniform",
         ),
         ("length_m = { normal = [2] }\n", "", none),
         ("length_m = { choice = [] }\n", "", none),

@@ -76,7 +76,7 @@ test('a file that is not a chart is refused before the page opens', async (t) =>
   copyFileSync(image, lone);
   const bad = join(place, 'bad.geojson');
   writeFileSync(bad, '{"type":"LineString","coordinates":[[0,0],[712345,4512345]]}');
-  for (const [chart, want] of [[join(place, 'none.geojson'), /none\.geojson: No such file/], [GAME, /has an unknown format, expected PNG or JPEG/],
+  for (const [chart, want] of [[join(place, 'none.geojson'), /none\.geojson: No such file/], [GAME, /unknown format, expected PNG or JPEG/],
     [lone, /lone\.png: has no world file beside it/], [bad, /bad\.geojson: coordinates\[1\] is at \[712345, 4512345\], expected \[longitude/]]) {
     const run = new Program(t, 'run', GAME, '--view', '--no-record', '--chart', chart);
     assert.equal(await run.ended, 1, run.said);

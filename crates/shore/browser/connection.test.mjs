@@ -114,7 +114,7 @@ test('a page without a game says why and what to type, and shows the result of a
   const place = ['--game', name, '--connect', endpoint];
   const view = new Program(t, 'view', ...place, '--listen', '127.0.0.1:0');
   const sight = await Sight.load(t, browser, await view.url(), { allows: NOBODY });
-  await sight.until('the page says so', () => /No game to show: .*nothing answers there.*squall run surveyor_2v2/s.test(document.getElementById('over').textContent));
+  await sight.until('the page says so', () => /No game to show: .*no response.*squall run surveyor_2v2/s.test(document.getElementById('over').textContent));
   assert.equal(await sight.text('#phase'), 'no game');
   const file = gameFile(t, 'brief', 'pav01_vs_pav01.toml', 'duration_s = 3');
   const record = join(folder(t), 'brief.mcap');

@@ -223,7 +223,7 @@ fn drift(sailed: &Sailed) -> Vec<Measure> {
     vec![
         measure("drift speed", drift.speed_m_s(), "m/s"),
         measure(
-            "drift toward",
+            "drift direction",
             drift.toward_rad().map_or(f64::NAN, compass_deg_from_rad),
             "°",
         ),

@@ -249,7 +249,7 @@ impl Sheet {
         let missing = || {
             self.mistake(
                 Some(1),
-                format!("no column t_s among {}", self.heads.join(", ")),
+                format!("missing column t_s; columns found: {}", self.heads.join(", ")),
             )
         };
         let column = self.column("t_s").ok_or_else(missing)?;
@@ -402,7 +402,7 @@ mod tests {
                 "t_s,speed_m_s\ns,kn\n0,1\n",
                 "in.csv:2: speed_m_s has the unit kn, expected that of its name",
             ),
-            ("x,a\n0,1\n", "in.csv:1: no column t_s among x, a"),
+            ("x,a\n0,1\n", "in.csv:1: missing column t_s; columns found: x, a"),
             (
                 "t_s,a\n0,1\nnan,1\n",
                 "in.csv:3: t_s is nan, expected 0 to 100",

@@ -192,7 +192,7 @@ fn a_log_that_lacks_columns_is_refused() {
         (
             "t_s,port_pct,starboard_pct",
             "0,0",
-            "log.csv:1: no column heading_deg",
+            "log.csv:1: missing column heading_deg",
         ),
         (
             "t_s,heading_deg,surge_m_s,yaw_rate_deg_s",

@@ -334,14 +334,14 @@ fn a_gateway_serves_operators_and_its_recording_is_replayed_and_its_guard_stops_
     );
     let (output, said) = folder.run(&["stop", &boat.link.reach()]);
     assert!(
-        output.status.success() && said.contains("has the link: e-stopped"),
+        output.status.success() && said.contains("holds the link: e-stopped"),
         "{said}"
     );
     drop(gateway.0.stdin.take());
     assert!(gateway.0.wait().expect("it ends").success());
     let (output, said) = folder.run(&["replay", "run.mcap"]);
     assert!(
-        output.status.success() && said.contains("the replay equals the recording, byte for byte"),
+        output.status.success() && said.contains("the replay is identical to the recording, byte for byte"),
         "{said}"
     );
 

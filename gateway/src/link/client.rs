@@ -71,7 +71,7 @@ pub(super) fn run(threads: &Arc<Threads>, address: &LinkAddress) {
 fn in_words(error: &io::Error) -> String {
     match error.kind() {
         ErrorKind::ConnectionRefused => {
-            "connection refused: nothing listens there; check the address and the port, and that the boat is on"
+            "connection refused: nothing is listening there; check the address and port, and that the boat is on"
                 .to_owned()
         }
         _ => error.to_string(),

@@ -45,7 +45,7 @@ impl Bundle {
         let path = |name: &str| folder.join(name);
         if !path(CERTIFICATE_FILE).exists() {
             let problem = format!(
-                "no keys found: a bundle is a folder with {CERTIFICATE_FILE}{}",
+                "no keys found; a key bundle is a folder that contains {CERTIFICATE_FILE}{}",
                 bundles_in(folder)
             );
             return Err(BundleError {

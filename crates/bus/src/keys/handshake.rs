@@ -51,7 +51,7 @@ pub(crate) fn refusal(endpoint: &str, keys: &Bundle) -> Option<BusError> {
     // A suspended sim does not answer either, and may resume.
     let reason = "the server there does not use TLS: the game may have no keys".to_owned();
     tls.is_handshaking().then(|| BusError::Open {
-        what: format!("to connect to {endpoint}"),
+        what: format!("connect to {endpoint}"),
         reason,
     })
 }

@@ -65,7 +65,7 @@ impl HubStopPort {
             .filter(|endpoint| endpoint.starts_with("tcp/"))
         {
             let failed = |e: std::io::Error| BusError::Open {
-                what: format!("to receive stops at udp/{}", address(endpoint)),
+                what: format!("receive stops at udp/{}", address(endpoint)),
                 reason: e.to_string(),
             };
             let found = address(endpoint).to_socket_addrs().map_err(failed)?;

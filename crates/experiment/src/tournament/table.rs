@@ -246,7 +246,7 @@ fn ratings(text: &mut String, report: &Report) {
     add_line(
         text,
         format_args!(
-            "\nElo ratings with 95 % intervals: a lead of 100 means an expected result of 64 %"
+            "\nElo ratings with 95 % intervals: a lead of 100 means an expected score of 64 %"
         ),
     );
     for Row {

@@ -289,7 +289,7 @@ fn drive(
         shared.agent_end.visit(|slot| *slot = Some(end));
     };
     let failed = |e: std::io::Error| BusError::Open {
-        what: "an agent's thread".to_owned(),
+        what: "start an agent's thread".to_owned(),
         reason: e.to_string(),
     };
     Ok(Some(NodeThread::start(body).map_err(failed)?))

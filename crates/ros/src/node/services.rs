@@ -102,7 +102,7 @@ pub(super) fn open(
             }
         })
         .map_err(|e| BusError::Open {
-            what: "services".to_owned(),
+            what: "start the services".to_owned(),
             reason: e.to_string(),
         })
     };

@@ -48,7 +48,7 @@ pub struct Game {
     #[schemars(range(min = 0.01, max = 3600), extend("default" = 1))]
     pub(crate) order_ttl_s: f64,
     /// The two teams; the first has the end at the field's `corner`.
-    #[schemars(length(equal = 2), extend("x-expected" = "exactly two [[team]]"))]
+    #[schemars(length(equal = 2), extend("x-expected" = "exactly two [[team]] tables"))]
     pub(crate) team: Vec<Team>,
     /// Single boats. They precede all fleets in processing order.
     pub(crate) vehicle: Vec<Vehicle>,

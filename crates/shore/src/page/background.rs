@@ -68,7 +68,7 @@ impl Background {
             }
             _ => {
                 return Err(bad(
-                    "has an unknown format, expected PNG or JPEG with a world file, or GeoJSON"
+                    "unknown format, expected PNG or JPEG with a world file, or GeoJSON"
                         .to_owned(),
                 ));
             }
@@ -426,7 +426,7 @@ mod tests {
         let svg = read_in(&[("site.svg", b"<svg onload='alert(1)'/>")]).expect_err("no SVG");
         assert!(
             svg.contains(
-                "has an unknown format, expected PNG or JPEG with a world file, or GeoJSON"
+                "unknown format, expected PNG or JPEG with a world file, or GeoJSON"
             ),
             "{svg}"
         );
