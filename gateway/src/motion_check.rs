@@ -97,8 +97,7 @@ impl MotionCheck {
         }
     }
 
-    /// Notes that the receiver's position has jumped: older positions no longer yield the boat's
-    /// speed.
+    /// Records that the receiver's position has jumped: older positions no longer yield the boat's speed.
     pub(crate) fn jump(&mut self) {
         self.fixes.clear();
         (self.slow_since, self.course) = (None, None);
@@ -151,8 +150,7 @@ impl MotionCheck {
 mod tests {
     use super::*;
 
-    /// Sails a circle at this speed and rate of turn for 20 s, with the readings of its
-    /// instruments; returns the fault.
+    /// Drives a circle at this speed and rate of turn for 20 s, with these instrument readings; returns the fault.
     fn circle(
         speed_m_s: f64,
         turn_deg_s: f64,

@@ -215,15 +215,14 @@ pub(super) struct Ways {
     last: Vector,
     from_first: [Vector; 2],
     from_last: [Vector; 2],
-    /// For the middle path: the contact's position after the turn, its motion until then and the
-    /// share of that until it was nearest, its motion afterwards, and the time at which it is
-    /// nearest.
+    /// For the middle path: the contact's position after the turn, its motion until then and the fraction of that until
+    /// it was nearest, its motion afterwards, and the time at which it is nearest.
     middle: Vector,
     past: Vector,
     share: f32,
     w: Vector,
     t: f32,
-    /// How far other paths may deviate from the polygon of these, m, and the increase of that, m/s.
+    /// How far other paths may deviate from the polygon of these, m, and how fast that grows, m/s.
     off: f32,
     bend: f32,
 }
@@ -311,7 +310,7 @@ impl Ready {
         }
     }
 
-    /// Upper bound of the least distances on ways of a cell, m.
+    /// Upper bound of the least distances on the paths of a cell, m.
     #[inline(always)]
     pub(super) fn most(&self, ways: &Ways) -> f32 {
         let Ways { first, last, t, .. } = *ways;
@@ -323,7 +322,7 @@ impl Ready {
         smaller(smaller(straight, turning), self.least_before).sqrt() + ways.off + ways.bend * t
     }
 
-    /// Lower bound of the least distances on ways of a cell, m.
+    /// Lower bound of the least distances on the paths of a cell, m.
     #[inline(always)]
     pub(super) fn least(&self, ways: &Ways) -> f32 {
         let nearest = (

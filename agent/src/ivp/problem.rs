@@ -1,4 +1,4 @@
-//! One decision: takes functions, and finds the best course and speed.
+//! One decision: collects functions and finds the best course and speed.
 
 use super::cell::Cells;
 use super::fixed::{FUNCTIONS_MAX, QUANTUM, Weight};

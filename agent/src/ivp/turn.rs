@@ -211,7 +211,7 @@ impl MeanSpeed {
         })
     }
 
-    /// The mean speed for an ordered one. If the change takes the share `y` of the time, the mean
+    /// The mean speed for an ordered one. If the change takes the fraction `y` of the time, the mean
     /// change is `y
     /// - y^2 / 2` of the largest possible.
     #[inline(always)]

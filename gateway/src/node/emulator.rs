@@ -36,7 +36,7 @@ pub struct EmulatorSettings {
     pub front_seat: FrontSeatSettings,
     /// How long to look for the game.
     pub wait: Duration,
-    /// After this long without a picture the sim counts as dead.
+    /// After this long without a picture, the sim is treated as lost.
     pub silence: Duration,
     /// Set by the caller to end the emulator.
     pub stop: Arc<AtomicBool>,

@@ -60,7 +60,7 @@ const POLL: Duration = Duration::from_millis(100);
 pub struct Outside {
     /// The address of the boat.
     pub link: LinkAddress,
-    /// Without a byte for this long the boat counts as lost.
+    /// After this long without a byte, the boat is treated as lost.
     pub silence: Duration,
     /// Where the control port listens; port 0 means any free port.
     pub control: SocketAddr,
@@ -155,7 +155,7 @@ fn start_guard(
         command,
         &Protocol::new(&settings.plan.gateway).guard_message(),
     );
-    let text = "there is no guard: if the gateway is killed, nothing stops the boat";
+    let text = "no guard is running: if the gateway is killed, nothing stops the boat";
     started
         .inspect_err(|e| warn(notify, format!("{text}: {e}")))
         .ok()
@@ -211,8 +211,7 @@ fn connect(
         guard: Guard::new(settings.place.token.clone()),
         port: port.as_ref(),
     };
-    // On its own thread: a gateway that searched for its game first abandoned a moving boat
-    // meanwhile.
+    // On its own thread: a gateway that searched for its game first left a moving boat unattended in the meantime.
     let finder = game_finder::begin(settings, input);
     port.iter().for_each(ControlPort::begin);
     let result = match &finder {

@@ -144,7 +144,7 @@ impl Membership {
         places.filter_map(|(i, place)| Some((VehicleId::at(i), place.holder.as_mut()?)))
     }
 
-    /// The vehicles of the node with this ticket. None if the ticket is unknown or void.
+    /// The vehicles of the node with this ticket. Empty if the ticket is unknown or void.
     pub(super) fn vehicles_of(&self, ticket: u64) -> impl Iterator<Item = VehicleId> {
         let holds = move |place: &Place| {
             place
@@ -200,7 +200,7 @@ impl Membership {
         self.lose(|holder| holder.node == node)
     }
 
-    /// Drops all nodes that have not answered `tick`. Returns their abandoned vehicles.
+    /// Drops all nodes that have not replied to `tick`. Returns their abandoned vehicles.
     pub fn give_up(&mut self, tick: u64) -> Vec<VehicleId> {
         self.lose(|holder| holder.newest.is_none_or(|newest| newest < tick))
     }
@@ -224,7 +224,7 @@ impl Membership {
         lost.collect()
     }
 
-    /// Whether all present nodes have answered `tick`.
+    /// Whether all present nodes have replied to `tick`.
     pub fn all_answered(&self, tick: u64) -> bool {
         let answered = |holder: &Holder| holder.newest.is_some_and(|newest| newest >= tick);
         self.places.iter().filter_map(Place::present).all(answered)
