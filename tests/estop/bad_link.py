@@ -12,7 +12,7 @@ prints `ready`, then takes one command a line from standard input and answers ea
     cut A B          drops everything between two hosts, packets in flight included
     restore          ends all cuts
     delay-ms N       one-way delay of packets that are sent from now on
-    loss-pct N       share of packets that are lost
+    loss-pct N       percentage of packets that are lost
     rate-kbit N      rate limit of each direction between two hosts
     stats            counts since the last `stats`, as JSON
     trace FROM_NS    packets since this time of the monotonic clock, one a line, then `end`
@@ -266,7 +266,7 @@ def main():
     parser.add_argument("--host", action="append", required=True, metavar="NAME=NAMESPACE:ADDRESS",
                         help="a machine, once for each of them; all addresses in one network of 24 bits")
     parser.add_argument("--delay-ms", type=float, default=0.0, help="one-way delay [0]")
-    parser.add_argument("--loss-pct", type=float, default=0.0, help="share of packets that are lost [0]")
+    parser.add_argument("--loss-pct", type=float, default=0.0, help="percentage of packets that are lost [0]")
     parser.add_argument("--rate-mbit", type=float, help="rate limit of each direction between two hosts [none]")
     parser.add_argument("--queue-kb", type=int, default=256, help="what may wait for the rate limit [256]")
     parser.add_argument("--seed", type=int, default=1, help="random seed of the losses [1]")

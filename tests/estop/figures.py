@@ -7,7 +7,7 @@ WIDTH = 80
 
 
 def quantile(values, share):
-    """The smallest value that at least this share of all values do not exceed (nearest rank); None of no values."""
+    """The quantile at this fraction of all values, by nearest rank; None without values."""
     if not values:
         return None
     rank = max(1, math.ceil(share * len(values)))

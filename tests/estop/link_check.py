@@ -14,7 +14,7 @@ import time
 EVERY_S = 0.005
 # How far a round trip may be from twice the delay, ms: a busy machine's own.
 ROUND_TRIP_MS = 5.0
-# How far the share that is lost may be from what was asked for, in standard deviations.
+# Maximum deviation of the lost fraction from the requested one, in standard deviations.
 DEVIATIONS = 4.0
 
 

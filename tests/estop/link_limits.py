@@ -116,7 +116,7 @@ def main():
     parser.add_argument("--far", choices=("agents", "gateways"), default="agents")
     parser.add_argument("--transport", choices=("tcp", "quic"), default="quic")
     parser.add_argument("--delay-ms", type=float, default=0.0, help="one-way delay [0]")
-    parser.add_argument("--loss-pct", type=float, default=0.0, help="share of packets that are lost [0]")
+    parser.add_argument("--loss-pct", type=float, default=0.0, help="percentage of packets that are lost [0]")
     parser.add_argument("--rate-kbit", type=float, help="rate limit of each direction [none]")
     parser.add_argument("--for-s", type=float, default=60.0, help="how long to play [60]")
     parser.add_argument("--order-ttl-s", type=float, default=1.0, help="order_ttl_s of game and gateways [1]")

@@ -119,7 +119,7 @@ fn a_gateway_stops_its_boat_and_serves_operators_before_there_is_a_game() {
     assert!(!output.status.success());
     let said = stderr(&output);
     assert!(
-        said.contains("another gateway on this machine has the link"),
+        said.contains("another gateway on this machine holds the link"),
         "{said}"
     );
     assert!(afloat.tell("status").contains("disarmed"));

@@ -299,7 +299,7 @@ fn a_damaged_message_costs_itself_alone() {
     std::fs::write(&path, bytes).expect("it is written");
     let told = printed(&["log", &path.display().to_string()]);
     assert!(
-        told.contains("1 message is damaged and left out; message 7 of frame"),
+        told.contains("1 message is damaged and skipped; message 7 of frame"),
         "{told}"
     );
     assert!(told.contains(&all), "everything else is told as before");
@@ -322,7 +322,7 @@ fn a_damaged_message_costs_itself_alone() {
     replay.kill();
     let said = replay.errors();
     assert_eq!(
-        said.matches("1 message is damaged and left out; message 7 of frame")
+        said.matches("1 message is damaged and skipped; message 7 of frame")
             .count(),
         1,
         "{said}"

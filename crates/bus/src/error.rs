@@ -15,7 +15,7 @@ pub enum BusError {
         /// zenoh's error.
         reason: String,
     },
-    /// A setting of the configuration was refused.
+    /// A setting of the configuration was rejected.
     #[error("network setting {key} = {value}: {reason}")]
     Setting {
         /// The key of the setting.
@@ -36,8 +36,8 @@ pub enum BusError {
     /// The sim refuses, for this reason.
     #[error("the sim refuses: {0}")]
     Refused(String),
-    /// The sim does not answer.
-    #[error("the sim does not answer")]
+    /// The sim does not respond.
+    #[error("the sim does not respond")]
     Silent,
     /// The game requires its token.
     #[error(

@@ -113,7 +113,7 @@ fn whose_keys_do_not_fit_is_told_why() {
     assert!(text.contains("not those of team-blue"), "{text}");
     assert!(
         matches!(leaf(&endpoint, None), Err(BusError::Open { .. })),
-        "nobody listens"
+        "nothing is listening"
     );
     let (sim, endpoint) = hub(bundle(&elsewhere, "sim"));
     let _sim = sim.expect("it listens");

@@ -11,7 +11,7 @@ use xxhash_rust::xxh3::xxh3_128;
 /// are defaults.
 const QOS: &str = "::,10:,:,:,,";
 
-/// What an endpoint does.
+/// The kind of an endpoint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Publishes a topic.

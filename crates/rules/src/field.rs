@@ -88,7 +88,7 @@ pub enum Obstacle {
     },
     /// A polygon without self-crossings.
     Polygon {
-        /// At least three corners, in order, either way round.
+        /// At least three corners, in order, in either direction.
         corners: Vec<Ned>,
     },
 }

@@ -57,7 +57,7 @@ pub(super) struct Owner<'a> {
     pub(super) path_from: usize,
 }
 
-/// The kind of distribution that a table is meant to be, if any.
+/// The kind of distribution that a table is intended to be, if any.
 pub(super) fn distribution_kind(table: &Table) -> Option<&'static str> {
     ["uniform", "normal", "log_normal", "choice"]
         .into_iter()

@@ -13,7 +13,7 @@ const STYLES = ['solid', 'dashed', 'dotted', 'dashed'];
 
 export const isNumber = (value) => typeof value === 'number' && Number.isFinite(value);
 
-/** The exponential moving average, corrected for its start; `weight` is the share of the past, 0 to 1. */
+/** The exponential moving average, corrected for its start; `weight` is the weight of the past, 0 to 1. */
 export function smoothed(values, weight) {
   let [sum, part] = [0, 0];
   return values.map((value) => {

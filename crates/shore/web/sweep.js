@@ -605,7 +605,7 @@ function drawCurves(width) {
 
 /* Heat maps */
 
-/** The colour of a share of the scale, and black or white, whichever is read better on it. */
+/** The colour at a fraction of the scale, and black or white, whichever is more legible on it. */
 function heatColour(share) {
   const { heat } = palette;
   const place = Math.min(1, Math.max(0, share)) * (heat.length - 1);

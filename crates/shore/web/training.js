@@ -15,7 +15,7 @@ const ROWS_MAX = 200;
 /** The newest part of a run whose rate counts as the current one. */
 const RECENT_S = 60;
 
-/** The share of won, drawn or lost games. */
+/** The fraction of won, drawn or lost games. */
 const share = ({ won, drawn, lost }) => (100 * (won + drawn / 2)) / Math.max(1, won + drawn + lost);
 
 /** Curves of evaluations, one per opponent: title, unit, value, and range if known. */

@@ -2,7 +2,7 @@
 
 const SCALE_MIN = 0.02;
 const SCALE_MAX = 120;
-/** The inner part of the chart, as a share of its width and height. */
+/** The inner part of the chart, as a fraction of its width and height. */
 const INNER = 0.6;
 /** The chart turns if the field becomes this many times larger. */
 const TURN_GAIN = 1.25;

@@ -77,7 +77,7 @@ pub type OnLinkEvent = Box<dyn Fn(LinkEvent) + Send + Sync>;
 /// the boat receives standby.
 ///
 /// # Errors
-/// [`NodeError`] if another gateway on this machine has the link, if the game refuses, or if the
+/// [`NodeError`] if another gateway on this machine holds the link, if the game refuses, or if the
 /// network, the link or the recording fails. A lost boat or sim is not an error: the gateway waits
 /// for it.
 pub fn serve(
@@ -143,7 +143,7 @@ fn warn(notify: &mut dyn FnMut(NodeEvent<'_>), text: String) {
     });
 }
 
-/// Starts the guard. Failure to start it does not abandon the boat.
+/// Starts the guard. If it cannot start, the boat is not abandoned.
 fn start_guard(
     settings: &Settings,
     mut command: Command,
@@ -241,7 +241,7 @@ fn connect(
     })
 }
 
-/// Starts the recording. Failure to start it does not abandon the boat.
+/// Starts the recording. If it cannot start, the boat is not abandoned.
 fn recorder(
     file: NewFile,
     settings: &Settings,

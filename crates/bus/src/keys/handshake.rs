@@ -14,13 +14,13 @@ use std::net::{TcpStream, ToSocketAddrs};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Timeout of each step: this only explains a failure after the fact.
+/// Timeout of each step; short, because this only explains a failure after the fact.
 const STEP: Duration = Duration::from_millis(500);
 /// The record type of a TLS alert, with which a TLS server answers other protocols.
 const ALERT: u8 = 0x15;
 
-/// Why the sim at `endpoint` (for example `tls/127.0.0.1:7447`) and these keys do not match; `None`
-/// if nothing listens there or nothing is wrong.
+/// Why the sim at `endpoint` (for example `tls/127.0.0.1:7447`) and these keys do not match; `None` if nothing is
+/// listening there or nothing is wrong.
 pub(crate) fn refusal(endpoint: &str, keys: &Bundle) -> Option<BusError> {
     let refused = |why: String| BusError::Keys(format!("{endpoint}: {why}"));
     let address = address(endpoint);
@@ -61,7 +61,7 @@ pub(crate) fn is_tls(endpoint: &str) -> bool {
     let asked = || {
         let mut stream = connect(address(endpoint))?;
         let mut answer = [0; 1];
-        // Eight zeros are not a TLS record: a TLS server answers with an alert.
+        // Eight zeros are not a TLS record: a TLS server replies with an alert.
         stream.write_all(&[0; 8]).ok()?;
         stream.read_exact(&mut answer).ok()?;
         Some(answer[0] == ALERT)

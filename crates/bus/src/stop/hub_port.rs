@@ -134,7 +134,7 @@ impl Server {
                 .map(|(state, age)| (state.clone(), age.as_millis() as u64))
                 .unwrap_or_default()
         };
-        // Names all boats, so that the operator knows that there are no others.
+        // Lists all boats, so that the operator knows that no others exist.
         let states: States = self
             .heard
             .lock()

@@ -83,7 +83,7 @@ pub struct Worth {
 /// The end of the game.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct End {
-    /// For a win; a loss costs as much.
+    /// For a win; a loss costs the same amount.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub win: f64,
     /// Per point of lead.

@@ -42,7 +42,7 @@ fn a_policy_learns_to_beat_an_idle_team_and_to_score_against_pav01() {
         .map_or(0.0, |evaluated| evaluated.played[1].1.won());
     assert!(
         idle >= 0.9,
-        "won a share of {idle} of the games against an idle team"
+        "won a fraction of {idle} of the games against an idle team"
     );
 }
 

@@ -33,7 +33,7 @@ pub enum Mark {
     EnemyFlag,
     /// Where a flag must be brought.
     CapturePlace,
-    /// Where a tagged boat is untagged; the enemy's flag while it must leave that place first.
+    /// Where a tagged boat is untagged; the enemy's flag while the boat must first leave that place.
     UntagPlace,
 }
 

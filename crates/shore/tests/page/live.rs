@@ -423,7 +423,7 @@ fn a_selected_boat_tells_what_its_helm_thinks_and_where_it_believes_to_be() {
     let none = other.until("helm", |_| true);
     assert_eq!(
         (&none["report"], &none["reason"]),
-        (&json!(null), &json!("no agent runs red_one now"))
+        (&json!(null), &json!("no agent is running red_one now"))
     );
     wait_until("the picture of its team is wanted", || {
         sim.pictures.is_heard()
