@@ -104,7 +104,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     // registration fails, users must pass the game's address; nothing else is lost.
     let registration = bus::register(&entry);
     if let Err(error) = &registration {
-        screen::remark(&format!("the game can be found only by its address: {error}"));
+        screen::remark(&format!(
+            "the game can be found only by its address: {error}"
+        ));
     }
     let tell = &mut |message| printer.print(message);
     let mut report = sim::node::serve(&scenario, seed, &settings, recorder.as_mut(), tell)?;

@@ -186,7 +186,10 @@ fn mistakes_are_explained() {
             &["--compare", recording],
             "--compare needs two recordings, but got 1",
         ),
-        (&[recording, recording], "needs one recording, or several with --quality, but got 2"),
+        (
+            &[recording, recording],
+            "needs one recording, or several with --quality, but got 2",
+        ),
         (
             &["--quality", recording, "nowhere.mcap"],
             "there is no file nowhere.mcap",

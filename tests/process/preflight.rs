@@ -94,10 +94,7 @@ fn a_mavlink_boat_is_armed_with_a_passed_report_too() {
         printed.contains("GLOBAL_POSITION_INT") && printed.contains("nothing is missing"),
         "{printed}"
     );
-    assert!(
-        said.contains("only requests for telemetry"),
-        "{said}"
-    );
+    assert!(said.contains("only requests for telemetry"), "{said}");
     all.restart_gateway(&[
         "--config",
         "blueboat",

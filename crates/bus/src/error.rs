@@ -95,8 +95,7 @@ pub(crate) fn reason(error: &zenoh::Error) -> String {
         .unwrap_or(&text)
         .trim_end_matches(['!', ' ']);
     if text.starts_with("Unable to connect to any of") {
-        return "no response; check the address and port, and that the sim is running"
-            .to_owned();
+        return "no response; check the address and port, and that the sim is running".to_owned();
     }
     match text
         .rsplit_once(": ")

@@ -40,11 +40,8 @@ pub(crate) fn load_game(
 
 /// The problem with an experiment whose file requests too many games.
 pub(crate) fn too_many_games(games: usize, file: &Path) -> Option<Problem> {
-    let message = || {
-        format!(
-            "{games} games in all, expected at most {GAMES_MAX}; reduce games or entries"
-        )
-    };
+    let message =
+        || format!("{games} games in all, expected at most {GAMES_MAX}; reduce games or entries");
     (games > GAMES_MAX).then(|| Problem::of_file(file.to_owned(), message()))
 }
 

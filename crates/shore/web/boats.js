@@ -276,7 +276,7 @@ export class Boats {
     }
   }
 
-  /** The marks shown as letters. In a crowd the hull alone says that a boat is out of play. */
+  /** The marks shown as letters. In a crowd, only the hull shows that a boat is out of play. */
   lettersOf(game, index) {
     const plain = game.count > CROWD && index !== this.selected && index !== this.hovered;
     return plain ? game.marks[index] & ~(TAGGED | DISABLED) : game.marks[index];

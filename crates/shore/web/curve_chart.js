@@ -125,7 +125,7 @@ export class CurveChart {
     for (const [x, name] of this.axis.begins ?? []) {
       const left = valToPos(x, 'x', true);
       context.strokeRect(left, bbox.top, 0, bbox.height);
-      // Above the curves, from the line to the right as far as there is room.
+      // Above the curves, from the line to the right as far as space permits.
       const right = bbox.left + bbox.width - context.measureText(plain(name)).width;
       context.fillText(plain(name), Math.min(left, right), bbox.top - 6 * ratio);
     }

@@ -86,7 +86,7 @@ export class Log {
     const key = `${game.eventVersion} ${this.filter.value} ${past}`;
     if (key === this.drawn) return;
     this.drawn = key;
-    // In a replay, future events are above, as far as there is space.
+    // In a replay, future events are above, as far as space permits.
     const last = replay ? Math.min(known.length, past + LINES_MAX / 2) : known.length;
     const first = Math.max(0, last - LINES_MAX);
     this.lines = known.slice(first, last).reverse();

@@ -90,7 +90,9 @@ impl Sheet {
         };
         for (i, head) in sheet.heads.iter().enumerate() {
             if !head.is_empty() && sheet.heads[..i].contains(head) {
-                return Err(sheet.mistake(Some(1), format!("two columns named {head}, expected one")));
+                return Err(
+                    sheet.mistake(Some(1), format!("two columns named {head}, expected one"))
+                );
             }
         }
         let mut is_first = true;
@@ -249,7 +251,10 @@ impl Sheet {
         let missing = || {
             self.mistake(
                 Some(1),
-                format!("missing column t_s; columns found: {}", self.heads.join(", ")),
+                format!(
+                    "missing column t_s; columns found: {}",
+                    self.heads.join(", ")
+                ),
             )
         };
         let column = self.column("t_s").ok_or_else(missing)?;
@@ -402,7 +407,10 @@ mod tests {
                 "t_s,speed_m_s\ns,kn\n0,1\n",
                 "in.csv:2: speed_m_s has the unit kn, expected that of its name",
             ),
-            ("x,a\n0,1\n", "in.csv:1: missing column t_s; columns found: x, a"),
+            (
+                "x,a\n0,1\n",
+                "in.csv:1: missing column t_s; columns found: x, a",
+            ),
             (
                 "t_s,a\n0,1\nnan,1\n",
                 "in.csv:3: t_s is nan, expected 0 to 100",

@@ -341,7 +341,8 @@ fn a_gateway_serves_operators_and_its_recording_is_replayed_and_its_guard_stops_
     assert!(gateway.0.wait().expect("it ends").success());
     let (output, said) = folder.run(&["replay", "run.mcap"]);
     assert!(
-        output.status.success() && said.contains("the replay is identical to the recording, byte for byte"),
+        output.status.success()
+            && said.contains("the replay is identical to the recording, byte for byte"),
         "{said}"
     );
 

@@ -185,9 +185,7 @@ fn pairings(text: &mut String, report: &Report, challenger: &str) {
     let width = width(&names(report));
     add_line(
         text,
-        format_args!(
-            "\n{challenger} against each entry, with its share of decisive games ± 95 %"
-        ),
+        format_args!("\n{challenger} against each entry, with its share of decisive games ± 95 %"),
     );
     add_line(
         text,

@@ -68,8 +68,7 @@ impl Background {
             }
             _ => {
                 return Err(bad(
-                    "unknown format, expected PNG or JPEG with a world file, or GeoJSON"
-                        .to_owned(),
+                    "unknown format, expected PNG or JPEG with a world file, or GeoJSON".to_owned(),
                 ));
             }
         };
@@ -425,9 +424,7 @@ mod tests {
         );
         let svg = read_in(&[("site.svg", b"<svg onload='alert(1)'/>")]).expect_err("no SVG");
         assert!(
-            svg.contains(
-                "unknown format, expected PNG or JPEG with a world file, or GeoJSON"
-            ),
+            svg.contains("unknown format, expected PNG or JPEG with a world file, or GeoJSON"),
             "{svg}"
         );
     }

@@ -172,7 +172,9 @@ impl QueryThread {
                 ..HelmAnswer::default()
             },
             Some(Ok(None)) => because(format!("the mind of {name} has no helm")),
-            Some(Err(_)) => because(format!("the mind of {name} is running another version of Squall")),
+            Some(Err(_)) => because(format!(
+                "the mind of {name} is running another version of Squall"
+            )),
             None => because(format!("no agent is running {name} now")),
         };
         self.shared
