@@ -43,7 +43,7 @@ class Options(TypedDict, total=False):
     """How long an action holds, s: a multiple of the game's own period. By default the smallest multiple from 0.5 on; None: the game's
     own period."""
     episode_max_s: float | None
-    """Time after which an episode is cut off (`truncated`), s. None (default): whole games."""
+    """Time after which an episode is truncated (`truncated`), s. None (default): whole games."""
     starts: int | None
     """The number of different starts, which repeat, so that new games are cheap. None (default): a new start for every game."""
     team: str | None

@@ -41,7 +41,7 @@ def by_program(program: str, tournament: Path, folder: Path) -> tuple[str, dict[
 
 
 def same(one: dict[str, object], other: dict[str, object]) -> None:
-    """Compares the games of both reports, whatever played them and at any speed."""
+    """Compares the games of both reports, regardless of what played them and how fast."""
     for report in (one, other):
         del report["rate"], report["commit"]
     assert one == other
