@@ -199,7 +199,7 @@ fn mistakes_are_explained() {
         let refused = program::refusal(program::project(), &[&["log"], args].concat());
         assert!(
             refused.contains(said),
-            "{args:?} should say {said:?}, but says {refused}"
+            "{args:?} should print {said:?}, but prints {refused}"
         );
     }
 }

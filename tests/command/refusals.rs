@@ -27,7 +27,7 @@ fn missing(case: &str) -> Vec<String> {
             let silent = commands.iter().filter(|(_, said)| !said.contains(&line));
             missing.extend(
                 silent.map(|(command, said)| {
-                    format!("{command} should say {line:?}, but says {said}")
+                    format!("{command} should print {line:?}, but prints {said}")
                 }),
             );
         }
@@ -35,7 +35,7 @@ fn missing(case: &str) -> Vec<String> {
             std::fs::write(path, text).unwrap();
         }
     }
-    assert!(looked_for > 0, "nothing is looked for: {case}");
+    assert!(looked_for > 0, "no text is expected: {case}");
     missing
 }
 

@@ -1,7 +1,7 @@
 //! `squall trial` and `squall identify` from the command line: reference data as CSV files.
 #![expect(
     clippy::disallowed_methods,
-    reason = "tolerances are far above the last bit"
+    reason = "tolerances are far larger than the last bit"
 )]
 
 use crate::program::{printed, project, scenario, squall};

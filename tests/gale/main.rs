@@ -7,7 +7,7 @@
 
 #![expect(
     clippy::print_stdout,
-    reason = "measurements are shown when it is run by hand"
+    reason = "prints measurements when run by hand"
 )]
 
 use gateway::bridge::{Bridge, Event, Input, Output, Plan, Site};
@@ -37,7 +37,7 @@ const BOATS: usize = 4;
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Fault {
     None,
-    /// The compass reads this much too low, rad.
+    /// The compass reads too low by this much, rad.
     CompassOff(f64),
     /// The compass reading never changes.
     CompassFrozen,

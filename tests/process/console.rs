@@ -1,4 +1,4 @@
-//! The operator console: stops take every path, and are complete when the boats report them.
+//! The operator console: stops take every path, and count as complete when the boats report them.
 
 use crate::boat_alone::Wire;
 use crate::support::{LIMIT, Process, Sim, gateway_args, printed_by, refused, temporary};
@@ -109,7 +109,7 @@ impl Console {
             let line = self
                 .lines
                 .recv_timeout(LIMIT.saturating_sub(start.elapsed()));
-            let line = line.unwrap_or_else(|_| panic!("{left:?} is not said: {all:?}"));
+            let line = line.unwrap_or_else(|_| panic!("{left:?} is not printed: {all:?}"));
             if let Some(i) = left
                 .iter()
                 .position(|beginning| line.starts_with(beginning))

@@ -34,7 +34,7 @@ fn a_rough_game_with_lossy_links_is_the_same_over_the_network_too() {
         digests.push(here["digest"].clone());
     }
     digests.dedup();
-    assert_eq!(digests.len(), 3, "each is another game");
+    assert_eq!(digests.len(), 3, "each is a different game");
 }
 
 #[test]
@@ -66,7 +66,7 @@ fn the_first_game_of_the_readme_runs_to_its_end() {
     );
     assert!(
         result["counts"]["teams"]["blue"]["grabs"].as_u64() > Some(0),
-        "somebody reached a flag"
+        "a boat reached a flag"
     );
 }
 
@@ -124,7 +124,7 @@ fn agents_may_come_before_the_sim_and_in_any_order() {
     for agent in &mut agents {
         assert!(
             agent.wait().success(),
-            "an agent leaves in peace when the game ends"
+            "an agent leaves without an error when the game ends"
         );
     }
 }
@@ -159,7 +159,7 @@ fn a_run_that_is_ended_early_leaves_nothing_behind() {
         let status = run.wait();
         assert!(
             !status.success(),
-            "{signal}: a game that was cut short is no success"
+            "{signal}: a game that was cut short is not a success"
         );
         let is_there = |pid: &u32| Path::new(&format!("/proc/{pid}/exe")).exists();
         wait_until(&format!("after {signal} all of {family:?} end"), || {

@@ -551,7 +551,7 @@ mod tests {
     }
 
     #[test]
-    fn named_points_are_seen_from_the_own_end() {
+    fn named_points_are_seen_from_a_teams_own_end() {
         let field = Field::new(plan((0.0, 0.0), 90.0, 160.0, 80.0, 20.0));
         for (team, name, x, y) in [
             (0, "CF", 20.0, 40.0),

@@ -1,4 +1,4 @@
-//! Randomised numbers: distributions in place of numbers.
+//! Randomised values: distributions in place of numbers.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 use scenario::Scenario;
@@ -53,7 +53,7 @@ fn each_vehicle_and_each_seed_draws_its_own_numbers_and_the_model_takes_them() {
         "link = { delay_s = { uniform = [0.1, 0.2] } }",
     ))
     .unwrap();
-    // The files are no longer needed.
+    // The files have served their purpose.
     std::fs::remove_dir_all(dir.path()).unwrap();
     let recorded: Scenario = serde_json::from_str(&serde_json::to_string(&first).unwrap()).unwrap();
 
@@ -63,7 +63,7 @@ fn each_vehicle_and_each_seed_draws_its_own_numbers_and_the_model_takes_them() {
         assert_eq!(
             game,
             recorded.of_seed(seed).unwrap(),
-            "seed {seed}: the same where the texts are read again"
+            "seed {seed}: the same when the texts are read again"
         );
         assert_eq!(game.drawn.len(), 2 * 3 + 1 + 1, "{:?}", game.drawn);
         let mass_kg = value(&game, "blue_one/hull.mass_kg");

@@ -1,5 +1,4 @@
-//! Identification recovers known parameters from noisy data and detects logs that do not determine
-//! them.
+//! Identification recovers known parameters from noisy data, and detects logs that do not determine them.
 
 use primitives::SimTime;
 use primitives::stream::Stream;
@@ -70,7 +69,7 @@ fn log_csv(boat: &Boat, orders_csv: &str, noise: f64, stream: &mut Stream) -> St
         };
     }
     let mut text = vec![];
-    trial::write_csv(&samples, true, &mut text).expect("a vector takes everything");
+    trial::write_csv(&samples, true, &mut text).expect("writing to a vector cannot fail");
     String::from_utf8(text).expect("text")
 }
 
@@ -137,7 +136,7 @@ fn known_parameters_come_back_within_their_stated_confidence() {
             fit.qualities
         );
     }
-    // 95 % of 36 is 34; fewer than 31 would have a probability of one in a hundred.
+    // 95 % of 36 is 34; fewer than 31 would occur with a probability of one in a hundred.
     assert!(within >= 31, "{within} of {all} within their 95 %");
 }
 

@@ -202,7 +202,7 @@ fn every_mistake_is_reported_at_its_place() {
         assert_eq!(
             read,
             text.lines().filter(|line| line.starts_with("##")).count(),
-            "{name}: cases read, and there"
+            "{name}: cases read, and present"
         );
         failures.extend(
             wrong

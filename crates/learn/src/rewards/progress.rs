@@ -262,7 +262,7 @@ mod tests {
     }
 
     #[test]
-    fn the_nearest_untagged_enemy_on_the_own_side_is_an_intruder() {
+    fn the_nearest_untagged_enemy_on_a_teams_own_side_is_an_intruder() {
         // One of the two enemies on the first team's side is tagged. The other is 32 m and 40 m from the boats.
         let boats = seen([
             (70.0, 72.0, false),

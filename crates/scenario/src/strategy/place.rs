@@ -27,7 +27,7 @@ pub enum Place {
 #[strum(serialize_all = "snake_case")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Mark {
-    /// Home of the own flag.
+    /// Home of one's own flag.
     OwnFlag,
     /// Home of the enemy's flag, if the flag is there.
     EnemyFlag,
