@@ -9,7 +9,7 @@ let browser;
 before(async () => { browser = await openBrowser(); });
 after(() => browser.close());
 
-/** A connection that is silent for this long is given up, s. */
+/** A connection that has been silent for this long is closed, s. */
 const SILENCE_S = 4;
 
 /** Lets a test cut the newest connection like a phone that leaves a network: nothing arrives, leaves or closes. */
@@ -98,7 +98,7 @@ test('a silently dead connection is closed; an idle one is not', async (t) => {
     await sight.press('#pause');
   });
   const { noted, notices } = await sight.get(() => ({ noted: window.noted, notices: document.getElementById('notices').textContent }));
-  assert(noted.some((text) => /Connection lost/.test(text)), `the page says so: ${noted}`);
+  assert(noted.some((text) => /Connection lost/.test(text)), `the page reports it: ${noted}`);
   assert.match(notices, /may not have arrived/);
   assert(await sight.get(() => document.getElementById('connection').hidden));
   await sight.phase('paused');
