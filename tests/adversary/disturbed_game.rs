@@ -54,9 +54,9 @@ impl DisturbedGame {
         }
         let done = self.sim.wait_for_kind("done");
         assert_eq!(done["outcome"]["digest"], undisturbed, "{}", done["run"]);
-        self.agents
-            .iter_mut()
-            .for_each(|agent| assert!(agent.wait().success(), "every node leaves without an error"));
+        self.agents.iter_mut().for_each(|agent| {
+            assert!(agent.wait().success(), "every node leaves without an error")
+        });
         done
     }
 }

@@ -181,6 +181,9 @@ impl Intruder {
 
 impl Heard {
     pub(crate) fn keys(&self) -> Vec<String> {
-        self.keys.lock().expect("no thread panics while holding it").clone()
+        self.keys
+            .lock()
+            .expect("no thread panics while holding it")
+            .clone()
     }
 }

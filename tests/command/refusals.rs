@@ -25,11 +25,9 @@ fn missing(case: &str) -> Vec<String> {
         } else {
             looked_for += commands.len();
             let silent = commands.iter().filter(|(_, said)| !said.contains(&line));
-            missing.extend(
-                silent.map(|(command, said)| {
-                    format!("{command} should print {line:?}, but prints {said}")
-                }),
-            );
+            missing.extend(silent.map(|(command, said)| {
+                format!("{command} should print {line:?}, but prints {said}")
+            }));
         }
         if let Some((path, text)) = &file {
             std::fs::write(path, text).unwrap();

@@ -141,10 +141,7 @@ impl Wire {
     pub(crate) fn note_state(&self, from: &str, to: &str) {
         self.visit(|state, now| {
             if to == "armed" {
-                assert!(
-                    state.arms_left > 0,
-                    "at {now}: armed without a request"
-                );
+                assert!(state.arms_left > 0, "at {now}: armed without a request");
                 state.arms_left -= 1;
             }
             state.is_armed = to == "armed" || (state.is_armed && from != "armed");

@@ -5,10 +5,7 @@
 //! `SQUALL_HOURS=24 cargo test --locked --release --workspace --test gale -- --nocapture` simulates
 //! a day with four boats; the default is half an hour.
 
-#![expect(
-    clippy::print_stdout,
-    reason = "prints measurements when run by hand"
-)]
+#![expect(clippy::print_stdout, reason = "prints measurements when run by hand")]
 
 use gateway::bridge::{Bridge, Event, Input, Output, Plan, Site};
 use gateway::emulator::{self, Emulator, FrontSeat, Port};

@@ -4,10 +4,7 @@
 //! `SQUALL_APPROACHES=10000 cargo test --locked --release --workspace --test geofence --
 //! --nocapture` runs more.
 
-#![expect(
-    clippy::print_stdout,
-    reason = "prints measurements when run by hand"
-)]
+#![expect(clippy::print_stdout, reason = "prints measurements when run by hand")]
 
 use gateway::config::default_gateway;
 use gateway::geofence::{Coasting, GeofenceWatch};

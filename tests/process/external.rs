@@ -198,7 +198,9 @@ fn a_real_boat_has_one_gateway_and_holds_without_navigation_or_agent() {
     // The gateway stops reporting, then resumes.
     sim.wait_for_event("nav_lost", "blue_one");
     wait_until("a lost boat is sent a hold order", || gateway.is_held());
-    gateway.sail_until("a boat that is back is driven again", |gateway| !gateway.is_held());
+    gateway.sail_until("a boat that is back is driven again", |gateway| {
+        !gateway.is_held()
+    });
     sim.wait_for_event("nav_back", "blue_one");
     let before = gateway.newest().expect("an order").given_ns;
     gateway.sail_until("its agent continues", |gateway| {

@@ -339,10 +339,7 @@ fn floods_a_game() {
         topic::matching(&name, "order/stranger"),
         topic::control(&name),
     ];
-    let publishers = keys.map(|key| {
-        bus.publisher(key, Priority::Normal)
-            .expect("the hub is up")
-    });
+    let publishers = keys.map(|key| bus.publisher(key, Priority::Normal).expect("the hub is up"));
     // Until it is killed or the game ends.
     while publishers
         .iter()

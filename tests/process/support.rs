@@ -161,8 +161,7 @@ pub(crate) fn helm(
         question.to_vec(),
         LIMIT,
     );
-    serde_json::from_slice(&answer.expect("the hub is up").expect("an answer"))
-        .expect("a report")
+    serde_json::from_slice(&answer.expect("the hub is up").expect("an answer")).expect("a report")
 }
 
 /// Runs a game to its end and returns its result.

@@ -62,9 +62,7 @@ fn a_killed_teammate_does_not_silence_the_others_and_nonsense_is_harmless() {
                 words: vec![word],
             })
             .expect("the hub is up");
-        publisher
-            .send_raw(b"ahoy".to_vec())
-            .expect("the hub is up");
+        publisher.send_raw(b"ahoy".to_vec()).expect("the hub is up");
     }
     let mut speakers = [0, 0, 0];
     while speakers[0] < 20 || speakers[2] < 20 {

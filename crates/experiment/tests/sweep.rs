@@ -122,7 +122,10 @@ fn a_study_that_was_cut_anywhere_and_taken_up_again_is_the_same_bytes_on_any_num
         );
         go_on(&mut study, &plan, 24, 3);
         study.report(&plan).unwrap();
-        assert!(files(&cut) == want, "truncated by {games} and {boats} bytes");
+        assert!(
+            files(&cut) == want,
+            "truncated by {games} and {boats} bytes"
+        );
     }
 
     // A full disk leaves files empty or missing, and any digit may change.

@@ -373,10 +373,7 @@ fn a_recorder_writes_beside_the_game_and_can_be_read_meanwhile() {
     let path = dir.path().join("game.mcap");
     let blank = || NewFile::create(&path);
     drop(blank().unwrap_or_else(|e| panic!("{e}")));
-    assert!(
-        !path.exists(),
-        "a game that never began has no recording"
-    );
+    assert!(!path.exists(), "a game that never began has no recording");
     let recorder = Recorder::begin(
         blank().unwrap_or_else(|e| panic!("{e}")),
         &header().opening(),

@@ -137,7 +137,10 @@ impl Boat {
         let start = Instant::now();
         let mut text = String::new();
         while !text.contains(what) {
-            assert!(start.elapsed() < LIMIT, "{what:?} does not arrive: {text:?}");
+            assert!(
+                start.elapsed() < LIMIT,
+                "{what:?} does not arrive: {text:?}"
+            );
             text.extend(self.received.recv_timeout(Duration::from_millis(100)));
         }
     }

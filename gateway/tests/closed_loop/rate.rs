@@ -44,11 +44,7 @@ fn a_new_order_does_not_wait_for_the_period_of_repetitions() {
         let given = rig.now + SimTime(1);
         let before = rig.sent.len();
         rig.give(&Input::Order(order, given));
-        assert_eq!(
-            rig.sent.len(),
-            before + 1,
-            "{i}: sent in the same step"
-        );
+        assert_eq!(rig.sent.len(), before + 1, "{i}: sent in the same step");
     }
 }
 

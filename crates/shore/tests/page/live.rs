@@ -425,9 +425,7 @@ fn a_selected_boat_tells_what_its_helm_thinks_and_where_it_believes_to_be() {
         (&none["report"], &none["reason"]),
         (&json!(null), &json!("no agent is running red_one now"))
     );
-    wait_until("its team's picture is needed", || {
-        sim.pictures.is_heard()
-    });
+    wait_until("its team's picture is needed", || sim.pictures.is_heard());
     let stamp = Stamp {
         valid_ns: SimTime::from_s(2.0),
         seq: 20,
@@ -446,7 +444,9 @@ fn a_selected_boat_tells_what_its_helm_thinks_and_where_it_believes_to_be() {
     );
     client.send(r#"{"do":"select","vehicle":null}"#);
     // The other page selects a red boat, so blue's picture is no longer needed.
-    wait_until("no page has it selected any more", || !sim.pictures.is_heard());
+    wait_until("no page has it selected any more", || {
+        !sim.pictures.is_heard()
+    });
     sim.close();
 }
 
