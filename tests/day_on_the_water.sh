@@ -58,7 +58,7 @@ for line in "${lines[@]}"; do
         # These boats exist.
         BLUE=$blue_boat RED=$red_boat
         ;;
-    *"# a terminal of its own")
+    *"# in its own terminal")
         terminals=$((terminals + 1))
         [[ $line != "squall view"* ]] || line="${line%%#*} --listen 127.0.0.1:0"
         start "terminal_$terminals" bash -c "BLUE=$BLUE RED=$RED; exec $line"

@@ -27,7 +27,7 @@ SKIPPED = {
     r".*(10\.0\.0\.\d+|192\.168\.\d+\.\d+).*": "needs another host or a boat at this address",
     r"squall gateway (check|stop|surveyor|tell|replay|console)\b.*": "needs a boat; tests/process drives emulated ones",
     r"squall log runs/gateway-.*": "needs the recording of a boat's gateway",
-    r"squall view --game day.*": "belongs to a game with boats, in a terminal of its own",
+    r"squall view --game day.*": "belongs to a game with boats, in its own terminal",
     r"squall run .*--blue imported.*|squall (strategy|policy) imported.*": "needs a model that the reader has trained",
     r"squall (trial|identify) .*field\.csv.*": "needs the reader's log of a boat; tests/command/trial.rs has one",
     r"squall keys new keys --help": "prints help; the keys page creates keys",
@@ -141,7 +141,7 @@ class Page:
 
     def run(self, command):
         """Runs one command as typed; returns its output, or none if it is skipped or ended early."""
-        command = re.sub(r"\s+#.*$|\s+# a terminal of its own", "", command).strip()
+        command = re.sub(r"\s+#.*$|\s+# in its own terminal", "", command).strip()
         for word, value in PLACEHOLDERS.items():
             command = re.sub(rf"{word}$", value, command)
         if name := re.fullmatch(r"(\w+)=(.*)", command):

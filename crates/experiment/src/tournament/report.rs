@@ -87,7 +87,7 @@ pub struct Row {
     pub tagged: Estimate,
     /// Times a boat left the field.
     pub out_of_bounds: Estimate,
-    /// Collisions of its boats; one between team-mates counts twice.
+    /// Collisions of its boats; one between teammates counts twice.
     pub collisions: Estimate,
     /// Games won.
     pub wins: u64,
