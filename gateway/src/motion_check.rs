@@ -59,7 +59,7 @@ impl MotionCheck {
             measured.length() - reported.length() > SPEED_GAP_M_S
         });
         self.slow_since = is_slow.then(|| self.slow_since.unwrap_or(now));
-        // A fix that steps has a course of its own, so the reported velocity takes precedence.
+        // A stepping fix implies a course that is not the boat's, so the reported velocity takes precedence.
         self.take_course(
             now,
             reported.is_some(),

@@ -79,7 +79,7 @@ fn of_many_that_race_for_a_boat_one_has_it_and_the_next_when_that_is_gone() {
     let mut seen = Vec::new();
     for _ in 0..4 {
         let mut winners = Vec::new();
-        wait_until("somebody has it", || {
+        wait_until("an agent has it", || {
             let replies: Vec<Option<JoinReply>> = std::thread::scope(|scope| {
                 let asking: Vec<_> = racers
                     .iter()

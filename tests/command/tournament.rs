@@ -586,7 +586,7 @@ fn a_game_from_both_sides_is_the_two_games_of_the_tournament_and_their_sum() {
             "{team}"
         );
     }
-    assert!(points(&first, "blue") > 0, "somebody scores");
+    assert!(points(&first, "blue") > 0, "a team scores");
     assert!(
         text.contains("nothing in this game is random") && first["random"] == false,
         "{text}"

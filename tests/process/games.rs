@@ -193,7 +193,7 @@ fn games_on_this_machine_are_listed_and_can_be_watched() {
     let (mut watch, mut lines) =
         Process::with_lines(squall(&["watch", "--game", &sim.game, "--rate", "20"]));
     for _ in 0..3 {
-        let line = lines.next().expect("it goes on");
+        let line = lines.next().expect("it continues");
         assert!(line.contains("blue") && line.contains("frames/s"), "{line}");
     }
     sim.stop();

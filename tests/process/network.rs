@@ -306,7 +306,7 @@ fn an_e_stop_is_obeyed_at_once_under_a_flood_of_garbage() {
         stop.send_json(b"\"e_stop\"".to_vec()).expect("a session");
         let took = ordered(&orders, &mut gateway, true).duration_since(sent);
         assert!(took < PROMISED, "it takes {took:?}");
-        bus::control(&operator, &name, Control::Release).expect("it goes on");
+        bus::control(&operator, &name, Control::Release).expect("it continues");
     }
     sim.stop();
 }

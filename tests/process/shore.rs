@@ -87,7 +87,7 @@ fn a_paused_game_stands_still_is_stepped_and_goes_on_as_if_nothing_had_been() {
         shore.wait_for_run("it plays one decision", is_there);
     }
     shore.ask(Control::Resume);
-    shore.wait_for_run("it goes on", |run| run.phase == Phase::Playing);
+    shore.wait_for_run("it continues", |run| run.phase == Phase::Playing);
     shore.ask(Control::Speed(None));
     let done = sim.wait_for_kind("done");
     assert_eq!(

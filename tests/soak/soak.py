@@ -319,7 +319,7 @@ def judge(soak):
     grow_mb = max(GROW_MB, soak.args.grow_mb_h * newest_time(soak) / 3600)
     limits = {"own_mb": grow_mb, "descriptors": soak.args.grow_count, "threads": soak.args.grow_count,
               "ms": soak.args.slower_ms}
-    units = {"own_mb": "memory of its own, MB", "descriptors": "file descriptors", "threads": "threads", "ms": "latency, ms"}
+    units = {"own_mb": "own memory, MB", "descriptors": "file descriptors", "threads": "threads", "ms": "latency, ms"}
     for kind, limit in limits.items():
         print(f"\n{units[kind] + f' (limit {limit:g})':32}{'first':>10}{'last':>10}{'grew':>10}")
         for (_, of), series in ((key, series) for key, series in soak.samples.items() if key[0] == kind):

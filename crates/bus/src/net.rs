@@ -208,7 +208,7 @@ impl Net {
                 "connect_certificate": certificate, "connect_private_key": key,
             });
             set(&mut config, "transport/link/tls", &tls.to_string())?;
-            // Endpoints learnt from other nodes must use TLS too.
+            // Endpoints learned from other nodes must use TLS too.
             set(
                 &mut config,
                 "transport/link/protocols",

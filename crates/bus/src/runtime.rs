@@ -46,7 +46,7 @@ pub trait Runtime: Send + Sync {
     /// returns whether time is left. Returns `None` if this runtime uses condition variables for waiting.
     fn wait(&self, address: usize, deadline: Option<Instant>) -> Option<bool>;
 
-    /// Whether nodes can be reached by sockets of their own, besides their sessions.
+    /// Whether nodes can be reached through their own sockets, besides their sessions.
     fn has_sockets(&self) -> bool;
 
     /// Opens the hub session of a game.

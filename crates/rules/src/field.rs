@@ -72,7 +72,7 @@ pub enum Walls {
 pub struct Flag {
     /// The team that defends it.
     pub team: TeamId,
-    /// Its position while nobody carries it.
+    /// Its position while no boat carries it.
     pub home: Ned,
 }
 

@@ -59,7 +59,7 @@ export class Log {
     return this.wide && (this.chosen[this.tab] ?? (this.tab === 'boat' && this.low.matches));
   }
 
-  /** The tab above the events; on narrow pages the events have a tab of their own. */
+  /** The tab above the events; on narrow pages the events have their own tab. */
   under(tab, wide) {
     this.tab = tab;
     this.wide = wide;

@@ -1,4 +1,4 @@
-//! Finds a boat's game and joins it, on a thread of its own: so that the boat's link and its operators do not have to
+//! Finds a boat's game and joins it on its own thread, so that the boat's link and its operators do not have to
 //! wait.
 
 use super::error::NodeError;

@@ -179,7 +179,7 @@ pub fn guard(socket: impl AsFd, remark: &mut dyn FnMut(&str)) -> io::Result<()> 
                         remark("the gateway has hung: sending zero thrust and standby to its boat");
                     }
                 }
-                // Without a link there is nothing to send, and nobody to notify of the hang.
+                // Without a link there is nothing to send, and no one to notify of the hang.
                 is_hung |= link.is_some();
             }
             Heard::Died => {

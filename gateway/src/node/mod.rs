@@ -104,7 +104,7 @@ pub fn serve(
     // The token as known by now: nothing waits for it, and it is not an error if there is no game
     // yet.
     drop(settings.place.net(settings.game.as_ref()));
-    // Until a game provides one, the port has a token of its own; in a game with keys it keeps
+    // Until a game provides one, the port has its own token; in a game with keys it keeps
     // that.
     let token = settings.place.token.get().unwrap_or_else(Token::random);
     // Before the link: a port in use is an error before the boat receives anything from us.

@@ -129,7 +129,7 @@ impl Boat {
         is_its
     }
 
-    /// Whether nobody else commands it: it is in GUIDED or HOLD, or in the mode that we requested.
+    /// Whether no one else commands it: it is in GUIDED or HOLD, or in the mode that we requested.
     pub(super) fn is_ours(&self, asked: Option<&Asked>) -> bool {
         self.mode.is_none_or(|shown| {
             matches!(shown.mode, RoverMode::Guided | RoverMode::Hold)
@@ -213,7 +213,7 @@ impl Boat {
         let operator = match shown.mode {
             _ if is_ours => Operator::Secondary,
             RoverMode::Manual | RoverMode::Acro | RoverMode::Steering => Operator::Rc,
-            // A ground station, or a failsafe of its own.
+            // A ground station, or one of the boat's own failsafes.
             _ => Operator::Primary,
         };
         let heading_deg = self

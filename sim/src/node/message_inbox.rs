@@ -1,4 +1,4 @@
-//! Messages from other nodes to the game. Every sender has space of its own that no other sender can use up.
+//! Messages from other nodes to the game. Every sender has its own space, which no other sender can use up.
 
 use bus::{Query, Watched};
 use messages::external::{NavReport, Reported};

@@ -119,7 +119,7 @@ impl Server {
             }
             GatewayCommand::Boat { name, command } if *command != OperatorCommand::Status => {
                 // Published by the sim's session, which needs no rule at the hub. An unknown boat
-                // gets no answer: nothing can be learnt.
+                // gets no answer and learns nothing.
                 publish(stops.get(name)?, serde_json::to_vec(command));
             }
             _ => {}

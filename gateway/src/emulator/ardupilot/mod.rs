@@ -209,7 +209,7 @@ impl ArduPilot {
         if !is_for_us || from == (self.system(), AUTOPILOT) {
             return;
         }
-        // Rover obeys commands from anybody, but its failsafe and manual control accept only one
+        // Rover obeys commands from anyone, but its failsafe and manual control accept only one
         // ground station.
         let is_station = f64::from(*system) == self.parameters.value("SYSID_MYGCS");
         match message {
