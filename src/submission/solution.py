@@ -16,7 +16,7 @@ SAMPLED = @SAMPLED@  # whether actions are sampled from the network's probabilit
 SPEED_MAX_M_S = 3.0  # of the competition's Surveyor
 DIAGONAL_M = math.hypot(160.0, 80.0)  # of its field
 
-# Numbers of the own boat and of each other boat, with `is_disabled` in 2026.
+# Numbers of the boat itself and of each other boat, with `is_disabled` in 2026.
 OWN, OTHER = 22, 9
 
 

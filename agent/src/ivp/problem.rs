@@ -20,9 +20,9 @@ pub struct Decision {
 /// Tie-breaker between equally good candidates.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Preference {
-    /// Present course of the own ship, rad.
+    /// Own ship's present course, rad.
     pub course_rad: f64,
-    /// Present speed of the own ship, m/s.
+    /// Own ship's present speed, m/s.
     pub speed_m_s: f64,
 }
 

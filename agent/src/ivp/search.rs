@@ -23,7 +23,7 @@ pub(super) struct Best {
     pub(super) decision: Decision,
 }
 
-/// The own ship's present motion.
+/// Own ship's present motion.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Present {
     /// Its course, ticks.

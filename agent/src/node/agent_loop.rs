@@ -232,7 +232,7 @@ impl AgentLoop {
     }
 }
 
-/// A picture with the events of the previous one added if no decision was made on that one.
+/// A picture with the events of the previous one added if that one led to no decision.
 /// `decided` is the number of the last decision. Each event is in one picture only.
 fn with_missed_events(
     mut picture: Picture,

@@ -148,7 +148,7 @@ pub fn find_game(
 /// The game of this name, or the only one on the network, with its details.
 ///
 /// # Errors
-/// [`Missing`] if it is not there yet, if there are several, or if its sim has another version.
+/// [`Missing`] if it does not exist yet, if there are several, or if its sim has another version.
 pub fn choose_game(bus: &Bus, named: Option<&GameName>) -> Result<(GameName, GameInfo), Missing> {
     let game = named.map_or_else(|| only_game(bus), |game| Ok(game.clone()))?;
     let info = game_info(bus, &game)?;

@@ -23,7 +23,7 @@ pub struct Patience {
 
 impl Patience {
     /// The patience of nodes that play in the game: `silence` for a silent sim, and five seconds
-    /// for one that was heard until its token went.
+    /// for one that was heard until its token disappeared.
     pub fn of_player(silence: Duration) -> Patience {
         Patience {
             silence,

@@ -253,7 +253,7 @@ const COLUMNS: [(&str, f64); 5] = [
     ("S", 0.75),
     ("SS", 1.0),
 ];
-/// The rows of the named points, from the own end: back, flag, half, mid, centre, and their mirror
+/// The rows of the named points, from one's own end: back, flag, half, mid, centre, and their mirror
 /// images.
 const ROWS: [&str; 9] = ["B", "F", "H", "M", "C", "MX", "HX", "FX", "BX"];
 

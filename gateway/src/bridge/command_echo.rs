@@ -155,9 +155,8 @@ impl CommandEcho {
         }
     }
 
-    /// Whether thrust and difference lie between the last reported and the last sent values. This
-    /// is so for a boat that reports the applied thrust, which lags, instead of its command.
-    /// Another gateway's set-points jump.
+    /// Whether thrust and difference lie between the last reported and the last sent values. This is the case for a
+    /// boat that reports the applied thrust, which lags, instead of its command. Another gateway's set-points jump.
     fn is_on_its_way(&self, shown: &Shown) -> bool {
         let Some(last) = self
             .last

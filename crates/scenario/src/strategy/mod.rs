@@ -153,7 +153,7 @@ pub struct Trigger {
 #[strum(serialize_all = "snake_case")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Who {
-    /// The own boat.
+    /// The boat itself.
     I,
     /// A mate.
     Mate,
