@@ -83,7 +83,7 @@ def native_environment(
     """
     unknown = options.keys() - Options.__annotations__.keys()
     if unknown:
-        raise ValueError(f"unknown option {sorted(unknown)}, expected some of {sorted(Options.__annotations__)}")
+        raise ValueError(f"unknown option {sorted(unknown)}, expected one or more of {sorted(Options.__annotations__)}")
     control, rewards = options.get("control", "direct"), options.get("rewards", "bold")
     starts = options.get("starts")
     setup: _native.Setup = {

@@ -183,7 +183,7 @@ fn a_console_stops_one_boat_or_all_and_releases_them() {
     console.say("all release");
     console.wait_for(&["red_one  disarmed"]);
     console.say("blue_one arm");
-    console.wait_for_complaint("blue_one refuses: an E-stop of this boat");
+    console.wait_for_complaint("refused by blue_one: an E-stop of this boat");
     console.ask("blue_one release", &["blue_one  disarmed  after "]);
     console.ask("red_one disarm", &ALL_DISARMED[1..]);
     console.ask("all disarm", &ALL_DISARMED);
@@ -191,7 +191,7 @@ fn a_console_stops_one_boat_or_all_and_releases_them() {
     let (status, said) = console.end();
     assert!(status.success(), "{said}");
     assert!(
-        said.contains("dance") && said.contains("blue_one refuses: an E-stop of this boat"),
+        said.contains("dance") && said.contains("refused by blue_one: an E-stop of this boat"),
         "{said}"
     );
 }

@@ -289,7 +289,7 @@ def ask_gateway(place, boat, command):
         lines.flush()
         answer = json.loads(lines.readline())["answer"]
     if answer["refused"] is not None:
-        raise ValueError(f"{boat} refuses {command}: {answer['refused']}")
+        raise ValueError(f"{boat} refused {command}: {answer['refused']}")
     return answer
 
 

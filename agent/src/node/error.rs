@@ -15,7 +15,7 @@ pub enum NodeError {
     #[error("found no game to join within {0:.0?}: {1}")]
     NoGame(Duration, String),
     /// The sim rejected the request.
-    #[error("the sim refuses: {0}")]
+    #[error("refused by the sim: {0}")]
     Refused(String),
     /// The sim has another version.
     #[error("agent and sim have different versions: the agent is {ours}, {theirs}", ours = primitives::VERSION)]

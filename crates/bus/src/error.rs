@@ -34,7 +34,7 @@ pub enum BusError {
         reason: String,
     },
     /// The sim refuses, for this reason.
-    #[error("the sim refuses: {0}")]
+    #[error("refused by the sim: {0}")]
     Refused(String),
     /// The sim does not respond.
     #[error("the sim does not respond")]

@@ -180,7 +180,7 @@ impl Link {
             Some(msg) if msg.kind == Kind::WELCOME => {}
             Some(msg) if msg.kind == Kind::POISON => {
                 return Err(format!(
-                    "it refuses {NAME}: {}",
+                    "it rejected {NAME}: {}",
                     msg.as_text().unwrap_or("without a reason")
                 ));
             }

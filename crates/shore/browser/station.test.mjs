@@ -57,7 +57,7 @@ test('an operator arms, delegates and disarms a boat from the page, and everyone
   assert.equal((await badge(mine, 'blue_one', 'delegated')).detail, 'station keeping');
   await mine.press('#operate-go_to_erp');
   await mine.press('#operate-confirm');
-  await mine.until('the refusal is shown', () => /refuses: missing: a recovery point/.test(document.getElementById('operated').textContent));
+  await mine.until('the refusal is shown', () => /Refused by .*: missing: a recovery point/.test(document.getElementById('operated').textContent));
 
   const place = folder(t);
   const { datum } = await mine.get(() => squall.hello.chart.field);
@@ -202,7 +202,7 @@ test('a boat holds a heading and changes mode on an operator’s command, and it
   await sight.page.fill('#mode-thrust', '71');
   await sight.press('#mode-set');
   await sight.press('#operate-confirm');
-  await sight.until('excessive thrust is refused', () => /refuses: the thrust is 71, expected 0 to 70 %/.test(document.getElementById('operated').textContent));
+  await sight.until('excessive thrust is refused', () => /Refused by .*: the thrust is 71, expected 0 to 70 %/.test(document.getElementById('operated').textContent));
   await sight.page.fill('#mode-thrust', '20');
   await sight.press('#mode-set');
   assert.match(await sight.text('#operate-question'), /Let blue one’s own controller hold heading 0° at 20 %/);

@@ -218,7 +218,7 @@ impl Console {
                 Ok(OperatorReply {
                     refused: Some(reason),
                     ..
-                }) => terminal::complain(&format!("{name} refuses: {reason}")),
+                }) => terminal::complain(&format!("refused by {name}: {reason}")),
                 Err(e) => {
                     terminal::complain(&format!("{name}: {}", command_line::explain::line(&e)))
                 }

@@ -107,7 +107,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     terminal::show(&full(&reply.status));
     match reply.refused {
         None => Ok(ExitCode::SUCCESS),
-        Some(reason) => Err(anyhow!("{} refuses: {reason}", args.words.vehicle)),
+        Some(reason) => Err(anyhow!("refused by {}: {reason}", args.words.vehicle)),
     }
 }
 
@@ -267,7 +267,7 @@ pub(super) fn release_all(ports: &[Port], game: Option<&(Bus, GameName)>) -> Vec
             Ok(OperatorReply {
                 refused: Some(reason),
                 status,
-            }) => Some(format!("{} refuses: {reason}", status.vehicle)),
+            }) => Some(format!("refused by {}: {reason}", status.vehicle)),
             Ok(_) => None,
             Err(e) => Some(e.to_string()),
         };
@@ -436,7 +436,7 @@ fn tell_all(args: &Args) -> Result<ExitCode> {
                 failed.extend(
                     reply
                         .refused
-                        .map(|reason| format!("{} refuses: {reason}", reply.status.vehicle)),
+                        .map(|reason| format!("refused by {}: {reason}", reply.status.vehicle)),
                 );
             }
             Err(RecvTimeoutError::Disconnected) => break,

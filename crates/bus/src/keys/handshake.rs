@@ -121,7 +121,7 @@ fn explained(error: &Error, host: &str, identity: &Identity) -> String {
             format!("the sim reports that the certificate of {identity} has expired: check both clocks")
         }
         Error::AlertReceived(alert) => format!(
-            "the sim refuses the certificate of {identity} ({alert:?}): its keys and these come from different runs of \
+            "the sim rejects the certificate of {identity} ({alert:?}): its keys and these come from different runs of \
              `squall keys new`"
         ),
         other => other.to_string(),

@@ -66,7 +66,7 @@ pub struct Fit {
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum NoFit {
     /// An unknown parameter name.
-    #[error("{0} is not a parameter, expected some of {list}", list = names().join(", "))]
+    #[error("{0} is not a parameter, expected one or more of {list}", list = names().join(", "))]
     Unknown(String),
     /// The boat has no such parameter.
     #[error("the boat has no {0}")]
