@@ -26,7 +26,7 @@ const PHRASES: [(&str, &str); 24] = [
     ("surely", "significantly, certainly"),
     ("one at least", "at least one"),
     ("in the mean", "on average"),
-    ("is there already", "exists already"),
+    ("is there already", "already exists"),
     ("look at it", "show it, open it"),
     ("thrust zero", "zero thrust"),
     ("inside of", "inside, within"),

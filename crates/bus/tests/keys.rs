@@ -200,7 +200,7 @@ fn keys_are_for_their_owner_only_and_never_written_over() {
         [0o700, 0o600, 0o600]
     );
     let again = make(own.path(), &[Identity::Observer], &[], DAY)
-        .expect_err("it exists already")
+        .expect_err("it already exists")
         .to_string();
     assert!(again.contains("observer"), "{again}");
     assert_eq!(

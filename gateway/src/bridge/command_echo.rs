@@ -10,8 +10,7 @@ use primitives::SimTime;
 use primitives::angle::wrap_pi;
 use std::collections::VecDeque;
 
-/// Tolerances for equal speeds and headings in mode G, kn and degrees: ArduPilot drops all
-/// decimals.
+/// Tolerances for equal speeds and headings in mode G, kn and degrees: ArduPilot drops all decimal places.
 const SAME_SPEED_KN: f64 = 0.1;
 const SAME_HEADING_DEG: f64 = 1.1;
 /// If the boat drops from our commands to standby this many times within this period, s, and
