@@ -17,7 +17,7 @@ const WINDOW_MIN_S: f64 = 2.0;
 /// Maximum number of positions stored: 20 a second.
 const FIXES_MAX: usize = 80;
 /// The reported speed may be lower than the speed from positions by this much, m/s, for this long,
-/// s: a fix may step by some metres.
+/// s: a fix may step by a few metres.
 // At these limits no sea, wind or step of a fix alone triggers them: a false alarm stops a boat in
 // a game.
 const SPEED_GAP_M_S: f64 = 1.2;

@@ -108,7 +108,7 @@ export class Link {
     this.start();
   }
 
-  /** Gives up a connection that is silent although messages are due. */
+  /** Closes a connection that has been silent although messages are due. */
   watch(now_ms) {
     // A page that slept or was busy received nothing either.
     const slept = now_ms - this.watched_ms > 2 * WATCH_S * 1000;

@@ -997,7 +997,7 @@ function drawGames() {
   const rows = shownGames.filter((game) => wanted === 'all' || resultOf(game) === wanted);
   const { problem, left_out } = state.games ?? {};
   const about = state.games === null ? 'Loading the list.' : `${rows.length} games of point ${state.point}${left_out ? `, of the first ${state.games.games.length}` : ''}. `
-    + 'Before you can watch a game, it is rerun, which takes some seconds.';
+    + 'Before you can watch a game, it is rerun, which takes a few seconds.';
   byId('games-note').textContent = problem ? `${about} Their results are unknown: ${problem}` : about;
   const heads = [columnHead('', false), columnHead('Entry', false), columnHead('Team', false), columnHead('Seed', true), columnHead('Points', true),
     columnHead('Result', false)];

@@ -250,7 +250,7 @@ export class Tournament {
     const found = this.chosenGames();
     const label = make('label', '', '', make('span', '', 'Show '), this.filter);
     const said = make('p', '', found.length === 0 ? 'No such games.' : '');
-    const words = `${found.length} games${this.unplayable ? '' : '. Watching a game first replays it, which takes some seconds.'}`;
+    const words = `${found.length} games${this.unplayable ? '' : '. Watching a game first replays it, which takes a few seconds.'}`;
     const more = make('button', '', `${Math.min(LISTED, found.length - this.listed)} more`);
     more.id = 'games-more';
     more.type = 'button';

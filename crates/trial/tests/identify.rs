@@ -35,7 +35,7 @@ fn wrong(truth: &Boat) -> Boat {
     boat
 }
 
-/// Commands for four minutes, each for some seconds, with both thrusters equal or different.
+/// Commands for four minutes, each for a few seconds, with both thrusters equal or different.
 fn orders_csv(stream: &mut Stream) -> String {
     let mut text = "t_s,port_pct,starboard_pct\n".to_owned();
     let mut t_s = 0.0;

@@ -27,7 +27,7 @@ const CONNECTIONS_MAX: usize = 128;
 /// A connection that is idle for this long, or does not read, is closed.
 const IDLE_MAX: Duration = Duration::from_secs(30);
 const WRITE_MAX: Duration = Duration::from_secs(2);
-/// Maximum bytes of a request: a mission has some hundred waypoints.
+/// Maximum bytes of a request: a mission has a few hundred waypoints.
 const REQUEST_MAX: u64 = 64 * 1024;
 /// How long the gateway loop may take to reply.
 const REPLY_MAX: Duration = Duration::from_secs(2);
