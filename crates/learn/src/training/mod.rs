@@ -67,8 +67,7 @@ impl ScenarioFile for Training {
     }
 }
 
-/// What a critic receives, which estimates the value of the rest of a game. It is used only in
-/// training.
+/// Input of the critic, which estimates the value of the rest of a game. It is used only in training.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum CriticInput {

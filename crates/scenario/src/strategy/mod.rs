@@ -109,7 +109,7 @@ pub struct Variable {
     pub name: String,
     /// The kind of its values.
     pub kind: Kind,
-    /// Its initial value: see [`Expression`] for how truths and texts are numbers.
+    /// Its initial value: see [`Expression`] for how Booleans and texts become numbers.
     pub initial: f64,
     /// Whether it is shared with the team.
     pub shared: bool,
