@@ -10,7 +10,6 @@ use super::tree::{Node, Value};
 use super::validate::validated;
 use primitives::input_file;
 use serde::de::DeserializeOwned;
-use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use toml::de::DeTable;
@@ -277,15 +276,12 @@ fn text_of(loader: &Loader, path: &Path, asked_at: Option<usize>) -> Option<Arc<
     let diagnostics = &loader.diagnostics;
     let bytes = match loader.files.read(path, LARGEST_BYTES) {
         Ok(bytes) => input_file::utf_8(bytes.to_vec()).unwrap_or_else(|_| bytes.to_vec()),
-        Err(error) => {
-            let why = match error.kind() {
-                ErrorKind::NotFound => "no such file".to_owned(),
-                _ => error.to_string(),
-            };
-            let path = path.to_owned();
+        Err(why) => {
             match asked_at {
                 Some(at) => diagnostics.note(at, format!("cannot read {}: {why}", path.display())),
-                None => diagnostics.note_file(path, format!("cannot read this file: {why}")),
+                None => {
+                    diagnostics.note_file(path.to_owned(), format!("cannot read this file: {why}"));
+                }
             }
             return None;
         }
