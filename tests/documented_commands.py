@@ -103,7 +103,7 @@ def matching(table, command):
 def normal(text):
     """Text without the parts that differ between runs and machines: durations, speeds and times of recording."""
     text = re.sub(r"\d{8}T\d{6}Z", "TIME", text)
-    text = re.sub(r"(lockstep|in process) [\d.]+ s, [\d.]+x", r"\1 WALL", text)
+    text = re.sub(r"(lockstep|in process|computed in) [\d.]+ s, [\d.]+x", r"\1 WALL", text)
     return [" ".join(line.split()) for line in text.splitlines()]
 
 
