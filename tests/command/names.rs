@@ -134,7 +134,7 @@ fn the_users_own_files_come_first_and_one_that_overrides_is_announced_once() {
     printed(&dir, &["copy", "gale"]);
     assert_eq!(stderr(&["new", "strategy", "strategy_4"]), remark);
     let listed = printed(&dir, &["files"]);
-    let own = "your own files:\n  scenarios/strategies/strategy_4.toml  overrides the built-in file; attacks while";
+    let own = "your own files:\n  scenarios/strategies/strategy_4.toml  overrides the built-in file; goes for";
     assert!(
         listed.starts_with(own) && listed.contains("\nseas: any "),
         "{listed}"
